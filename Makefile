@@ -110,9 +110,9 @@ video_missing := $(if $(filter h264,$(CODECS)),,H.264) \
 video := $(if $(strip $(video_missing)),,$(bin)/plantcast-video)
 video_cflags := $(if $(video),$(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(video_packages))))
 
-.PHONY: all programs run demo test check test-long bench gpu-bench style layers headers deps test-deps golden-update install clean help
+.PHONY: all programs web run demo test check test-long bench gpu-bench style layers headers deps test-deps golden-update install clean help
 all: $(programs) $(or $(video),no-video) $(scripts) $(modules) $(readers) \
-    $(if $(PACKED),,$(bin)/plantcast-import-ifc/ifc.mjs) clients/web/vendor/uPlot.js clients/web/made/version.js
+    $(if $(PACKED),,$(bin)/plantcast-import-ifc/ifc.mjs) web
 # The page's charts. Without them nothing is built.
 clients/web/vendor/uPlot.js: clients/web/package-lock.json
 	@echo "  NPM  $(@D)"; deploy/vendor $(build)/npm && touch $@
@@ -122,8 +122,12 @@ $(bin)/plantcast-import-ifc/ifc.mjs: $(ifc)
 	@echo "  NPM  $(@D)"; deploy/vendor_ifc $(build)/npm-ifc $(@D); [ ! -f $@ ] || touch $@
 # Icons of the page, numbers that it shares with the shaders, and its version.
 page := $(filter-out clients/web/made/%,$(wildcard clients/web/*.* clients/web/*/*.* clients/web/*/*/*.*))
-clients/web/made/version.js: deploy/stamp $(page) clients/web/vendor/uPlot.js shaders/constants.glsl
-	@echo "  WEB  $(@D)"; deploy/stamp clients/web shaders/constants.glsl
+clients/web/made/version.js: deploy/stamp deploy/join $(page) clients/web/vendor/uPlot.js shaders/constants.glsl
+	@echo "  WEB  $(@D)"; deploy/stamp clients/web shaders/constants.glsl deploy/join
+# The page as the daemon serves it, with the modules of its first load joined.
+web: $(bin)/web/app/first.js
+$(bin)/web/app/first.js: deploy/join clients/web/made/version.js
+	@echo "  WEB  $(bin)/web"; deploy/join clients/web $(bin)/web
 programs: all
 no-video:
 	@echo "  without plantcast-video, a view as video: no $(strip $(video_missing))"

@@ -33,8 +33,8 @@ install: all
 	install -m 755 deploy/prometheus/add $(root)/lib/plantcast/prometheus-add
 	$(if $(readers),install -m 755 $(readers) $(root)/libexec/plantcast)
 	[ ! -d $(bin)/plantcast-import-ifc ] || cp -r $(bin)/plantcast-import-ifc $(root)/libexec/plantcast/
-	cp -r clients/web $(root)/share/plantcast/
 	install -m 644 deploy/LICENSE $(root)/share/doc/plantcast
+	cp -r $(bin)/web $(root)/share/plantcast/
 	cp -r deploy/prometheus deploy/grafana deploy/proxy deploy/ansible $(root)/share/doc/plantcast
 	deploy/copy_pages $(root)/share/doc/plantcast
 	install -d $(root)/lib/systemd/system $(root)/lib/sysusers.d $(root)/lib/tmpfiles.d $(root)/share/bash-completion/completions

@@ -132,10 +132,10 @@ static struct plant *load_plant(const char *path)
     return plant;
 }
 
-/* Finds the web client's files: next to an installed program, or in the source tree. */
+/* Finds the web client's files: of an installed program, next to a built one, or in the source tree. */
 static char *find_web(const char *given)
 {
-    static const char *const places[] = { "../share/plantcast/web", "../clients/web", "../../../clients/web" };
+    static const char *const places[] = { "../share/plantcast/web", "web", "../clients/web", "../../../clients/web" };
     char program[PATH_MAX];
     if (given)
         return mem_strdup(given);

@@ -4,11 +4,12 @@
 import assert from 'node:assert/strict';
 import { existsSync, readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
-import { extname, join, resolve } from 'node:path';
+import { extname, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openPage, shoot } from './support/browser.mjs';
+import { BIN } from './support/tiny_plant.mjs';
 
-const WEB = resolve('clients/web'), VERSION = '/made/version.js';
+const WEB = join(BIN, 'web'), VERSION = '/made/version.js';
 const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml' };
 const options = { skip: existsSync(join(WEB, VERSION)) ? false : 'not built', timeout: 100000 };
 let server, browser, page, version = 'aaaaaaaaaaaa';

@@ -23,6 +23,13 @@ test('what the first picture takes is asked for by the page itself, and nothing 
     assert.deepEqual(all(/<link rel="modulepreload" href="([^"]+)"/g).sort(), needed.sort());
 });
 
+test('each worker is in a file that the build bundles whole (deploy/join)', () => {
+    const workers = ['app', 'core', 'wall'].flatMap(filesIn).filter((path) => path.endsWith('.js'))
+        .flatMap((path) => [...read(path).matchAll(/new (?:Shared)?Worker\(([^)]*)\)/g)].map(([, file]) => file));
+    assert.ok(workers.length >= 2);
+    assert.deepEqual(workers.filter((file) => !/_worker\.js'/.test(file)), []);
+});
+
 test('it is little: page, styles, words and modules', (t) => {
     for (const language of ['en', 'de', 'ko']) {
         const files = ['index.html', ...sheets, ...graph('app/startup.js'), `words/${language}.js`];

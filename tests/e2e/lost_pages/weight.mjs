@@ -9,7 +9,7 @@ import { sweep } from '../support/sweep.mjs';
 import { notBuilt } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 200000 };
-const MOST_BYTES = 190000, QUIET_MS = 1500;
+const MOST_BYTES = 190000, MOST_REQUESTS = 30, QUIET_MS = 1500;
 const source = readFileSync(new URL('../../../clients/web/app/lazy_modules.js', import.meta.url), 'utf8');
 const PARTS = [...source.matchAll(/^    (\w+): \{ file:/gm)].map(([, name]) => name);
 const kB = (bytes) => `${(bytes / 1000).toFixed(1)} kB`;
@@ -31,13 +31,13 @@ const watchFirst = () => {
     }).observe(document, { subtree: true, childList: true, attributes: true, attributeFilter: ['hidden'] });
 };
 
-// { page, errors, close, fetched(): [[path, bytes], ...] of this server's files, once per request }.
+// { page, errors, close, answers, fetched(): [[path, bytes], ...] of this server's files, once per request }.
 async function openCounted(address, screen, before = null) {
     const answers = [];
     const browser = await openPage(address, screen, before, (page) => page.on('response', (answer) => answers.push(answer)));
     const bytes = async (answer) => [new URL(answer.url()).pathname, (await answer.body()).length];
     const counts = ([path]) => !path.startsWith('/vendor/');
-    return { ...browser, fetched: async () => (await Promise.all(answers.map(bytes))).filter(counts) };
+    return { ...browser, answers, fetched: async () => (await Promise.all(answers.map(bytes))).filter(counts) };
 }
 const sum = (files) => files.reduce((all, [, bytes]) => all + bytes, 0);
 
@@ -52,14 +52,16 @@ async function calm(page, browser) {
 
 const PAGES = [['English', 'en'], ...sweep([['Korean on a phone', 'ko', PHONE], ['German', 'de'], ['Korean', 'ko']], [])];
 for (const [name, language, screen] of PAGES)
-    test(`a page in ${name} that shows the plant has loaded at most ${kB(MOST_BYTES)}`, options, async (t) => {
+    test(`a page in ${name} that shows the plant has loaded at most ${kB(MOST_BYTES)} by ${MOST_REQUESTS} requests`, options, async (t) => {
         const browser = await openCounted(`${url}?lang=${language}`, screen, watchFirst), { page } = browser;
         try {
             await waitForPicture(page);
             await waitForHealth(page, 'live');
             await page.locator('canvas.watchdog.watches').waitFor({ state: 'attached' }); // comes 5 s after the start
             await calm(page, browser);
-            const files = await browser.fetched();
+            const files = await browser.fetched(), requests = browser.answers.map((answer) => `${answer.status()} ${answer.url()}`);
+            assert.deepEqual(requests.filter((text) => !text.startsWith('200')), []);
+            assert.ok(requests.length <= MOST_REQUESTS, requests.join('\n'));
             assert.equal(files.filter(([path]) => path.includes('watchdog')).length, 3, 'module, words and worker');
             t.diagnostic(`${kB(sum(files))} in ${files.length} files; first picture after ` +
                 `${(await page.evaluate(() => globalThis.firstPictureMs)).toFixed(0)} ms`);

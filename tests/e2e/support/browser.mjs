@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Debian's chromium, driven by playwright-core, and functions that read the page's state.
-import { existsSync, mkdirSync, mkdtempSync, rmSync } from 'node:fs';
+import { existsSync, mkdirSync, mkdtempSync, readdirSync, rmSync, statSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { join, resolve } from 'node:path';
 import { after } from 'node:test';
 import { BUILD } from './plant.mjs';
 import { sweep } from './sweep.mjs';
+import { BIN } from './tiny_plant.mjs';
 
 // Loaded with require() and only when a page is opened: as an import, node would scan the whole module for names, which takes 0.2 s of
 // processor time.
@@ -125,10 +126,24 @@ async function leave(page, kind) {
     closed.set(kind, [...closed.get(kind) ?? [], page]);
 }
 
+// Fails if a file of the page has changed since the page was joined (deploy/join): the daemon would serve the older page.
+function checkJoined() {
+    const joined = join(BIN, 'web/app/first.js'), sources = resolve('clients/web');
+    const changedIn = (folder) => readdirSync(folder, { withFileTypes: true }).flatMap((entry) => {
+        const path = join(folder, entry.name);
+        return entry.isDirectory() ? changedIn(path) : statSync(path).mtimeMs > statSync(joined).mtimeMs ? path : [];
+    });
+    const changed = existsSync(joined) && existsSync(sources) ? changedIn(sources) : [];
+    if (changed.length > 0)
+        throw new Error(`changed since the page was built, run \`make web\`: ${changed.join(', ')}`);
+}
+let isChecked = false;
+
 // Returns { page, errors, close }. The page has no stored state. errors: script errors and requests to other origins. before: a function
 // that runs in the page before its scripts, or [function, argument]; arrange(page): further set-up of routes and events. screen.args:
 // browser arguments; screen.profile: use a browser of its own with a profile.
 export async function openPage(url, screen = DESKTOP, before = null, arrange = null) {
+    isChecked ||= checkJoined() ?? true;
     const { args = [], profile = false, ...own } = screen, shape = { ...MOTION, ...own }, kind = kindOf(shape);
     const isPlain = !before && !profile && args.length === 0, left = isPlain ? closed.get(kind)?.pop() : null;
     const context = left?.context() ?? await (profile ? profileWith(args, shape) : (await browserWith(args)).newContext(shape));

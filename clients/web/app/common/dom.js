@@ -60,7 +60,7 @@ const sheets = new Map();
 export function styled(name) {
     if (!sheets.has(name))
         sheets.set(name, new Promise((done, fail) => {
-            const link = make('link', { rel: 'stylesheet', href: new URL(`../${name}.css`, import.meta.url).href, onload: done });
+            const link = make('link', { rel: 'stylesheet', href: new URL(`app/${name}.css`, document.baseURI).href, onload: done });
             link.addEventListener('error', () => {
                 sheets.delete(name);
                 link.remove();
