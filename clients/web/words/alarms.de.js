@@ -9,6 +9,7 @@ aside: Zurückgestellt oder unterdrückt ({count})
 until: bis {time}
 by: durch {who}
 held: Messung gestört: letzter Zustand gehalten
+heldfrom: Messung gestört: Zustand gehalten seit {time}
 fly: Zu {tag} fliegen
 stale: Nicht aktuell: Stand {time}, als die Verbindung abbrach.
 which: Welche Alarme

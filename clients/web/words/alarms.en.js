@@ -9,6 +9,7 @@ aside: Shelved or suppressed ({count})
 until: until {time}
 by: by {who}
 held: bad measurement: last state held
+heldfrom: bad measurement: state held since {time}
 fly: Fly to {tag}
 stale: Out of date: as of {time}, when the connection was lost.
 which: Which alarms

@@ -9,6 +9,7 @@ aside: 보류 또는 억제 ({count})
 until: {time}까지
 by: 처리: {who}
 held: 계측 불량: 마지막 상태 유지
+heldfrom: 계측 불량: {time}부터 상태 유지
 fly: {tag}(으)로 이동
 stale: 현재가 아님: 연결이 끊긴 {time} 기준입니다.
 which: 알람 종류

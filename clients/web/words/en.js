@@ -128,7 +128,9 @@ latched: {latched} to reset
 asof: As of {time}: {alarms}
 gone: Priority {priority}, returned to normal
 now: Now: {alarms}
-value: raised at {value}, now {now} (limit {limit})
+value: raised at {value}{now} (limit {limit})
+present: now {now}
+since: held since {time}
 priority: Priority {priority}
 
 [kind]

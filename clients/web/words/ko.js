@@ -126,7 +126,9 @@ latched: 리셋 대기 {latched}건
 asof: {time} 기준: {alarms}
 gone: 우선순위 {priority}, 정상 복귀
 now: 현재: {alarms}
-value: 발생 {value}, 현재 {now} (한계 {limit})
+value: 발생 {value}{now} (한계 {limit})
+present: 현재 {now}
+since: {time}부터 유지
 priority: 우선순위 {priority}
 
 [kind]

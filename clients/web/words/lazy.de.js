@@ -295,7 +295,6 @@ sensors.name: Sensoren
 far: Text auf diesem Bildschirm ist bis {metres} m lesbar, nicht bis {wanted} m.
 
 [callout]
-held: gehalten seit {time}
 count: {count} Alarme
 worst: höchster
 

@@ -294,7 +294,6 @@ sensors.name: Sensors
 far: Text on this screen is readable from up to {metres} m, not {wanted} m.
 
 [callout]
-held: held since {time}
 count: {count} alarms
 worst: highest
 

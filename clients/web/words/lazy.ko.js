@@ -291,7 +291,6 @@ sensors.name: 센서
 far: 이 화면에서는 글자를 {metres} m까지 읽을 수 있습니다({wanted} m는 불가).
 
 [callout]
-held: {time}부터 유지
 count: 알람 {count}건
 worst: 최고
 

@@ -8,15 +8,29 @@ export const badge = (priority, hollow = false) => make('span', {
     class: `priority p${priority}${hollow ? ' hollow' : ''}`, title: say(hollow ? 'alarms.gone' : 'alarms.priority', { priority }),
 }, String(priority));
 
-// Returns as text the value at which an alarm was raised, the present value, and the limit; empty for an alarm without a limit. The present
-// value is a dash while the past is shown, or if `fresh` is false: no messages arrive from the server.
-export function limitText({ model, time }, { tag, value, limit }, fresh) {
+// Returns since when an alarm has no usable reading, and so keeps its state; null if it has one or never had one.
+export function heldSince(session, { tag, kind }) {
+    const { model, time } = session, bad = model.readings[tag.index]?.quality === 'bad';
+    const ageMs = bad && kind !== 'BAD' ? model.ageMs(tag.index, session.now()) : null, nowUs = time.atUs ?? session.clockUs();
+    if (ageMs === null || nowUs === null)
+        return null;
+    const clock = zoneClock(model.plant.time_zone), then = clock(nowUs / 1000 - ageMs), minute = then.time.slice(0, 5);
+    return then.date === clock(nowUs / 1000).date ? minute : `${then.day} ${minute}`;
+}
+
+// Returns as text the value at which an alarm was raised, the present value or since when there is none, and the limit. An alarm without
+// a limit has only the second part. The present value is a dash if `fresh` is false (no messages arrive from the server); it is left out
+// while the past is shown.
+export function limitText(session, alarm, fresh) {
+    const { model, time } = session, { tag, value, limit } = alarm, isPast = time.atUs !== null;
+    const since = fresh && !isPast ? heldSince(session, alarm) : null, held = since && say('alarms.since', { time: since });
     if (value === null || limit === null)
-        return '';
+        return held ?? '';
     const group = model.group(tag.group), decimals = group ? decimalsFor(group.max - group.min) : 2;
     const textOf = (number) => `${numberText(number, decimals)} ${unitText(tag.unit || group?.unit)}`;
     const reading = model.readings[tag.index], known = reading.quality === 'bad' ? say('novalue') : textOf(reading.value);
-    return say('alarms.value', { value: textOf(value), now: fresh && time.atUs === null ? known : '–', limit: textOf(limit) });
+    const now = isPast ? '' : `, ${held ?? say('alarms.present', { now: fresh ? known : '–' })}`;
+    return say('alarms.value', { value: textOf(value), now, limit: textOf(limit) });
 }
 
 export class AlarmBar {

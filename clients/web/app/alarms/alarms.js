@@ -9,7 +9,7 @@ import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
 import { fillSelect } from '../common/choices.js';
 import { saveFile } from '../common/save_file.js';
-import { asOf } from './alarm_bar.js';
+import { asOf, heldSince } from './alarm_bar.js';
 import { actionButton, AlarmTable, momentButton, refreshCells, rowOf } from './alarm_table.js';
 
 const SHOWN = 200; // maximum number of rows in the document
@@ -282,11 +282,14 @@ export class AlarmList {
 
     // Returns what a row says in addition to its columns: the end of shelving, the user who last acted on the alarm, the reason, and
     // whether the measurement is bad.
-    noteOf({ state, who, reason, untilUs, held }) {
+    noteOf(row) {
+        const { state, who, reason, untilUs, held } = row;
         const clock = zoneClock(this.session.model.plant.time_zone);
         const until = untilUs === null ? '' : say('alarms.until', { time: clock(untilUs / 1000).time.slice(0, 5) });
         const by = who && state !== 'unacknowledged' ? say('alarms.by', { who }) : '';
-        return [until, by, reason, held ? say('alarms.held') : ''].filter(Boolean).join(', ');
+        const since = held && this.session.time.atUs === null ? heldSince(this.session, row) : null;
+        const bad = since ? say('alarms.heldfrom', { time: since }) : held ? say('alarms.held') : '';
+        return [until, by, reason, bad].filter(Boolean).join(', ');
     }
 
     // Returns the other alarms of the row's tag as text.

@@ -3,8 +3,8 @@
 // call-out. Also labels alarms whose reading is bad.
 import { graver } from '../../core/alarms.js';
 import { placeRings } from '../../core/callouts.js';
-import { zoneClock } from '../../core/format.js';
 import { say } from '../../core/words.js';
+import { heldSince } from './alarm_bar.js';
 import { INK, INK_2, LABEL_HEIGHT } from '../viewport/overlay.js';
 
 const LINE = 16; // line height, in units
@@ -21,13 +21,8 @@ export class Callouts {
     // Returns the label of an alarm whose reading is bad, and which therefore keeps the state that it had at the last usable value. Returns
     // null if there never was a value.
     held(tag, { kind }) {
-        const { session } = this, { model, time } = session, ageMs = model.ageMs(tag.index, session.now());
-        const nowUs = time.atUs ?? session.clockUs();
-        if (kind === 'BAD' || ageMs === null || nowUs === null)
-            return null;
-        const clock = zoneClock(model.plant.time_zone), then = clock(nowUs / 1000 - ageMs), minute = then.time.slice(0, 5);
-        const since = then.date === clock(nowUs / 1000).date ? minute : `${then.day} ${minute}`;
-        return [[kind, 700, null], [say('callout.held', { time: since }), 400, INK_2]];
+        const since = heldSince(this.session, { tag, kind });
+        return since && [[kind, 700, null], [say('alarms.since', { time: since }), 400, INK_2]];
     }
 
     // Returns the two lines of a call-out for several alarms, in the format of the overlay's labels; the first line names the most urgent
@@ -35,11 +30,13 @@ export class Callouts {
     lines(members) {
         const [worst] = [...members].sort(byGravity), { model } = this.session;
         const assets = new Set(members.map(({ tag }) => tag.asset)), count = say('callout.count', { count: members.length });
+        const since = heldSince(this.session, { tag: worst.tag, kind: worst.alarm.kind });
         const where = assets.size === 1 ? `${model.asset(worst.tag.asset)?.tag || worst.tag.asset}, ` : '';
         return {
             alarm: worst.alarm,
             first: [[`${where}${count}`, 650, INK]],
-            second: [[say('callout.worst'), 400, INK_2], [worst.alarm.kind, 700, null], [worst.tag.name, 650, INK]],
+            second: [[say('callout.worst'), 400, INK_2], [worst.alarm.kind, 700, null], [worst.tag.name, 650, INK],
+                ...(since ? [[say('alarms.since', { time: since }), 400, INK_2]] : [])],
         };
     }
 
