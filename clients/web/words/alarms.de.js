@@ -8,6 +8,7 @@ quiet: Keine aktiven Alarme.
 aside: Zurückgestellt oder unterdrückt ({count})
 until: bis {time}
 by: durch {who}
+edge: Ziehen ändert die Breite
 held: Messung gestört: letzter Zustand gehalten
 heldfrom: Messung gestört: Zustand gehalten seit {time}
 fly: Zu {tag} fliegen

@@ -8,6 +8,7 @@ quiet: No active alarms.
 aside: Shelved or suppressed ({count})
 until: until {time}
 by: by {who}
+edge: Drag to change the width
 held: bad measurement: last state held
 heldfrom: bad measurement: state held since {time}
 fly: Fly to {tag}

@@ -8,6 +8,7 @@ quiet: 활성 알람이 없습니다.
 aside: 보류 또는 억제 ({count})
 until: {time}까지
 by: 처리: {who}
+edge: 끌어서 너비 조절
 held: 계측 불량: 마지막 상태 유지
 heldfrom: 계측 불량: {time}부터 상태 유지
 fly: {tag}(으)로 이동

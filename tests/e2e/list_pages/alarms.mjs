@@ -302,6 +302,36 @@ test('at 900 pixels twenty rows and more are seen, sorted by any column, filtere
     await page.locator('#alarms-area').selectOption('');
 });
 
+test('the edge of the list is dragged, moved by keys, kept over a reload, and reset', options, async () => {
+    const own = await openPage(plant.url, { viewport: { width: 1280, height: 800 } }), on = own.page, edge = on.locator('.alarms > .edge');
+    const opened = async () => {
+        await waitForPicture(on);
+        await on.locator('#alarm-strip').click();
+        await edge.waitFor();
+    };
+    const width = () => on.evaluate(() => document.getElementById('alarms').offsetWidth);
+    try {
+        await opened();
+        const usual = await width(), { x } = await edge.boundingBox();
+        await on.mouse.move(x + 4, 400);
+        await on.mouse.down();
+        await on.mouse.move(x + 204, 400, { steps: 3 });
+        await on.mouse.up();
+        const dragged = await width();
+        assert.ok(Math.abs(dragged - (usual - 200)) <= 5, `${usual} to ${dragged}`);
+        await edge.press('ArrowLeft');
+        assert.equal(await width(), dragged + 40);
+        await on.reload();
+        await opened();
+        assert.equal(await width(), dragged + 40);
+        await edge.dblclick();
+        assert.equal(await width(), usual);
+        assert.deepEqual(own.errors, []);
+    } finally {
+        await own.close();
+    }
+});
+
 test('several are shelved at once with one reason; the list is exported', options, async () => {
     await page.locator('#alarms-list .choose').nth(0).check();
     await page.locator('#alarms-list .choose').nth(3).click({ modifiers: ['Shift'] });

@@ -10,6 +10,7 @@ import { byId, make, setText } from '../common/dom.js';
 import { fillSelect } from '../common/choices.js';
 import { saveFile } from '../common/save_file.js';
 import { asOf, heldSince } from './alarm_bar.js';
+import { addEdge } from './panel_edge.js';
 import { actionButton, AlarmTable, momentButton, refreshCells, rowOf } from './alarm_table.js';
 
 const SHOWN = 200; // maximum number of rows in the document
@@ -52,6 +53,7 @@ export class AlarmList {
             session.on(name, () => this.show());
         session.on('alarmed', (answer) => this.answered(answer));
         setInterval(() => this.tick(), 500);
+        addEdge(byId('alarms'));
     }
 
     get alarms() {
@@ -177,7 +179,7 @@ export class AlarmList {
         const head = byId('alarms-aside-head');
         head.hidden = count === 0;
         if (!head.firstChild)
-            head.append(make('tr', {}, make('th', { colspan: 13, scope: 'rowgroup' })));
+            head.append(make('tr', {}, make('th', { scope: 'rowgroup' })));
         setText(head.querySelector('th'), say('alarms.aside', { count }));
     }
 

@@ -3,7 +3,7 @@
 
 const KEYS = { theme: 'localStorage', token: 'sessionStorage', renewed: 'sessionStorage', accepted: 'sessionStorage',
     // values in localStorage are permanent, those in sessionStorage last until the tab closes
-    renewedWall: 'sessionStorage', desk: 'localStorage', wall: 'localStorage' };
+    renewedWall: 'sessionStorage', desk: 'localStorage', alarmsWidth: 'localStorage', wall: 'localStorage' };
 
 export function stored(name) {
     try {

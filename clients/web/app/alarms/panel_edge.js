@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The left edge of the alarm list: dragging it, or the arrow keys on it, divide the room between picture and list. A double click restores
+// the usual width.
+import { say } from '../../core/words.js';
+import { make, setVariable } from '../common/dom.js';
+import { store, stored } from '../common/storage.js';
+
+const LEAST_PX = 400, PICTURE_PX = 280, STEP_PX = 40; // smallest widths of list and picture; step of the arrow keys
+
+export function addEdge(panel) {
+    const setWidth = (px) => {
+        const width = px === null ? null : Math.round(Math.max(LEAST_PX, Math.min(innerWidth - PICTURE_PX, px)));
+        setVariable(panel, '--wide', width === null ? '' : `${width}px`);
+        store('alarmsWidth', width === null ? '' : String(width));
+        edge.setAttribute('aria-valuenow', Math.round((100 * panel.offsetWidth) / innerWidth));
+    };
+    const move = ({ clientX }) => setWidth(panel.getBoundingClientRect().right - clientX);
+    const edge = make('div', { class: 'edge', role: 'separator', tabindex: 0, 'aria-orientation': 'vertical', 'aria-valuenow': 66,
+        'aria-label': say('alarms.edge'), title: say('alarms.edge'), ondblclick: () => setWidth(null),
+        onpointerdown: ({ pointerId }) => edge.setPointerCapture(pointerId),
+        onpointermove: (event) => edge.hasPointerCapture(event.pointerId) && move(event), onkeydown: (event) => {
+            const sign = { ArrowLeft: 1, ArrowRight: -1 }[event.key];
+            if (sign) {
+                event.preventDefault();
+                setWidth(panel.offsetWidth + sign * STEP_PX);
+            }
+        } });
+    panel.prepend(edge);
+    if (Number(stored('alarmsWidth')) > 0)
+        setWidth(Number(stored('alarmsWidth')));
+}
