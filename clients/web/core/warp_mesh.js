@@ -10,14 +10,16 @@ const FLAT_SHARE = 0.002, FLAT_CODES = 2; // deviation from a plane within which
 const BLOCK = 16; // largest side of a merged block, in cells
 const LAP_PX = 0.5; // overlap of merged blocks, which hides cracks between blocks of different sizes
 export const WHOLE = 0, NEAR = 1, FAR = 2; // which pixels of its cells a quad shows: all, those before the step, those behind
+const ORDER = [0, 2, 1, 1, 2, 3]; // corners of a quad's two triangles
 export const FLOATS = 4; // per vertex: x and y in pixels of the part, depth, kind
 
 class Sheets {
     constructor(grid, camera) {
         Object.assign(this, grid);
         const step = STEEPEST * heightAt(camera, 1) / grid.height * grid.cellPx / Math.abs(grid.unit);
-        // Largest difference between codes of one surface in neighbouring cells.
-        this.mostFor = grid.parallel ? () => Math.max(4, step) : (code) => Math.max(4, step * this.depthOf(code));
+        // Largest difference between codes of one surface in neighbouring cells, by code.
+        const mostAt = (code) => Math.max(4, grid.parallel ? step : step * this.depthOf(code));
+        this.most = Float32Array.from({ length: grid.levels + 1 }, (_, code) => mostAt(code));
     }
 
     depthOf(code) {
@@ -25,7 +27,7 @@ class Sheets {
     }
 
     isNext(a, b) {
-        return a === 0 || b === 0 ? a === b : Math.abs(a - b) <= this.mostFor(Math.max(a, b));
+        return a === 0 || b === 0 ? a === b : Math.abs(a - b) <= this.most[Math.max(a, b)];
     }
 
     // Returns the code of the sheet of cell (x, y) that continues a sheet with this code; -1: none.
@@ -60,17 +62,15 @@ class Sheets {
     }
 }
 
-// Returns the codes at the corners of the grid where four undivided cells of one surface meet; NaN elsewhere.
-function sharedCorners({ columns, rows, near, far }, sheets) {
+// Returns the codes at the corners of the grid where the farthest sheets of four cells are one surface; NaN elsewhere.
+function sharedCorners({ columns, rows }, back, sheets) {
     const wide = columns + 1, corners = new Float32Array(wide * (rows + 1)).fill(NaN);
     for (let y = 0; y <= rows; y++)
         for (let x = 0; x <= columns; x++) {
             // at the edge of the picture, the cells on the one side count twice
             const x0 = Math.max(0, x - 1), x1 = Math.min(columns - 1, x);
             const y0 = Math.max(0, y - 1) * columns, y1 = Math.min(rows - 1, y) * columns;
-            if (far[y0 + x0] >= 0 || far[y0 + x1] >= 0 || far[y1 + x0] >= 0 || far[y1 + x1] >= 0)
-                continue;
-            const a = near[y0 + x0], b = near[y0 + x1], c = near[y1 + x0], d = near[y1 + x1];
+            const a = back[y0 + x0], b = back[y0 + x1], c = back[y1 + x0], d = back[y1 + x1];
             if (sheets.isNext(a, b) && sheets.isNext(c, d) && sheets.isNext(a, c) && sheets.isNext(b, d))
                 corners[y * wide + x] = x0 === x1 || y0 === y1 ? NaN : (a + b + c + d) / 4;
         }
@@ -87,9 +87,15 @@ class Quads {
 
     // depths: at the top left, top right, bottom left and bottom right corner.
     add(left, top, right, bottom, depths, kind) {
-        const at = this.count * 4, [a, b, c, d] = depths;
-        this.vertices.set([left, top, a, kind, right, top, b, kind, left, bottom, c, kind, right, bottom, d, kind], at * FLOATS);
-        this.indices.set([at, at + 2, at + 1, at + 1, at + 2, at + 3], this.count++ * 6);
+        const { vertices, indices } = this, first = this.count * 4;
+        for (let i = 0, at = first * FLOATS; i < 4; i++) {
+            vertices[at++] = i & 1 ? right : left;
+            vertices[at++] = i & 2 ? bottom : top;
+            vertices[at++] = depths[i];
+            vertices[at++] = kind;
+        }
+        for (let i = 0, at = this.count++ * 6; i < 6; i++)
+            indices[at + i] = first + ORDER[i];
     }
 }
 
@@ -99,7 +105,8 @@ class Mesher {
     constructor(grid, camera) {
         this.grid = grid;
         this.sheets = new Sheets(grid, camera);
-        this.corners = sharedCorners(grid, this.sheets);
+        this.back = grid.near.map((near, i) => (grid.far[i] >= 0 ? grid.far[i] : near));
+        this.corners = sharedCorners(grid, this.back, this.sheets);
         let divided = 0;
         for (const far of grid.far)
             divided += far >= 0 ? 1 : 0;
@@ -135,27 +142,40 @@ class Mesher {
             const grow = (own, h, v) => (own === 0 ? 0 : own + lap * (2 * own - h - v));
             const lapped = [grow(a, b, c), grow(b, a, d), grow(c, a, d), grow(d, b, c)].map((code) => sheets.depthOf(code));
             this.quads.add(x * cellPx - LAP_PX, y * cellPx - LAP_PX, Math.min(width, (x + side) * cellPx + LAP_PX),
-                Math.min(height, (y + side) * cellPx + LAP_PX), lapped, WHOLE);
+                Math.min(height, (y + side) * cellPx + LAP_PX), lapped, this.isDivided(x, y, side) ? FAR : WHOLE);
         } else {
             for (const [i, j] of [[0, 0], [1, 0], [0, 1], [1, 1]])
                 this.block(x + i * side / 2, y + j * side / 2, side / 2);
         }
     }
 
+    isDivided(x, y, side) {
+        const { far, columns } = this.grid;
+        for (let j = y; j < y + side; j++)
+            for (let i = x; i < x + side; i++)
+                if (far[j * columns + i] >= 0)
+                    return true;
+        return false;
+    }
+
+    // Adds a cell's farthest sheet.
     cell(x, y) {
-        const { near, far, columns } = this.grid, i = y * columns + x;
-        if (far[i] < 0) {
-            this.sheet(x, y, near[i], WHOLE);
-        } else {
-            this.sheet(x, y, near[i], NEAR);
-            this.sheet(x, y, far[i], FAR);
-        }
+        const i = y * this.grid.columns + x;
+        this.sheet(x, y, this.back[i], this.grid.far[i] < 0 ? WHOLE : FAR);
+    }
+
+    // Adds the near sheets of divided cells.
+    addNear() {
+        const { near, far, columns } = this.grid;
+        for (let i = 0; i < far.length; i++)
+            if (far[i] >= 0)
+                this.sheet(i % columns, Math.floor(i / columns), near[i], NEAR);
     }
 
     sheet(x, y, code, kind) {
         const { sheets, corners, grid: { columns, cellPx, width, height, parallel } } = this, wide = columns + 1;
         const depth = (dx, dy) => {
-            const shared = kind === WHOLE ? corners[(y + (dy > 0)) * wide + x + (dx > 0)] : NaN;
+            const shared = kind !== NEAR ? corners[(y + (dy > 0)) * wide + x + (dx > 0)] : NaN;
             const found = shared >= 0 ? shared : sheets.corner(code, x, y, dx, dy);
             return sheets.depthOf(parallel ? found : Math.max(0.5, found));
         };
@@ -171,6 +191,7 @@ export function meshOf(grid, camera) {
     for (let y = 0; y < grid.rows; y += BLOCK)
         for (let x = 0; x < grid.columns; x += BLOCK)
             mesher.block(x, y, BLOCK);
+    mesher.addNear();
     const { vertices, indices, count } = mesher.quads;
     return { vertices: vertices.subarray(0, count * 4 * FLOATS), indices: indices.subarray(0, count * 6), count };
 }

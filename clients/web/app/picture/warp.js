@@ -7,7 +7,7 @@ import { depthAt, FLOATS, isNear, moveBy, warpMatrix } from '../../core/warp_mes
 import { isWhole } from '../../core/wire.js';
 import { make } from '../common/dom.js';
 
-const KEPT = 3; // number of depth grids that may be decoded before their pictures are
+const KEPT = 8; // number of depth grids that may be decoded before their pictures are
 const NEAREST = 0.05; // distance before which nothing is drawn, as a share of the nearest possible depth
 // If updates come later than SLOW_MS after each other, as without a GPU, the warped picture is drawn with fewer pixels.
 const SLOW_MS = 26, SLOW_COUNT = 8, PAUSE_MS = 150, LEAST_PX = 250000;
@@ -180,11 +180,23 @@ export class Warp {
         this.viewport.invalidate();
     }
 
+    get isAhead() {
+        const { cameraNews, cameraSeq, picture } = this.session;
+        return cameraNews || picture?.cameraSeq !== cameraSeq;
+    }
+
+    // Returns true if decoded pictures must wait for the depth of the newest picture. Otherwise, depths that are decoded more slowly than
+    // pictures arrive would never belong to the newest picture.
+    waits(decoded) {
+        const newest = decoded.findLast(({ frame }) => !frame.more)?.frame;
+        const known = newest?.depth && this.grids.find(({ depth }) => depth === newest.depth);
+        return !!known && !known.parts && !known.fails && (this.isShown || this.isAhead);
+    }
+
     // Returns true if the picture is to be shown from the present camera, which is not its own.
     get isWanted() {
         const { session, source, modules } = this, { picture, camera } = session;
-        const isAhead = session.cameraNews || picture.cameraSeq !== session.cameraSeq;
-        return source !== null && isAhead && session.leader === null && !session.lent && !modules.there('cameraController')?.fly
+        return source !== null && this.isAhead && session.leader === null && !session.lent && !modules.there('cameraController')?.fly
             && Math.abs(picture.shownWidth - picture.fullWidth) <= 2 && isNear(source.camera, camera);
     }
 
@@ -230,8 +242,8 @@ export class Warp {
 
     // Lets the warped picture give way to the server's picture of the same camera. Returns false if that is done, or not possible.
     fade() {
-        const { session: { picture, cameraNews, cameraSeq }, painted, isShown, viewport } = this, now = performance.now();
-        if (!isShown || painted.parts !== this.loaded || painted.picture === picture || cameraNews || picture.cameraSeq !== cameraSeq)
+        const { session: { picture }, painted, isShown, viewport } = this, now = performance.now();
+        if (!isShown || painted.parts !== this.loaded || painted.picture === picture || this.isAhead)
             return false;
         this.putHeld();
         Object.assign(picture, { camera: picture.ownCamera, moved: null });

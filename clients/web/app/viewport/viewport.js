@@ -117,7 +117,8 @@ export class Viewport {
     // Draws the pictures that are complete; rectangles wait for the rest of their picture. A picture of another shape is scaled to the
     // viewport's height, undistorted. picture.shownWidth: the viewport's width in pixels of the picture.
     draw() {
-        const complete = this.decoded.findLastIndex(({ frame }) => !frame.more) + 1, drawn = this.decoded.splice(0, complete);
+        const complete = this.decoded.findLastIndex(({ frame }) => !frame.more) + 1;
+        const drawn = this.warp?.waits(this.decoded) ? [] : this.decoded.splice(0, complete);
         for (const decoded of drawn)
             if (!this.warp?.hold(decoded))
                 this.put(decoded);
