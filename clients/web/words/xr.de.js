@@ -7,7 +7,8 @@ leave: VR verlassen
 back: −{n} min
 live: Jetzt
 waiting: Warten auf das Bild des Servers
-flat: Der Server sendet keine Tiefe: Es kann nichts gezeigt werden
+flat: Bild veraltet
+flat.why: Der Server sendet mit seinen Bildern keine Tiefe.
 gone: Das Headset hat die Sitzung beendet
 failed: Das Headset zeigt die Anlage nicht: {why}
 `;

@@ -7,7 +7,8 @@ leave: Leave VR
 back: −{n} min
 live: Now
 waiting: Waiting for the server’s picture
-flat: The server sends no depth: nothing can be shown
+flat: Picture out of date
+flat.why: The server sends no depth with its pictures.
 gone: The headset ended the session
 failed: The headset does not show the plant: {why}
 `;

@@ -117,17 +117,18 @@ function bar(c, x, y, width, height, { colourAt, ends, labels, lines }) {
         { align: i === 0 && place === 0 ? 'left' : place === 1 ? 'right' : 'center' }));
 }
 
-// Shows the legend, the age of the data and the state of the connection. state: health() of the session.
-export function showLegend(board, session, state, now) {
+// Shows the legend, the age of the data and the state of the connection. state: health() of the session; warning: [words, detail, isGrave]
+// of a warning across the view, or null.
+export function showLegend(board, session, state, warning, now) {
     const params = session.shown, { model, picture } = session, group = model.group(params.group);
     const hasField = group && params.look !== 'materials', past = state.kind === 'past';
     const title = hasField ? `${titleOf(session, params)[0]} ${params.show === 'operator' ? '' : unitText(params.unit ?? group.unit)}` : '';
     const age = model.oldestAgeMs(params.group, now), clock = zoneClock(model.plant.time_zone);
     const at = past ? clock((picture?.past ? picture.dataTimeUs : session.time.atUs) / 1000) : null;
     const data = at ? `${at.date} ${at.time}` : `${say('status.oldest')}: ${age === null ? say('none') : ageText(age)}`;
-    const behindMs = session.latency.behindMs(now), isBehind = behindMs > BEHIND_MS;
-    const note = isBehind ? say('status.behind', { n: (behindMs / 1000).toFixed(1) }) : simulatedText(session) || state.words;
-    const isGood = !isBehind && ['live', 'simulated'].includes(state.kind);
+    const behindMs = session.latency.behindMs(now), isBehind = behindMs > BEHIND_MS, isGrave = warning?.[2] === true;
+    const late = isGrave ? warning[0] : isBehind ? say('status.behind', { n: (behindMs / 1000).toFixed(1) }) : '';
+    const note = late || simulatedText(session) || state.words, isGood = !late && ['live', 'simulated'].includes(state.kind);
     const key = JSON.stringify([title, data, note, params.colormap, params.ramp_interval, params.breaks, params.isolines, params.scale,
         session.rangeOf(params), params.show, hasField]);
     return board.show(key, (c, width, height) => {

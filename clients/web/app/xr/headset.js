@@ -71,7 +71,7 @@ export class Headset {
         const { session, viewport } = this, { camera, model, params } = session;
         const seen = isParallel(camera) ? toPerspective(camera) : camera;
         if (!viewport.warp)
-            throw new Error(say('xr.flat'));
+            throw new Error(say('xr.flat.why'));
         this.identity = model.identity;
         this.rig = rigFor(seen, model.plant.bounds, model.plant.home.up);
         this.rig.at = along(this.rig.at, this.rig.axes[1], this.floorM);
@@ -229,8 +229,8 @@ export class Headset {
         if (this.checkedAt === undefined || now - this.checkedAt >= TEXT_MS) {
             this.checkedAt = now;
             this.state = health(session, now);
-            showLegend(this.legend, session, this.state, now);
             this.warning = this.warningOf(now);
+            showLegend(this.legend, session, this.state, this.warning, now);
             if (this.warning)
                 showBanner(this.banner, ...this.warning);
         }
@@ -256,7 +256,7 @@ export class Headset {
         if (GRAVE.includes(kind))
             return [words, detail, true];
         if (this.isFlat(now))
-            return [say('xr.flat'), '', true];
+            return [say('xr.flat'), say('xr.flat.why'), true];
         return now - this.nearAt > LATE_MS ? [say('xr.waiting'), '', false] : null;
     }
 }
