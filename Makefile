@@ -74,8 +74,8 @@ ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed -Wl,-z,relro,-z,now $(LDF
 layers   := base audit plant surface value history alarm notify loopcheck views corelink scene field placing importing gpu render encode \
             provenance message service access session net
 layers   := $(foreach l,$(layers),$(if $(wildcard server/$(l)/*.c),$(l)))
-lazy     := server/base/image/image_lazy.c $(if $(filter h264,$(CODECS)),server/encode/h264_lazy.c)
-without  := $(if $(filter h264,$(CODECS)),,$(wildcard server/encode/h264*)) $(lazy) \
+lazy     := $(if $(filter h264,$(CODECS)),server/encode/h264_lazy.c)
+without  := $(if $(filter h264,$(CODECS)),,$(wildcard server/encode/h264*)) $(lazy) server/base/image/image_shim.cc \
             $(if $(opcua_libs),,$(wildcard server/value/opcua/*))
 archives := $(foreach l,$(layers),$(out)/lib/$(l).a) $(out)/lib/protocol.a
 objects   = $(patsubst %,$(out)/obj/%.o,$(basename $(1)))

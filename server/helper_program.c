@@ -163,7 +163,8 @@ char *helper_run(const struct helper_params *params)
     char *why = NULL;
     int error = start(&helper), status = error ? 0 : attend(&helper);
     if (error)
-        why = mem_printf("%s cannot be run: %s", name, strerror(error));
+        why = mem_printf("%s cannot be run: %s%s%s", name, strerror(error), error == ENOENT ? ": install the package " : "",
+                         error == ENOENT ? name : "");
     else if (helper.told)
         why = mem_printf("%s was ended before it was done", name);
     else if (helper.timed_out)

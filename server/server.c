@@ -165,7 +165,7 @@ static unsigned find_codecs(const struct server *server)
     unsigned codecs = 1u << WIRE_CODEC_JPEG | 1u << WIRE_CODEC_PNG;
     if (strcmp(library, "off") != 0 && encoder_works(server->log, "h264", library))
         codecs |= 1u << WIRE_CODEC_H264;
-    else if (server->params.h264 && strcmp(library, "off") != 0)
+    else if (strcmp(library, "off") != 0)
         log_warn(server->log, "H.264 encoder %s does not work on this machine: clients get JPEG", library);
     return codecs;
 }

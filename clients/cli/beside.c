@@ -11,21 +11,22 @@
 #include "commands.h"
 
 /* Without /proc, the helper is started by its bare name, which execvp() searches in PATH. */
-void run_beside(const char *ending, char **argv)
+void run_beside(const char *ending, const char *package, char **argv)
 {
     char path[PATH_MAX] = "plantcast";
     ssize_t length = readlink("/proc/self/exe", path, sizeof(path) - strlen(ending) - 1);
     size_t end = length > 0 ? (size_t)length : strlen("plantcast");
     memcpy(path + end, ending, strlen(ending) + 1);
     execvp(path, argv);
-    fprintf(stderr, "plantcast: %s: %s\n", path, strerror(errno));
+    fprintf(stderr, "plantcast: %s: %s%s%s\n", path, strerror(errno), errno == ENOENT ? ": install the package " : "",
+            errno == ENOENT ? package : "");
 }
 
 void run_film(int argc, char **argv)
 {
 #ifdef PLANTCAST_H264
     char **line = daemon_command_line(argc, argv);
-    run_beside("-film", line);
+    run_beside("-film", "plantcast-h264", line);
     mem_free(line);
 #else
     (void)argc;

@@ -45,8 +45,8 @@ int cmd_token(int argc, char **argv);
 
 /* Replaces this process by the helper program in the same folder whose name is this program's plus `ending`; the helper runs the command
    argv[0]. Helpers keep large dependencies and parsers of untrusted input out of this program. Returns only if the helper cannot be run,
-   with the reason printed. */
-void run_beside(const char *ending, char **argv);
+   with the reason printed. package: Debian package that has the helper. */
+void run_beside(const char *ending, const char *package, char **argv);
 /* Replaces this process by plantcast-film and passes on the options that all commands share. Returns only if that cannot be run, with
    the reason printed. */
 void run_film(int argc, char **argv);

@@ -9,21 +9,21 @@
 static int cmd_import(int argc, char **argv)
 {
     (void)argc;
-    run_beside("-import", argv);
+    run_beside("-import", "plantcast-import", argv);
     return 1;
 }
 
 static int cmd_match(int argc, char **argv)
 {
     (void)argc;
-    run_beside("-match", argv);
+    run_beside("-match", "plantcast-tools", argv);
     return 1;
 }
 
 static int cmd_init(int argc, char **argv)
 {
     (void)argc;
-    run_beside("-init", argv);
+    run_beside("-init", "plantcast-server", argv);
     return 1;
 }
 

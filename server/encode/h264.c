@@ -32,7 +32,7 @@ static struct encoder *h264_create(struct log *log, const char *library)
     h264->functions = h264_codec_functions(why);
     if (h264->functions && (h264->codec = h264->functions->create(library, why)))
         return &h264->base;
-    log_err(log, "h264: %s", why);
+    log_warn(log, "h264: %s", why);
     h264_destroy(&h264->base);
     return NULL;
 }

@@ -104,6 +104,65 @@ TEST(jpeg_comes_back_and_great_ones_shrink)
     free(jpeg.bytes);
 }
 
+/* Decodes an image of one row and expects these pixels. */
+static void assert_row(const unsigned char *bytes, size_t size, const char *pixels, size_t pixel_bytes)
+{
+    struct image image;
+    char why[IMAGE_WHY_BYTES] = "";
+    if (!image_decode(&image, bytes, size, 2048, why))
+        fail_msg("%s", why);
+    assert_int_equal(4 * image.width_px, pixel_bytes);
+    assert_memory_equal(image.rgba, pixels, pixel_bytes);
+    mem_free(image.rgba);
+}
+
+/* The file says that its gamma is 1. glTF ignores that. */
+TEST(palettes_and_16_bits_become_8_bits)
+{
+    static const unsigned char rows[2][6] = { { 0, 1 }, { 0x80, 0x80, 0x12, 0x34, 0xff, 0xff } };
+    for (int wide = 0; wide < 2; wide++) {
+        unsigned char *bytes = NULL;
+        size_t size = 0;
+        FILE *file = open_memstream((char **)&bytes, &size);
+        png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+        png_infop info = png_create_info_struct(png);
+        png_color colors[2] = { { 1, 2, 3 }, { 4, 5, 6 } };
+        png_init_io(png, file);
+        png_set_IHDR(png, info, wide ? 1 : 2, 1, wide ? 16 : 8, wide ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_PALETTE, PNG_INTERLACE_ADAM7,
+                     PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+        png_set_gAMA(png, info, 1);
+        if (!wide) {
+            png_set_PLTE(png, info, colors, 2);
+            png_set_tRNS(png, info, (unsigned char[]){ 7 }, 1, NULL);
+        }
+        png_write_info(png, info);
+        for (int pass = png_set_interlace_handling(png); pass > 0; pass--)
+            png_write_row(png, rows[wide]);
+        png_write_end(png, info);
+        png_destroy_write_struct(&png, &info);
+        fclose(file);
+        assert_row(bytes, size, wide ? "\x80\x12\xff\xff" : "\1\2\3\7\4\5\6\xff", wide ? 4 : 8);
+        free(bytes);
+    }
+}
+
+TEST(jpeg_in_cmyk_is_read)
+{
+    struct encoded out = { 0 };
+    unsigned char pixels[16 * 16 * 4], *bytes = NULL;
+    struct image image;
+    char why[IMAGE_WHY_BYTES] = "";
+    memset(pixels, 255, sizeof(pixels)); /* inverted, as Adobe's programs write it: no ink */
+    tjhandle handle = tjInitCompress();
+    assert_int_equal(tjCompress2(handle, pixels, 16, 0, 16, TJPF_CMYK, &bytes, &out.size, TJSAMP_444, 95, 0), 0);
+    if (!image_decode(&image, bytes, out.size, 2048, why))
+        fail_msg("%s", why);
+    assert_true(image.rgba[0] > 250 && image.rgba[1] > 250 && image.rgba[2] > 250 && image.rgba[3] == 255);
+    mem_free(image.rgba);
+    tjFree(bytes);
+    tjDestroy(handle);
+}
+
 TEST(webp_is_read)
 {
     static const unsigned char webp[] = {

@@ -560,7 +560,7 @@ static bool is_instance(const char *argument)
 int cmd_backup(int argc, char **argv)
 {
     if (is_instance(argv[1])) {
-        run_beside("-backup", argv);
+        run_beside("-backup", "plantcast-server", argv);
         return 1;
     }
     return run(argc, argv, run_backup);
@@ -570,7 +570,7 @@ int cmd_restore(int argc, char **argv)
 {
     bool has_folder = argc > 1 && argv[1][0] != '-', has_plant = argc > 2 && (argv[2][0] != '-' || !strcmp(argv[2], "--history"));
     if (has_folder && !has_plant) {
-        run_beside("-restore", argv);
+        run_beside("-restore", "plantcast-server", argv);
         return 1;
     }
     return run(argc, argv, run_restore);

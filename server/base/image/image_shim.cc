@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* C functions around OpenImageIO's C++ interface. */
-#include "base/image/image.h"
+/* plantcast-images.so: decodes by OpenImageIO what image.c does not decode itself. */
+#include "base/image/image_impl.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebuf.h>
@@ -24,20 +24,13 @@ extern "C" {
 namespace
 {
 
-constexpr int MAX_SIDE_PX = 1 << 15;
 constexpr int MAX_FILE_CHANNELS = 64;    /* maximum number of channels in a file; rendering programs append further channels after the
                                             colours */
-constexpr uint64_t MAX_PIXELS = 1 << 26; /* maximum number of pixels, 8192 x 8192: no texture is drawn with more */
-/* Limits against files that decode to far more than their size. VALUES_PER_BYTE: most decoded values per byte of file; zlib shrinks data
-   to a thousandth at best, JPEG to less. FREE_VALUES: number of values that a file of any size may have. */
-constexpr uint64_t VALUES_PER_BYTE = 2000, FREE_VALUES = 1 << 20;
 
 /* Returns OpenImageIO's name of the reader for the format that the first bytes show; otherwise OpenImageIO would choose the reader by
    the file name. */
 const char *format_of(const unsigned char *bytes, size_t size)
 {
-    if (size >= 8 && memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0)
-        return "png";
     if (size >= 3 && memcmp(bytes, "\xff\xd8\xff", 3) == 0)
         return "jpeg";
     if (size >= 12 && memcmp(bytes, "RIFF", 4) == 0 && memcmp(bytes + 8, "WEBP", 4) == 0)
@@ -117,46 +110,29 @@ bool refuse(char *why, const char *fmt, ...)
 
 bool size_good(const OIIO::ImageSpec &spec, int max_channels, char *why)
 {
+    constexpr int MAX_SIDE_PX = IMAGE_MAX_SIDE_PX;
     if (spec.width >= 1 && spec.width <= MAX_SIDE_PX && spec.height >= 1 && spec.height <= MAX_SIDE_PX && spec.nchannels >= 1 &&
         spec.nchannels <= max_channels && spec.depth <= 1 &&
-        static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height) <= MAX_PIXELS)
+        static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height) <= IMAGE_MAX_PIXELS)
         return true;
     return refuse(why, "%d x %d pixels of %d channels: at most %llu of %d", spec.width, spec.height, spec.nchannels,
-                  static_cast<unsigned long long>(MAX_PIXELS), max_channels);
+                  static_cast<unsigned long long>(IMAGE_MAX_PIXELS), max_channels);
 }
 
 bool claim_good(const OIIO::ImageSpec &spec, const char *format, size_t size, char *why)
 {
     uint64_t values = static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height) * static_cast<uint64_t>(spec.nchannels);
     /* WebP files are not checked, because WebP stores images of one colour in a few bytes */
-    if (strcmp(format, "webp") != 0 && values > FREE_VALUES + VALUES_PER_BYTE * size)
+    if (strcmp(format, "webp") != 0 && values > IMAGE_FREE_VALUES + uint64_t{ IMAGE_VALUES_PER_BYTE } * size)
         return refuse(why, "%zu bytes cannot hold %d x %d pixels", size, spec.width, spec.height);
     return true;
-}
-
-/* Checks that a PNG file has all chunks up to the last: on a truncated file libpng leaves OpenImageIO's reader by longjmp(), which leaks
-   memory. */
-bool png_whole(const unsigned char *bytes, size_t size)
-{
-    for (size_t at = 8; size - at >= 12;) {
-        size_t length = static_cast<size_t>(bytes[at]) << 24 | static_cast<size_t>(bytes[at + 1]) << 16 |
-                        static_cast<size_t>(bytes[at + 2]) << 8 | bytes[at + 3];
-        if (length > size - at - 12)
-            return false;
-        if (memcmp(bytes + at + 4, "IEND", 4) == 0)
-            return true;
-        at += length + 12;
-    }
-    return false;
 }
 
 bool decode(struct image *image, const void *bytes, size_t size, uint32_t max_px, char *why)
 {
     const char *format = format_of(static_cast<const unsigned char *>(bytes), size);
     if (!format)
-        return refuse(why, "%zu bytes are not PNG, JPEG or WebP", size);
-    if (strcmp(format, "png") == 0 && !png_whole(static_cast<const unsigned char *>(bytes), size))
-        return refuse(why, "png: truncated, or damaged chunks in its %zu bytes", size);
+        return refuse(why, "%zu bytes are not JPEG or WebP", size);
     OIIO::Filesystem::IOMemReader memory(const_cast<void *>(bytes), size);
     OIIO::ImageSpec hints, spec;
     hints.attribute("oiio:UnassociatedAlpha", 1);
@@ -235,17 +211,17 @@ template <typename I, typename F> bool guarded(I *image, char *why, F read)
 
 } // namespace
 
-extern "C" bool image_decode(struct image *image, const void *bytes, size_t size, uint32_t max_px, char why[IMAGE_WHY_BYTES])
+extern "C" bool images_decode(struct image *image, const void *bytes, size_t size, uint32_t max_px, char why[IMAGE_WHY_BYTES])
 {
     return guarded(image, why, [=] { return decode(image, bytes, size, max_px, why); });
 }
 
-extern "C" bool image_load(struct image *image, const char *path, uint32_t max_px, char why[IMAGE_WHY_BYTES])
+extern "C" bool images_load(struct image *image, const char *path, uint32_t max_px, char why[IMAGE_WHY_BYTES])
 {
     return guarded(image, why, [=] { return load(image, path, max_px, why); });
 }
 
-extern "C" bool image_load_float(struct image_float *image, const char *path, uint32_t max_px, char why[IMAGE_WHY_BYTES])
+extern "C" bool images_load_float(struct image_float *image, const char *path, uint32_t max_px, char why[IMAGE_WHY_BYTES])
 {
     return guarded(image, why, [=] { return load_float(image, path, max_px, why); });
 }

@@ -11,7 +11,8 @@
 
 #define PATH_BYTES 4096
 
-/* Returns the path of a module's file; the caller frees it. Returns NULL with the reason if the file is missing. */
+/* Returns the path of a module's file; the caller frees it. Returns NULL with the reason if the file is missing. Each module has a Debian
+   package of its name. */
 static char *path_of(const char *name, char *why, size_t why_bytes)
 {
     static const char *const places[] = { "", "../lib/plantcast/" };
@@ -24,7 +25,8 @@ static char *path_of(const char *name, char *why, size_t why_bytes)
             return path;
         mem_free(path);
     }
-    snprintf(why, why_bytes, "%s is missing: neither next to %s nor in ../lib/plantcast", name, end ? program : "the program");
+    snprintf(why, why_bytes, "%s is missing: install the package %.*s (looked next to %s and in ../lib/plantcast)", name,
+             (int)strcspn(name, "."), name, end ? program : "the program");
     return NULL;
 }
 
