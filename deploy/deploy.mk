@@ -57,9 +57,9 @@ deb: clients/web/vendor/uPlot.js
 suite := $(shell . /etc/os-release && echo $$VERSION_CODENAME)
 debs  := $(build)/deb
 bundle:
-	@deploy/bundle $(debs) $(build)/plantcast-bundle-$(suite).tar $(suite) $(SIGN)
+	@WITH="$(or $(WITH),plantcast-h264)" deploy/bundle $(debs) $(build)/plantcast-bundle-$(suite).tar $(suite) $(SIGN)
 image:
-	@deploy/image $(debs) $(build)/plantcast-image-$(suite).tar $(suite)
+	@WITH="$(WITH)" deploy/image $(debs) $(build)/plantcast-image-$(suite).tar $(suite)
 # Tests of these packages, the archive and the image, in chroots without a network.
 test-deploy:
 	@deploy/test/run $(debs) $(build)/plantcast-bundle-$(suite).tar $(build)/plantcast-image-$(suite).tar $(suite)
