@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes BUNDLE/config.json, with which runc runs the unpacked image IMAGE (OCI layout; its files are in BUNDLE/rootfs) as podman would: read-only
-root, no capabilities, an empty /tmp, DATA as its volume, and its own command, or another. The network is the caller's, and so are cgroups.
+root, no capabilities, an empty /tmp, DATA as its volume, and its own command, or another. The network is the caller's, and so are cgroups. The
+environment's CONTAINER_UID replaces the image's user and group.
 
 usage: deploy/test/container.py IMAGE BUNDLE DATA [COMMAND...]"""
 import json
@@ -19,7 +20,8 @@ def main():
     with open(os.path.join(image, "index.json"), encoding="utf-8") as file:
         manifest = blob(image, json.load(file)["manifests"][0]["digest"])
     own = blob(image, manifest["config"]["digest"])["config"]
-    user, group = map(int, own["User"].split(":"))
+    other = os.environ.get("CONTAINER_UID")
+    user, group = map(int, (f"{other}:{other}" if other else own["User"]).split(":"))
     closed = ["nosuid", "noexec", "nodev"]
     config = {
         "ociVersion": "1.0.0", "hostname": "plant", "root": {"path": "rootfs", "readonly": True},
