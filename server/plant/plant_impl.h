@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Functions shared by the files that read the plant file and the tag list. Private to plant/. Thread: one. */
+/* Functions shared by the files that read the plant file and the tag list. Private to plant/. Thread: one. Functions that read a key take
+   the struct plant as void *, as struct yaml_key has them. */
 #ifndef PLANT_PLANT_IMPL_H
 #define PLANT_PLANT_IMPL_H
 #include "plant/parse/yaml_reader.h"
@@ -11,21 +12,21 @@
    no readable tag list. */
 void plant_file_read(struct plant *plant, struct diag *diag);
 /* Reads the value of the key `environment`; the plant's folder must be set. */
-void plant_environments_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+void plant_environments_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
 /* Reads the list `convert`. */
 void plant_conversions_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 /* Reads the list `links`. */
-void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
 /* Reads the key `notify`. */
-void plant_notify_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+void plant_notify_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
 void plant_notify_free(struct plant_notify **notify); /* Frees the recipients and sets *notify to NULL; accepts a pointer to NULL. */
 /* Reads a time span such as 22:00-06:00. Returns false after an error, which is reported for the key `name`. */
 bool plant_day_span_read(struct yaml_reader *reader, yaml_node_t *node, const char *name, int *from_min, int *to_min);
 /* Read the lists `views`, `tours`, `other_plants` and `walls`. */
-void plant_views_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
-void plant_tours_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
-void plant_other_plants_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
-void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+void plant_views_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
+void plant_tours_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
+void plant_other_plants_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
+void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
 /* Reads a group's list `prepare` (plant/influence.h). */
 void plant_influence_read(struct yaml_reader *reader, yaml_node_t *node, void *record);
 /* plant_gp_read() reads a group's key `gp`; plant_gp_check() checks the values and sets defaults. */
@@ -56,10 +57,10 @@ void plant_postgres_check(struct yaml_reader *reader, const struct yaml_map *map
                           struct plant_postgres *postgres);
 void plant_postgres_finish(struct plant_postgres *postgres);
 /* Reads the key `publish`. */
-void plant_publish_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+void plant_publish_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
 void plant_publish_free(struct plant_publish **publish); /* Frees the settings and sets *publish to NULL; accepts a pointer to NULL. */
 /* Reads the list `sources`. */
-void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
 
 /* Reads a source's `tls`. */
 void plant_mqtt_read_tls(struct yaml_reader *reader, yaml_node_t *node, void *source);
@@ -89,6 +90,6 @@ void tag_list_read(struct plant *plant, struct diag *diag);
 bool plant_limits_wrong(const double limits[LIMIT_COUNT], int *lower, int *upper);
 
 /* Reads the list `colormaps`. */
-void plant_colormaps_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+void plant_colormaps_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
 
 #endif

@@ -18,8 +18,9 @@ struct alarm_reference {
 
 /* --- the plant file --------------------------------------------------------------------------------------------------------- */
 
-void plant_alarms_read_mode(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
+void plant_alarms_read_mode(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
+    struct plant *plant = record;
     static const char *const names[] = { [ALARMS_DISPLAY] = "display", [ALARMS_MIRROR] = "mirror", [ALARMS_LOCAL] = "local" };
     const char *text = yaml_text(node);
     for (int i = 0; text && i < 3; i++) {

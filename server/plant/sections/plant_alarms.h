@@ -11,7 +11,7 @@ struct alarm_references {
     size_t count, capacity;
 };
 
-void plant_alarms_read_mode(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+void plant_alarms_read_mode(struct yaml_reader *reader, yaml_node_t *node, void *plant);
 void plant_alarms_read_group(struct yaml_reader *reader, yaml_node_t *node, void *group); /* Reads the key `alarm` of a group. */
 void plant_alarms_check(struct yaml_reader *reader, struct text_position place, const struct plant *plant);
 void plant_alarms_read_row(struct tag_columns *columns, struct plant *plant, struct plant_tag *tag, struct alarm_references *references);

@@ -48,8 +48,9 @@ static void read_colormap(struct yaml_reader *reader, yaml_node_t *node, const s
     mem_free(record.image);
 }
 
-void plant_colormaps_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
+void plant_colormaps_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
+    struct plant *plant = record;
     int count = yaml_list_count(reader, node, "colormaps");
     if (count > PLANT_COLORMAPS)
         yaml_error(reader, yaml_place(node), "colormaps: expected at most %d, found %d", PLANT_COLORMAPS, count);

@@ -37,8 +37,9 @@ static void read_one(struct yaml_reader *reader, yaml_node_t *node, struct plant
     mem_free(name);
 }
 
-void plant_environments_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
+void plant_environments_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
+    struct plant *plant = record;
     if (node->type != YAML_SEQUENCE_NODE) {
         read_one(reader, node, plant);
         return;

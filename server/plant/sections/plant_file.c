@@ -17,12 +17,6 @@
 
 #define ZONE_FOLDER "/usr/share/zoneinfo"
 
-/* Data collected while the whole file is read. */
-struct plant_file {
-    struct plant *plant;
-    char *tags;
-};
-
 static const struct yaml_choice up_choices[] = { { "z", AXIS_Z }, { "y", AXIS_Y }, { 0 } };
 static const struct yaml_choice show_choices[] = { { "value", PLANT_SHOW_VALUE }, { "operator", PLANT_SHOW_OPERATOR }, { 0 } };
 static const struct yaml_choice start_choices[] = {
@@ -88,7 +82,7 @@ static void read_plant(struct yaml_reader *reader, yaml_node_t *node, void *reco
                                             { "reprojection", KEY_FLAG, false, offsetof(struct plant, no_reprojection), 0, 0,
                                               reprojection_choices, NULL },
                                             { 0 } };
-    struct plant *plant = ((struct plant_file *)record)->plant;
+    struct plant *plant = record;
     struct yaml_map map;
     if (yaml_map_read(reader, node, "plant", keys, plant, &map) && yaml_map_good(&map, "time_zone") && !zone_known(plant->time_zone))
         yaml_error(reader, yaml_map_place(&map, "time_zone"),
@@ -209,7 +203,7 @@ static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct pla
 
 static void read_assets(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    struct plant *plant = ((struct plant_file *)record)->plant;
+    struct plant *plant = record;
     int count;
     plant->assets = plant_list_make(reader, node, "assets", 1, sizeof(*plant->assets), &count);
     for (int i = 0; i < count; i++)
@@ -350,7 +344,7 @@ static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct pla
 
 static void read_groups(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    struct plant *plant = ((struct plant_file *)record)->plant;
+    struct plant *plant = record;
     int count;
     plant->groups = plant_list_make(reader, node, "groups", 1, sizeof(*plant->groups), &count);
     for (int i = 0; i < count; i++)
@@ -358,21 +352,6 @@ static void read_groups(struct yaml_reader *reader, yaml_node_t *node, void *rec
 }
 
 /* --- other keys ------------------------------------------------------------------------------------------------------------- */
-
-static void read_sources(struct yaml_reader *reader, yaml_node_t *node, void *record)
-{
-    plant_sources_read(reader, node, ((struct plant_file *)record)->plant);
-}
-
-static void read_colormaps(struct yaml_reader *reader, yaml_node_t *node, void *record)
-{
-    plant_colormaps_read(reader, node, ((struct plant_file *)record)->plant);
-}
-
-static void read_environment(struct yaml_reader *reader, yaml_node_t *node, void *record)
-{
-    plant_environments_read(reader, node, ((struct plant_file *)record)->plant);
-}
 
 /* Key handler that does nothing, because these keys were read before. */
 static void skip_conversions(struct yaml_reader *reader, yaml_node_t *node, void *record)
@@ -395,16 +374,6 @@ static void read_conversions(struct yaml_reader *reader, const yaml_node_t *root
     }
 }
 
-static void read_links(struct yaml_reader *reader, yaml_node_t *node, void *record)
-{
-    plant_links_read(reader, node, ((struct plant_file *)record)->plant);
-}
-
-static void read_alarms(struct yaml_reader *reader, yaml_node_t *node, void *record)
-{
-    plant_alarms_read_mode(reader, node, ((struct plant_file *)record)->plant);
-}
-
 static void read_history(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     static const struct yaml_choice record_choices[] = { { "yes", 0 }, { "no", 1 }, { 0 } };
@@ -418,41 +387,11 @@ static void read_history(struct yaml_reader *reader, yaml_node_t *node, void *re
         { "postgres", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_postgres_read },
         { 0 }
     };
-    struct plant *plant = ((struct plant_file *)record)->plant;
+    struct plant *plant = record;
     struct yaml_map map;
     yaml_map_read(reader, node, "history", keys, &plant->history, &map);
     plant_resolve_path(plant, &plant->history.folder);
     plant_postgres_check(reader, &map, plant, &plant->history.postgres);
-}
-
-static void read_notify(struct yaml_reader *reader, yaml_node_t *node, void *record)
-{
-    plant_notify_read(reader, node, ((struct plant_file *)record)->plant);
-}
-
-static void read_views(struct yaml_reader *reader, yaml_node_t *node, void *record)
-{
-    plant_views_read(reader, node, ((struct plant_file *)record)->plant);
-}
-
-static void read_tours(struct yaml_reader *reader, yaml_node_t *node, void *record)
-{
-    plant_tours_read(reader, node, ((struct plant_file *)record)->plant);
-}
-
-static void read_other_plants(struct yaml_reader *reader, yaml_node_t *node, void *record)
-{
-    plant_other_plants_read(reader, node, ((struct plant_file *)record)->plant);
-}
-
-static void read_walls(struct yaml_reader *reader, yaml_node_t *node, void *record)
-{
-    plant_walls_read(reader, node, ((struct plant_file *)record)->plant);
-}
-
-static void read_publish(struct yaml_reader *reader, yaml_node_t *node, void *record)
-{
-    plant_publish_read(reader, node, ((struct plant_file *)record)->plant);
 }
 
 /* --- the whole file --------------------------------------------------------------------------------------------------------- */
@@ -462,22 +401,21 @@ void plant_file_read(struct plant *plant, struct diag *diag)
     static const struct yaml_key keys[] = { { "plant", KEY_CUSTOM, true, 0, 0, 0, NULL, read_plant },
                                             { "assets", KEY_CUSTOM, true, 0, 0, 0, NULL, read_assets },
                                             { "groups", KEY_CUSTOM, true, 0, 0, 0, NULL, read_groups },
-                                            { "sources", KEY_CUSTOM, false, 0, 0, 0, NULL, read_sources },
-                                            { "colormaps", KEY_CUSTOM, false, 0, 0, 0, NULL, read_colormaps },
-                                            { "environment", KEY_CUSTOM, false, 0, 0, 0, NULL, read_environment },
+                                            { "sources", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_sources_read },
+                                            { "colormaps", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_colormaps_read },
+                                            { "environment", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_environments_read },
                                             { "convert", KEY_CUSTOM, false, 0, 0, 0, NULL, skip_conversions },
-                                            { "links", KEY_CUSTOM, false, 0, 0, 0, NULL, read_links },
+                                            { "links", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_links_read },
                                             { "history", KEY_CUSTOM, false, 0, 0, 0, NULL, read_history },
-                                            { "alarms", KEY_CUSTOM, false, 0, 0, 0, NULL, read_alarms },
-                                            { "notify", KEY_CUSTOM, false, 0, 0, 0, NULL, read_notify },
-                                            { "publish", KEY_CUSTOM, false, 0, 0, 0, NULL, read_publish },
-                                            { "views", KEY_CUSTOM, false, 0, 0, 0, NULL, read_views },
-                                            { "tours", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tours },
-                                            { "other_plants", KEY_CUSTOM, false, 0, 0, 0, NULL, read_other_plants },
-                                            { "walls", KEY_CUSTOM, false, 0, 0, 0, NULL, read_walls },
-                                            { "tags", KEY_NAME, true, offsetof(struct plant_file, tags), 0, 0, NULL, NULL },
+                                            { "alarms", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_alarms_read_mode },
+                                            { "notify", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_notify_read },
+                                            { "publish", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_publish_read },
+                                            { "views", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_views_read },
+                                            { "tours", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_tours_read },
+                                            { "other_plants", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_other_plants_read },
+                                            { "walls", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_walls_read },
+                                            { "tags", KEY_NAME, true, offsetof(struct plant, tags_path), 0, 0, NULL, NULL },
                                             { 0 } };
-    struct plant_file file = { .plant = plant };
     struct yaml_reader reader;
     struct yaml_map map;
     plant->up = AXIS_Z;
@@ -486,7 +424,7 @@ void plant_file_read(struct plant *plant, struct diag *diag)
     if (!yaml_reader_open(&reader, plant->path, diag))
         return;
     read_conversions(&reader, yaml_document_get_root_node(&reader.doc), plant);
-    yaml_map_read(&reader, yaml_document_get_root_node(&reader.doc), "the plant file", keys, &file, &map);
+    yaml_map_read(&reader, yaml_document_get_root_node(&reader.doc), "the plant file", keys, plant, &map);
     plant_alarms_check(&reader, yaml_map_place(&map, "alarms"), plant);
     if (plant->notify && plant->history.off)
         yaml_error(&reader, yaml_map_place(&map, "notify"),
@@ -494,7 +432,6 @@ void plant_file_read(struct plant *plant, struct diag *diag)
     if (!plant->time_zone)
         plant->time_zone = mem_strdup("UTC");
     stand_upright(plant);
-    plant->tags_path = file.tags;
     plant_resolve_path(plant, &plant->tags_path);
     if (plant->tags_path && access(plant->tags_path, R_OK) != 0) {
         yaml_error(&reader, yaml_map_place(&map, "tags"), "tags: '%s' cannot be read: %s", plant->tags_path, strerror(errno));

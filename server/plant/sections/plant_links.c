@@ -39,8 +39,9 @@ static const char *wrong_with(const char *url, bool of_tags)
     return NULL;
 }
 
-void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
+void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
+    struct plant *plant = record;
     static const struct yaml_key keys[] = { { "name", KEY_NAME, true, offsetof(struct plant_link, name), 0, 0, NULL, NULL },
                                             { "url", KEY_NAME, true, offsetof(struct plant_link, url), 0, 0, NULL, NULL },
                                             { "of", KEY_FLAG, false, offsetof(struct plant_link, of_tags), 0, 0, of_choices, NULL },

@@ -367,8 +367,9 @@ static void read_scalars(struct yaml_reader *reader, yaml_node_t *node, struct p
         url_check(reader, &map, "link", plant->notify->link, "http://", "https://");
 }
 
-void plant_notify_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
+void plant_notify_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
+    struct plant *plant = record;
     static const struct {
         const char *name;
         void (*read)(struct yaml_reader *reader, yaml_node_t *node, void *plant);

@@ -15,8 +15,9 @@ static void check_prefix(struct yaml_reader *reader, const struct yaml_map *map,
         yaml_error(reader, yaml_map_place(map, "prefix"), "prefix: expected a topic such as %sunit100, found '%.60s'", PREFIX, prefix);
 }
 
-void plant_publish_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
+void plant_publish_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
+    struct plant *plant = record;
     static const struct yaml_choice protocol_choices[] = { { "5", 5 }, { "3.1.1", 4 }, { 0 } };
     static const struct yaml_key keys[] = {
         { "host", KEY_NAME, true, offsetof(struct plant_publish, broker.hosts[0]), 0, 0, NULL, NULL },

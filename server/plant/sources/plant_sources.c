@@ -228,8 +228,9 @@ static void read_source(struct yaml_reader *reader, yaml_node_t *node, struct pl
         plant_opcua_check(reader, &map, plant, source);
 }
 
-void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
+void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
+    struct plant *plant = record;
     int count;
     plant->sources = plant_list_make(reader, node, "sources", 0, sizeof(*plant->sources), &count);
     for (int i = 0; i < count; i++)

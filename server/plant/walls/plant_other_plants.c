@@ -21,8 +21,9 @@ static void check(struct yaml_reader *reader, const struct yaml_map *map, const 
         yaml_error(reader, yaml_map_place(map, "view"), "view: expected the id of one of its server's `views`, found '%.60s'", other->view);
 }
 
-void plant_other_plants_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
+void plant_other_plants_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
+    struct plant *plant = record;
     static const struct yaml_key keys[] = { { "id", KEY_NAME, true, offsetof(struct other_plant, id), 0, 0, NULL, NULL },
                                             { "url", KEY_NAME, true, offsetof(struct other_plant, url), 0, 0, NULL, NULL },
                                             { "token_file", KEY_NAME, false, offsetof(struct other_plant, token_file), 0, 0, NULL, NULL },

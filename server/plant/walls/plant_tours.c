@@ -34,8 +34,9 @@ static void read_stops(struct yaml_reader *reader, yaml_node_t *node, void *reco
         read_stop(reader, yaml_list_item(reader, node, i), &tour->stops[tour->stop_count++]);
 }
 
-void plant_tours_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
+void plant_tours_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
+    struct plant *plant = record;
     static const struct yaml_key keys[] = { { "id", KEY_NAME, true, offsetof(struct tour, id), 0, 0, NULL, NULL },
                                             { "stops", KEY_CUSTOM, true, 0, 0, 0, NULL, read_stops },
                                             { 0 } };

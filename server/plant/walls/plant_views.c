@@ -53,8 +53,9 @@ static void read_view(struct yaml_reader *reader, yaml_node_t *node, struct plan
     plant_list_check_id(reader, &map, "view", plant->views, plant->view_count, sizeof(*view), offsetof(struct named_view, line));
 }
 
-void plant_views_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
+void plant_views_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
+    struct plant *plant = record;
     int count;
     plant->views = plant_list_make(reader, node, "views", 0, sizeof(*plant->views), &count);
     if (count > NAMED_VIEWS)

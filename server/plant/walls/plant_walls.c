@@ -330,8 +330,9 @@ static void add_tiles(struct yaml_reader *reader, const struct yaml_map *map, st
     wall->display_count = tiles + others;
 }
 
-void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
+void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
+    struct plant *plant = record;
     static const struct yaml_key keys[] = { { "id", KEY_NAME, true, offsetof(struct wall, id), 0, 0, NULL, NULL },
                                             { "inches", KEY_NUMBER, false, offsetof(struct wall, inches), 10, 400, NULL, NULL },
                                             { "distance_m", KEY_NUMBER, false, offsetof(struct wall, metres), 0.5, 50, NULL, NULL },
