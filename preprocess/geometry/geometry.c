@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/math/search.h"
 #include "base/mem.h"
 #include "plant/models/nodes.h"
 #include "plant/models/transform.h"
@@ -147,12 +148,6 @@ static void box_add_primitive(struct node_box *box, const struct gltf_primitive 
             box->high[axis] = fmax(box->high[axis], q[axis]);
         }
     }
-}
-
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
 }
 
 /* Computes the median of the vertices as the origin, so that a stray vertex far away does not cost precision where most of the model is. */

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/math/search.h"
 #include "base/mem.h"
 
 enum { JUMPS = 2, COLUMNS = 3 + DRIFT_NEAREST + JUMPS, MIN_SENSORS = 3, ROUNDS = 20 };
@@ -114,18 +115,12 @@ static int reduce(struct drift_rows *rows, double largest)
     return kept;
 }
 
-static int by_size(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Returns the median of n non-negative numbers. */
 static double median(const double *of, int n)
 {
     double sorted[DRIFT_HOURS];
     memcpy(sorted, of, (size_t)n * sizeof(*sorted));
-    qsort(sorted, (size_t)n, sizeof(*sorted), by_size);
+    qsort(sorted, (size_t)n, sizeof(*sorted), compare_doubles);
     return (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
 }
 

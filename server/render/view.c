@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Default views, halves of split views, and equality of views. */
 #include "render/view.h"
+#include "base/math/search.h"
 #include "scene/scene_create.h"
 
 #include <math.h>
@@ -134,12 +135,6 @@ void view_split(struct view *view, const struct view *right)
     get_half(right, &view->right);
 }
 
-static int by_size(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 int view_lines(const struct view *view, double lines[VIEW_ALL_LINES])
 {
     static const double limits[LIMIT_COUNT] = { -2, -1, 1, 2 };
@@ -152,7 +147,7 @@ int view_lines(const struct view *view, double lines[VIEW_ALL_LINES])
     int count = scale_edges(&scale, lines), distinct = 0;
     memcpy(lines + count, view->color_scale.lines, (size_t)view->color_scale.line_count * sizeof(*lines));
     count += view->color_scale.line_count;
-    qsort(lines, (size_t)count, sizeof(*lines), by_size);
+    qsort(lines, (size_t)count, sizeof(*lines), compare_doubles);
     for (int i = 0; i < count; i++)
         if ((distinct == 0 || lines[i] != lines[distinct - 1]) && lines[i] >= scale.min && lines[i] <= scale.max)
             lines[distinct++] = lines[i];

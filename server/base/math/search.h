@@ -1,8 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Binary search in sorted elements that bsearch() does not suit: elements found by position, or reached through an index. */
+/* Comparison of numbers for qsort(), and binary search in elements that bsearch() does not suit: found by position, or through an index. */
 #ifndef BASE_SEARCH_H
 #define BASE_SEARCH_H
 #include <stddef.h>
+
+/* Compares doubles, for qsort(). */
+static inline int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
 
 /* Sets `at` to the first index for which `precedes`, an expression in `at`, is false; to `count` if there is none. `precedes` must not
    become true again once it was false. */

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/math/search.h"
 #include "base/mem.h"
 
 /* Bounds of plausible sizes: halls and platforms are below LARGE_M, transmitters above SMALL_M. An asset is also implausible if it exceeds
@@ -34,19 +35,13 @@ double asset_longest_m(const double size_m[3])
     return fmax(size_m[0], fmax(size_m[1], size_m[2]));
 }
 
-static int ascending(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 double asset_median_m(const double *longest_m, size_t count)
 {
     if (count < 3)
         return 0;
     double *sorted = mem_array(count, sizeof(*sorted));
     memcpy(sorted, longest_m, count * sizeof(*sorted));
-    qsort(sorted, count, sizeof(*sorted), ascending);
+    qsort(sorted, count, sizeof(*sorted), compare_doubles);
     double median_m = sorted[count / 2];
     mem_free(sorted);
     return median_m;
