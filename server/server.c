@@ -78,35 +78,14 @@ static void on_early_signal(int number)
     raise(number);
 }
 
+/* SIGINT and SIGTERM end the daemon, SIGUSR1 drains it. SIGHUP asks the event loop to reload the plant and to read the files of tokens and
+   certificate again, which it otherwise checks once a second. */
 static void on_signal(int number)
 {
-    (void)number;
     int cause = errno;
     struct net *net = atomic_load(&to_stop);
     if (net)
-        net_stop(net);
-    errno = cause;
-}
-
-static void on_drain(int number)
-{
-    (void)number;
-    int cause = errno;
-    struct net *net = atomic_load(&to_stop);
-    if (net)
-        net_drain(net);
-    errno = cause;
-}
-
-/* Handles SIGHUP: asks the event loop to reload the plant and to read the files of tokens and certificate again, which it otherwise
-   checks once a second. */
-static void on_hangup(int number)
-{
-    (void)number;
-    int cause = errno;
-    struct net *net = atomic_load(&to_stop);
-    if (net)
-        net_check_credentials(net);
+        (number == SIGHUP ? net_check_credentials : number == SIGUSR1 ? net_drain : net_stop)(net);
     errno = cause;
 }
 
@@ -526,9 +505,7 @@ static void handle_signals(struct net *net)
     atomic_store(&to_stop, net);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
-    action.sa_handler = on_hangup;
     sigaction(SIGHUP, &action, NULL);
-    action.sa_handler = on_drain;
     sigaction(SIGUSR1, &action, NULL);
 }
 

@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/files/atomic_file.h"
 #include "base/mem.h"
 #include "base/text/utf8.h"
 
@@ -142,14 +143,7 @@ struct export_upload *export_upload_begin(const char *folder, const char *name, 
 
 int export_upload_write(struct export_upload *upload, const void *bytes, size_t count)
 {
-    for (const char *at = bytes; count > 0;) {
-        ssize_t n = write(upload->fd, at, count);
-        if (n < 0 && errno != EINTR)
-            return -errno;
-        at += n > 0 ? n : 0;
-        count -= n > 0 ? (size_t)n : 0;
-    }
-    return 0;
+    return atomic_file_write(&(struct atomic_file){ .fd = upload->fd }, bytes, count);
 }
 
 int export_upload_end(struct export_upload **upload)
