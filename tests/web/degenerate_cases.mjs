@@ -252,6 +252,8 @@ add('app/drift', 'stretches', [[1, 2, 3, 2], 0.5], { call: (values, sigma) =>
     drift.stretches(values.filter(Number.isFinite), sigma).join(' ').split(/[ ,]/).filter(Boolean).map(Number) });
 add('app/toolbar', 'bandsOf', [{ group: { limits: { H: 3, L: 1 }, breaks: [1, 2] } }], ENDS);
 const reading = { value: 4, quality: 'good' }, model = { readings: [reading], group: () => ({ min: 0, max: 10, unit: 'K' }) };
+add('app/alarm_bar', 'heldSince', [{ model: { readings: [{ quality: 'bad' }], plant: { time_zone: 'UTC' }, ageMs: (_, now) => now },
+    time: { atUs: null }, clockUs: () => 1e15, now: () => 1000 }, { tag: { index: 0 }, kind: 'HH' }], ENDS);
 add('app/alarm_bar', 'limitText', [{ model, time: { atUs: null } }, { tag: { index: 0, unit: 'K' }, value: 5, limit: 4 }, true], ENDS);
 
 // Functions that take texts, messages or objects of the page, and classes that represent a session.
