@@ -581,7 +581,8 @@ static int check_prepared(const struct server_params *params, const struct plant
     if (exists)
         print_left_out(log, plant, folder);
     else
-        printf("%s: not prepared yet (%s)\n", params->plant_path, folder);
+        printf("%s: not prepared yet (%s). Not checked before plantcast-prep has run: textures and extensions that are not drawn, sensors "
+               "far from their surface, and views\n", params->plant_path, folder);
     mem_free(manifest);
     mem_free(folder);
     if (!exists) {

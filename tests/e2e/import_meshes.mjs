@@ -140,9 +140,11 @@ test('glTF: names of files with percent signs and accents, required looks, missi
     assert.equal(status, 0, stderr);
     assert.match(stdout, /left out: the file requires KHR_texture_basisu, which only affects its looks/);
     assert.match(stdout, /left out: material 0 'paint': its base colour texture: the texture's image is missing: 'none\.png'/);
+    const ran = (program, ...args) => spawnSync(join(BIN, program), [...args, join(folder, 'plant/plant.yaml')], { encoding: 'utf8' });
+    assert.match(ran('plantcastd', '--check').stdout,
+        /not prepared yet \(.*\)\. Not checked before plantcast-prep has run: textures and extensions that are not drawn, /);
     // The check names the same, also after a second run, which does not read the model.
     for (let run = 0; run < 2; run++) {
-        const ran = (program, ...args) => spawnSync(join(BIN, program), [...args, join(folder, 'plant/plant.yaml')], { encoding: 'utf8' });
         assert.equal(ran('plantcast-prep').status, 0);
         const checked = ran('plantcastd', '--check').stdout;
         assert.match(checked, /plant\.yaml:\d+: warning: model .*look\.glb: left out: the file requires KHR_texture_basisu/);
@@ -161,6 +163,26 @@ const read = (folder, name, bytes) => {
     return { ...JSON.parse(readFileSync(join(folder, 'report.json'))).models[0], out: said.stdout,
         json: JSON.parse(bytesOfGlb.subarray(20, 20 + bytesOfGlb.readUInt32LE(12))) };
 };
+
+test('FBX: surfaces without place, with two places or without finite corners are named', { skip }, () => withMaterials((folder) => {
+    const model = (id, name, x = 0) => `    Model: ${id}, "Model::${name}", "Mesh" {\n        Version: 232\n        Properties70:  {\n` +
+        `            P: "Lcl Translation", "Lcl Translation", "", "A",${x},0,0\n        }\n    }\n`;
+    const withModels = (models, links) => fbx().replace('    Model: 200', `${models}    Model: 200`)
+        .replace('    C: "OO",200,0', ['C: "OO",200,0', ...links].map((link) => `    ${link}`).join('\n'));
+    const ring = read(folder, 'ring.fbx', withModels(model(201, 'Drum') + model(202, 'Tank'),
+        ['C: "OO",201,202', 'C: "OO",202,201', 'C: "OO",100,201']));
+    assert.deepEqual(ring.lost, [{ id: '201', name: 'Drum', class: 'model', guid: '',
+        why: 'no chain of parents connects the model with the scene' }]);
+    const shared = read(folder, 'shared.fbx', withModels(model(201, 'Drum'), ['C: "OO",201,200', 'C: "OO",201,0', 'C: "OO",100,201']));
+    assert.deepEqual(shared.errors[0], { count: 1, text: 'model Drum has 2 parents: it is shown below each of them' });
+    const twice = read(folder, 'twice.fbx', fbx().replace(/P: "Lcl Translation".*0,0,0/, (line) =>
+        [5, 7].map((x) => line.replace('0,0,0', `${x},0,0`)).join('\n')));
+    assert.deepEqual(twice.errors[0], { count: 1, text: 'model Feed pump states Lcl Translation more than once: the last value is used' });
+    assert.ok(twice.json.nodes.some(({ matrix }) => matrix?.[12] === 7), JSON.stringify(twice.json.nodes));
+    for (const number of ['-1.#IND', '1.#INF', '1.#QNAN0', 'nan'])
+        assert.match(read(folder, 'nan.fbx', fbx().replace('a: 0,', `a: ${number},`)).out,
+            /left out: \d+ triangles with corners that are not finite, in Feed pump\n/);
+}));
 
 test('FBX, COLLADA and OBJ: shapes that are not read are named', { skip }, () => withMaterials((folder) => {
     const nurbs = fbx().replace('    Model: 200', '    Geometry: 101, "Geometry::Shell", "NurbsSurface" {\n        Form: "Open"\n    }\n' +
