@@ -55,10 +55,12 @@ struct assimp_reader {
     std::map<std::vector<unsigned>, int> meshes;
     size_t triangles = 0, lost = 0; /* lost: number of triangles left out because a corner is not finite */
     std::vector<std::string> lines; /* names of nodes that consist only of lines or points */
+    std::vector<std::string> holed; /* names of nodes that lost triangles */
 };
 
 /* --- files ---------------------------------------------------------------------------------------------------- */
 
+constexpr size_t PLY_HEAD = 100; /* bytes within which a PLY file states its format */
 constexpr char BLANK = 0x1f; /* character that replaces blanks within names of an OBJ or STL file, because Assimp ends a name at a blank */
 
 /* Replaces the blanks inside names (BLANK): in lines `o NAME` and `g NAME` of an OBJ file, `solid NAME` of an STL file. */
@@ -151,19 +153,25 @@ struct files : Assimp::DefaultIOSystem {
     {
         const char *dot = strrchr(path, '.');
         Assimp::IOStream *file = DefaultIOSystem::Open(path, mode);
-        bool obj = dot && !strcasecmp(dot, ".obj"), stl = dot && !strcasecmp(dot, ".stl"), dae = dot && !strcasecmp(dot, ".dae");
-        if (file && !searched && dot && !strcasecmp(dot, ".fbx")) {
-            std::string bytes(file->FileSize(), 0);
-            bytes.resize(bytes.empty() ? 0 : file->Read(&bytes[0], 1, bytes.size()));
-            file->Seek(0, aiOrigin_SET);
-            searched = true;
-            assimp_losses_of_fbx(bytes);
-        }
-        if (!file || (!obj && !dae && !stl && !(dot && !strcasecmp(dot, ".mtl"))))
+        auto ends = [dot](const char *ending) { return dot && !strcasecmp(dot, ending); };
+        bool obj = ends(".obj"), stl = ends(".stl"), dae = ends(".dae"), fbx = ends(".fbx"), ply = ends(".ply");
+        if (!file || (!obj && !dae && !stl && !fbx && !ply && !ends(".mtl")))
             return file;
         std::string text(file->FileSize(), 0);
         text.resize(text.empty() ? 0 : file->Read(&text[0], 1, text.size()));
         Close(file);
+        if (fbx && !searched)
+            assimp_losses_of_fbx(text);
+        bool binary = (fbx && text.compare(0, 18, "Kaydara FBX Binary") == 0) || (stl && !is_text_of_stl(text)) ||
+                      (ply && text.substr(0, PLY_HEAD).find("\nformat ascii") == std::string::npos);
+        if (!binary)
+            assimp_plain_numbers(&text);
+        if (fbx && !binary)
+            assimp_mend_fbx(&text, !searched);
+        if (fbx || ply) {
+            searched = true;
+            return of_text(text);
+        }
         if (stl) {
             if (is_text_of_stl(text)) {
                 text = with_small_words(text);
@@ -453,7 +461,10 @@ void add(assimp_reader *r, const aiNode *node, const transform &steps, int paren
     matrix_of(node, place, matrix);
     int number = parent;
     if (!made_up && !step) {
+        const size_t lost = r->lost;
         const int mesh = mesh_of(r, node);
+        if (r->lost > lost)
+            r->holed.push_back(name_of(r, node->mName));
         if (mesh < 0 && node->mNumMeshes > 0)
             say_empty(r, node);
         number = glb_scene_add_node(r->out, parent, name_of(r, node->mName).c_str(), mesh,
@@ -489,14 +500,13 @@ void check_end_of_stl(const char *path)
         refuse("the file is truncated: it does not end with endsolid");
 }
 
-/* Prints the names of nodes that consist only of lines or points. */
-void say_lines(const std::vector<std::string> &names)
+std::string listed(const std::vector<std::string> &names)
 {
     std::string all;
     for (size_t i = 0; i < names.size() && i < MOST_NAMED; i++)
         all += (i > 0 ? ", " : "") + names[i];
-    printf("not shown: %zu nodes that are only lines or points: %s%s\n",
-           names.size(), all.c_str(), names.size() > MOST_NAMED ? ", ..." : "");
+    std::replace_if(all.begin(), all.end(), [](unsigned char c) { return c < ' '; }, ' ');
+    return all + (names.size() > MOST_NAMED ? ", ..." : "");
 }
 
 /* Prints that textures are ignored: the reader keeps only the colours of materials. */
@@ -554,13 +564,13 @@ void convert(const char *input, const char *output, const char *units, const cha
     int root = glb_scene_add_node(r.out, -1, std::string(base, strlen(base) - strlen(from.ending)).c_str(), -1, matrix);
     add(&r, scene->mRootNode, transform(), root, 0);
     if (!r.lines.empty())
-        say_lines(r.lines);
+        printf("not shown: %zu nodes that are only lines or points: %s\n", r.lines.size(), listed(r.lines).c_str());
     if (r.triangles == 0)
         refuse("the file contains no surface");
     write_scene(&r.out, output, "");
     say_textures(scene);
     if (r.lost > 0)
-        printf("left out: %zu triangles with corners that are not finite\n", r.lost);
+        printf("left out: %zu triangles with corners that are not finite, in %s\n", r.lost, listed(r.holed).c_str());
 }
 
 } // namespace

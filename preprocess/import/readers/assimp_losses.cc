@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdint>
 #include <cstdio>
 #include <cstring>
 
@@ -83,39 +82,19 @@ void assimp_losses_of_dae(const std::string &text)
     }
 }
 
-/* Returns the name that ends at `end` in a binary FBX file. "S" and a length of four bytes precede the name. */
-static std::string name_before(const std::string &bytes, size_t end)
+void assimp_plain_numbers(std::string *text)
 {
-    constexpr size_t MAX_NAME = 512, HEAD = 5;
-    for (size_t length = 0; length < MAX_NAME && length + HEAD <= end; length++) {
-        const char *head = bytes.data() + end - length - HEAD;
-        uint32_t said;
-        memcpy(&said, head + 1, sizeof(said));
-        if (*head == 'S' && said == length + strlen("??Model")) /* two control characters and the class follow the name */
-            return bytes.substr(end - length, length);
-    }
-    return "";
-}
-
-static void say_fbx(std::string name)
-{
-    std::replace_if(name.begin(), name.end(), [](unsigned char c) { return c < ' '; }, ' ');
-    printf("lost\t\t%s\tmodel\t\tNURBS and patches are not read: export it as polygons\n", name.c_str());
-}
-
-void assimp_losses_of_fbx(const std::string &bytes)
-{
-    static const char *const kinds[] = { "NurbsSurface", "TrimNurbsSurface", "Nurb", "Patch" };
-    for (const char *kind : kinds) {
-        const std::string quoted = std::string("\", \"") + kind + "\"";
-        for (size_t at = 0; (at = bytes.find(quoted, at)) != std::string::npos; at += quoted.size()) {
-            const size_t line = bytes.rfind('\n', at) + 1, name = bytes.find("\"Model::", line);
-            if (name < at)
-                say_fbx(bytes.substr(name + strlen("\"Model::"), at - name - strlen("\"Model::")));
-        }
-        const char length[4] = { static_cast<char>(strlen(kind)), 0, 0, 0 };
-        const std::string binary = std::string("\0\1ModelS", 8) + std::string(length, sizeof(length)) + kind;
-        for (size_t at = 0; (at = bytes.find(binary, at)) != std::string::npos; at += binary.size())
-            say_fbx(name_before(bytes, at));
+    static const char *const kinds[] = { "INF", "IND", "NAN", "QNAN", "SNAN" };
+    for (size_t at = 0; (at = text->find(".#", at)) != std::string::npos; at += 2) {
+        size_t from = at, to = at + 2;
+        while (from > 0 && (isdigit(static_cast<unsigned char>((*text)[from - 1])) || (*text)[from - 1] == '-'))
+            from--;
+        while (to < text->size() && isalpha(static_cast<unsigned char>((*text)[to])))
+            to++;
+        const std::string kind = text->substr(at + 2, to - at - 2);
+        while (to < text->size() && isdigit(static_cast<unsigned char>((*text)[to])))
+            to++;
+        if (from < at && std::find(std::begin(kinds), std::end(kinds), kind) != std::end(kinds))
+            text->replace(from, to - from, "nan" + std::string(to - from - 3, ' '));
     }
 }

@@ -23,7 +23,14 @@ void assimp_losses_of_obj(const std::string &text);
 /* Prints the geometries of a COLLADA file that have no polygons: convex hulls, splines, boundary representations. */
 void assimp_losses_of_dae(const std::string &text);
 
+/* Replaces numbers that are not finite in the spelling of Windows (-1.#IND, 1.#INF), which Assimp reads as 1, by "nan". */
+void assimp_plain_numbers(std::string *text);
+
 /* Prints the NURBS and patches of an FBX file, by the names of their models. */
 void assimp_losses_of_fbx(const std::string &bytes);
+
+/* Leaves the last of equal properties in an FBX file of text. say: prints these properties, models with more than one parent, and models
+ * that are not connected with the scene. */
+void assimp_mend_fbx(std::string *text, bool say);
 
 #endif

@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Finds models and values of an FBX file that Assimp leaves out, repeats or reads differently without a message. */
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <set>
+#include <string_view>
+#include <vector>
+
+#include "preprocess/import/readers/assimp_losses.hh"
+
+/* Returns the name that ends at `end` in a binary FBX file. "S" and a length of four bytes precede the name. */
+static std::string name_before(const std::string &bytes, size_t end)
+{
+    constexpr size_t MAX_NAME = 512, HEAD = 5;
+    for (size_t length = 0; length < MAX_NAME && length + HEAD <= end; length++) {
+        const char *head = bytes.data() + end - length - HEAD;
+        uint32_t said;
+        memcpy(&said, head + 1, sizeof(said));
+        if (*head == 'S' && said == length + strlen("??Model")) /* two control characters and the class follow the name */
+            return bytes.substr(end - length, length);
+    }
+    return "";
+}
+
+static void say_fbx(std::string name)
+{
+    std::replace_if(name.begin(), name.end(), [](unsigned char c) { return c < ' '; }, ' ');
+    printf("lost\t\t%s\tmodel\t\tNURBS and patches are not read: export it as polygons\n", name.c_str());
+}
+
+void assimp_losses_of_fbx(const std::string &bytes)
+{
+    static const char *const kinds[] = { "NurbsSurface", "TrimNurbsSurface", "Nurb", "Patch" };
+    for (const char *kind : kinds) {
+        const std::string quoted = std::string("\", \"") + kind + "\"";
+        for (size_t at = 0; (at = bytes.find(quoted, at)) != std::string::npos; at += quoted.size()) {
+            const size_t line = bytes.rfind('\n', at) + 1, name = bytes.find("\"Model::", line);
+            if (name < at)
+                say_fbx(bytes.substr(name + strlen("\"Model::"), at - name - strlen("\"Model::")));
+        }
+        const char length[4] = { static_cast<char>(strlen(kind)), 0, 0, 0 };
+        const std::string binary = std::string("\0\1ModelS", 8) + std::string(length, sizeof(length)) + kind;
+        for (size_t at = 0; (at = bytes.find(binary, at)) != std::string::npos; at += binary.size())
+            say_fbx(name_before(bytes, at));
+    }
+}
+
+namespace
+{
+
+constexpr const char *SCENE = "0"; /* id of the root in connections */
+
+/* The models of an FBX text, and their connections. Keys are ids. */
+struct fbx_graph {
+    std::map<std::string, std::string> models; /* names */
+    std::set<std::string> geometries, shown;   /* shown: models with a geometry */
+    std::multimap<std::string, std::string> children;
+    std::map<std::string, size_t> parents; /* number of parents */
+};
+
+/* Returns the text between two marks, the second of which may be missing; "" if the line lacks the first. */
+std::string between(std::string_view line, const char *first, char second)
+{
+    const size_t at = line.find(first), from = at + strlen(first);
+    return at == line.npos ? "" : std::string(line.substr(from, line.find(second, from) - from));
+}
+
+void add_link(fbx_graph *graph, std::string_view line)
+{
+    const std::string child = between(line, "\"OO\",", ',');
+    std::string parent = between(line, (child + ",").c_str(), ',');
+    parent.erase(std::find_if(parent.begin(), parent.end(), [](unsigned char c) { return c < '0'; }), parent.end());
+    if (graph->geometries.count(child) > 0)
+        graph->shown.insert(parent);
+    if (graph->models.count(child) == 0 || (parent != SCENE && graph->models.count(parent) == 0))
+        return;
+    graph->children.insert({ parent, child });
+    graph->parents[child]++;
+}
+
+/* Overwrites a line that states a property a second time with blanks: of equal properties the last one counts, but Assimp takes the first
+ * one. known: positions of the properties of one list, by name. */
+void keep_last(std::string *text, size_t at, std::string_view line, std::map<std::string, size_t> *known, const std::string &owner,
+               bool say)
+{
+    const std::string name = between(line, "P: \"", '"');
+    auto [first, added] = known->insert({ name, at });
+    if (added || line.back() == '{')
+        return;
+    for (size_t i = first->second; i < text->size() && (*text)[i] != '\n'; i++)
+        (*text)[i] = ' ';
+    first->second = at;
+    if (say)
+        printf("error\t1\t%s %s more than once: the last value is used\n", owner.c_str(), name.c_str());
+}
+
+void say_graph(const fbx_graph &graph)
+{
+    std::set<std::string> reached = { SCENE };
+    for (std::vector<std::string> open = { SCENE }; !open.empty();) {
+        auto [from, to] = graph.children.equal_range(open.back());
+        open.pop_back();
+        for (; from != to; from++)
+            if (reached.insert(from->second).second)
+                open.push_back(from->second);
+    }
+    for (const auto &[id, name] : graph.models) {
+        auto parents = graph.parents.find(id);
+        if (graph.shown.count(id) > 0 && reached.count(id) == 0)
+            printf("lost\t%s\t%s\tmodel\t\tno chain of parents connects the model with the scene\n", id.c_str(), name.c_str());
+        else if (parents != graph.parents.end() && parents->second > 1)
+            printf("error\t1\tmodel %s has %zu parents: it is shown below each of them\n", name.c_str(), parents->second);
+    }
+}
+
+} // namespace
+
+void assimp_mend_fbx(std::string *text, bool say)
+{
+    fbx_graph graph;
+    std::map<std::string, size_t> known;
+    std::string owner = "the defaults state";
+    for (size_t at = 0, next; at < text->size(); at = next + 1) {
+        next = std::min(text->find('\n', at), text->size());
+        const size_t begin = std::min(text->find_first_not_of(" \t", at), next);
+        const std::string_view line = std::string_view(*text).substr(begin, next - begin);
+        auto is = [line](const char *word) { return line.compare(0, strlen(word), word) == 0; };
+        if (is("Model: ")) {
+            const std::string name = between(line, "\"Model::", '"');
+            owner = "model " + name + " states";
+            graph.models[between(line, "Model: ", ',')] = name;
+        } else if (is("Geometry: ")) {
+            graph.geometries.insert(between(line, "Geometry: ", ','));
+        } else if (is("Properties70:")) {
+            known.clear();
+        } else if (is("P: \"")) {
+            keep_last(text, begin, line, &known, owner, say);
+        } else if (is("C: \"OO\",")) {
+            add_link(&graph, line);
+        }
+    }
+    if (say)
+        say_graph(graph);
+}
