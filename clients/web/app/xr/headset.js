@@ -77,7 +77,8 @@ export class Headset {
         this.rig.at = along(this.rig.at, this.rig.axes[1], this.floorM);
         this.before = { camera, size: session.size, split: params.split ?? null, onDrawn: viewport.onDrawn, warp: viewport.warp };
         viewport.warp?.hide();
-        Object.assign(viewport, { warp: { hold: () => false, draw: () => false }, onDrawn: () => {}, invalidate: () => {} });
+        const warp = { hold: () => false, draw: () => false, waits: () => !this.isDecoded(clock.now()) };
+        Object.assign(viewport, { warp, onDrawn: () => {}, invalidate: () => {} });
         session.resize = (size) => { this.before.size = size; };
         if (params.split)
             session.setParams({ split: null });
@@ -126,9 +127,8 @@ export class Headset {
         this.hands.move(frame);
         this.aim(pose);
         session.flush();
+        viewport.draw();
         const now = clock.now();
-        if (this.isDecoded(now))
-            viewport.draw();
         this.take(now);
         this.isNear = this.shown !== null && length(subtract(this.shown.camera.eye, poseOf(this.rig, this.head).at)) < FARTHEST_M;
         this.nearAt = this.isNear ? now : this.nearAt;
