@@ -24,15 +24,7 @@ void main() {
     kind = vertex.w;
     gl_Position = warp * vec4(vertex.xyz, 1.0);
 }`;
-// Pixels give way to the canvas below one by one: a mixture of two colours would be read as the value between them.
-const GONE = `
-uniform float gone;
-bool isGone() {
-    ivec2 at = ivec2(gl_FragCoord.xy) & 3;
-    int odd = at.x ^ at.y;
-    return float(4 * (2 * (odd & 1) + (at.y & 1)) + (odd & 2) + (at.y >> 1)) < gone * 16.0 - 0.5;
-}`;
-export const PICTURE = `#version 300 es
+const PICTURE = `#version 300 es
 precision highp float;
 in vec2 at;
 flat in float kind;
@@ -40,9 +32,8 @@ uniform sampler2D picture, masks;
 uniform vec2 origin, size;
 uniform float bit;
 out vec4 colour;
-${GONE}
 void main() {
-    if (kind > 0.5 && (texelFetch(masks, ivec2(at / bit), 0).r > 0.5) != (kind < 1.5) || isGone())
+    if (kind > 0.5 && (texelFetch(masks, ivec2(at / bit), 0).r > 0.5) != (kind < 1.5))
         discard;
     colour = vec4(texture(picture, (origin + at) / size).rgb, 1.0);
 }`;
@@ -50,24 +41,43 @@ const BEHIND = `#version 300 es
 void main() {
     gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 1.0, 1.0);
 }`;
-const UNDRAWN = `#version 300 es
+// Computes the greys around places that are not drawn, and how wide these places are, from a reduced picture: cheap without a GPU.
+const AROUND = `#version 300 es
 precision highp float;
 uniform sampler2D drawn;
 uniform vec2 size;
-uniform float period;
 out vec4 colour;
-${GONE}
 void main() {
-    if (isGone())
-        discard;
+    vec2 at = gl_FragCoord.xy / size;
     vec4 sum = vec4(0.0);
     for (int level = 0; level < 12 && sum.a < 0.98; level++)
-        sum += (1.0 - sum.a) * textureLod(drawn, gl_FragCoord.xy / size, float(level));
+        sum += (1.0 - sum.a) * textureLod(drawn, at, float(level));
     float grey = sum.a > 0.0 ? dot(sum.rgb, vec3(0.299, 0.587, 0.114)) / sum.a : 0.5;
+    colour = vec4(vec3(grey), smoothstep(0.35, 0.65, 1.0 - textureLod(drawn, at, 3.0).a));
+}`;
+const UNDRAWN = `#version 300 es
+precision highp float;
+uniform sampler2D around;
+uniform vec2 size;
+uniform float period;
+out vec4 colour;
+void main() {
+    vec4 near = texture(around, gl_FragCoord.xy / size);
     vec2 line = mod(vec2(gl_FragCoord.x + gl_FragCoord.y, gl_FragCoord.x - gl_FragCoord.y), period);
-    float wide = smoothstep(0.35, 0.65, 1.0 - textureLod(drawn, gl_FragCoord.xy / size, 3.0).a);
-    float mark = min(line.x, line.y) < 0.1 * period ? 0.08 * wide : 0.0;
-    colour = vec4(vec3(grey > 0.4 ? grey - mark : grey + mark), 1.0);
+    float mark = min(line.x, line.y) < 0.1 * period ? 0.08 * near.a : 0.0;
+    colour = vec4(vec3(near.r > 0.4 ? near.r - mark : near.r + mark), 1.0);
+}`;
+// Pixels give way to the canvas below one by one: a mixture of two colours would be read as the value between them.
+const GONE = `#version 300 es
+precision highp float;
+uniform float gone;
+out vec4 colour;
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy) & 3;
+    int odd = at.x ^ at.y;
+    if (float(4 * (2 * (odd & 1) + (at.y & 1)) + (odd & 2) + (at.y >> 1)) > gone * 16.0 - 0.5)
+        discard;
+    colour = vec4(0.0);
 }`;
 const LATTICE_PX = 14, REDUCED = 4; // REDUCED: pixels along the side of one from which the greys of places not drawn are computed
 
@@ -115,7 +125,9 @@ export class Warp {
             return false;
         try {
             this.mesh = programOf(gl, MESH, PICTURE);
+            this.around = programOf(gl, BEHIND, AROUND);
             this.undrawn = programOf(gl, BEHIND, UNDRAWN);
+            this.gone = programOf(gl, BEHIND, GONE);
         } catch (error) {
             console.warn(`pictures are not warped: ${error.message}`);
             return false;
@@ -128,9 +140,12 @@ export class Warp {
         gl.enableVertexAttribArray(0);
         this.gl = gl;
         this.texture = this.newTexture();
-        this.reduced = { texture: this.newTexture(), framebuffer: gl.createFramebuffer() };
-        gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
-        gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_NEAREST);
+        this.reduced = [gl.LINEAR_MIPMAP_NEAREST, gl.LINEAR].map((filter) => { // the picture, and the greys around places not drawn
+            const one = { texture: this.newTexture(), framebuffer: gl.createFramebuffer() };
+            gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+            gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, filter);
+            return one;
+        });
         return true;
     }
 
@@ -337,12 +352,14 @@ export class Warp {
         if (canvas.width === width && canvas.height === height)
             return;
         Object.assign(canvas, { width, height });
-        const { gl, reduced } = this, { texture, framebuffer } = reduced;
+        const { gl, reduced } = this;
         reduced.size = [width, height].map((px) => Math.ceil(px / REDUCED));
-        gl.bindTexture(gl.TEXTURE_2D, texture);
-        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, ...reduced.size, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);
-        gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, framebuffer);
-        gl.framebufferTexture2D(gl.DRAW_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+        for (const { texture, framebuffer } of reduced) {
+            gl.bindTexture(gl.TEXTURE_2D, texture);
+            gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, ...reduced.size, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);
+            gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, framebuffer);
+            gl.framebufferTexture2D(gl.DRAW_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+        }
         gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
     }
 
@@ -357,30 +374,45 @@ export class Warp {
         gl.activeTexture(gl.TEXTURE1);
         gl.uniform1i(mesh.at('masks'), 1);
         gl.uniform2fv(mesh.at('size'), source.size);
-        gl.uniform1f(mesh.at('gone'), gone);
         for (const part of parts)
             this.paintPart(part, source, camera);
         gl.activeTexture(gl.TEXTURE0);
-        gl.viewport(0, 0, canvas.width, canvas.height);
-        this.paintUndrawn(gone);
+        this.paintUndrawn();
+        if (gone > 0)
+            this.leaveOut(gone);
         this.isShown = true;
         this.painted = Object.assign(source, { seenFrom: camera });
         canvas.style.display = '';
     }
 
     // Fills the places that the picture does not show with the greys around them.
-    paintUndrawn(gone) {
-        const { gl, canvas: { width, height }, reduced, undrawn } = this;
-        gl.bindTexture(gl.TEXTURE_2D, reduced.texture);
-        gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, reduced.framebuffer);
+    paintUndrawn() {
+        const { gl, canvas: { width, height }, reduced, undrawn, around } = this, [drawn, greys] = reduced;
+        gl.bindTexture(gl.TEXTURE_2D, drawn.texture);
+        gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, drawn.framebuffer);
         gl.blitFramebuffer(0, 0, width, height, 0, 0, ...reduced.size, gl.COLOR_BUFFER_BIT, gl.LINEAR);
-        gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
         gl.generateMipmap(gl.TEXTURE_2D);
+        gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, greys.framebuffer);
+        gl.viewport(0, 0, ...reduced.size);
+        gl.useProgram(around.program);
+        gl.uniform2fv(around.at('size'), reduced.size);
+        gl.drawArrays(gl.TRIANGLES, 0, 3);
+        gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+        gl.viewport(0, 0, width, height);
+        gl.bindTexture(gl.TEXTURE_2D, greys.texture);
         gl.useProgram(undrawn.program);
         gl.uniform2f(undrawn.at('size'), width, height);
         gl.uniform1f(undrawn.at('period'), LATTICE_PX * window.devicePixelRatio * height / this.session.size.height);
-        gl.uniform1f(undrawn.at('gone'), gone);
         gl.drawArrays(gl.TRIANGLES, 0, 3);
+    }
+
+    leaveOut(gone) {
+        const { gl } = this;
+        gl.disable(gl.DEPTH_TEST);
+        gl.useProgram(this.gone.program);
+        gl.uniform1f(this.gone.at('gone'), gone);
+        gl.drawArrays(gl.TRIANGLES, 0, 3);
+        gl.enable(gl.DEPTH_TEST);
     }
 
     paintPart(part, source, camera) {
