@@ -269,3 +269,65 @@ test('of seven quantities each is named in full', options, async () => {
         await many.destroy();
     }
 });
+
+const PARTS = '.identity, .alarm-strip, .viewport, .alarms, .stage > .card, .panel.open, .lower, #groups, .actions';
+// Returns parts that overlap or leave the window at a side, and the page itself if it scrolls sideways.
+const collisions = (page) => page.evaluate((selector) => {
+    const wide = () => [...document.body.querySelectorAll('*')].filter((e) => e.getBoundingClientRect().right > innerWidth).map((e) => `${e.tagName} ${e.id || e.className} in ${e.parentNode.id || e.parentNode.className}`);
+    const found = [document.scrollingElement, document.body].filter((e) => e.scrollWidth > innerWidth)
+        .map((e) => `${e.tagName} scrolls sideways: ${wide()}`);
+    const parts = [...document.querySelectorAll(selector)].filter((e) => e.checkVisibility() && e.getBoundingClientRect().width > 0)
+        .map((e) => [e.id || e.className, e.getBoundingClientRect()]);
+    for (const [i, [name, a]] of parts.entries()) {
+        if (a.left < -1 || a.right > innerWidth + 1)
+            found.push(`${name} leaves the window`);
+        for (const [other, b] of parts.slice(i + 1))
+            if (a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1)
+                found.push(`${name} overlaps ${other}`);
+    }
+    return found;
+}, PARTS);
+const inkOf = (page, name = '--ink') => page.evaluate((of) => getComputedStyle(document.documentElement).getPropertyValue(of), name);
+// A desk of 1280 x 800 or 1280 x 1024 in CSS pixels.
+const ZOOMED = { '200 %': { width: 640, height: 400 }, '400 %': { width: 320, height: 256 } };
+for (const [zoom, viewport] of Object.entries(ZOOMED))
+    test(`at ${zoom} zoom no part covers another, and the page scrolls in one direction`, options, async () => {
+        const { page, errors, close } = await openPage(`${url}?lang=de`, { viewport });
+        const press = async (key) => {
+            await page.locator('#viewport').focus();
+            await page.keyboard.press(key);
+        };
+        const call = (name) => page.evaluate((does) => {
+            const { plantcast } = globalThis;
+            return plantcast[does](plantcast.session.model.tag('TI-1'));
+        }, name);
+        // [what opens a part, the part, what closes it]
+        const steps = [
+            [() => press('p'), '#picture-panel.open', () => press('Escape')], [() => press('v'), '#views.open', () => press('Escape')],
+            [() => press('e'), '#alarms', () => press('e')], [() => press('y'), '#timeline', () => press('y')],
+            [() => call('showTrend'), '#trend-chart canvas', () => page.locator('#trend-close').click()],
+            [() => call('selectTag'), '.stage > #card', () => press('Escape')],
+        ];
+        try {
+            await waitForPicture(page);
+            await page.waitForFunction(() => globalThis.plantcast.session.recorded);
+            assert.deepEqual(await collisions(page), [], 'as it opens');
+            assert.notEqual(await inkOf(page), await inkOf(page, '--ink-2'));
+            await page.emulateMedia({ contrast: 'more' }); // all texts and lines get the colour of the main text
+            await page.waitForFunction(() => getComputedStyle(document.documentElement).getPropertyValue('--line') ===
+                getComputedStyle(document.documentElement).getPropertyValue('--ink'));
+            assert.equal(await inkOf(page), await inkOf(page, '--ink-2'));
+            await page.emulateMedia({ contrast: 'no-preference' });
+            for (const [show, part, hide] of steps) {
+                await show();
+                await page.locator(part).waitFor();
+                assert.deepEqual(await collisions(page), [], part);
+                await shoot(page, `zoom-${viewport.width}-${part.replace(/\W/g, '')}`);
+                await hide();
+                await page.locator(part).waitFor({ state: 'hidden' });
+            }
+            assert.deepEqual(errors, []);
+        } finally {
+            await close();
+        }
+    });
