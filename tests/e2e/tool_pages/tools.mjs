@@ -385,7 +385,11 @@ test('others follow; the lead is handed over, and what is shown stays', options,
 });
 
 test('dark, and light again; it stays as it was left', options, async () => {
-    await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'temperature' }));
+    await page.evaluate(() => {
+        const { session } = globalThis.plantcast, { width, height } = session.size;
+        session.setParams({ group: 'temperature' });
+        session.setCamera(session.homeIn(width, height)); // no equipment at the left edge of the picture
+    });
     // The code for keys and buttons is loaded when it is first needed, so the effect may come a little later.
     const waitForTheme = (name) => page.waitForFunction((is) => document.documentElement.dataset.theme === is, name);
     await page.keyboard.press('z');
