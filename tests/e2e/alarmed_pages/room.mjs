@@ -273,7 +273,8 @@ test('of seven quantities each is named in full', options, async () => {
 const PARTS = '.identity, .alarm-strip, .viewport, .alarms, .stage > .card, .panel.open, .lower, #groups, .actions';
 // Returns parts that overlap or leave the window at a side, and the page itself if it scrolls sideways.
 const collisions = (page) => page.evaluate((selector) => {
-    const wide = () => [...document.body.querySelectorAll('*')].filter((e) => e.getBoundingClientRect().right > innerWidth).map((e) => `${e.tagName} ${e.id || e.className} in ${e.parentNode.id || e.parentNode.className}`);
+    const wide = () => [...document.body.querySelectorAll('*')].filter((e) => e.getBoundingClientRect().right > innerWidth)
+        .map((e) => `${e.tagName} ${e.id || e.className} in ${e.parentNode.id || e.parentNode.className}`);
     const found = [document.scrollingElement, document.body].filter((e) => e.scrollWidth > innerWidth)
         .map((e) => `${e.tagName} scrolls sideways: ${wide()}`);
     const parts = [...document.querySelectorAll(selector)].filter((e) => e.checkVisibility() && e.getBoundingClientRect().width > 0)
