@@ -130,19 +130,27 @@ function sample({ width, height, values }, u, v) {
         (at(left, top + 1, c) * (1 - p) + at(left + 1, top + 1, c) * p) * q);
 }
 
-// Grey of a pixel that is not drawn, as the page's shader computes it.
-function greyAt(levels, x, y, width, height) {
-    const u = (x + 0.5) / width, v = (y + 0.5) / height;
-    let sum = 0, part = 0;
-    for (let i = 0; i < levels.length && part < 0.98; i++) {
-        const [brightness, drawn] = sample(levels[i], u, v);
-        sum += (1 - part) * brightness;
-        part += (1 - part) * drawn;
+// Returns a level with the greys around places that are not drawn, and how wide these places are, as the page's shaders compute them.
+function greysOf(levels) {
+    const { width, height } = levels[0], values = new Float64Array(2 * width * height);
+    for (let i = 0; i < width * height; i++) {
+        const u = (i % width + 0.5) / width, v = (Math.floor(i / width) + 0.5) / height;
+        let sum = 0, part = 0;
+        for (let level = 0; level < levels.length && part < 0.98; level++) {
+            const [brightness, drawn] = sample(levels[level], u, v);
+            sum += (1 - part) * brightness;
+            part += (1 - part) * drawn;
+        }
+        const wide = Math.max(0, Math.min(1, (0.65 - sample(levels[3], u, v)[1]) / 0.3));
+        values.set([part > 0 ? sum / part : 128, wide * wide * (3 - 2 * wide)], 2 * i);
     }
-    const grey = part > 0 ? sum / part : 128, share = Math.max(0, Math.min(1, (0.65 - sample(levels[3], u, v)[1]) / 0.3));
+    return { width, height, values };
+}
+
+function greyAt(greys, x, y, width, height) {
+    const [grey, wide] = sample(greys, (x + 0.5) / width, (y + 0.5) / height);
     const line = Math.min((x + y) % LATTICE_PX, (x - y + height * LATTICE_PX) % LATTICE_PX) < 0.1 * LATTICE_PX;
-    const mark = line ? MARK * share * share * (3 - 2 * share) : 0;
-    return grey > 0.4 * 255 ? grey - mark : grey + mark;
+    return grey + (line ? MARK * wide : 0) * (grey > 0.4 * 255 ? -1 : 1);
 }
 
 function warped({ pixels, width, height }, shown) {
@@ -150,10 +158,10 @@ function warped({ pixels, width, height }, shown) {
     for (let i = 0; i < shown.length; i++)
         if (shown[i] >= 0)
             pixels.copy(out, 4 * i, 4 * shown[i], 4 * shown[i] + 4);
-    const levels = levelsOf(out, shown, width, height);
+    const greys = greysOf(levelsOf(out, shown, width, height));
     for (let i = 0; i < shown.length; i++)
         if (shown[i] < 0)
-            out.fill(greyAt(levels, i % width, Math.floor(i / width), width, height), 4 * i, 4 * i + 4);
+            out.fill(greyAt(greys, i % width, Math.floor(i / width), width, height), 4 * i, 4 * i + 4);
     return out;
 }
 
