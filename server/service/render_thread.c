@@ -549,6 +549,13 @@ static void rebuild(struct render_thread *thread)
     log_info(service->params.log, "gl: drawing with a new context after %.1f s", (double)(clock_mono_ns() - lost_ns) / NS_PER_S);
 }
 
+/* Resumes the parked long job if no other one runs. Call it at the end of each turn: without other requests there is no next turn. */
+static void resume_parked(struct render_thread *thread)
+{
+    if (!thread->long_job.split && thread->parked.split)
+        long_job_swap(thread);
+}
+
 static void turn(struct render_thread *thread, struct scheduler *scheduler, struct request_group *group)
 {
     enum urgency urgency = group->count > 0 ? group->tickets[0].request.urgency : thread->long_job.urgency;
@@ -556,6 +563,7 @@ static void turn(struct render_thread *thread, struct scheduler *scheduler, stru
     long_job_leave(thread);
     if (group->count == 0 && !thread->long_job.split && thread->in_flight.count > 0) {
         finish_oldest(thread);
+        resume_parked(thread);
         return;
     }
     if (group->count > 0)
@@ -567,9 +575,7 @@ static void turn(struct render_thread *thread, struct scheduler *scheduler, stru
         scheduler_stepped(scheduler);
     if (done && !(urgency >= URGENCY_REFINE && thread->long_job.split))
         scheduler_done(scheduler, urgency, clock_mono_ns());
-    /* here and not at the beginning: without other requests there would be no next turn */
-    if (!thread->long_job.split && thread->parked.split)
-        long_job_swap(thread);
+    resume_parked(thread);
 }
 
 void *render_thread_main(void *arg)
