@@ -4,7 +4,6 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { readAddress } from '../../clients/web/core/address.js';
-import { sidesOf } from '../../clients/web/core/approach.js';
 import { AlarmCall } from '../../clients/web/core/alarm_call.js';
 import { cameraMessage } from '../../clients/web/core/camera.js';
 import { brightness, burnShift, wallFit } from '../../clients/web/core/wall.js';
@@ -47,13 +46,4 @@ test('how large letters are, and how bright a display', () => {
 test('by how much what is shown is moved', () => {
     for (const { us, shift } of cases('shifts'))
         assert.deepEqual(burnShift(us), shift, `${us}`);
-});
-
-test('from which sides a place is looked at', () => {
-    for (const { camera, place, sides } of cases('approaches')) {
-        const all = sidesOf(camera, place);
-        assert.equal(all.length, sides.length);
-        for (const [i, { eye, target }] of all.entries())
-            [...eye, ...target].forEach((m, k) => assert.ok(Math.abs(m - sides[i].flat()[k]) < 1e-6, `side ${i}`));
-    }
 });

@@ -77,11 +77,11 @@ static bool shrink(struct image *image, uint32_t max_px, char *why)
 static bool decode_by_module(struct image *image, const void *bytes, size_t size, uint32_t max_px, const char *format, char *why)
 {
     bool (*decode)(struct image *, const void *, size_t, uint32_t, char[IMAGE_WHY_BYTES]);
-    char reason[IMAGE_WHY_BYTES - 8];
+    char reason[IMAGE_WHY_BYTES - 18];
     *image = (struct image){ 0 };
     if (module_find(&images, "images_decode", &decode, reason, sizeof(reason)))
         return decode(image, bytes, size, max_px, why);
-    snprintf(why, IMAGE_WHY_BYTES, "%s: %s", format, reason);
+    snprintf(why, IMAGE_WHY_BYTES, "%.16s: %s", format, reason);
     return false;
 }
 

@@ -51,7 +51,7 @@ bool image_read_jpeg(struct image *image, const void *bytes, size_t size, bool *
     reader.errors.error_exit = fail;
     reader.errors.emit_message = warn;
     if (setjmp(reader.failed))
-        snprintf(why, IMAGE_WHY_BYTES, "jpeg: %s", reader.why);
+        snprintf(why, IMAGE_WHY_BYTES, "jpeg: %.*s", IMAGE_WHY_BYTES - 7, reader.why);
     else {
         jpeg_create_decompress(&reader.codec);
         jpeg_mem_src(&reader.codec, bytes, size);
