@@ -24,6 +24,7 @@ void main() {
     kind = vertex.w;
     gl_Position = warp * vec4(vertex.xyz, 1.0);
 }`;
+// Pixels behind a step in depth that contain a part of the colour before the step become grey.
 const PICTURE = `#version 300 es
 precision highp float;
 in vec2 at;
@@ -32,10 +33,15 @@ uniform sampler2D picture, masks;
 uniform vec2 origin, size;
 uniform float bit;
 out vec4 colour;
+bool isNear(float x, float y) {
+    return texelFetch(masks, ivec2(vec2(x, y) / bit), 0).r > 0.5;
+}
 void main() {
-    if (kind > 0.5 && (texelFetch(masks, ivec2(at / bit), 0).r > 0.5) != (kind < 1.5))
+    if (kind > 0.5 && isNear(at.x, at.y) != (kind < 1.5))
         discard;
     colour = vec4(texture(picture, (origin + at) / size).rgb, 1.0);
+    if (kind > 1.5 && (isNear(at.x - bit, at.y) || isNear(at.x + bit, at.y) || isNear(at.x, at.y - bit) || isNear(at.x, at.y + bit)))
+        colour.rgb = vec3(dot(colour.rgb, vec3(0.299, 0.587, 0.114)));
 }`;
 const BEHIND = `#version 300 es
 void main() {
