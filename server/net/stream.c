@@ -159,6 +159,8 @@ static void pump(struct server_context *server, struct stream *stream)
         return;
     if (session_is_tile(session)) {
         tiles_pump(server, stream);
+    } else if (session->hidden) {
+        render_service_withdraw(server->params.plant.render_service, session->id);
     } else if (session_next_request(session, now_ns, &request)) {
         enum request_outcome answer = render_service_request(server->params.plant.render_service, session->id, &request);
         if (answer != REQUEST_REFUSED)

@@ -86,6 +86,23 @@ struct pick_answer *render_service_collect_picks(struct render_service *service)
     return pick_queue_collect(service->picks);
 }
 
+void render_service_withdraw(struct render_service *service, uint64_t id)
+{
+    struct request_group group = { 0 };
+    pthread_mutex_lock(&service->lock);
+    struct render_client *client = render_service_find(service, id);
+    if (client)
+        client->left = true;
+    if (client && client->pending) {
+        client->pending = false;
+        request_group_add(&group, &(struct request_ticket){ .client = id, .number = ++client->number, .request = client->request });
+    }
+    pthread_mutex_unlock(&service->lock);
+    if (group.count > 0)
+        render_service_answer_without_frame(service, &group, FRAME_SKIPPED);
+    request_group_finish(&group);
+}
+
 void render_service_forget(struct render_service *service, uint64_t id)
 {
     pick_queue_forget(service->picks, id);

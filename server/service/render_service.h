@@ -54,6 +54,9 @@ void render_service_request_all(struct render_service *service, size_t count, co
 /* Wakes the render thread if requests were queued since the last call. Call it after all requests of one event, so that equal requests
    share a frame. */
 void render_service_wake(struct render_service *service);
+/* Answers the client's waiting request, if any, without a frame (FRAME_SKIPPED), and gives up its frame that is drawn in steps. For
+   clients that show no pictures for a while. */
+void render_service_withdraw(struct render_service *service, uint64_t client);
 /* Drops all waiting requests and encoded frames of the client. */
 void render_service_forget(struct render_service *service, uint64_t client);
 /* Makes all later frames show a mark on each tag whose measuring loop was not checked, if the server draws the markers. loop_checks must
