@@ -25,7 +25,7 @@ void main() {
     gl_Position = warp * vec4(vertex.xyz, 1.0);
 }`;
 // Pixels behind a step in depth that contain a part of the colour before the step become grey.
-const PICTURE = `#version 300 es
+export const PICTURE = `#version 300 es
 precision highp float;
 in vec2 at;
 flat in float kind;

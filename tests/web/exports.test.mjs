@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every name that a module of the page imports is exported. Lazily loaded modules would otherwise fail only when a user opens them.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { test } from 'node:test';
+
+test('every imported name is exported', () => {
+    const args = ['--experimental-vm-modules', '--no-warnings', `${import.meta.dirname}/link_modules.mjs`];
+    const { status, stdout, stderr } = spawnSync(process.execPath, args, { encoding: 'utf8' });
+    assert.equal(status, 0, stderr);
+    assert.ok(Number(stdout) > 200, `${stdout} modules`);
+});
