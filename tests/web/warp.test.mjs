@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Depth grids, and meshes that show a picture from another camera: a synthetic scene of a floor and a box in front of a background.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
+import { mock, test } from 'node:test';
 import { deflateRawSync } from 'node:zlib';
+import { Warp } from '../../clients/web/app/picture/warp.js';
 import { projector } from '../../clients/web/core/camera.js';
 import { sight } from '../../clients/web/core/camera_moves.js';
 import { decodeGrid, readHeader } from '../../clients/web/core/depth_grid.js';
@@ -181,4 +182,29 @@ test('a camera that jumps, or changes its projection, gets no picture from elsew
     assert.ok(!isNear(PERSPECTIVE, PARALLEL));
     assert.ok(!isNear(PARALLEL, { ...PARALLEL, height_m: 80 }));
     assert.ok(isNear(PARALLEL, { ...PARALLEL, height_m: 7 }));
+});
+
+test('pictures wait for their depth, but not for a worker that does not answer', () => {
+    let now = 0, draws = 0;
+    mock.timers.enable({ apis: ['setTimeout'] });
+    const { mock: calls } = mock.method(performance, 'now', () => now);
+    const viewport = { invalidate: () => draws++ };
+    const warp = Object.assign(Object.create(Warp.prototype), { isShown: true, waitsFrom: null, viewport, grids: [] });
+    const waits = (ms, id) => {
+        now += ms;
+        mock.timers.tick(ms);
+        const depth = warp.grids[id]?.depth ?? {};
+        warp.grids[id] ??= { id, depth, parts: null, fails: false };
+        return warp.waits([{ frame: { depth } }]);
+    };
+    try {
+        assert.deepEqual([waits(0, 0), waits(900, 0), draws], [true, true, 0]);
+        assert.deepEqual([waits(200, 0), draws], [false, 1], 'late');
+        assert.equal(waits(0, 1), false, 'the worker still owes an answer');
+        warp.take({ id: 0, parts: [] });
+        assert.deepEqual([waits(0, 1), waits(0, 0), waits(900, 1), waits(200, 1)], [true, false, true, false]);
+    } finally {
+        calls.restore();
+        mock.timers.reset();
+    }
 });

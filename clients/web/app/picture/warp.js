@@ -13,6 +13,7 @@ const NEAREST = 0.05; // distance before which nothing is drawn, as a share of t
 const SLOW_MS = 26, SLOW_COUNT = 8, PAUSE_MS = 150, LEAST_PX = 250000;
 
 const FADE_MS = 80; // time in which the server's picture replaces the warped one
+const LATE_MS = 1000; // time without an answer of the worker after which pictures do not wait for it
 
 export const MESH = `#version 300 es
 in vec4 vertex;
@@ -106,6 +107,7 @@ export function programOf(gl, ...sources) {
 export class Warp {
     constructor({ session, viewport, modules }) {
         Object.assign(this, { session, viewport, modules, updates: 0, mostPx: Infinity, intervals: [], last: 0, count: 0 });
+        this.waitsFrom = null; // time at which pictures began to wait for the worker; null: it has answered
         this.grids = [];    // newest depth grids: { id, depth, parts: [{ grid, mesh }] or null until decoded, fails }, newest last
         this.held = null;   // newest frame, decoded but not drawn on the viewport's canvas: { frame, picture }
         this.source = null; // picture that WebGL draws: { picture, camera, parts, isLoaded }
@@ -189,6 +191,7 @@ export class Warp {
 
     take({ id, parts, why }) {
         const entry = this.grids.find((one) => one.id === id);
+        this.waitsFrom = null;
         if (!entry)
             return;
         if (parts) {
@@ -211,7 +214,12 @@ export class Warp {
     waits(decoded) {
         const newest = decoded.findLast(({ frame }) => !frame.more)?.frame;
         const known = newest?.depth && this.grids.find(({ depth }) => depth === newest.depth);
-        return !!known && !known.parts && !known.fails && (this.isShown || this.isAhead);
+        if (!known || known.parts || known.fails || !(this.isShown || this.isAhead))
+            return false;
+        if (this.waitsFrom === null)
+            setTimeout(() => this.viewport.invalidate(), LATE_MS);
+        this.waitsFrom ??= performance.now();
+        return performance.now() - this.waitsFrom < LATE_MS;
     }
 
     // Returns true if the picture is to be shown from the present camera, which is not its own.
