@@ -347,6 +347,32 @@ TEST(test_depth_is_drawn_while_a_client_that_wants_it_is_present)
     render_service_forget(service, MOVER);
 }
 
+/* While a refined frame is drawn in steps, no other one begins, so the second is withdrawn before its drawing ends. */
+TEST(test_withdrawn_requests_are_not_drawn)
+{
+    if (hardware)
+        skip();
+    int64_t steps = count_of("plantcast_render_steps_total");
+    ask(REFINER, URGENCY_REFINE, 70);
+    await_step(steps + 1);
+    ask(MOVER, URGENCY_REFINE, 71);
+    render_service_withdraw(service, MOVER);
+    render_service_withdraw(service, REFINER);
+    render_service_withdraw(service, PICKER); /* has no request */
+    for (int i = 0; i < 2; i++) {
+        struct encoded_frame *encoded = next();
+        if (encoded->client == MOVER)
+            assert_true(!encoded->packet && encoded->absence == FRAME_SKIPPED);
+        encoded_frame_destroy(&encoded);
+    }
+    ask(MOVER, URGENCY_INPUT, 72); /* as when the view is shown again */
+    struct encoded_frame *encoded = next();
+    assert_true(encoded->packet && encoded->client == MOVER);
+    encoded_frame_destroy(&encoded);
+    render_service_forget(service, MOVER);
+    render_service_forget(service, REFINER);
+}
+
 /* One client requests frames that cost many times as much as another's. Returns whether the other got many more frames. */
 static bool shares_time(void)
 {
