@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { hostname } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { BareRoot, missingBareRoot } from './support/bare_root.mjs';
@@ -185,16 +186,20 @@ test('a passphrase, as age asks for it', { ...options, skip: options.skip || (ha
 
 test('a backup goes to another host by SFTP, and comes back from there',
     { ...options, skip: options.skip || (existsSync(SSHD) ? false : 'no sshd') }, async (t) => {
-        const host = new BareRoot(folder), sshPort = await freePort(), kept = join(folder, 'kept');
+        const host = new BareRoot(folder), sshPort = await freePort(), dropPort = await freePort(), kept = join(folder, 'kept');
+        const mine = `p1@${hostname()}-`;
         mkdirSync(kept);
         mkdirSync('/run/sshd', { recursive: true });
         for (const [name, path] of [['host', join(folder, 'host-key')], ['user', host.path('root/.ssh/id_ed25519')]])
             ok({ code: spawnSync('ssh-keygen', ['-q', '-t', 'ed25519', '-N', '', '-f', path]).status, err: name });
         cpSync(host.path('root/.ssh/id_ed25519.pub'), join(folder, 'authorized'));
         host.write('/root/.ssh/config', 'Host *\n  StrictHostKeyChecking no\n  UserKnownHostsFile /dev/null\n', 0o600);
-        writeFileSync(join(folder, 'sshd'), [`Port ${sshPort}`, 'ListenAddress 127.0.0.1', `HostKey ${join(folder, 'host-key')}`,
-            'StrictModes no', 'PidFile none', `AuthorizedKeysFile ${join(folder, 'authorized')}`, 'PermitRootLogin yes', 'UsePAM no',
-            'Subsystem sftp internal-sftp', ''].join('\n'));
+        writeFileSync(join(folder, 'sshd'), [`Port ${sshPort}`, `Port ${dropPort}`, 'ListenAddress 127.0.0.1',
+            `HostKey ${join(folder, 'host-key')}`, 'StrictModes no', 'PidFile none',
+            `AuthorizedKeysFile ${join(folder, 'authorized')}`,
+            'PermitRootLogin yes', 'UsePAM no',
+            'Subsystem sftp internal-sftp', `Match LocalPort ${dropPort}`,
+            'ForceCommand internal-sftp -P opendir,remove,rmdir', ''].join('\n'));
         const sshd = spawn(SSHD, ['-D', '-f', join(folder, 'sshd')], { stdio: 'inherit' });
         t.after(() => sshd.kill());
         cpSync(plant.folder, host.path('root/plant'), { recursive: true });
@@ -205,25 +210,31 @@ test('a backup goes to another host by SFTP, and comes back from there',
             'sleep 0.1; done';
         ok(host.run(`${listens}; plantcast backup p1 --recipient ${recipient} --to ${there} --hook /usr-hook -o /root/b`));
         assert.equal(readFileSync(host.path('root/hooked'), 'utf8'), '/root/b\n');
-        assert.deepEqual(readdirSync(kept), ['p1-b']);
+        assert.deepEqual(readdirSync(kept), [`${mine}b`]);
         ok(host.run('rm -r /etc/plantcast /var/lib/plantcast /root/b'));
         host.write('/root/key', readFileSync(first.path('root/key')), 0o600);
-        ok(host.run(`plantcast restore ${there}/p1-b --identity /root/key`));
+        ok(host.run(`plantcast restore ${there}/${mine}b --identity /root/key`));
         assert.match(readFileSync(host.path(`${ETC}/tls/privkey.pem`), 'utf8'), /PRIVATE KEY/);
-        // --keep also deletes older copies there: complete and interrupted ones of this plant, nothing else
-        const copies = ['p1-2026-01-01T000000Z', 'p1-2026-01-02T000000Z.part', 'p2-2026-01-01T000000Z', 'p1-2026-notes'];
-        for (const name of copies) {
+        // --keep also deletes older copies there: complete and interrupted ones of this plant and host, nothing else
+        const stay = [`${mine}2026-notes`, `${mine}20-2026-01-01T000000Z`, `p1-20@${hostname()}-2026-01-01T000000Z`,
+            'p1@other-2026-01-01T000000Z', 'p1-2026-01-01T000000Z', 'p1-20-2026-01-01T000000Z', 'p2-2026-01-01T000000Z'];
+        for (const name of [`${mine}2026-01-01T000000Z`, `${mine}2026-01-02T000000Z.part`, ...stay]) {
             mkdirSync(join(kept, name));
             writeFileSync(join(kept, name, 'a file'), '');
         }
         const pruned = host.run(`plantcast backup p1 --without-secrets --to ${there} --keep 1`);
         assert.equal(pruned.code, 0, pruned.err);
         const [newest] = readdirSync(host.path('var/backups/plantcast/p1'));
-        assert.deepEqual(readdirSync(kept), [`p1-${newest}`, 'p1-2026-notes', 'p1-b', 'p2-2026-01-01T000000Z'].sort());
-        mkdirSync(join(kept, 'p1-2026-01-01T000000Z/folder'), { recursive: true }); // which `rm` does not delete
+        assert.deepEqual(readdirSync(kept).sort(), [mine + newest, `${mine}b`, ...stay].sort());
+        mkdirSync(join(kept, `${mine}2026-01-01T000000Z/folder`), { recursive: true }); // which `rm` does not delete
         const kept2 = host.run(`plantcast backup p1 --without-secrets --to ${there} --keep 2`);
         assert.deepEqual([kept2.code, /older backups were not deleted there/.test(kept2.err)], [0, true], kept2.err);
-        assert.ok(readdirSync(kept).includes('p1-2026-01-01T000000Z.part'), 'no copy looks complete');
+        assert.ok(readdirSync(kept).includes(`${mine}2026-01-01T000000Z.part`), 'no copy looks complete');
+        // a store that permits neither listing nor deletion
+        const drop = there.replace(sshPort, dropPort);
+        const dropped = host.run(`plantcast backup p1 --without-secrets --to ${drop} --keep 2 -o /root/d`);
+        assert.deepEqual([dropped.code, /older backups were not deleted there/.test(dropped.err)], [0, true], dropped.err);
+        assert.ok(readdirSync(kept).includes(`${mine}d`), dropped.err);
         const away = host.run(`plantcast backup p1 --without-secrets --to sftp://root@127.0.0.1:${sshPort}/proc/nothing -o /root/c`);
         assert.deepEqual([away.code, /was not copied; it is in \/root\/c/.test(away.err)], [1, true], away.err);
     });

@@ -62,7 +62,7 @@ static void print_usage(FILE *out)
           "  --to sftp://[USER@]HOST[:PORT]/FOLDER    also copy the backup to another host, with an SSH key\n"
           "  --hook PROGRAM          run PROGRAM with the backup's folder as its argument\n"
           "  --keep N                afterwards remove all but the newest N in /var/backups/plantcast/NAME, and\n"
-          "                          of the copies of this plant at --to\n"
+          "                          of the copies of this plant and host at --to\n"
           "  --identity FILE         private key with which to decrypt (without: age asks for the passphrase)\n"
           "  --root DIR              use the files below DIR instead of /, for tests and images\n"
           "\n"
