@@ -11,18 +11,19 @@ export function addEdge(panel) {
     const setWidth = (px) => {
         const width = px === null ? null : Math.round(Math.max(LEAST_PX, Math.min(innerWidth - PICTURE_PX, px)));
         setVariable(panel, '--wide', width === null ? '' : `${width}px`);
-        store('alarmsWidth', width === null ? '' : String(width));
         edge.setAttribute('aria-valuenow', Math.round((100 * panel.offsetWidth) / innerWidth));
+        return width;
     };
-    const move = ({ clientX }) => setWidth(panel.getBoundingClientRect().right - clientX);
+    const choose = (px) => store('alarmsWidth', String(setWidth(px) ?? ''));
+    const move = ({ clientX }) => choose(panel.getBoundingClientRect().right - clientX);
     const edge = make('div', { class: 'edge', role: 'separator', tabindex: 0, 'aria-orientation': 'vertical', 'aria-valuenow': 66,
-        'aria-label': say('alarms.edge'), title: say('alarms.edge'), ondblclick: () => setWidth(null),
+        'aria-label': say('alarms.edge'), title: say('alarms.edge'), ondblclick: () => choose(null),
         onpointerdown: ({ pointerId }) => edge.setPointerCapture(pointerId),
         onpointermove: (event) => edge.hasPointerCapture(event.pointerId) && move(event), onkeydown: (event) => {
             const sign = { ArrowLeft: 1, ArrowRight: -1 }[event.key];
             if (sign) {
                 event.preventDefault();
-                setWidth(panel.offsetWidth + sign * STEP_PX);
+                choose(panel.offsetWidth + sign * STEP_PX);
             }
         } });
     panel.prepend(edge);
