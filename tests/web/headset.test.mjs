@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Geometry of headsets: matrices of the eyes, the wide picture that covers both, where rays meet surfaces, and where a user stands.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
+import { mock, test } from 'node:test';
+import { Hands } from '../../clients/web/app/xr/hands.js';
 import { projector } from '../../clients/web/core/camera.js';
 import { clipOf, eyeMatrix, eyeOf, floorHit, headCamera, hitOf, isApart, panelHit, pointOf, rigAt, rigFor, standAt, wideView }
     from '../../clients/web/core/headset_views.js';
@@ -167,4 +168,35 @@ test('the floor, standing there, and the panel at the wrist', () => {
     assert.deepEqual(panelHit(panel, [0, 0, 1], [0, 1, 0]).map((share) => Math.round(1e6 * share) / 1e6), [0.5, 0.5]);
     assert.equal(panelHit(panel, [0, 0, 1], [0, -1, 0]), null, 'behind the hand');
     assert.equal(panelHit(panel, [0.3, 0, 1], [0, 1, 0]), null, 'beside');
+});
+
+test('the card of a place asks again where its request was not answered, or replaced by that of another module', () => {
+    let now = 10000;
+    const { mock: calls } = mock.method(performance, 'now', () => now);
+    const sent = [], session = { welcomed: true, picture: {}, pickSeq: 0, size: { width: 800, height: 600 },
+        connection: { send: ({ seq }) => sent.push(seq) } };
+    const hands = Object.assign(Object.create(Hands.prototype), { headset: { session, shown: { camera: CAMERA }, rig: { axes: [0, UP] } },
+        asked: null, askedAt: 0, card: { at: [0, 5, 1], picked: { asset: 'E-101', value: 1 } } });
+    const after = (ms) => {
+        now += ms;
+        hands.ask();
+        return sent.length;
+    };
+    const answer = (purpose, value) => hands.hear({ purpose, asset: 'E-101', position: [0, 5, 1], value });
+    try {
+        assert.deepEqual([after(0), after(1100), after(2000), after(1100)], [1, 1, 2, 2], 'not answered');
+        answer('headset again', 2);
+        assert.equal(hands.card.picked.value, 2);
+        assert.equal(after(0), 3);
+        answer('place', 9);
+        assert.deepEqual([hands.card.picked.value, after(1100)], [2, 4], 'replaced');
+        answer('headset again', 3);
+        assert.equal(hands.card.picked.value, 3);
+        after(1100);
+        hands.forget();
+        answer('headset again', 4);
+        assert.deepEqual([hands.card, after(5000)], [null, 5], 'a new connection');
+    } finally {
+        calls.restore();
+    }
 });

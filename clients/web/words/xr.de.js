@@ -8,7 +8,7 @@ back: −{n} min
 live: Jetzt
 waiting: Warten auf das Bild des Servers
 flat: Bild veraltet
-flat.why: Der Server sendet mit seinen Bildern keine Tiefe.
+flat.why: Die Bilder haben keine Tiefe, oder sie kommt zu spät.
 gone: Das Headset hat die Sitzung beendet
 failed: Das Headset zeigt die Anlage nicht: {why}
 `;

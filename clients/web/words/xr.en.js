@@ -8,7 +8,7 @@ back: −{n} min
 live: Now
 waiting: Waiting for the server’s picture
 flat: Picture out of date
-flat.why: The server sends no depth with its pictures.
+flat.why: The pictures have no depth, or it comes too late.
 gone: The headset ended the session
 failed: The headset does not show the plant: {why}
 `;

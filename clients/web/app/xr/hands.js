@@ -9,7 +9,8 @@ import { Board, cardLines, showCard, showColour, showRing, showWrist } from './b
 
 const REACH = Math.cos(2 * RADIANS); // a ray this near to a marker points at it
 const LEVEL = Math.cos(35 * RADIANS); // surfaces less steep than this can be stood on
-const RAY_M = 4, RAY_WIDE_M = 0.004, RING_M = 0.5, AGAIN_MS = 1000;
+const RAY_M = 4, RAY_WIDE_M = 0.004, RING_M = 0.5;
+const AGAIN_MS = 1000, UNANSWERED_MS = 3000; // a request without an answer is given up after UNANSWERED_MS
 const WRIST_UP_M = 0.16; // height of the panel above the hand
 
 export class Hands {
@@ -108,17 +109,15 @@ export class Hands {
     // Asks the server what is at a point; hear() gets the answer.
     pick({ point }, purpose = 'headset') {
         const { session, shown } = this.headset, { width, height } = session.size;
-        this.asked = purpose;
+        Object.assign(this, { asked: purpose, askedAt: performance.now() });
         // the point in the middle of the picture of a camera that looks at it
         askPick(session, [width / 2, height / 2], purpose, { ...asAsked(shown.camera), target: point });
     }
 
     hear(picked) {
         const { asked } = this;
-        if (picked.purpose !== asked)
-            return;
-        this.asked = null;
-        if (asked === 'headset again' && !this.card)
+        this.asked = null; // also if this is the answer to another module's request, which has replaced this one
+        if (picked.purpose !== asked || (asked === 'headset again' && !this.card))
             return;
         const { sensor, asset, normal, position } = picked;
         if (!sensor && !asset)
@@ -131,11 +130,15 @@ export class Hands {
 
     // Asks for the value at a place again when readings change.
     ask() {
-        const now = performance.now();
-        if (!this.card || this.card.picked.sensor || this.asked || now - this.askedAt < AGAIN_MS || !this.headset.shown)
+        const waitMs = this.asked ? UNANSWERED_MS : AGAIN_MS;
+        if (!this.card || this.card.picked.sensor || performance.now() - this.askedAt < waitMs || !this.headset.shown)
             return;
-        this.askedAt = now;
         this.pick({ point: this.card.at }, 'headset again');
+    }
+
+    // Closes the card, which belongs to an earlier connection.
+    forget() {
+        this.card = this.asked = null;
     }
 
     // Returns the boards of the hands: { wrist, others }. isStale: values are from before the connection was lost.

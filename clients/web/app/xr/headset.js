@@ -27,6 +27,7 @@ function listenTo(session) {
     session.on('picked', (picked) => current?.hands.hear(picked));
     session.on('tags', () => current?.hands.ask());
     session.on('welcome', () => current?.onWelcome());
+    session.on('denied', () => current?.xr.end().catch(() => {})); // a locked page shows nothing
 }
 
 export class Headset {
@@ -52,7 +53,7 @@ export class Headset {
         this.legend = new Board(this.painter, 1250, 300);
         this.banner = new Board(this.painter, 1150, 440);
         this.veil = new Board(this.painter, 4, 4);
-        showColour(this.veil, 'rgb(110 110 110 / 55%)');
+        showColour(this.veil, 'rgb(110 110 110 / 94%)');
         this.marks = new Map(); // boards of markers by quality and alarm
         this.hands = new Hands(this);
         xr.addEventListener('select', ({ inputSource }) => this.hands.pull(inputSource));
@@ -75,8 +76,10 @@ export class Headset {
         this.identity = model.identity;
         this.rig = rigFor(seen, model.plant.bounds, model.plant.home.up);
         this.rig.at = along(this.rig.at, this.rig.axes[1], this.floorM);
-        this.before = { camera, size: session.size, split: params.split ?? null, onDrawn: viewport.onDrawn, warp: viewport.warp };
+        this.before = { camera, size: session.size, split: params.split ?? null, onDrawn: viewport.onDrawn, warp: viewport.warp,
+            picture: session.picture };
         viewport.warp?.hide();
+        this.modules.there('place')?.close(); // the card of a place would replace the requests of the hands by its own
         const warp = { hold: () => false, draw: () => false, waits: () => !this.isDecoded(clock.now()) };
         Object.assign(viewport, { warp, onDrawn: () => {}, invalidate: () => {} });
         session.resize = (size) => { this.before.size = size; };
@@ -97,7 +100,7 @@ export class Headset {
         const { session, viewport, before } = this;
         delete viewport.invalidate;
         delete session.resize;
-        Object.assign(viewport, { onDrawn: before.onDrawn, warp: before.warp });
+        Object.assign(viewport, { onDrawn: before.onDrawn, warp: viewport.warp && before.warp });
         session.setVisible(!document.hidden);
         this.painter.gl.getExtension('WEBGL_lose_context')?.loseContext(); // frees the memory of the GPU at once
         session.resize(before.size);
@@ -110,6 +113,7 @@ export class Headset {
 
     // Ends where the server shows another plant now: the user would stand in it at a place without meaning.
     onWelcome() {
+        this.hands.forget();
         if (this.session.model.identity !== this.identity || !this.session.reprojects)
             this.xr.end().catch(() => {});
     }
@@ -177,10 +181,10 @@ export class Headset {
         return isBuilt || now - this.builtAt > LATE_MS;
     }
 
-    // Returns true if the newest picture cannot be shown, because its depth is missing or wrong.
+    // Returns true if the newest picture is not shown, because take() refuses it or its depth is late.
     isFlat(now) {
-        const { session: { picture }, shown } = this;
-        return picture && picture !== shown && now - this.shownAt > LATE_MS && !this.gridsOf(picture)?.parts;
+        const { session: { picture }, shown, before } = this;
+        return picture && picture !== shown && picture !== before.picture && now - this.shownAt > LATE_MS;
     }
 
     // Hands a new picture with its depth to the painter.
