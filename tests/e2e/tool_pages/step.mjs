@@ -13,7 +13,8 @@ const absent = [...missing(), relayMissing()].filter(Boolean);
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
 const LEAST_VIEWS = 10, LEAST_RUN_PX = 12;
 const MARK_PX = 1.5, PICTURE_PX = 5; // encoded edges bleed a little, more so while the picture moves
-const WARPED_PX = 8; // the depth's mask has one bit for 2 x 2 pixels of a preview, which is enlarged
+// JPEG codes colour in blocks of 16 pixels, and a preview is enlarged. A mesh that stretches over a step in depth colours up to 80 px.
+const WARPED_PX = 24;
 let plant, relay;
 
 before(async () => {
