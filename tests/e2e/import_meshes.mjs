@@ -169,9 +169,9 @@ test('FBX: surfaces without place, with two places or without finite corners are
         `            P: "Lcl Translation", "Lcl Translation", "", "A",${x},0,0\n        }\n    }\n`;
     const withModels = (models, links) => fbx().replace('    Model: 200', `${models}    Model: 200`)
         .replace('    C: "OO",200,0', ['C: "OO",200,0', ...links].map((link) => `    ${link}`).join('\n'));
-    const ring = read(folder, 'ring.fbx', withModels(model(201, 'Drum') + model(202, 'Tank'),
+    const ring = read(folder, 'ring.fbx', withModels(model(201, 'Drum\t1\tA') + model(202, 'Tank'),
         ['C: "OO",201,202', 'C: "OO",202,201', 'C: "OO",100,201']));
-    assert.deepEqual(ring.lost, [{ id: '201', name: 'Drum', class: 'model', guid: '',
+    assert.deepEqual(ring.lost, [{ id: '201', name: 'Drum 1 A', class: 'model', guid: '',
         why: 'no chain of parents connects the model with the scene' }]);
     const shared = read(folder, 'shared.fbx', withModels(model(201, 'Drum'), ['C: "OO",201,200', 'C: "OO",201,0', 'C: "OO",100,201']));
     assert.deepEqual(shared.errors[0], { count: 1, text: 'model Drum has 2 parents: it is shown below each of them' });

@@ -354,8 +354,7 @@ std::string name_of(const assimp_reader *r, const aiString &from)
 /* Prints a line about a node that has meshes but no triangles. */
 void say_empty(assimp_reader *r, const aiNode *node)
 {
-    std::string name = name_of(r, node->mName);
-    std::replace_if(name.begin(), name.end(), [](unsigned char c) { return c < ' '; }, ' ');
+    std::string name = one_line(name_of(r, node->mName));
     unsigned types = 0;
     for (unsigned m = 0; m < node->mNumMeshes; m++)
         types |= r->scene->mMeshes[node->mMeshes[m]]->mNumFaces > 0 ? r->scene->mMeshes[node->mMeshes[m]]->mPrimitiveTypes : 0U;
@@ -504,8 +503,7 @@ std::string listed(const std::vector<std::string> &names)
 {
     std::string all;
     for (size_t i = 0; i < names.size() && i < MOST_NAMED; i++)
-        all += (i > 0 ? ", " : "") + names[i];
-    std::replace_if(all.begin(), all.end(), [](unsigned char c) { return c < ' '; }, ' ');
+        all += (i > 0 ? ", " : "") + one_line(names[i]);
     return all + (names.size() > MOST_NAMED ? ", ..." : "");
 }
 
@@ -521,7 +519,7 @@ void say_textures(const aiScene *scene)
                     names.insert(path.C_Str());
             }
     if (!names.empty())
-        printf("left out: %zu textures, such as %.100s\n", names.size(), names.begin()->c_str());
+        printf("left out: %zu textures, such as %.100s\n", names.size(), one_line(*names.begin()).c_str());
 }
 
 void convert(const char *input, const char *output, const char *units, const char *up, const char *asked)

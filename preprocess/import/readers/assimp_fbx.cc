@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "preprocess/import/readers/assimp_losses.hh"
+#include "preprocess/import/readers/reader.hh"
 
 /* Returns the name that ends at `end` in a binary FBX file. "S" and a length of four bytes precede the name. */
 static std::string name_before(const std::string &bytes, size_t end)
@@ -24,10 +25,9 @@ static std::string name_before(const std::string &bytes, size_t end)
     return "";
 }
 
-static void say_fbx(std::string name)
+static void say_fbx(const std::string &name)
 {
-    std::replace_if(name.begin(), name.end(), [](unsigned char c) { return c < ' '; }, ' ');
-    printf("lost\t\t%s\tmodel\t\tNURBS and patches are not read: export it as polygons\n", name.c_str());
+    printf("lost\t\t%s\tmodel\t\tNURBS and patches are not read: export it as polygons\n", one_line(name).c_str());
 }
 
 void assimp_losses_of_fbx(const std::string &bytes)
@@ -93,7 +93,7 @@ void keep_last(std::string *text, size_t at, std::string_view line, std::map<std
         (*text)[i] = ' ';
     first->second = at;
     if (say)
-        printf("error\t1\t%s %s more than once: the last value is used\n", owner.c_str(), name.c_str());
+        printf("error\t1\t%s %s more than once: the last value is used\n", owner.c_str(), one_line(name).c_str());
 }
 
 void say_graph(const fbx_graph &graph)
@@ -128,7 +128,7 @@ void assimp_mend_fbx(std::string *text, bool say)
         const std::string_view line = std::string_view(*text).substr(begin, next - begin);
         auto is = [line](const char *word) { return line.compare(0, strlen(word), word) == 0; };
         if (is("Model: ")) {
-            const std::string name = between(line, "\"Model::", '"');
+            const std::string name = one_line(between(line, "\"Model::", '"'));
             owner = "model " + name + " states";
             graph.models[between(line, "Model: ", ',')] = name;
         } else if (is("Geometry: ")) {

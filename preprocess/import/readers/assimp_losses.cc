@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Finds shapes that Assimp skips without a message, by searching the text of the file for their statements. */
 #include "preprocess/import/readers/assimp_losses.hh"
+#include "preprocess/import/readers/reader.hh"
 
 #include <algorithm>
 #include <cctype>
@@ -21,9 +22,7 @@ std::string attribute(const std::string &tag, const std::string &name)
     if (from == std::string::npos || from + name.size() + 2 >= tag.size())
         return "";
     const size_t start = from + name.size() + 3, end = tag.find(tag[start - 1], start);
-    std::string value = end == std::string::npos ? "" : tag.substr(start, end - start);
-    std::replace_if(value.begin(), value.end(), [](unsigned char c) { return c < ' '; }, ' ');
-    return value;
+    return end == std::string::npos ? "" : one_line(tag.substr(start, end - start));
 }
 
 bool has_any(const std::string &text, size_t from, size_t to, const std::initializer_list<const char *> &words)
@@ -38,7 +37,7 @@ bool has_any(const std::string &text, size_t from, size_t to, const std::initial
 
 void assimp_log::write(const char *message)
 {
-    std::string text(message);
+    std::string text = one_line(message);
     while (!text.empty() && isspace(static_cast<unsigned char>(text.back())))
         text.pop_back();
     const bool lost = std::any_of(std::begin(LOSSES), std::end(LOSSES), [&](const char *loss) { return text.find(loss) != text.npos; });
@@ -48,7 +47,6 @@ void assimp_log::write(const char *message)
     if (end != text.npos)
         text.erase(place, end + 1 - place); /* remove the position in the file, so that equal errors are counted together */
     const size_t source = text.find(": "); /* after "Error, T0" */
-    std::replace_if(text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
     counts[source == std::string::npos ? text : text.substr(source + 2)]++;
 }
 

@@ -207,9 +207,7 @@ std::string reason_without_faces(const occt_reader *r, const TopoDS_Shape &shape
 /* Prints a line about a part that lost some or all of its faces. */
 void say_lost_part(occt_reader *r, const TDF_Label &label, const char *id, const mesh_outcome &of)
 {
-    std::string name = name_of(label), why;
-    std::replace_if(
-        name.begin(), name.end(), [](unsigned char c) { return c < ' '; }, ' ');
+    std::string name = one_line(name_of(label)), why;
     if (of.faces == 0)
         why = reason_without_faces(r, XCAFDoc_ShapeTool::GetShape(label));
     else if (of.missing == 0)
@@ -326,7 +324,7 @@ std::string read_step(const char *path, const char *output, Handle(TDocStd_Docum
         remove(copy.c_str());
     for (const auto &each : files.externals)
         if (!each.second.found)
-            printf("error\t1\treferenced file %s is not in the model's folder\n", each.second.named.c_str());
+            printf("error\t1\treferenced file %s is not in the model's folder\n", one_line(each.second.named).c_str());
     *externals = files.externals;
     if (!transferred)
         refuse("the shapes could not be read");

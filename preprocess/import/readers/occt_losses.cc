@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Finds faces that Open CASCADE could not read and counts them per body. Each body is reported with the name of its product. */
 #include "preprocess/import/readers/occt_losses.hh"
+#include "preprocess/import/readers/reader.hh"
 
 #include <IGESBasic_SingularSubfigure.hxx>
 #include <IGESBasic_SubfigureDef.hxx>
@@ -50,14 +51,6 @@ struct file_losses {
 };
 
 /* --- errors ------------------------------------------------------------------------------------------------------------------------- */
-
-/* Returns text on one line without tabs, which separate fields. */
-std::string one_line(std::string text)
-{
-    std::replace_if(
-        text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
-    return text;
-}
 
 /* Returns a message without the index of a parameter ("n0.12 "), so that errors that differ only in this index are counted together. */
 std::string without_number(const std::string &text)

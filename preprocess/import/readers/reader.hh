@@ -2,6 +2,7 @@
 /* Functions that all C++ readers use: they reject a file, decode names, write the scene, and contain the main function. Thread: one. */
 #ifndef PREPROCESS_IMPORT_READERS_READER_HH
 #define PREPROCESS_IMPORT_READERS_READER_HH
+#include <algorithm>
 #include <cerrno>
 #include <cstdarg>
 #include <cstdio>
@@ -29,6 +30,13 @@ inline void refuse(const char *fmt, ...)
     vsnprintf(text, sizeof(text), fmt, ap);
     va_end(ap);
     throw std::runtime_error(text);
+}
+
+/* Returns a text on one line without tabs, which separate the fields of findings (findings.h). */
+inline std::string one_line(std::string text)
+{
+    std::replace_if(text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
+    return text;
 }
 
 /* The encoding of the texts in a file. */
