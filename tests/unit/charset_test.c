@@ -106,6 +106,7 @@ TEST(test_marks_and_damage)
         { "\x1b$B%]%s%W\x1b(B", 12, "ISO-2022-JP", "ポンプ", 0 },
         { "\xc3\xa4\xc3\xb6\xc3\xbc \xe6\xb3\xb5 \xc3\xa4\xc3", 14, "UTF-8", "äöü 泵 ä\xef\xbf\xbd", 1 }, /* cut off */
         { "plain", 5, "UTF-8", "plain", 0 },
+        { "PT\0\0-101", 8, "UTF-8", "PT-101", 2 },
         { "", 0, "UTF-8", "", 0 },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
@@ -113,6 +114,7 @@ TEST(test_marks_and_damage)
         charset_decode(cases[i].bytes, cases[i].count, NULL, &found);
         assert_string_equal(found.encoding.name, cases[i].name);
         assert_string_equal(found.utf8, cases[i].utf8);
+        assert_int_equal(found.length, strlen(cases[i].utf8));
         assert_int_equal(found.damaged, cases[i].damaged);
         mem_free(found.utf8);
     }
