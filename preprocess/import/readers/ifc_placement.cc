@@ -95,17 +95,10 @@ crossing crossing_of(const ifc_model &in, const value &reference)
 /* Returns the id of the placement of the grid that has an axis, or 0. */
 int grid_placement(const ifc_model &in, int axis)
 {
-    int out = 0;
-    in.statements.each([&](int id, const std::string &type) {
-        if (type != "IFCGRID" || out > 0)
-            return;
-        entity grid = in.statements.get(id);
-        for (size_t list = AXES; list < AXES_END; list++)
-            for (const value &one : grid[list].list)
-                if (one.id == axis)
-                    out = grid[5].id;
-    });
-    return out;
+    auto found = in.grids.find(axis);
+    if (found == in.grids.end() && in.lacks_grid)
+        throw unsupported("a grid is damaged");
+    return found == in.grids.end() ? 0 : found->second;
 }
 
 /* A placement relative to another one, `above`. */
@@ -163,6 +156,18 @@ std::string numbers(const gp_XYZ &from, double unit)
 }
 
 } // namespace
+
+void add_grid(int id, ifc_model *out)
+{
+    try {
+        entity grid = out->statements.get(id);
+        for (size_t list = AXES; list < AXES_END && grid[5].id > 0; list++)
+            for (const value &axis : grid[list].list)
+                out->grids.insert({ axis.id, grid[5].id });
+    } catch (const unsupported &) {
+        out->lacks_grid = true;
+    }
+}
 
 gp_Trsf object_placement(const ifc_model &in, const value &reference)
 {

@@ -23,6 +23,8 @@ struct ifc_model {
     double length; /* millimetres per length unit of the file */
     double angle;  /* radians per angle unit of the file */
     double chord_mm;
+    std::map<int, int> grids; /* by id of a grid axis: id of the placement of its grid; without the axes of grids that have none */
+    bool lacks_grid;          /* a grid statement is damaged, so that `grids` lacks its axes */
 };
 
 struct triangles {
@@ -74,6 +76,8 @@ bool is_alignment(const ifc_model &in, const entity &curve);
 std::vector<curve_piece> alignment_of(const ifc_model &in, const entity &curve);
 
 /* --- ifc_placement.cc */
+/* Adds the axes of an IfcGrid to out->grids. Of several grids with the same axis the first counts. */
+void add_grid(int id, ifc_model *out);
 gp_Trsf object_placement(const ifc_model &in, const value &reference);
 /* Returns the statements of a local placement that is equal to an IfcGridPlacement and has its number. `unused` and the three numbers after
  * it become the numbers of other statements. */

@@ -51,8 +51,10 @@ double unit_of(const file &in, const entity &unit, int depth)
 
 ifc_model model_of(const file &in, double chord_mm)
 {
-    ifc_model out = { in, 1e3, 1, chord_mm };
+    ifc_model out = { in, 1e3, 1, chord_mm, {}, false };
     in.each([&](int id, const std::string &type) {
+        if (type == "IFCGRID")
+            add_grid(id, &out);
         if (type != "IFCPROJECT")
             return;
         entity units = in.get(in.get(id)[8]);
@@ -332,9 +334,14 @@ void add_placements(ifc_writer *w)
     int last = 0;
     w->in.statements.each([&](int id, const std::string &) { last = id; });
     w->in.statements.each([&](int id, const std::string &type) {
-        int unused = last + 1 + 4 * static_cast<int>(statements.size());
-        if (type == GRID_PLACEMENT && unused < INT_MAX - 4)
-            attempt(w, id, [&] { statements[id] = as_local_placement(w->in, w->in.statements.get(id), unused); });
+        if (type != GRID_PLACEMENT)
+            return;
+        attempt(w, id, [&] {
+            long long unused = last + 1LL + 4 * static_cast<long long>(statements.size());
+            if (unused > INT_MAX - 3)
+                throw unsupported("no statement number is left for it");
+            statements[id] = as_local_placement(w->in, w->in.statements.get(id), static_cast<int>(unused));
+        });
     });
     if (statements.empty())
         return;
