@@ -161,7 +161,7 @@ test('hands: the floor, equipment, a sensor, the wrist, and a grip', options, ()
     await until('the user is pulled along', async () => (await state(page, 'rig')).at[1] - before[1] > 0.3);
 }));
 
-test('pictures without depth are not shown, and the view says so', options, () => withHeadset(async (page) => {
+test('pictures without depth are not shown, and the view says so; a locked session ends it', options, () => withHeadset(async (page) => {
     await enterVr(page);
     await lookFrom(page, [0, -2.5, 0], [0, 1, 0]);
     await page.evaluate(() => {
@@ -180,6 +180,13 @@ test('pictures without depth are not shown, and the view says so', options, () =
         globalThis.device.quaternion.set(0, 0, 0, 1);
     });
     await page.waitForFunction(() => globalThis.plantcast.modules.there('enterVr').headset.warning === null);
+    await page.evaluate(() => {
+        const { modules, session } = globalThis.plantcast;
+        modules.there('warp').giveUp();
+        session.emit('denied', { code: 'locked' });
+    });
+    await hasEnded(page);
+    assert.equal(await page.evaluate(() => globalThis.plantcast.viewport.warp), null, 'nothing draws by a lost context');
 }));
 
 test('a lost connection covers the view until the server is back; a lost context ends it', options, () => withHeadset(async (page) => {

@@ -307,7 +307,7 @@ test('the edge of the list is dragged, moved by keys, kept over a reload, and re
     const opened = async () => {
         await waitForPicture(on);
         await on.locator('#alarm-strip').click();
-        await edge.waitFor();
+        await edge.waitFor({ state: 'attached' });
     };
     const width = () => on.evaluate(() => document.getElementById('alarms').offsetWidth);
     try {
@@ -321,8 +321,11 @@ test('the edge of the list is dragged, moved by keys, kept over a reload, and re
         assert.ok(Math.abs(dragged - (usual - 200)) <= 5, `${usual} to ${dragged}`);
         await edge.press('ArrowLeft');
         assert.equal(await width(), dragged + 40);
-        await on.reload();
-        await opened();
+        for (const screen of [740, 1280]) { // a narrow window does not change the width that is kept
+            await on.setViewportSize({ width: screen, height: 800 });
+            await on.reload();
+            await opened();
+        }
         assert.equal(await width(), dragged + 40);
         await edge.dblclick();
         assert.equal(await width(), usual);

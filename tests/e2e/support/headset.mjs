@@ -102,7 +102,7 @@ export async function seen(page, yaw = null) {
             all.copy(rgba, 4 * y * width, 4 * ((height - 1 - y) * 2 * width + left), 4 * ((height - 1 - y) * 2 * width + left + width));
         let undrawn = 0;
         for (let i = 0; i < rgba.length; i += 4)
-            undrawn += rgba[i] === 140 && rgba[i + 1] === 140 && rgba[i + 2] === 140 ? 1 : 0; // Painter's grey
+            undrawn += [140, 120].includes(rgba[i]) && rgba[i + 1] === rgba[i] && rgba[i + 2] === rgba[i] ? 1 : 0; // Painter's lattice
         return { width, rgba, undrawn: undrawn / (width * height) };
     };
     return { left: eye(0), right: eye(width), seq };

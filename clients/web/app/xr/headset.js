@@ -141,6 +141,7 @@ export class Headset {
         for (const view of pose.views) {
             const { x, y, width, height } = layer.getViewport(view), eye = eyeOf(this.rig, view);
             painter.gl.viewport(x, y, width, height);
+            painter.drawUndrawn(eye);
             if (this.isNear)
                 painter.drawPicture(eye);
             painter.drawBoards(eye, boards);

@@ -6,7 +6,8 @@ import { FLOATS } from '../../core/warp_mesh.js';
 import { MESH, PICTURE, programOf } from '../picture/warp.js';
 
 const NEAREST_M = 0.05; // nothing nearer is drawn
-const UNDRAWN = { light: 0.55, dark: 0.3 }; // grey of directions that no picture shows: neutral, and not a colour of any map
+// grey of directions that no picture shows; its lattice tells it from equipment without a sensor, which is also grey
+const UNDRAWN = { light: 0.55, dark: 0.3 };
 const BOARD = `#version 300 es
 uniform vec4 corners[4];
 out vec2 at;
@@ -23,18 +24,38 @@ void main() {
     colour = texture(picture, at);
 }`;
 
+// A lattice on the faces of an endless cube around the plant: both eyes see it in the same directions.
+const RAYS = `#version 300 es
+uniform vec3 rays[4];
+out vec3 ray;
+void main() {
+    ray = rays[gl_VertexID];
+    gl_Position = vec4(float(gl_VertexID & 1) * 2.0 - 1.0, 1.0 - float(gl_VertexID >> 1) * 2.0, 0.0, 1.0);
+}`;
+const LATTICE = `#version 300 es
+precision highp float;
+in vec3 ray;
+uniform float grey;
+out vec4 colour;
+void main() {
+    vec3 size = abs(ray);
+    vec2 at = size.x > size.y && size.x > size.z ? ray.yz / size.x : size.y > size.z ? ray.zx / size.y : ray.xy / size.z;
+    vec2 line = fract(12.0 * vec2(at.x + at.y, at.x - at.y));
+    colour = vec4(vec3(min(line.x, line.y) < 0.12 ? grey - 0.08 : grey), 1.0);
+}`;
+
 export class Painter {
     // backdrop: of the pictures, light or dark.
     constructor(gl, backdrop) {
         Object.assign(this, { gl, buffers: null, source: null });
         this.mesh = programOf(gl, MESH, PICTURE);
         this.board = programOf(gl, BOARD, CANVAS);
+        this.undrawn = programOf(gl, RAYS, LATTICE);
+        this.grey = UNDRAWN[backdrop] ?? UNDRAWN.light;
         this.picture = this.newTexture(gl.NEAREST); // a mixture of two colours would be read as the value between them
         this.masks = this.newTexture(gl.NEAREST);
         gl.depthFunc(gl.LEQUAL);
         gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-        const grey = UNDRAWN[backdrop] ?? UNDRAWN.light;
-        gl.clearColor(grey, grey, grey, 1);
         gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
     }
 
@@ -70,6 +91,19 @@ export class Painter {
         const { gl } = this;
         gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
         gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    }
+
+    // Covers the view of an eye with the lattice; the picture is drawn over it.
+    drawUndrawn({ axes: [right, up, back], projection: p }) {
+        const { gl, undrawn } = this;
+        gl.disable(gl.DEPTH_TEST);
+        gl.disable(gl.CULL_FACE);
+        gl.disable(gl.BLEND);
+        gl.useProgram(undrawn.program);
+        gl.uniform1f(undrawn.at('grey'), this.grey);
+        gl.uniform3fv(undrawn.at('rays'), [[-1, 1], [1, 1], [-1, -1], [1, -1]].flatMap(([x, y]) =>
+            subtract(add(scale(right, (x + p[8]) / p[0]), scale(up, (y + p[9]) / p[5])), back)));
+        gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
     }
 
     // Draws the picture as an eye sees it.
