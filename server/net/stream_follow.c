@@ -34,7 +34,7 @@ static void resolve_lead(struct server_context *server, struct session *session,
     const struct stream *other = stream_called(server, number);
     struct session *heir = other ? other->session : NULL;
     if (!heir || heir->following.leader != session) {
-        session_lead_nobody(session, number);
+        session_lead_nobody(session);
         return;
     }
     session_inherit(heir, session);
@@ -95,7 +95,7 @@ void follow_tell(struct server_context *server, int64_t now_ns)
 {
     for (struct stream *stream = server->streams.first; stream; stream = stream->next) {
         struct session *session = stream->session;
-        uint64_t *followers = NULL;
+        const struct session **followers = NULL;
         size_t count = 0, capacity = 0;
         if (!session->following.followers_changed || now_ns - session->following.followers_ns < MIN_LIST_INTERVAL_NS)
             continue;
@@ -103,7 +103,7 @@ void follow_tell(struct server_context *server, int64_t now_ns)
             if (other->session->following.leader != session)
                 continue;
             mem_grow(&followers, &capacity, count + 1, sizeof(*followers));
-            followers[count++] = other->session->identity.number;
+            followers[count++] = other->session;
         }
         session_say_followers(session, followers, count, now_ns);
         mem_free(followers);

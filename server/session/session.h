@@ -160,8 +160,8 @@ void session_on_leader(struct session *session, int64_t now_ns);
 void session_leader_gone(struct session *session, int64_t now_ns);
 /* Copies the view of `session` to the session `heir`, which keeps its own picture size. */
 void session_inherit(struct session *heir, const struct session *session);
-/* Replies that the lead cannot be handed to session number `heir`, because that session does not follow this one. */
-void session_lead_nobody(struct session *session, uint64_t heir);
+/* Replies that the lead cannot be handed over, because the requested heir does not follow this session. */
+void session_lead_nobody(struct session *session);
 /* Returns the client's request about following (follow or hand over the lead) and clears it. */
 struct follow_request session_take_follow_request(struct session *session);
 /* Give all sessions that are shown the same view a common step of the quality ladder. Call each of the three functions for all sessions
@@ -169,8 +169,8 @@ struct follow_request session_take_follow_request(struct session *session);
 void session_clear_steps(struct session *session);
 void session_count_step(struct session *session);
 void session_choose_step(struct session *session);
-/* Queues the list of the session's followers, given by session number, for the client. */
-void session_say_followers(struct session *session, const uint64_t *sessions, size_t count, int64_t now_ns);
+/* Queues the list of the session's followers for the client. */
+void session_say_followers(struct session *session, const struct session *const *followers, size_t count, int64_t now_ns);
 
 /* --- tiles of a picture over many displays (tile_sync.h) -------------------------------------------------------------- */
 

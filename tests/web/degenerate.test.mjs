@@ -13,8 +13,8 @@ const MB = 512;
 // Modules without a function that takes numbers, and those whose bad input warp.test.mjs and headset.test.mjs have.
 const TEXTS = ['depth_grid', 'headset_views', 'warp_mesh', 'alarm_actions', 'alarm_call', 'alarm_table', 'alarms', 'asset_tree',
     'blocked', 'connection', 'decode_queue', 'decoder_fallback', 'decoding', 'h264', 'handover', 'health', 'keys', 'links', 'loop_check',
-    'matches', 'model', 'named_views', 'notes', 'quality', 'phrases', 'references', 'refusals', 'requests', 'search', 'session', 'wake',
-    'words'];
+    'matches', 'model', 'named_views', 'notes', 'people', 'quality', 'phrases', 'references', 'refusals', 'requests', 'search',
+    'session', 'wake', 'words'];
 
 // Runs the cases from `first` on until one does not return; adds failures to `wrong`. Returns the index of the next case.
 function runFrom(first, seed, wrong) {

@@ -105,8 +105,9 @@ test('who leads knows who follows, and gives the lead to one of them', () => {
     const { session, socket } = greeted();
     const heard = [];
     session.on('followers', () => heard.push(session.followers));
-    socket.say({ type: 'followers', count: 2, sessions: [7, 9] });
-    assert.deepEqual(heard, [{ count: 2, sessions: [7, 9] }]);
+    socket.say({ type: 'followers', count: 2, sessions: [7, 9], names: ['kim', null] });
+    socket.say({ type: 'followers', count: 1, sessions: [7] }); // as a client without a token hears it
+    assert.deepEqual(heard, [{ count: 2, sessions: [7, 9], names: ['kim', null] }, { count: 1, sessions: [7], names: [] }]);
     giveLead(session, 9);
     assert.deepEqual(last(socket.sent), { type: 'lead', session: 9 });
 });
@@ -504,7 +505,7 @@ test('following another: its parameters and camera are shown, until a hand moves
     session.follow(12);
     assert.deepEqual(last(socket.sent), vector('client/accepted--follow.json'));
     socket.say(vector('server/following.json'));
-    assert.deepEqual([session.following, session.params.group], [{ session: 12, width: 1280, height: 720 }, 'temperature']);
+    assert.deepEqual([session.following, session.params.group], [{ session: 12, who: 'kim', width: 1280, height: 720 }, 'temperature']);
     const camera = { eye: [9, 8, 7], target: [1, 1, 1], up: [0, 0, 1], fov: 40 };
     session.drawn({ seq: 1, cameraSeq: 0, camera, waitUs: 0, fieldUs: 0, renderUs: 0, encodeUs: 0, sentTimeUs: 0 }, 1);
     const sent = socket.sent.length;
@@ -517,6 +518,14 @@ test('following another: its parameters and camera are shown, until a hand moves
     assert.ok(Math.hypot(...last(socket.sent).eye.map((v, i) => v - camera.eye[i])) < 1, 'from where it was seen last');
     socket.say(vector('server/following-nobody.json'));
     assert.deepEqual([session.following, session.params.group], [null, 'pressure']);
+});
+
+test('a leader who has left keeps the name', () => {
+    const { session, socket } = greeted();
+    session.follow(12);
+    socket.say(vector('server/following.json'));
+    socket.say(vector('server/following-gone.json'));
+    assert.deepEqual([session.following.who, session.following.gone], ['kim', true]);
 });
 
 test('whoever leads no longer follows: the camera is that of what is shown then, until one is said', () => {

@@ -63,7 +63,7 @@ export class Session {
         this.following = null;
         this.leader = null;      // id of the session to follow, also after a reconnect; null: none
         this.lent = null;        // camera of the followed session that this one has taken over; null: none
-        this.followers = { count: 0, sessions: [] }; // sessions that follow this one
+        this.followers = { count: 0, sessions: [], names: [] }; // sessions that follow this one
         this.wantsDepth = false; // true: asks for depth grids, with which a picture can be shown from another camera
         this.depth = null;       // newest depth grids: { messages, more (true: one is missing) }
         this.forget();
@@ -426,7 +426,7 @@ const HANDLERS = {
         this.welcomed = true;
         this.id = message.session;
         this.following = this.skew = this.lent = null;
-        this.followers = { count: 0, sessions: [] };
+        this.followers = { count: 0, sessions: [], names: [] };
         this.resume = message.resume ?? null;
         this.anew = false;
         this.role = message.role ?? null;
@@ -482,9 +482,10 @@ const HANDLERS = {
         this.markers.set(message.seq, known);
     },
 
-    following({ session, width, height, gone = false, ...shown }) {
+    following({ session, who, width, height, gone = false, ...shown }) {
         this.lent ||= session ?? this.leader;
-        this.following = session === null ? null : { session, width, height, ...(gone ? { gone } : {}) };
+        const name = who ?? (this.following?.session === session ? this.following.who : undefined); // a leader who left keeps the name
+        this.following = session === null ? null : { session, who: name, width, height, ...(gone ? { gone } : {}) };
         this.leader = session;
         this.confirmed = this.params = pick(shown, SAID);
         this.asked.clear();
@@ -492,8 +493,8 @@ const HANDLERS = {
         this.emit('following');
     },
 
-    followers({ count, sessions }) {
-        this.followers = { count, sessions };
+    followers({ count, sessions, names = [] }) {
+        this.followers = { count, sessions, names };
         this.emit('followers');
     },
 

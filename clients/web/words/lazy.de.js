@@ -326,9 +326,10 @@ ghost: Transparent
 only: Nur dies
 
 [following]
-title: Sie folgen einer fremden Ansicht (Sitzung {session})
-gone: Sitzung {session} ist beendet: ihre letzte Ansicht
-awaited: Warten auf Sitzung {session}
+title: Sie folgen der Ansicht von {who}
+gone: Die Ansicht von {who} ist beendet: ihr letztes Bild
+awaited: Warten auf die Ansicht, der diese Seite folgt
+someone: jemand anderem
 
 [outside]
 title: Außerhalb der ersten Ansicht, bis {far} entfernt: {names}
@@ -460,7 +461,7 @@ encode: Kodieren
 network: Netz
 decode: Dekodieren
 rate: {pictures} Bilder/s, {kbit} kbit/s
-follow: Sitzung {session}. Wer {link} öffnet, sieht diese Ansicht.
+follow: Wer {link} öffnet, sieht diese Ansicht.
 
 [account]
 title: Konto
@@ -564,7 +565,8 @@ people: Mitschauende
 alone: Niemand folgt Ihnen.
 followers(one): {count} Person folgt Ihnen.
 followers(other): {count} Personen folgen Ihnen.
-lead: An Sitzung {session} übergeben
+lead: An {who} übergeben
+viewer: Betrachter
 
 [factor]
 range: Farbbereich

@@ -325,9 +325,10 @@ ghost: Transparent
 only: Only
 
 [following]
-title: Following another user’s view (session {session})
-gone: Session {session} has ended: this is its last view
-awaited: Waiting for session {session}
+title: Following the view of {who}
+gone: The session of {who} has ended: this is its last view
+awaited: Waiting for the view that this page follows
+someone: another user
 
 [outside]
 title: Outside the first view, up to {far} away: {names}
@@ -459,7 +460,7 @@ encode: encoding
 network: network
 decode: decoding
 rate: {pictures} pictures/s, {kbit} kbit/s
-follow: Session {session}. Anyone who opens {link} sees this view.
+follow: Anyone who opens {link} sees this view.
 
 [account]
 title: Account
@@ -563,7 +564,8 @@ people: Followers
 alone: Nobody is following you.
 followers(one): {count} person is following you.
 followers(other): {count} people are following you.
-lead: Hand over to session {session}
+lead: Hand over to {who}
+viewer: Viewer
 
 [factor]
 range: Colour range

@@ -322,9 +322,10 @@ ghost: 투명
 only: 이것만
 
 [following]
-title: 다른 사용자의 화면을 따라 보는 중 (세션 {session})
-gone: 세션 {session} 종료: 마지막 화면입니다
-awaited: 세션 {session} 대기 중
+title: {who}의 화면을 따라 보는 중
+gone: {who}의 화면이 종료되었습니다: 마지막 화면입니다
+awaited: 따라 볼 화면을 기다리는 중
+someone: 다른 사용자
 
 [outside]
 title: 첫 화면 밖, 최대 {far} 거리: {names}
@@ -455,7 +456,7 @@ encode: 부호화
 network: 네트워크
 decode: 복호화
 rate: 화면 {pictures}/s, {kbit} kbit/s
-follow: 세션 {session}. {link} 링크를 열면 이 화면을 함께 봅니다.
+follow: {link} 링크를 열면 이 화면을 함께 봅니다.
 
 [account]
 title: 내 계정
@@ -558,7 +559,8 @@ local: 이 컴퓨터에서만 열립니다: 주소가 로컬 주소입니다.
 people: 함께 보는 사람
 alone: 따라 보는 사람이 없습니다.
 followers(other): {count}명이 따라 보고 있습니다.
-lead: 세션 {session}에 주도권 넘기기
+lead: {who}에게 주도권 넘기기
+viewer: 열람자
 
 [factor]
 range: 색 범위

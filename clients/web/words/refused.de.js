@@ -63,7 +63,7 @@ between: erwartet wird eine Zahl von {low} bis {high}
 placeless: dieser Sensor hat keinen Ort in dieser Messgröße
 narrow: das Bild ist zu schmal zum Teilen
 memory: dem Server fehlt Speicher; das letzte Bild bleibt
-gone: die Sitzung {session} ist nicht mehr verbunden
+gone: dieser Benutzer ist nicht mehr verbunden
 coreless: die Aufzeichnung ist nicht verfügbar: der Kern ist nicht erreichbar; bitte erneut versuchen
 unrecorded: es wird nichts aufgezeichnet (history: record: no)
 unreadable: die Aufzeichnung ist nicht lesbar; den Grund nennt das Protokoll des Servers

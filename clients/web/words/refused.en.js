@@ -62,7 +62,7 @@ between: a number from {low} to {high} is expected
 placeless: this sensor has no location in this quantity
 narrow: the picture is too narrow to split
 memory: the server is short of memory; the last picture stays
-gone: session {session} is no longer connected
+gone: this user is no longer connected
 coreless: history is unavailable: the core cannot be reached; try again
 unrecorded: no history is recorded (history: record: no)
 unreadable: history cannot be read; the server’s log says why

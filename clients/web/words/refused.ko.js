@@ -63,7 +63,7 @@ between: {low}에서 {high}까지의 수가 필요합니다
 placeless: 이 센서는 이 물리량에 위치가 없습니다
 narrow: 그림이 좁아 둘로 나눌 수 없습니다
 memory: 서버 메모리가 부족하여 마지막 그림이 유지됩니다
-gone: 세션 {session}은(는) 더 이상 연결되어 있지 않습니다
+gone: 이 사용자는 더 이상 연결되어 있지 않습니다
 coreless: 이력을 쓸 수 없음: 코어에 연결할 수 없습니다. 다시 시도하십시오
 unrecorded: 이력을 기록하지 않습니다 (history: record: no)
 unreadable: 기록을 읽을 수 없습니다. 이유는 서버 로그에 있습니다

@@ -7,12 +7,19 @@
 #include "message/names.h"
 #include "value/quality.h"
 
-char *reply_followers_text(const uint64_t *sessions, size_t count)
+char *reply_followers_text(const struct session *const *followers, size_t count, bool open)
 {
-    json_t *list = json_array();
-    for (size_t i = 0; i < count && i < REPLY_FOLLOWERS; i++)
-        json_array_append_new(list, json_integer((json_int_t)sessions[i]));
-    return json_text(json_pack("{s:s,s:I,s:o}", "type", "followers", "count", (json_int_t)count, "sessions", list), DIGITS);
+    json_t *sessions = json_array(), *names = json_array();
+    for (size_t i = 0; i < count && i < REPLY_FOLLOWERS; i++) {
+        const char *name = followers[i]->identity.holder.name;
+        json_array_append_new(sessions, json_integer((json_int_t)followers[i]->identity.number));
+        json_array_append_new(names, name[0] ? string(name) : json_null());
+    }
+    json_t *object = json_pack("{s:s,s:I,s:o}", "type", "followers", "count", (json_int_t)count, "sessions", sessions);
+    if (!open)
+        json_object_set(object, "names", names);
+    json_decref(names);
+    return json_text(object, DIGITS);
 }
 
 static json_t *nearest(const struct plant *plant, const struct pick *pick)

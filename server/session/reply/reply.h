@@ -8,9 +8,9 @@
 char *reply_welcome_text(const struct session *session, int64_t now_utc_ns);
 /* Lists the parameters of a view. open: the text is for clients without a token; names of tags and baselines are left out. */
 char *reply_params_text(const struct session_context *context, const struct view *view, uint32_t seq, bool open);
-/* Lists the followers of a session by session number, at most REPLY_FOLLOWERS. */
+/* Lists the followers of a session, at most REPLY_FOLLOWERS. open: the text is for clients without a token; names of users are left out. */
 enum { REPLY_FOLLOWERS = 256 };
-char *reply_followers_text(const uint64_t *sessions, size_t count);
+char *reply_followers_text(const struct session *const *followers, size_t count, bool open);
 /* Says whose view the session is shown, and whether that leader has gone. */
 char *reply_following_text(const struct session *session);
 /* Lists all readings; if `all` is false, only those whose reading.changes differs from `sent`, an array by tag. Updates `sent`. */

@@ -140,6 +140,8 @@ char *reply_following_text(const struct session *session)
     json_t *leader = called ? json_integer((json_int_t)called) : json_null();
     json_t *object =
         json_pack("{s:s,s:o,s:i,s:i}", "type", "following", "session", leader, "width", view->width_px, "height", view->height_px);
+    if (session->following.leader && session->following.leader->identity.holder.name[0] && !session_is_open(session))
+        json_object_set_new(object, "who", string(session->following.leader->identity.holder.name));
     if (session->following.left)
         json_object_set_new(object, "gone", json_true());
     if (session_is_tile(session))

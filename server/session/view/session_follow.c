@@ -76,10 +76,10 @@ void session_inherit(struct session *heir, const struct session *session)
     session_time_inherit(heir, session);
 }
 
-void session_lead_nobody(struct session *session, uint64_t heir)
+void session_lead_nobody(struct session *session)
 {
     struct message_error error = { .about = "lead" };
-    message_refuse_with(&error, "bad_field", "session", REFUSAL_GONE, "session=%llu", (unsigned long long)heir);
+    message_refuse(&error, "bad_field", "session", REFUSAL_GONE);
     session_reply_error(session, &error);
 }
 
@@ -92,10 +92,10 @@ struct follow_request session_take_follow_request(struct session *session)
     return request;
 }
 
-void session_say_followers(struct session *session, const uint64_t *sessions, size_t count, int64_t now_ns)
+void session_say_followers(struct session *session, const struct session *const *followers, size_t count, int64_t now_ns)
 {
     mem_free(session->following.followers_text);
-    session->following.followers_text = reply_followers_text(sessions, count);
+    session->following.followers_text = reply_followers_text(followers, count, session_is_open(session));
     session->following.followers_changed = false;
     session->following.followers_ns = now_ns;
 }
@@ -103,7 +103,7 @@ void session_say_followers(struct session *session, const uint64_t *sessions, si
 void session_follow_nobody(struct session *session)
 {
     struct message_error error = { .about = "follow" };
-    message_refuse_with(&error, "bad_field", "session", REFUSAL_GONE, "session=%llu", (unsigned long long)session->following.wanted);
+    message_refuse(&error, "bad_field", "session", REFUSAL_GONE);
     session_reply_error(session, &error);
 }
 

@@ -360,11 +360,12 @@ test('others follow; the lead is handed over, and what is shown stays', options,
         await page.waitForFunction((words) => document.querySelector('#share[open] #share-people')?.textContent.includes(words),
             '1 person is following you');
         await shoot(page, 'share-lead');
+        assert.equal(await page.locator('#share-people button').textContent(), 'Hand over to Viewer');
         await page.locator('#share-people button').click();
         const heir = await second.page.evaluate(() => globalThis.plantcast.session.id);
         await page.waitForFunction((leader) => globalThis.plantcast.session.following?.session === leader, heir);
         await second.page.waitForFunction(() => globalThis.plantcast.session.following === null);
-        await page.waitForFunction((words) => document.getElementById('following').textContent.includes(words), `(session ${heir})`);
+        await page.locator('#following', { hasText: 'Following the view of another user' }).waitFor();
         await second.page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure' }));
         await page.waitForFunction(() => globalThis.plantcast.session.params.group === 'pressure');
         await second.page.waitForFunction(() => { // the second session may have received the lead before its first picture

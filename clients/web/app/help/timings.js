@@ -36,6 +36,6 @@ export class TimingsPanel {
         const [pictures, kbit] = [session.rate.perSecond(now), kbitPerS(session.recent, now)].map(Math.round);
         const link = make('a', { href: `#follow=${session.id}`, target: '_blank', rel: 'noopener' }, `#follow=${session.id}`);
         this.element.replaceChildren(make('table', {}, head, input, ...rows), make('p', {}, say('timings.rate', { pictures, kbit })),
-            make('p', {}, ...around(say('timings.follow', { session: session.id, link: '\u0000' }), link)));
+            make('p', {}, ...around(say('timings.follow', { link: '\u0000' }), link)));
     }
 }

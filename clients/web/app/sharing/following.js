@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Follows the view of another session, the leader: shows it in the leader's aspect ratio, and tells whose view it is.
+import { leaderName } from '../../core/people.js';
 import { say } from '../../core/words.js';
 import { byId, setText, setVariable } from '../common/dom.js';
 
@@ -23,8 +24,8 @@ export class Following {
 
     title({ following, leader }) {
         if (!following)
-            return leader === null ? '' : say('following.awaited', { session: leader });
-        return say(following.gone ? 'following.gone' : 'following.title', following);
+            return leader === null ? '' : say('following.awaited');
+        return say(following.gone ? 'following.gone' : 'following.title', { who: leaderName(following) });
     }
 
     show() {

@@ -2,6 +2,7 @@
 // The share dialog: links to the current view, with a QR code; the list of sessions that follow this view, and handing the lead to a
 // follower.
 import { shareLinks } from '../../core/links.js';
+import { followerNames, leaderName } from '../../core/people.js';
 import { giveLead } from '../../core/requests.js';
 import { say } from '../../core/words.js';
 import { byId, make, makeSvg, setText } from '../common/dom.js';
@@ -95,11 +96,11 @@ export class Share {
     }
 
     showPeople() {
-        const { followers, following } = this.session;
+        const { followers, following } = this.session, names = followerNames(followers);
         const lead = (session) => () => giveLead(this.session, session);
-        const button = (session) => make('button', { type: 'button', 'data-session': session, onclick: lead(session) },
-            say('share.lead', { session }));
-        const words = following ? say('following.title', { session: following.session })
+        const button = (session, i) => make('button', { type: 'button', 'data-session': session, onclick: lead(session) },
+            say('share.lead', { who: names[i] }));
+        const words = following ? say('following.title', { who: leaderName(following) })
             : say(followers.count > 0 ? 'share.followers' : 'share.alone', { count: followers.count });
         this.people.replaceChildren(make('h3', {}, say('share.people')), make('p', {}, words),
             make('div', { class: 'leads' }, ...(following ? [make('button', { type: 'button', onclick: () => this.session.follow(null) },
