@@ -255,6 +255,11 @@ void renderer_set_depth(struct renderer *renderer, bool gives_depth)
     renderer->gives_depth = gives_depth;
 }
 
+bool renderer_gives_depth(const struct renderer *renderer)
+{
+    return renderer->gives_depth;
+}
+
 void renderer_use_gl(struct renderer *renderer, bool always)
 {
     renderer->always_gl = always;

@@ -53,6 +53,7 @@ bool renderer_bake_idle(struct renderer *renderer, int64_t budget_ns);
 
 /* Chooses whether frames that are begun later get depth grids (render/depth_grid.h); initially they do not. */
 void renderer_set_depth(struct renderer *renderer, bool gives_depth);
+bool renderer_gives_depth(const struct renderer *renderer);
 /* Argument true: GL draws all frames, also those that the software backend would draw on machines without a GPU. */
 void renderer_use_gl(struct renderer *renderer, bool always);
 /* Chooses how the field is computed: per_fragment true: at each fragment, over all sensors, on the finest level

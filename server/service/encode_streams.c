@@ -94,19 +94,26 @@ static struct encode_stream *most_common(struct encode_streams *streams, const s
     return best;
 }
 
-/* Returns whether the stream already shows this frame, and its packets are still kept. */
-static bool shows(const struct encode_stream *stream, const struct frame *frame, const struct frame_request *request)
+/* Returns whether a client of the group wants the frame's depth grid, and the stream's newest packet has none. */
+static bool brings_depth(const struct encode_stream *stream, const struct frame *frame, const struct request_group *tickets)
 {
+    return frame->depth[0] && !stream->has_depth && request_group_wants_depth(tickets);
+}
+
+/* Returns whether the stream already shows this frame, and its packets are still kept. */
+static bool shows(const struct encode_stream *stream, const struct frame *frame, const struct request_group *tickets)
+{
+    const struct frame_request *request = &tickets->tickets[0].request;
     return !request->overlay && stream->key > 0 && stream->key >= stream->oldest && stream->planned < stream->key + MAX_LAG_PACKETS &&
-           stream->content == frame->content && same_coding(stream, frame, request);
+           stream->content == frame->content && same_coding(stream, frame, request) && !brings_depth(stream, frame, tickets);
 }
 
 /* Returns a stream that already shows this frame; NULL: none. whole: accept only a stream whose newest packet is a key frame. */
-static struct encode_stream *showing(const struct encode_streams *streams, const struct frame *frame, const struct frame_request *request,
+static struct encode_stream *showing(const struct encode_streams *streams, const struct frame *frame, const struct request_group *tickets,
                                      bool whole)
 {
     struct encode_stream *stream = streams->first;
-    while (stream && !(shows(stream, frame, request) && (!whole || stream->key == stream->planned)))
+    while (stream && !(shows(stream, frame, tickets) && (!whole || stream->key == stream->planned)))
         stream = stream->next;
     return stream;
 }
@@ -213,14 +220,13 @@ static void give(struct encode_streams *streams, const struct request_group *tic
 
 static struct encode_stream *choose(struct encode_streams *streams, const struct frame *frame, const struct request_group *tickets)
 {
-    const struct frame_request *request = &tickets->tickets[0].request;
     struct encode_stream *stream = most_common(streams, tickets), *other = NULL;
-    if (stream && !shows(stream, frame, request))
-        other = showing(streams, frame, request, true);
+    if (stream && !shows(stream, frame, tickets))
+        other = showing(streams, frame, tickets, true);
     if (other)
         return other; /* `other` has just made a key frame of this content, so these clients can join it without another key frame */
     if (!stream)
-        stream = showing(streams, frame, request, false);
+        stream = showing(streams, frame, tickets, false);
     else if (stream->content != frame->content && belongs_to_others(streams, stream, frame))
         stream = NULL;
     if (!stream)
@@ -253,13 +259,14 @@ void encode_streams_plan(struct encode_streams *streams, const struct frame *fra
     bool sized = stream->shown.view.width_px == frame->width_px && stream->shown.view.height_px == frame->height_px;
     rest->count = 0;
     plan->key = is_whole(stream, frame, request) || let_in(streams, stream, tickets, now_ns, rest) || stream->key == 0 || !sized;
-    plan->again = must_again(tickets);
+    plan->again = must_again(tickets) || brings_depth(stream, frame, tickets);
     plan->encode = plan->key || plan->again || stream->content != frame->content || !same_coding(stream, frame, request);
     if (plan->encode) {
         stream->planned++;
         stream->shown = *request;
         stream->shown.view = frame->view;
         stream->content = frame->content;
+        stream->has_depth = frame->depth[0] != NULL;
     }
     if (plan->key) {
         stream->key = stream->planned;

@@ -16,6 +16,7 @@ struct encode_stream {
     int64_t key_ns;             /* monotonic: when the newest key frame was planned */
     struct frame_request shown; /* request that caused the newest frame: its view, codec and quality */
     uint64_t content;           /* content hash of the newest frame */
+    bool has_depth;             /* the packets of this content have a depth grid */
     /* the kept packets, of the frames with sequence numbers `oldest` to oldest + kept_count - 1; NULL where nothing had changed */
     struct packet *kept[ENCODE_STREAM_KEPT];
     int kept_count;

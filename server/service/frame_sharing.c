@@ -6,15 +6,17 @@
 struct content_of {
     struct render_service *service;
     uint64_t content;
+    bool gives_depth; /* the frame has a depth grid */
     int64_t cost_ns; /* drawing time that is charged to each client that shares the frame */
 };
 
-/* Returns whether the client already shows this frame. The caller holds the lock. */
+/* Returns whether the client already shows this frame, with its depth grid if it wants one. The caller holds the lock. */
 static bool has_it(const struct request_ticket *ticket, void *arg)
 {
     const struct content_of *now = arg;
     struct render_client *client = render_service_find(now->service, ticket->client);
-    bool has = !ticket->request.always && client && client->has_content && client->content == now->content;
+    bool has = !ticket->request.always && client && client->has_content && client->content == now->content &&
+               (client->has_depth || !ticket->request.depth);
     if (has && ticket->number > client->content_number)
         client->content_number = ticket->number;
     return has;
@@ -39,6 +41,7 @@ static bool remember(const struct request_ticket *ticket, void *arg)
     if (!client)
         return false;
     client->has_content = true;
+    client->has_depth = ticket->request.depth && now->gives_depth;
     client->content = now->content;
     client->content_number = ticket->number;
     client->spent_ns[scheduler_share(ticket->request.urgency)] += now->cost_ns;
@@ -50,7 +53,8 @@ static bool remember(const struct request_ticket *ticket, void *arg)
    packets. Clients that share a frame share its cost. */
 void frame_sharing_submit(struct render_service *service, struct frame *frame, struct request_group *group, int64_t cost_ns)
 {
-    struct content_of now = { .service = service, .content = frame->content, .cost_ns = cost_ns / (int64_t)group->count };
+    struct content_of now = { .service = service, .content = frame->content, .gives_depth = frame->depth[0] != NULL };
+    now.cost_ns = cost_ns / (int64_t)group->count;
     struct request_group here = { 0 }, overtaken = { 0 };
     pthread_mutex_lock(&service->lock);
     request_group_split(group, is_overtaken, &now, &overtaken);
@@ -90,10 +94,11 @@ static void answer_with(struct render_service *service, struct frame *frame, str
         frame_sharing_submit(service, frame, group, 0);
 }
 
-/* Adds the group's requests to the submitted frame with the same content, if there is one. */
+/* Adds the group's requests to the submitted frame with the same content, if there is one. A submitted frame can still get the record of
+   its inputs, but no depth grid. */
 static void join_awaited(struct render_thread *thread, struct request_group *group, uint64_t content)
 {
-    struct pending_readback *flight = pending_readbacks_find(&thread->in_flight, content);
+    struct pending_readback *flight = pending_readbacks_find(&thread->in_flight, content, request_group_wants_depth(group));
     if (!flight)
         return;
     counter_inc(thread->service->shared, (int64_t)group->count);

@@ -36,11 +36,13 @@ const struct snapshot *pending_readbacks_readings(const struct pending_readback 
     return flight->historical ? &flight->historical->snapshot : flight->snapshot;
 }
 
-struct pending_readback *pending_readbacks_find(struct pending_readbacks *in_flight, uint64_t content)
+struct pending_readback *pending_readbacks_find(struct pending_readbacks *in_flight, uint64_t content, bool depth)
 {
-    for (int i = 0; i < in_flight->count; i++)
-        if (in_flight->at[i].content == content && !in_flight->at[i].group.tickets[0].request.overlay)
-            return &in_flight->at[i];
+    for (int i = 0; i < in_flight->count; i++) {
+        struct pending_readback *frame = &in_flight->at[i];
+        if (frame->content == content && !frame->group.tickets[0].request.overlay && (frame->gives_depth || !depth))
+            return frame;
+    }
     return NULL;
 }
 

@@ -18,6 +18,7 @@ struct pending_readbacks {
         const struct historical_snapshot *historical;
         struct snapshot *snapshot;
         uint64_t content; /* hash of the content that the frame shows */
+        bool gives_depth; /* the frame gets a depth grid */
     } at[PENDING_READBACKS_MAX];
     int count;
 };
@@ -30,9 +31,9 @@ void pending_readbacks_finish(struct pending_readbacks *in_flight);
    also *snapshot. Afterwards *group is empty, and *snapshot is a different one with unspecified content. */
 void pending_readbacks_push(struct pending_readbacks *in_flight, const struct pending_readback *frame, struct request_group *group,
                             struct snapshot **snapshot);
-/* Returns the frame in the list with that content hash; NULL: none. Frames that get an overlay are skipped. The frame stays in the list and
-   is valid until the next pending_readbacks_pop(). */
-struct pending_readback *pending_readbacks_find(struct pending_readbacks *in_flight, uint64_t content);
+/* Returns the frame in the list with that content hash; NULL: none. Skips frames that get an overlay and, if `depth` is true, frames
+   without a depth grid. The frame stays in the list and is valid until the next pending_readbacks_pop(). */
+struct pending_readback *pending_readbacks_find(struct pending_readbacks *in_flight, uint64_t content, bool depth);
 /* Returns the readings that the frame shows. */
 const struct snapshot *pending_readbacks_readings(const struct pending_readback *frame);
 /* Removes the oldest frame, which must have been read back and whose historical snapshot must have been released. Its memory is reused

@@ -12,6 +12,7 @@ struct render_client {
     uint64_t id, number; /* id: of the client; number: sequence number of its requests, incremented when the drawing of one begins */
     bool pending;        /* true: `request` waits for its drawing to begin */
     bool has_content;
+    bool has_depth; /* the client was given the depth grid of the content */
     bool left; /* the client no longer wants the frame that the long job (a frame drawn in steps) draws for it */
     /* how long changed readings wait for the client's long job (a frame drawn in steps) before they get a preview; 0: the initial delay */
     int64_t patience_ns;

@@ -102,7 +102,9 @@ static void deliver(struct render_thread *thread, struct frame *frame, const str
 static void submit(struct render_thread *thread, struct request_group *group, const struct historical_snapshot **historical,
                    const struct split_plan *plan)
 {
-    struct pending_readback encoded = { .historical = *historical, .content = plan->content };
+    struct pending_readback encoded = {
+        .historical = *historical, .content = plan->content, .gives_depth = renderer_gives_depth(thread->renderer)
+    };
     encoded.split = split_view_submit(thread->renderer, plan);
     if (!encoded.split) {
         fail(thread, group);
@@ -394,11 +396,11 @@ static bool draw_of(struct render_thread *thread, struct request_group *group, c
     return true;
 }
 
-/* Returns whether the newest request of a client present wants depth. All frames but those of walls then get depth grids, so that any
-   client can share them. */
-static bool wants_depth(struct render_service *service)
+/* Returns whether the group or the newest request of a client present wants depth. All frames but those of walls then get depth grids, so
+   that any client can share them. */
+static bool wants_depth(struct render_service *service, const struct request_group *group)
 {
-    bool wants = false;
+    bool wants = request_group_wants_depth(group);
     pthread_mutex_lock(&service->lock);
     for (size_t i = 0; i < service->client_count && !wants; i++)
         wants = service->clients[i]->request.depth;
@@ -410,7 +412,7 @@ static bool wants_depth(struct render_service *service)
 static bool draw(struct render_thread *thread, struct request_group *group)
 {
     const struct historical_snapshot *historical;
-    renderer_set_depth(thread->renderer, wants_depth(thread->service) && !group->tickets[0].request.picture);
+    renderer_set_depth(thread->renderer, wants_depth(thread->service, group) && !group->tickets[0].request.picture);
     frame_sharing_answer_from_recent(thread, group);
     if (group->count == 0)
         return true;

@@ -316,8 +316,7 @@ TEST(test_a_hundred_viewers_cost_one_picture)
         render_service_forget(service, 1000 + i);
 }
 
-/* Returns whether the frame of a client's new view has a depth grid. */
-static bool gets_depth(uint64_t client, bool depth, double turn)
+static void ask_with_depth(uint64_t client, bool depth, double turn)
 {
     struct frame_request request = {
         .codec = WIRE_CODEC_JPEG, .quality = { .quality = 80 }, .urgency = URGENCY_INPUT, .asked_ns = clock_mono_ns(), .depth = depth
@@ -327,6 +326,12 @@ static bool gets_depth(uint64_t client, bool depth, double turn)
     request.view.camera.eye_m[0] += turn;
     assert_int_equal(render_service_request(service, client, &request), REQUEST_ADDED);
     render_service_wake(service);
+}
+
+/* Returns whether the frame of a client's new view has a depth grid. */
+static bool gets_depth(uint64_t client, bool depth, double turn)
+{
+    ask_with_depth(client, depth, turn);
     struct encoded_frame *encoded = next();
     assert_true(encoded->packet && encoded->client == client);
     bool gets = encoded->packet->frame->depth[0] != NULL;
@@ -662,6 +667,24 @@ TEST(test_frames_show_the_readings_of_the_texts)
         for (size_t i = 0; i < frame->marker_count; i++)
             assert_true(frame->markers[i].value == value + frame->markers[i].tag);
         encoded_frame_destroy(&encoded);
+    }
+    remake(false, 0);
+}
+
+/* The pauses end before, during and after the time in which GL draws the first client's frame. */
+TEST(test_a_frame_that_gl_draws_without_depth_does_not_answer_a_client_that_wants_it)
+{
+    remake(true, 0);
+    for (int i = 0; i < 12; i++) {
+        ask_with_depth(MOVER, false, 70 + i);
+        sleep_ns(i * NS_PER_MS);
+        ask_with_depth(PICKER, true, 70 + i);
+        for (int left = 2; left > 0; left--) {
+            struct encoded_frame *encoded = next();
+            assert_true(encoded->packet && (encoded->client == MOVER || encoded->packet->frame->depth[0]));
+            encoded_frame_destroy(&encoded);
+        }
+        render_service_forget(service, PICKER);
     }
     remake(false, 0);
 }

@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "render/depth_grid.h"
 #include "tests/support/sweep.h"
 
 enum { CLIENTS = 12, WIDTH = 64, HEIGHT = 36 };
@@ -26,6 +27,8 @@ struct encode_streams_fixture {
     uint64_t last_state;
     int64_t now_ns;
     int encodes, keys;
+    bool gives_depth; /* frames have depth grids */
+    unsigned wants;   /* clients that want depth, one bit each */
     enum wire_codec codec;
 };
 
@@ -121,6 +124,24 @@ static void deliver(struct encode_streams_fixture *f, const struct request_group
     }
 }
 
+static struct depth_grid *grid_create(void)
+{
+    const struct depth_cell cells[(WIDTH / DEPTH_CELL_PX) * (HEIGHT / DEPTH_CELL_PX + 1)] = { { 0 } };
+    const struct depth_lens lens = { .factor = 1 };
+    struct depth_grid *grid = depth_grid_create(cells, &lens, WIDTH, HEIGHT);
+    assert_non_null(grid);
+    return grid;
+}
+
+/* Clients that want a depth grid get it with the newest packet. */
+static void check_depth(const struct encode_streams_fixture *f, const struct request_group *tickets)
+{
+    const struct encode_stream *stream = f->plan.stream;
+    const struct packet *newest = stream->kept[stream->kept_count - 1];
+    if (f->gives_depth && request_group_wants_depth(tickets))
+        assert_true(newest->frame->depth[0]);
+}
+
 /* Shows one frame to `clients` (one bit each); afterwards all of them show it. */
 static void show(struct encode_streams_fixture *f, unsigned clients, int view_number, uint64_t content, bool alone)
 {
@@ -128,10 +149,12 @@ static void show(struct encode_streams_fixture *f, unsigned clients, int view_nu
     struct request_group tickets = { 0 };
     frame->view = (struct view){ .width_px = WIDTH, .height_px = HEIGHT, .camera = { .fov_deg = 30 + view_number } };
     frame->content = content;
+    frame->depth[0] = f->gives_depth ? grid_create() : NULL;
     for (uint64_t client = 0; client < CLIENTS; client++)
         if (clients & 1u << client) {
             struct request_ticket ticket = order_of(f, client, &frame->view);
             ticket.request.always = ticket.request.alone = alone;
+            ticket.request.depth = (f->wants & 1u << client) != 0;
             request_group_add(&tickets, &ticket);
         }
     while (tickets.count > 0) {
@@ -142,6 +165,7 @@ static void show(struct encode_streams_fixture *f, unsigned clients, int view_nu
             packet_unref(&packet);
         }
         deliver(f, &tickets);
+        check_depth(f, &tickets);
         struct request_group done = tickets;
         tickets = f->rest;
         f->rest = (struct request_group){ 0 };
@@ -215,6 +239,20 @@ CASE(a_slow_one_does_not_cost_the_others_key_frames)
     }
     assert_in_range(f->keys - before, 0, 24); /* a slow client gets its own key frames: one at each of its 20 frames */
     assert_in_range(chain_count(f), 1, 2);
+}
+
+CASE(depth_that_packets_lack_is_sent_to_clients_that_want_it)
+{
+    f->codec = WIRE_CODEC_JPEG;
+    f->wants = 2;
+    show(f, 1, 0, 1, false);
+    f->gives_depth = true;
+    show(f, 1, 0, 1, false);
+    assert_int_equal(f->encodes, 1); /* the client does not want depth */
+    show(f, 2, 0, 1, false);
+    assert_true(f->encodes == 2 && f->plan.again);
+    show(f, 2, 0, 1, true);
+    assert_int_equal(f->encodes, 2); /* the packet that has depth is reused */
 }
 
 /* Hundreds of acknowledgements arrive one by one: some clients request the next view while others still wait for the previous one. */
