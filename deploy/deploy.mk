@@ -56,8 +56,9 @@ deb: clients/web/vendor/uPlot.js
 # An archive that installs the packages without a network (SIGN=KEY.pem signs it), and a container image. Both need root and a mirror.
 suite := $(shell . /etc/os-release && echo $$VERSION_CODENAME)
 debs  := $(build)/deb
+bundle: WITH ?= plantcast-h264
 bundle:
-	@WITH="$(or $(WITH),plantcast-h264)" deploy/bundle $(debs) $(build)/plantcast-bundle-$(suite).tar $(suite) $(SIGN)
+	@WITH="$(WITH)" deploy/bundle $(debs) $(build)/plantcast-bundle-$(suite).tar $(suite) $(SIGN)
 image:
 	@WITH="$(WITH)" deploy/image $(debs) $(build)/plantcast-image-$(suite).tar $(suite)
 # Tests of these packages, the archive and the image, in chroots without a network.
