@@ -2,31 +2,40 @@
 // Small IFC files, one for each kind of shape, with the volume (m3) and the size (m) that geometry gives.
 const R = 25, PIPE = Math.PI * R * R * 1e-9, HALF_TURN = Math.PI * 500;
 
-// Statements are written without numbers, as {$name} = text; #{name} refers to another one.
-function statements(lines, first) {
-    const numbers = new Map(lines.map(([name], i) => [name, first + i]));
-    return lines.map(([name, text]) => `#${numbers.get(name)}=${text.replace(/#\{(\w+)\}/g, (_, to) => `#${numbers.get(to)}`)};`);
+// Statements are written without numbers, as {$name} = text; #{name} refers to another one of the list, or to one of those before.
+function statements(lines, first, before = new Map()) {
+    const numbers = new Map([...before, ...lines.map(([name], i) => [name, first + i])]);
+    const numbered = (text) => text.replace(/#\{(\w+)\}/g, (_, to) => `#${numbers.get(to)}`);
+    return { numbers, text: lines.map(([, text], i) => `#${first + i}=${numbered(text)};`) };
 }
 
-// Returns an IFC file in millimetres with one element, "K-1", made of these statements; "item" is its shape.
-export function ifcOf(schema, lines, type = 'SweptSolid') {
-    const head = [['o', 'IFCCARTESIANPOINT((0.,0.,0.))'], ['frame', 'IFCAXIS2PLACEMENT3D(#{o},$,$)'],
-        ['z', 'IFCDIRECTION((0.,0.,1.))'], ['y', 'IFCDIRECTION((0.,1.,0.))'], ['x', 'IFCDIRECTION((1.,0.,0.))'],
-        ['mm', 'IFCSIUNIT(*,.LENGTHUNIT.,.MILLI.,.METRE.)'], ['rad', 'IFCSIUNIT(*,.PLANEANGLEUNIT.,$,.RADIAN.)'],
-        ['units', 'IFCUNITASSIGNMENT((#{mm},#{rad}))'],
-        ['context', "IFCGEOMETRICREPRESENTATIONCONTEXT($,'Model',3,1.E-5,#{frame},$)"],
-        ['project', "IFCPROJECT('0$PlantcastKinds0000001',$,'P',$,$,$,$,(#{context}),#{units})"],
-        ['place', 'IFCLOCALPLACEMENT($,#{frame})'],
-        ['site', "IFCSITE('0$PlantcastKinds0000002',$,'S',$,$,#{place},$,$,.ELEMENT.,$,$,$,$,$)"],
-        ['in', "IFCRELAGGREGATES('0$PlantcastKinds0000003',$,$,$,#{project},(#{site}))"]];
-    const tail = [['body', `IFCSHAPEREPRESENTATION(#{context},'Body','${type}',(#{item}))`],
-        ['shape', 'IFCPRODUCTDEFINITIONSHAPE($,$,(#{body}))'],
-        ['element', "IFCBUILDINGELEMENTPROXY('0$PlantcastKinds0000004',$,'K-1',$,$,#{place},#{shape},$,$)"],
-        ['on', "IFCRELCONTAINEDINSPATIALSTRUCTURE('0$PlantcastKinds0000005',$,$,$,(#{element}),#{site})"]];
+const HEAD = [['o', 'IFCCARTESIANPOINT((0.,0.,0.))'], ['frame', 'IFCAXIS2PLACEMENT3D(#{o},$,$)'],
+    ['z', 'IFCDIRECTION((0.,0.,1.))'], ['y', 'IFCDIRECTION((0.,1.,0.))'], ['x', 'IFCDIRECTION((1.,0.,0.))'],
+    ['mm', 'IFCSIUNIT(*,.LENGTHUNIT.,.MILLI.,.METRE.)'], ['rad', 'IFCSIUNIT(*,.PLANEANGLEUNIT.,$,.RADIAN.)'],
+    ['units', 'IFCUNITASSIGNMENT((#{mm},#{rad}))'],
+    ['context', "IFCGEOMETRICREPRESENTATIONCONTEXT($,'Model',3,1.E-5,#{frame},$)"],
+    ['project', "IFCPROJECT('0$PlantcastKinds0000001',$,'P',$,$,$,$,(#{context}),#{units})"],
+    ['place', 'IFCLOCALPLACEMENT($,#{frame})'],
+    ['site', "IFCSITE('0$PlantcastKinds0000002',$,'S',$,$,#{place},$,$,.ELEMENT.,$,$,$,$,$)"],
+    ['in', "IFCRELAGGREGATES('0$PlantcastKinds0000003',$,$,$,#{project},(#{site}))"]];
+
+// The statements of an element, with the identifiers and the names of the elements that belong to number `i`: "K-1" is the first one.
+const element = (lines, type, i) => [...lines, ['body', `IFCSHAPEREPRESENTATION(#{context},'Body','${type}',(#{item}))`],
+    ['shape', 'IFCPRODUCTDEFINITIONSHAPE($,$,(#{body}))'],
+    ['element', "IFCBUILDINGELEMENTPROXY('0$PlantcastKinds0000004',$,'K-1',$,$,#{place},#{shape},$,$)"],
+    ['on', "IFCRELCONTAINEDINSPATIALSTRUCTURE('0$PlantcastKinds0000005',$,$,$,(#{element}),#{site})"]].map(([name, text]) =>
+    [name, text.replace("'K-1'", `'K-${i + 1}'`).replace(/Kinds00(?=\d{5}')/, `Kinds${String(i).padStart(2, '0')}`)]);
+
+// Returns an IFC file in millimetres with the elements "K-1", "K-2", ...: each { lines, type } has statements, of which "item" is its shape,
+// and the type of its representation.
+export function ifcOfAll(schema, elements) {
+    const head = statements(HEAD, 1), body = [...head.text];
+    elements.forEach(({ lines, type = 'SweptSolid' }, i) => body.push(...statements(element(lines, type, i), body.length + 1, head.numbers).text));
     return ['ISO-10303-21;', 'HEADER;', "FILE_DESCRIPTION((''),'2;1');", "FILE_NAME('','',(''),(''),'','','');",
-        `FILE_SCHEMA(('${schema}'));`, 'ENDSEC;', 'DATA;', ...statements([...head, ...lines, ...tail], 1), 'ENDSEC;', 'END-ISO-10303-21;',
-        ''].join('\n');
+        `FILE_SCHEMA(('${schema}'));`, 'ENDSEC;', 'DATA;', ...body, 'ENDSEC;', 'END-ISO-10303-21;', ''].join('\n');
 }
+
+export const ifcOf = (schema, lines, type) => ifcOfAll(schema, [{ lines, type }]);
 
 export const point = (name, ...at) => [name, `IFCCARTESIANPOINT((${at.map((v) => v.toFixed(6)).join(',')}))`];
 const rectangle = ['profile', 'IFCRECTANGLEPROFILEDEF(.AREA.,$,$,200.,100.)'];
