@@ -91,8 +91,9 @@ test('every kind of shape has the volume and size that geometry gives, area and 
             compared += Boolean(other.compared);
             const good = other.good && Math.abs(found.volume / volume - 1) < 0.025 &&
                 size.every((v, axis) => Math.abs(found.size[axis] - v) < 0.012 * v + 0.0005) && /, 0 lost,/.test(said);
-            const text = `${schema}  ${name}: ${(found.volume / volume * 100).toFixed(1)} % of its volume, ` +
-                `${found.size.map((v) => v.toFixed(3)).join(' x ')} m, should be ${size.map((v) => v.toFixed(3)).join(' x ')} m; ${other.text}`;
+            const metres = (sides) => `${sides.map((v) => v.toFixed(3)).join(' x ')} m`;
+            const text = `${schema}  ${name}: ${(found.volume / volume * 100).toFixed(1)} % of its volume, ${metres(found.size)}, ` +
+                `should be ${metres(size)}; ${other.text}`;
             console.log(`# ${good ? 'right' : 'WRONG'}  ${text}`);
             right += good;
             if (!good)

@@ -19,18 +19,20 @@ const HEAD = [['o', 'IFCCARTESIANPOINT((0.,0.,0.))'], ['frame', 'IFCAXIS2PLACEME
     ['site', "IFCSITE('0$PlantcastKinds0000002',$,'S',$,$,#{place},$,$,.ELEMENT.,$,$,$,$,$)"],
     ['in', "IFCRELAGGREGATES('0$PlantcastKinds0000003',$,$,$,#{project},(#{site}))"]];
 
-// The statements of an element, with the identifiers and the names of the elements that belong to number `i`: "K-1" is the first one.
-const element = (lines, type, i) => [...lines, ['body', `IFCSHAPEREPRESENTATION(#{context},'Body','${type}',(#{item}))`],
+// The statements of element `i`, with identifiers and a name that no other element has: "K-1" is the first one.
+const element = (lines, type, i) => [...lines,
+    ['body', `IFCSHAPEREPRESENTATION(#{context},'Body','${type}',(#{item}))`],
     ['shape', 'IFCPRODUCTDEFINITIONSHAPE($,$,(#{body}))'],
     ['element', "IFCBUILDINGELEMENTPROXY('0$PlantcastKinds0000004',$,'K-1',$,$,#{place},#{shape},$,$)"],
     ['on', "IFCRELCONTAINEDINSPATIALSTRUCTURE('0$PlantcastKinds0000005',$,$,$,(#{element}),#{site})"]].map(([name, text]) =>
     [name, text.replace("'K-1'", `'K-${i + 1}'`).replace(/Kinds00(?=\d{5}')/, `Kinds${String(i).padStart(2, '0')}`)]);
 
-// Returns an IFC file in millimetres with the elements "K-1", "K-2", ...: each { lines, type } has statements, of which "item" is its shape,
-// and the type of its representation.
+// Returns an IFC file in millimetres with the elements "K-1", "K-2", ... Each is given as { lines, type }: statements, of which "item" is
+// its shape, and the type of its representation.
 export function ifcOfAll(schema, elements) {
     const head = statements(HEAD, 1), body = [...head.text];
-    elements.forEach(({ lines, type = 'SweptSolid' }, i) => body.push(...statements(element(lines, type, i), body.length + 1, head.numbers).text));
+    elements.forEach(({ lines, type = 'SweptSolid' }, i) =>
+        body.push(...statements(element(lines, type, i), body.length + 1, head.numbers).text));
     return ['ISO-10303-21;', 'HEADER;', "FILE_DESCRIPTION((''),'2;1');", "FILE_NAME('','',(''),(''),'','','');",
         `FILE_SCHEMA(('${schema}'));`, 'ENDSEC;', 'DATA;', ...body, 'ENDSEC;', 'END-ISO-10303-21;', ''].join('\n');
 }
