@@ -26,7 +26,7 @@ struct sim_device *sim_device_of(const struct sim *sim, const struct plant_tag *
     if (tag->source < 0 || !is_served(&sim->plant->sources[tag->source]))
         return NULL;
     const struct plant_source *source = &sim->plant->sources[tag->source];
-    *unit = tag->modbus_unit >= 0 ? tag->modbus_unit : source->unit;
+    *unit = tag->signal.modbus_unit >= 0 ? tag->signal.modbus_unit : source->unit;
     return device_at(sim, source->port);
 }
 

@@ -16,25 +16,25 @@ int sim_encode_width(const struct plant_tag *tag)
         [DATA_BIT] = 1,    [DATA_INT16] = 1, [DATA_UINT16] = 1, [DATA_BCD] = 1,    [DATA_INT32] = 2, [DATA_UINT32] = 2,
         [DATA_FLOAT32] = 2, [DATA_LBCD] = 2, [DATA_INT64] = 4,  [DATA_UINT64] = 4, [DATA_FLOAT64] = 4,
     };
-    bool one_bit = tag->table == TABLE_COIL || tag->table == TABLE_DISCRETE || tag->bit >= 0;
-    return one_bit ? 1 : widths[tag->type];
+    bool one_bit = tag->signal.table == TABLE_COIL || tag->signal.table == TABLE_DISCRETE || tag->signal.bit >= 0;
+    return one_bit ? 1 : widths[tag->signal.type];
 }
 
-static double unscale(const struct plant_tag *tag, double value)
+static double unscale(const struct tag_scale *scale, double value)
 {
-    if (tag->negate)
+    if (scale->negate)
         value = -value;
-    if (tag->scaling == SCALING_NONE)
+    if (scale->kind == SCALING_NONE)
         return value;
-    double share = (value - tag->scaled_low) / (tag->scaled_high - tag->scaled_low);
-    if (tag->scaling == SCALING_SQUARE_ROOT)
+    double share = (value - scale->scaled_low) / (scale->scaled_high - scale->scaled_low);
+    if (scale->kind == SCALING_SQUARE_ROOT)
         share = share < 0 ? 0 : share * share;
-    return tag->raw_low + share * (tag->raw_high - tag->raw_low);
+    return scale->raw_low + share * (scale->raw_high - scale->raw_low);
 }
 
 double sim_encode_raw(const struct plant_tag *tag, double value)
 {
-    return tag->type == DATA_BIT ? (value != 0) != tag->negate : unscale(tag, value);
+    return tag->signal.type == DATA_BIT ? (value != 0) != tag->scale.negate : unscale(&tag->scale, value);
 }
 
 static uint64_t whole(double raw, double low, double high)
@@ -87,22 +87,23 @@ static void place(const char *places, uint64_t bits, uint16_t *words)
 
 static void encode_bit(const struct plant_tag *tag, bool on, uint16_t *word)
 {
-    bool swapped = tag->byte_order == BYTE_ORDER_BADC || tag->byte_order == BYTE_ORDER_DCBA;
-    int bit = swapped ? tag->bit ^ 8 : tag->bit;
-    *word = (uint16_t)(tag->bit < 0 ? on : (*word & ~(1u << bit)) | (unsigned)on << bit);
+    bool swapped = tag->signal.byte_order == BYTE_ORDER_BADC || tag->signal.byte_order == BYTE_ORDER_DCBA;
+    int bit = swapped ? tag->signal.bit ^ 8 : tag->signal.bit;
+    *word = (uint16_t)(tag->signal.bit < 0 ? on : (*word & ~(1u << bit)) | (unsigned)on << bit);
 }
 
 bool sim_encode(const struct plant_tag *tag, double value, uint16_t *words)
 {
-    bool one_bit = tag->table == TABLE_COIL || tag->table == TABLE_DISCRETE || tag->bit >= 0 || tag->type == DATA_BIT;
-    bool holds_nan = !one_bit && (tag->type == DATA_FLOAT32 || tag->type == DATA_FLOAT64);
+    enum data_type type = tag->signal.type;
+    bool one_bit = tag->signal.table == TABLE_COIL || tag->signal.table == TABLE_DISCRETE || tag->signal.bit >= 0 || type == DATA_BIT;
+    bool holds_nan = !one_bit && (type == DATA_FLOAT32 || type == DATA_FLOAT64);
     if (!isfinite(value) && !holds_nan)
         return false;
     if (one_bit) {
-        encode_bit(tag, (value != 0) != tag->negate, words);
+        encode_bit(tag, (value != 0) != tag->scale.negate, words);
         return true;
     }
     const char *const *places = sim_encode_width(tag) == 4 ? places_64 : sim_encode_width(tag) == 2 ? places_32 : places_16;
-    place(places[tag->byte_order], bits_of(tag->type, isfinite(value) ? unscale(tag, value) : value), words);
+    place(places[tag->signal.byte_order], bits_of(type, isfinite(value) ? unscale(&tag->scale, value) : value), words);
     return true;
 }

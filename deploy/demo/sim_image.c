@@ -30,18 +30,18 @@ void sim_image_add(struct sim_image *image, int unit, const struct plant_tag *ta
         image->units[unit]->mapping = modbus_mapping_new(REGISTERS, REGISTERS, REGISTERS, REGISTERS);
     }
     for (int i = 0; i < sim_encode_width(tag); i++)
-        image->units[unit]->exists[tag->table][tag->register_index + i] = 1;
+        image->units[unit]->exists[tag->signal.table][tag->signal.register_index + i] = 1;
 }
 
 bool sim_image_set(struct sim_image *image, int unit, const struct plant_tag *tag, double value)
 {
     modbus_mapping_t *mapping = image->units[unit]->mapping;
-    int at = tag->register_index;
+    int at = tag->signal.register_index;
     uint16_t bit;
-    uint8_t *bits = tag->table == TABLE_COIL ? mapping->tab_bits : mapping->tab_input_bits;
-    if (tag->table == TABLE_INPUT)
+    uint8_t *bits = tag->signal.table == TABLE_COIL ? mapping->tab_bits : mapping->tab_input_bits;
+    if (tag->signal.table == TABLE_INPUT)
         return sim_encode(tag, value, mapping->tab_input_registers + at);
-    if (tag->table == TABLE_HOLDING)
+    if (tag->signal.table == TABLE_HOLDING)
         return sim_encode(tag, value, mapping->tab_registers + at);
     bit = bits[at];
     bool held = sim_encode(tag, value, &bit);
@@ -52,7 +52,7 @@ bool sim_image_set(struct sim_image *image, int unit, const struct plant_tag *ta
 void sim_image_fail(struct sim_image *image, int unit, const struct plant_tag *tag, bool failing)
 {
     for (int i = 0; i < sim_encode_width(tag); i++)
-        image->units[unit]->failing[tag->table][tag->register_index + i] = failing;
+        image->units[unit]->failing[tag->signal.table][tag->signal.register_index + i] = failing;
 }
 
 int sim_image_refusal(const struct sim_image *image, int unit_id, enum register_table table, int first, int count)

@@ -58,12 +58,12 @@ static void choose_range(const struct plant *plant, const struct plant_tag *tag,
 {
     double low = 0, high = 100;
     if (tag->group >= 0) {
-        low = unit_change_back(&tag->change, plant->groups[tag->group].min);
-        high = unit_change_back(&tag->change, plant->groups[tag->group].max);
-    } else if (tag->scaling != SCALING_NONE) {
-        low = tag->scaled_low;
-        high = tag->scaled_high;
-    } else if (tag->type == DATA_BIT || tag->bit >= 0) {
+        low = unit_change_back(&tag->scale.change, plant->groups[tag->group].min);
+        high = unit_change_back(&tag->scale.change, plant->groups[tag->group].max);
+    } else if (tag->scale.kind != SCALING_NONE) {
+        low = tag->scale.scaled_low;
+        high = tag->scale.scaled_high;
+    } else if (tag->signal.type == DATA_BIT || tag->signal.bit >= 0) {
         high = 0;
     }
     out->normal = low + 0.4 * (high - low);
@@ -117,7 +117,7 @@ static const struct series *find_series(struct sim_values *values, const struct 
 /* Sets the unit conversion of a tag with a series: from the unit that the file states to the unit of the tag's row. */
 static void take_unit(struct sim_values *values, const struct sim_map_entry *entry, size_t tag, struct diag *diag)
 {
-    const char *unit = values->tags[tag].series ? values->tags[tag].series->unit : NULL, *own = values->plant->tags[tag].own_unit;
+    const char *unit = values->tags[tag].series ? values->tags[tag].series->unit : NULL, *own = values->plant->tags[tag].scale.own_unit;
     if (unit && *unit && units_compare(unit, own, &values->tags[tag].change) > UNITS_CONVERT)
         diag_error(diag, entry->file, entry->line, 0, "%s: %s is in '%.60s', which cannot be converted to '%.60s'", entry->tag,
                    entry->series, unit, own);

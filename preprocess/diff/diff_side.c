@@ -39,7 +39,7 @@ static void take_tags(struct diff_side *side)
         struct diff_side_tag *to = &side->tags[side->tag_count++];
         bool known = tag->asset >= 0, sensor = known && tag->group >= 0;
         *to = (struct diff_side_tag){ .name = tag->name,
-                                      .asset = known ? plant->assets[tag->asset].id : tag->lost_asset,
+                                      .asset = known ? plant->assets[tag->asset].id : tag->place.lost_asset,
                                       .is_sensor = sensor };
         if (!to->asset)
             to->asset = "";

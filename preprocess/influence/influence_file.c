@@ -48,7 +48,7 @@ static size_t places_of(const struct influence_input *input, int group, double (
     *places_m = mem_array(input->sensor_count, sizeof(**places_m));
     for (size_t i = 0; i < input->sensor_count; i++) {
         const struct plant_tag *tag = &input->plant->tags[input->sensors[i].tag];
-        if (tag->group == group && !tag->place_assumed)
+        if (tag->group == group && !tag->place.assumed)
             memcpy((*places_m)[count++], input->places_m[i], sizeof(**places_m));
     }
     return count;
@@ -57,7 +57,7 @@ static size_t places_of(const struct influence_input *input, int group, double (
 bool influence_is_wanted(const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count)
 {
     for (size_t i = 0; i < sensor_count; i++)
-        if (!plant->tags[sensors[i].tag].place_assumed && plant_prepares_any(&plant->groups[plant->tags[sensors[i].tag].group]))
+        if (!plant->tags[sensors[i].tag].place.assumed && plant_prepares_any(&plant->groups[plant->tags[sensors[i].tag].group]))
             return true;
     return false;
 }
@@ -73,7 +73,7 @@ static const char **names_of(const struct influence_input *input, int group)
     const char **names = mem_array(input->sensor_count, sizeof(*names));
     for (size_t i = 0, count = 0; i < input->sensor_count; i++) {
         const struct plant_tag *tag = &input->plant->tags[input->sensors[i].tag];
-        if (tag->group == group && !tag->place_assumed)
+        if (tag->group == group && !tag->place.assumed)
             names[count++] = tag->name;
     }
     return names;

@@ -34,13 +34,13 @@ static size_t count_of_group(const struct plant *plant, const struct plant_senso
 {
     size_t found = 0;
     for (size_t i = 0; i < count; i++)
-        found += plant->tags[sensors[i].tag].group == plant->tags[sensors[sensor].tag].group && !plant->tags[sensors[i].tag].place_assumed;
+        found += plant->tags[sensors[i].tag].group == plant->tags[sensors[sensor].tag].group && !plant->tags[sensors[i].tag].place.assumed;
     return found;
 }
 
 static bool is_alone(const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
 {
-    return count_of_group(plant, sensors, count, sensor) == !plant->tags[sensors[sensor].tag].place_assumed;
+    return count_of_group(plant, sensors, count, sensor) == !plant->tags[sensors[sensor].tag].place.assumed;
 }
 
 /* Returns whether the field is constant on the asset: each group has a single sensor, Shepard interpolation and no reach. Distances then
@@ -96,7 +96,7 @@ static void hash_field(XXH3_state_t *state, const struct plant *plant, const str
         XXH3_64bits_update(state, "s", 1);
     if (plant_group_is_exact(group, count_of_group(plant, sensors, count, sensor)))
         XXH3_64bits_update(state, "x", 1);
-    if (tag->place_assumed)
+    if (tag->place.assumed)
         XXH3_64bits_update(state, "e", 1);
 }
 

@@ -124,7 +124,7 @@ bool sensor_distances_find(struct sensor_distances *measured, struct log *log, s
 bool sensor_distances_matter(const struct plant *plant, const struct plant_sensor *sensors, size_t count)
 {
     for (size_t i = 0; i < count; i++)
-        if (!plant->tags[sensors[i].tag].place_assumed)
+        if (!plant->tags[sensors[i].tag].place.assumed)
             return true;
     return false;
 }

@@ -45,7 +45,7 @@ bool distances_print(const struct prepare *prepare, const char *folder, int asse
                    prepare->plant->tags[tag].name, asset->plant->id);
         return false;
     }
-    if (prepare->plant->tags[tag].place_assumed && !sensor_distances_matter(prepare->plant, asset->sensors, asset->sensor_count)) {
+    if (prepare->plant->tags[tag].place.assumed && !sensor_distances_matter(prepare->plant, asset->sensors, asset->sensor_count)) {
         diag_error(diag, prepare->plant->tags_path, prepare->plant->tags[tag].line, 0,
                    "tag %s: its place on asset %s is assumed: it represents the whole asset, so there are no distances from it",
                    prepare->plant->tags[tag].name, asset->plant->id);

@@ -43,7 +43,7 @@ static void add_sensors(struct concerns *concerns, const struct prepare *prepare
     for (size_t s = 0; asset->surface_distances_m && s < asset->sensor_count; s++) {
         double distance_m = (double)asset->surface_distances_m[s];
         const struct plant_tag *tag = &prepare->plant->tags[asset->sensors[s].tag];
-        if (distance_m > asset->far_m && !tag->place_assumed)
+        if (distance_m > asset->far_m && !tag->place.assumed)
             add(concerns, asset, 1000 + distance_m / asset->far_m,
                 mem_printf("%s is %.3f m from its surface (more than %.3f m)", tag->name, distance_m, asset->far_m));
     }
@@ -99,7 +99,7 @@ static void add_powers(struct concerns *concerns, const struct prepare *prepare,
         size_t sensors = 0;
         for (size_t s = 0; s < asset->sensor_count; s++) {
             const struct plant_tag *tag = &prepare->plant->tags[asset->sensors[s].tag];
-            sensors += tag->group == (int)g && !tag->place_assumed;
+            sensors += tag->group == (int)g && !tag->place.assumed;
         }
         if (sensors > 1 && group->interpolation == INTERPOLATION_SHEPARD && group->power >= HIGH_POWER)
             add(concerns, asset, 1 + steps / 255,

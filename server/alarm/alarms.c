@@ -27,7 +27,7 @@ static int64_t ns_of(double s)
 
 static int add_alarm(struct alarms *alarms, int tag, enum alarm_kind kind, double limit)
 {
-    const struct plant_alarm_settings *alarm_settings = &alarms->plant->tags[tag].alarm_settings;
+    const struct plant_alarm_settings *alarm_settings = &alarms->plant->tags[tag].alarms.settings;
     int index = (int)alarms->count;
     mem_grow(&alarms->list, &alarms->capacity, alarms->count + 1, sizeof(*alarms->list));
     alarms->list[alarms->count++] = (struct alarm){
@@ -47,7 +47,7 @@ static int add_alarm(struct alarms *alarms, int tag, enum alarm_kind kind, doubl
 
 static void add_suppression(struct alarms *alarms, int index)
 {
-    int by = alarms->plant->tags[alarms->list[index].tag].suppressed_by;
+    int by = alarms->plant->tags[alarms->list[index].tag].alarms.suppressed_by;
     if (by >= 0)
         add_feed(alarms, by, index, FEED_SUPPRESSES);
 }
@@ -63,7 +63,7 @@ static void add_bad(struct alarms *alarms, int tag)
    delay of the device's tags, but at least least_on_ns. Its priority is one level less urgent than the most urgent priority of the tags. */
 static void add_link(struct alarms *alarms, struct alarm_device *device, int tag, int64_t least_on_ns)
 {
-    const struct plant_alarm_settings *settings = &alarms->plant->tags[tag].alarm_settings;
+    const struct plant_alarm_settings *settings = &alarms->plant->tags[tag].alarms.settings;
     int priority = (settings->priority ? settings->priority : ALARM_PRIORITY_DEFAULT) + 1;
     int64_t on_ns = ns_of(settings->on_delay_s), off_ns = ns_of(settings->off_delay_s);
     priority = priority > ALARM_PRIORITIES ? ALARM_PRIORITIES : priority;
@@ -92,7 +92,7 @@ static void add_link(struct alarms *alarms, struct alarm_device *device, int tag
 
 static bool never_stale(const struct alarms *alarms, size_t tag)
 {
-    return alarms->plant->tags[tag].stale_s >= PLANT_NEVER_STALE_S;
+    return alarms->plant->tags[tag].validity.stale_s >= PLANT_NEVER_STALE_S;
 }
 
 /* Gives every device a LINK alarm (raised when the device does not answer). Its delay comes from the device's tags with BAD alarms, or
@@ -127,7 +127,7 @@ static void add_limits(struct alarms *alarms, int tag)
 {
     bool any = false;
     for (int i = 0; i < LIMIT_COUNT; i++) {
-        double limit = alarms->plant->tags[tag].limits[i];
+        double limit = alarms->plant->tags[tag].alarms.limits[i];
         if (isnan(limit))
             continue;
         int index = add_alarm(alarms, tag, (enum alarm_kind)(1 + i), limit);
@@ -150,16 +150,16 @@ static void add_mirrored(struct alarms *alarms, const int *mirrors, size_t count
 {
     const struct plant *plant = alarms->plant;
     for (size_t i = 0; i < count; i++) {
-        const struct plant_mirror *mirror = &plant->tags[mirrors[i]].mirror;
+        const struct plant_mirror *mirror = &plant->tags[mirrors[i]].alarms.mirror;
         if (mirror->acknowledged)
             continue;
-        double limit = mirror->limit == LIMIT_COUNT ? NAN : plant->tags[mirror->tag].limits[mirror->limit];
+        double limit = mirror->limit == LIMIT_COUNT ? NAN : plant->tags[mirror->tag].alarms.limits[mirror->limit];
         int index = add_alarm(alarms, mirror->tag, kind_of(mirror), limit);
         alarms->list[index].rule.latches = false;
         alarms->list[index].delays = (struct condition_delays){ 0, 0 };
         add_feed(alarms, mirrors[i], index, FEED_BIT);
         for (size_t k = 0; k < count; k++) {
-            const struct plant_mirror *other = &plant->tags[mirrors[k]].mirror;
+            const struct plant_mirror *other = &plant->tags[mirrors[k]].alarms.mirror;
             if (!other->acknowledged || kind_of(other) != kind_of(mirror))
                 continue;
             alarms->list[index].rule.acknowledges = alarms->list[index].rule.forgets = true;
@@ -171,7 +171,7 @@ static void add_mirrored(struct alarms *alarms, const int *mirrors, size_t count
 static int by_mirrored(const void *pa, const void *pb, void *plant)
 {
     const struct plant_tag *tags = ((const struct plant *)plant)->tags;
-    int a = *(const int *)pa, b = *(const int *)pb, order = tags[a].mirror.tag - tags[b].mirror.tag;
+    int a = *(const int *)pa, b = *(const int *)pb, order = tags[a].alarms.mirror.tag - tags[b].alarms.mirror.tag;
     return order ? order : a - b;
 }
 
@@ -181,12 +181,12 @@ static void add_mirrors(struct alarms *alarms)
     int *mirrors = mem_array(plant->tag_count, sizeof(*mirrors));
     size_t count = 0;
     for (size_t i = 0; i < plant->tag_count; i++)
-        if (plant->tags[i].mirror.tag >= 0)
+        if (plant->tags[i].alarms.mirror.tag >= 0)
             mirrors[count++] = (int)i;
     qsort_r(mirrors, count, sizeof(*mirrors), by_mirrored, (void *)plant);
     for (size_t i = 0, end; i < count; i = end) {
-        int tag = plant->tags[mirrors[i]].mirror.tag;
-        for (end = i; end < count && plant->tags[mirrors[end]].mirror.tag == tag;)
+        int tag = plant->tags[mirrors[i]].alarms.mirror.tag;
+        for (end = i; end < count && plant->tags[mirrors[end]].alarms.mirror.tag == tag;)
             end++;
         add_mirrored(alarms, mirrors + i, end - i);
     }
@@ -444,7 +444,7 @@ static void put_value(struct alarms *alarms, int index, const struct sample_even
     } else if (is_bit) {
         put(alarms, index, event->value != 0 ? CONDITION_BEYOND : CONDITION_CLEAR, event->value, now);
     } else {
-        double deadband = alarms->plant->tags[alarm->tag].alarm_settings.deadband;
+        double deadband = alarms->plant->tags[alarm->tag].alarms.settings.deadband;
         put(alarms, index, condition_side(alarm->kind, alarm->limit, deadband, event->value), event->value, now);
     }
 }
@@ -510,7 +510,7 @@ static void look_at_devices(struct alarms *alarms, struct instant now)
 static bool calls_by_itself(const struct alarms *alarms, const struct alarm *alarm, int64_t mono_ns)
 {
     const struct alarm_device *device = &alarms->devices->list[alarms->devices->of_tag[alarm->tag]];
-    double stale_s = fmin(alarms->plant->tags[alarm->tag].stale_s, LONGEST_RETURN_S);
+    double stale_s = fmin(alarms->plant->tags[alarm->tag].validity.stale_s, LONGEST_RETURN_S);
     return device->usable > 0 && (double)(mono_ns - device->back_ns) >= stale_s * 1e9;
 }
 
@@ -556,7 +556,7 @@ void alarms_put(struct alarms *alarms, const struct sample_event *event, size_t 
 
 static bool is_waiting_too_long(struct alarms *alarms, int tag, int64_t mono_ns)
 {
-    double stale_s = alarms->plant->tags[tag].stale_s;
+    double stale_s = alarms->plant->tags[tag].validity.stale_s;
     if (stale_s >= PLANT_NEVER_STALE_S)
         stale_s = LONGEST_RETURN_S;
     return (double)(mono_ns - alarms->begun_ns) >= stale_s * 1e9;

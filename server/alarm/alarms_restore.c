@@ -30,7 +30,7 @@ static void take(struct alarms *alarms, int index, const struct alarm *from)
     memcpy(alarm->who, from->who, sizeof(alarm->who));
     memcpy(alarm->reason, from->reason, sizeof(alarm->reason));
     fit_to_rule(alarm, alarms->plant->alarms == ALARMS_LOCAL);
-    if ((alarm->tag < 0 || alarms->plant->tags[alarm->tag].suppressed_by < 0) && alarm->state.aside & ALARM_ASIDE_SUPPRESSED)
+    if ((alarm->tag < 0 || alarms->plant->tags[alarm->tag].alarms.suppressed_by < 0) && alarm->state.aside & ALARM_ASIDE_SUPPRESSED)
         alarm_state_step(&alarm->state, &alarm->rule, ALARM_UNSUPPRESS);
     if (alarm->kind != ALARM_BAD || alarms->devices->of_tag[alarm->tag] < 0)
         alarm_state_step(&alarm->state, &alarm->rule, ALARM_CALL);

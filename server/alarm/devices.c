@@ -9,7 +9,7 @@
 
 static int unit_of(const struct plant *plant, const struct plant_tag *tag)
 {
-    return tag->modbus_unit >= 0 ? tag->modbus_unit : plant->sources[tag->source].unit;
+    return tag->signal.modbus_unit >= 0 ? tag->signal.modbus_unit : plant->sources[tag->source].unit;
 }
 
 /* Returns the index of a device, or -1. Searches from the newest device back, because tags of one device mostly follow each other. */

@@ -35,20 +35,20 @@ static void from_bearing(const struct plant *plant, double degrees, double out[3
 static struct sensor_direction read_one(const struct scene *scene, int asset, const struct plant_tag *tag, const struct reading *own,
                                         const struct snapshot *snapshot)
 {
-    struct sensor_direction out = { .configured = tag->direction_count > 0 };
+    struct sensor_direction out = { .configured = tag->direction.count > 0 };
     double said[3] = { 0 }, vector[3];
     const double *m = scene->assets[asset].placement;
     out.known = out.configured && !quality_is_bad(own->quality) && isfinite(own->value);
     out.uncertain = quality_is_uncertain(own->quality);
-    for (int i = 0; i < tag->direction_count; i++) {
-        const struct reading *reading = &snapshot->readings[tag->direction[i]];
+    for (int i = 0; i < tag->direction.count; i++) {
+        const struct reading *reading = &snapshot->readings[tag->direction.tags[i]];
         out.known &= !quality_is_bad(reading->quality) && isfinite(reading->value);
         out.uncertain |= quality_is_uncertain(reading->quality);
         said[i] = reading->value;
     }
     if (!out.known)
         return out;
-    if (tag->direction_count == 1)
+    if (tag->direction.count == 1)
         from_bearing(scene->plant, said[0], said);
     out.known = vec_normalize(said) > 0 || own->value == 0;
     for (int c = 0; c < 3; c++)

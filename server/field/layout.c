@@ -26,7 +26,7 @@ static bool has_known(const struct scene *scene, int asset, int group, const str
 {
     const struct scene_asset *from = &scene->assets[asset];
     for (size_t i = 0; i < from->sensor_count; i++)
-        if (of_group(scene, &from->sensors[i], group) && !scene->plant->tags[from->sensors[i].tag].place_assumed &&
+        if (of_group(scene, &from->sensors[i], group) && !scene->plant->tags[from->sensors[i].tag].place.assumed &&
             !trial_find(trial, from->sensors[i].tag))
             return true;
     for (size_t i = 0; trial && i < trial->count; i++)
@@ -95,7 +95,7 @@ struct field_layout *layout_create(const struct scene *scene, int asset, int gro
     layout->assumed = !has_known(scene, asset, group, trial);
     layout->sensors = mem_array(from->sensor_count + (trial ? trial->count : 0), sizeof(*layout->sensors));
     for (size_t i = 0, number = 0; i < from->sensor_count; i++) {
-        bool known = !scene->plant->tags[from->sensors[i].tag].place_assumed;
+        bool known = !scene->plant->tags[from->sensors[i].tag].place.assumed;
         if (!of_group(scene, &from->sensors[i], group))
             continue;
         if (!trial_find(trial, from->sensors[i].tag) && (layout->assumed || known))

@@ -39,7 +39,7 @@ static double side_place(double value, double inner, double outer)
 
 double limit_place(const struct plant_group *group, const struct plant_tag *tag, double value)
 {
-    const double *limits = tag->limits;
+    const double *limits = tag->alarms.limits;
     struct limit_side low = { limits[LIMIT_L], limits[LIMIT_LL] }, high = { limits[LIMIT_H], limits[LIMIT_HH] };
     if (!isfinite(low.inner) && !isfinite(low.outer) && !isfinite(high.inner) && !isfinite(high.outer))
         return NAN;

@@ -164,7 +164,7 @@ static bool take_unit(struct history_import *import, int tag, double *value)
 {
     const struct plant_tag *of = &import->params->plant->tags[tag];
     const char *unit = text_cell_read(csv_text(&import->csv, import->unit)), *to = of->unit ? of->unit : "";
-    struct unit_change change = of->change;
+    struct unit_change change = of->scale.change;
     if (*unit && units_compare(unit, to, &change) > UNITS_CONVERT) {
         csv_error(&import->csv, import->unit, "'%.60s' cannot be converted to '%.60s', in which %s is recorded", unit, to, of->name);
         return false;
@@ -298,18 +298,18 @@ static int64_t typical_spacing(struct import_series *series, size_t count)
 static int64_t longest_gap(const struct import_params *params, const struct plant_tag *tag, struct spacing *spacing, int64_t typical_us,
                            bool exported)
 {
-    bool goes_stale = tag->stale_s < PLANT_NEVER_STALE_S;
+    bool goes_stale = tag->validity.stale_s < PLANT_NEVER_STALE_S;
     bool alone = spacing->passed > 0 && !spacing_has_rhythm(spacing);
     int64_t median_us = alone ? typical_us : spacing_median(spacing);
-    int64_t stale_us = goes_stale ? (int64_t)(tag->stale_s * US_PER_S) : INT64_MAX;
+    int64_t stale_us = goes_stale ? (int64_t)(tag->validity.stale_s * US_PER_S) : INT64_MAX;
     int64_t override_us = (int64_t)(2 * params->plant->history.override_s * US_PER_S);
     if (params->longest_gap_us)
         return params->longest_gap_us;
     if (exported && !goes_stale)
         return INT64_MAX;
-    bool by_stale = !median_us || (tag->states_stale && stale_us >= median_us);
+    bool by_stale = !median_us || (tag->validity.states_stale && stale_us >= median_us);
     int64_t longest_us = by_stale ? stale_us : median_us < INT64_MAX / MEDIANS ? median_us * MEDIANS : INT64_MAX;
-    bool is_least = exported || (alone && by_stale && !tag->states_stale);
+    bool is_least = exported || (alone && by_stale && !tag->validity.states_stale);
     return is_least && longest_us < override_us ? override_us : longest_us;
 }
 

@@ -25,8 +25,8 @@ struct recorder {
 /* Returns the range of a tag's values (highest minus lowest): of the instrument, otherwise of its group. */
 static double span_of(const struct plant *plant, const struct plant_tag *tag)
 {
-    if (tag->has_range)
-        return unit_change_span(&tag->change, fabs(tag->scaled_high - tag->scaled_low));
+    if (tag->scale.has_range)
+        return unit_change_span(&tag->scale.change, fabs(tag->scale.scaled_high - tag->scale.scaled_low));
     return tag->group >= 0 ? plant->groups[tag->group].max - plant->groups[tag->group].min : 0;
 }
 
@@ -38,9 +38,9 @@ struct history_tag *history_tags(const struct plant *plant)
         tags[i] = (struct history_tag){
             .name = tag->name,
             .unit = tag->unit ? tag->unit : "",
-            .step = tag->type == DATA_BIT,
+            .step = tag->signal.type == DATA_BIT,
             .within = isnan(tag->deadband) ? plant->history.deadband_percent / 100 * span_of(plant, tag) : tag->deadband,
-            .stale_us = tag->stale_s < PLANT_NEVER_STALE_S ? (int64_t)(tag->stale_s * US_PER_S) : INT64_MAX,
+            .stale_us = tag->validity.stale_s < PLANT_NEVER_STALE_S ? (int64_t)(tag->validity.stale_s * US_PER_S) : INT64_MAX,
         };
     }
     return tags;

@@ -37,21 +37,24 @@ struct loop_checks {
     atomic_bool *unproven; /* atomic flags by tag, read by threads that draw; true: the tag is marked as unproven */
 };
 
-/* --- fingerprint of a tag's configuration
-   ---------------------------------------------------------------------------------------------- */
+/* --- fingerprint of a tag's configuration ----------------------------------------------------------------------------------- */
 
 uint64_t loop_check_fingerprint(const struct plant *plant, int index)
 {
     const struct plant_tag *tag = &plant->tags[index];
+    const struct tag_signal *signal = &tag->signal;
+    const struct tag_scale *scale = &tag->scale;
+    const double *at_m = tag->place.position_m;
     struct text text = { 0 };
-    text_add(&text, "%s|%s|%d|%d|%d|%d|%d|%d|", tag->source >= 0 ? plant->sources[tag->source].id : "", tag->address ? tag->address : "",
-             tag->modbus_unit, (int)tag->table, tag->register_index, tag->bit, (int)tag->type, (int)tag->byte_order);
-    text_add(&text, "%d|%.17g|%.17g|%.17g|%.17g|%d|", (int)tag->scaling, tag->raw_low, tag->raw_high, tag->scaled_low, tag->scaled_high,
-             tag->negate);
-    text_add(&text, "%s|%s|%.17g|%.17g|%.17g", tag->asset >= 0 ? plant->assets[tag->asset].id : "", tag->node ? tag->node : "",
-             tag->position_m[0], tag->position_m[1], tag->position_m[2]);
-    if (tag->change.converts)
-        text_add(&text, "|%.17g|%.17g", tag->change.factor, tag->change.offset);
+    text_add(&text, "%s|%s|%d|%d|%d|%d|%d|%d|", tag->source >= 0 ? plant->sources[tag->source].id : "",
+             signal->address ? signal->address : "", signal->modbus_unit, (int)signal->table, signal->register_index, signal->bit,
+             (int)signal->type, (int)signal->byte_order);
+    text_add(&text, "%d|%.17g|%.17g|%.17g|%.17g|%d|", (int)scale->kind, scale->raw_low, scale->raw_high, scale->scaled_low,
+             scale->scaled_high, scale->negate);
+    text_add(&text, "%s|%s|%.17g|%.17g|%.17g", tag->asset >= 0 ? plant->assets[tag->asset].id : "", tag->place.node ? tag->place.node : "",
+             at_m[0], at_m[1], at_m[2]);
+    if (scale->change.converts)
+        text_add(&text, "|%.17g|%.17g", scale->change.factor, scale->change.offset);
     uint64_t hash = XXH3_64bits(text.at, text.length);
     text_finish(&text);
     return hash;

@@ -194,7 +194,7 @@ static bool may_show(const struct plant *plant, const struct field_params *field
     char group[48], asset[48];
     int first;
     const struct plant_group *of = &plant->groups[field->group];
-    if (field->show == SHOW_DISTANCE && plant->tags[field->sensor].place_assumed) {
+    if (field->show == SHOW_DISTANCE && plant->tags[field->sensor].place.assumed) {
         message_refuse_with(error, "bad_field", "sensor", REFUSAL_ASSUMED, "asset=%s",
                             quoted(plant->assets[plant->tags[field->sensor].asset].id, asset));
         return false;

@@ -63,7 +63,7 @@ static bool is_like(const char *pattern, const struct plant_tag *tag)
 
 static bool is_meant(const struct assumed_filter *filter, const struct plant_tag *tag)
 {
-    return tag->place_assumed && tag->asset >= 0 && (filter->asset < 0 || tag->asset == filter->asset) &&
+    return tag->place.assumed && tag->asset >= 0 && (filter->asset < 0 || tag->asset == filter->asset) &&
            (filter->group < 0 || tag->group == filter->group) && (!filter->pattern[0] || is_like(filter->pattern, tag));
 }
 
@@ -75,7 +75,7 @@ size_t assumed_places_choose(const struct scene *scene, const struct assumed_fil
     for (size_t i = 0; i < plant->tag_count; i++) {
         const struct plant_tag *tag = &plant->tags[i];
         outcome[i] = !is_meant(filter, tag)                                      ? ASSUMED_NOT_MEANT
-                     : !tag->has_position && !tag->node                          ? ASSUMED_NOWHERE
+                     : !tag->place.has_position && !tag->place.node              ? ASSUMED_NOWHERE
                      : isnan(distance_m[i])                                      ? ASSUMED_MISSING
                      : filter->within_m >= 0 && distance_m[i] > filter->within_m ? ASSUMED_FAR
                      : confidence && !(confidence[i] >= filter->confidence)      ? ASSUMED_UNSURE

@@ -68,7 +68,7 @@ void plant_gp_check(struct yaml_reader *reader, const struct yaml_map *map, cons
 static bool has_sensor(const struct plant *plant, int group, int asset)
 {
     for (size_t i = 0; i < plant->tag_count; i++)
-        if (plant->tags[i].group == group && plant->tags[i].asset == asset && !plant->tags[i].place_assumed)
+        if (plant->tags[i].group == group && plant->tags[i].asset == asset && !plant->tags[i].place.assumed)
             return true;
     return false;
 }

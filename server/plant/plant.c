@@ -155,8 +155,8 @@ static void free_tags(struct plant *plant)
 {
     for (size_t i = 0; i < plant->tag_count; i++) {
         struct plant_tag *tag = &plant->tags[i];
-        char *const texts[] = { tag->name,  tag->description, tag->unit, tag->own_unit,  tag->address,
-                                tag->topic, tag->path,        tag->node, tag->lost_asset };
+        char *const texts[] = { tag->name,         tag->description, tag->unit,       tag->scale.own_unit,  tag->signal.address,
+                                tag->signal.topic, tag->signal.path, tag->place.node, tag->place.lost_asset };
         for (size_t k = 0; k < sizeof(texts) / sizeof(*texts); k++)
             mem_free(texts[k]);
         expression_destroy(&tag->expression);

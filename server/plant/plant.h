@@ -253,17 +253,8 @@ struct plant_quality_tag {
 };
 
 enum { PLANT_SENTINELS = 4 };
-struct plant_tag {
-    char *name, *description;
-    char *unit; /* unit of the tag's readings, limits and deadbands: the group's unit; for a tag without a group, the row's */
-    /* unit of the values at the tag's address, and of scaled_low and scaled_high: the row's unit; if the row has none, `unit` */
-    char *own_unit;
-    struct unit_change change; /* conversion from own_unit to unit */
-    int source, group, asset;  /* index, or -1 */
-    char *lost_asset;          /* id in the tag list of an asset that does not exist (plant_load_with_orphans()), or NULL */
-    /* `Place: equipment`: the exact position on the asset is unknown; the reading represents the whole asset (field/field.h) */
-    bool place_assumed;
-    char *address; /* address as written: a register, a series name, a topic, or = and an expression */
+struct tag_signal { /* address of a tag's value at its device, and its encoding there */
+    char *address;  /* address as written: a register, a series name, a topic, or = and an expression */
     /* MQTT: the full topic, and the path of the value in its payload ("": the source's default). Sparkplug: GROUP/NODE[/DEVICE], and the
        metric. OPC UA: the namespace URI, and an identifier such as s=NAME. Other sources: NULL. */
     char *topic, *path;
@@ -276,30 +267,63 @@ struct plant_tag {
     /* byte order: for 32 and 64 bits always known; for 16 bits as the row states, otherwise NONE (standard order); for single bits NONE */
     enum byte_order byte_order;
     int scan_ms; /* scan interval in milliseconds; 0: the source's poll_ms */
-    enum scaling scaling;
+};
+
+struct tag_scale { /* conversion from the raw value to the tag's unit */
+    enum scaling kind;
     double raw_low, raw_high, scaled_low, scaled_high; /* range of raw values, and the range to which it is scaled, in own_unit */
     bool has_range;                                    /* true: scaled_low to scaled_high is the instrument's measuring range */
     bool ne43; /* true: raw_low and raw_high are 4 and 20 mA, so currents outside are judged by NAMUR NE 43 */
     struct plant_sentinel sentinels[PLANT_SENTINELS];
     int sentinel_count;
     bool negate;
-    bool has_position;             /* true: position_m is set; false: see `node` */
-    double position_m[3];          /* position in metres, in the frame that the asset states */
-    char *node;                    /* name of the model node that gives the position, or NULL */
-    double strength, decay;        /* s and o of Algorithm 1 of Kim & Suh (field/field.h): the tag's own values, otherwise the group's */
-    double stale_s;                /* age in seconds from which the reading is stale; default: three poll intervals, at least 5 s */
-    double flatline_s;             /* seconds without a change after which the value is uncertain; 0: never */
-    bool states_stale;             /* the row states stale_s */
-    struct expression *expression; /* expression of a derived tag; NULL for other tags */
-    struct plant_quality_tag quality;
-    double limits[LIMIT_COUNT];                 /* tag's own limits, else the group's; NaN: none */
-    double deadband;                            /* maximum error of the recorded history in the tag's unit; NaN: the history's default */
-    struct plant_alarm_settings alarm_settings; /* alarm settings of the tag's row; otherwise the group's */
+    /* unit of the values at the tag's address, and of scaled_low and scaled_high: the row's unit; if the row has none, the tag's */
+    char *own_unit;
+    struct unit_change change; /* conversion from own_unit to the tag's unit */
+};
+
+struct tag_place { /* place of a tag's sensor on its asset */
+    /* `Place: equipment`: the exact position on the asset is unknown; the reading represents the whole asset (field/field.h) */
+    bool assumed;
+    bool has_position;    /* true: position_m is set; false: see `node` */
+    double position_m[3]; /* position in metres, in the frame that the asset states */
+    char *node;           /* name of the model node that gives the position, or NULL */
+    char *lost_asset;     /* id in the tag list of an asset that does not exist (plant_load_with_orphans()), or NULL */
+};
+
+struct tag_validity {                 /* conditions under which a tag's reading is good */
+    double stale_s;                   /* age in seconds from which the reading is stale; default: three poll intervals, at least 5 s */
+    bool states_stale;                /* the row states stale_s */
+    double flatline_s;                /* seconds without a change after which the value is uncertain; 0: never */
+    struct plant_quality_tag quality; /* another tag that states whether the reading is valid */
+};
+
+struct tag_alarms {
+    double limits[LIMIT_COUNT];           /* tag's own limits, else the group's; NaN: none */
+    struct plant_alarm_settings settings; /* alarm settings of the tag's row; otherwise the group's */
     int suppressed_by; /* index of a bit tag; while that bit is 1, this tag's alarms are suppressed by design; -1: none */
     struct plant_mirror mirror;
-    int direction[3];    /* indices of the tags with the direction of the value: components along X, Y and Z of the plant, or a bearing */
-    int direction_count; /* number of tags with the direction: 0: no direction; 1: a bearing in degrees; 3: components */
-    int line, column;    /* position of the tag's name in the tag list */
+};
+
+struct tag_direction { /* direction of a tag's value */
+    int tags[3];       /* indices of the tags with the direction: components along X, Y and Z of the plant, or a bearing */
+    int count;         /* number of these tags: 0: no direction; 1: a bearing in degrees; 3: components */
+};
+
+struct plant_tag {
+    char *name, *description;
+    char *unit;               /* unit of the tag's readings, limits and deadbands: the group's unit; for a tag without a group, the row's */
+    int source, group, asset; /* index, or -1 */
+    struct tag_signal signal;
+    struct tag_scale scale;
+    struct expression *expression; /* expression of a derived tag; NULL for other tags */
+    struct tag_place place;
+    double strength, decay; /* s and o of Algorithm 1 of Kim & Suh (field/field.h): the tag's own values, otherwise the group's */
+    struct tag_validity validity;
+    struct tag_alarms alarms;
+    double deadband; /* maximum error of the recorded history in the tag's unit; NaN: the history's default */
+    struct tag_direction direction;
+    int line, column; /* position of the tag's name in the tag list */
 };
 
 enum { PLANT_ENVIRONMENTS = 8 };

@@ -62,15 +62,32 @@ static const char *source_of(const struct plant *plant, const struct plant_tag *
 static void compare_limits(struct plant_diff *diff, const struct plant_tag *a, const struct plant_tag *b)
 {
     for (int i = 0; i < LIMIT_COUNT; i++)
-        if (!same_number(a->limits[i], b->limits[i]))
-            say(diff, "tag %s: %s %g > %g", b->name, plant_limit_names[i], a->limits[i], b->limits[i]);
+        if (!same_number(a->alarms.limits[i], b->alarms.limits[i]))
+            say(diff, "tag %s: %s %g > %g", b->name, plant_limit_names[i], a->alarms.limits[i], b->alarms.limits[i]);
+}
+
+static bool same_place(const struct tag_place *a, const struct tag_place *b)
+{
+    return same_text(a->node, b->node) && memcmp(a->position_m, b->position_m, sizeof(a->position_m)) == 0 && a->assumed == b->assumed;
+}
+
+static bool same_scale(const struct tag_scale *a, const struct tag_scale *b)
+{
+    return a->kind == b->kind && a->raw_low == b->raw_low && a->raw_high == b->raw_high && a->scaled_low == b->scaled_low &&
+           a->scaled_high == b->scaled_high && a->negate == b->negate;
+}
+
+static bool same_settings(const struct plant_alarm_settings *a, const struct plant_alarm_settings *b)
+{
+    return a->deadband == b->deadband && a->on_delay_s == b->on_delay_s && a->off_delay_s == b->off_delay_s &&
+           a->priority == b->priority && a->latch == b->latch;
 }
 
 static bool same_direction(const struct plant *before, const struct plant_tag *a, const struct plant *after, const struct plant_tag *b)
 {
-    bool same = a->direction_count == b->direction_count;
-    for (int i = 0; i < b->direction_count && same; i++)
-        same = same_text(before->tags[a->direction[i]].name, after->tags[b->direction[i]].name);
+    bool same = a->direction.count == b->direction.count;
+    for (int i = 0; i < b->direction.count && same; i++)
+        same = same_text(before->tags[a->direction.tags[i]].name, after->tags[b->direction.tags[i]].name);
     return same;
 }
 
@@ -79,30 +96,22 @@ static void compare_tags(struct plant_diff *diff, const struct plant *before, co
 {
     char what[300] = "";
     compare_limits(diff, a, b);
-    add(what, sizeof(what), !same_text(a->address, b->address) || a->type != b->type || a->byte_order != b->byte_order, "address");
+    bool same_address = same_text(a->signal.address, b->signal.address);
+    add(what, sizeof(what),
+        !same_address || a->signal.type != b->signal.type || a->signal.byte_order != b->signal.byte_order, "address");
     add(what, sizeof(what), !same_text(source_of(before, a), source_of(after, b)), "source");
     add(what, sizeof(what), !same_text(group_of(before, a), group_of(after, b)), "group");
     add(what, sizeof(what), !same_text(asset_of(before, a), asset_of(after, b)), "asset");
-    add(what, sizeof(what),
-        !same_text(a->node, b->node) || memcmp(a->position_m, b->position_m, sizeof(a->position_m)) != 0 ||
-            a->place_assumed != b->place_assumed,
-        "place");
+    add(what, sizeof(what), !same_place(&a->place, &b->place), "place");
     add(what, sizeof(what), !same_direction(before, a, after, b), "direction");
-    add(what, sizeof(what),
-        a->scaling != b->scaling || a->raw_low != b->raw_low || a->raw_high != b->raw_high || a->scaled_low != b->scaled_low ||
-            a->scaled_high != b->scaled_high || a->negate != b->negate,
-        "scaling");
-    add(what, sizeof(what), a->scan_ms != b->scan_ms || a->stale_s != b->stale_s, "timing");
+    add(what, sizeof(what), !same_scale(&a->scale, &b->scale), "scaling");
+    add(what, sizeof(what), a->signal.scan_ms != b->signal.scan_ms || a->validity.stale_s != b->validity.stale_s, "timing");
     add(what, sizeof(what), a->strength != b->strength || a->decay != b->decay, "strength, decay");
     add(what, sizeof(what),
-        !same_text(a->unit, b->unit) || !same_text(a->own_unit, b->own_unit) || !same_text(a->description, b->description),
+        !same_text(a->unit, b->unit) || !same_text(a->scale.own_unit, b->scale.own_unit) || !same_text(a->description, b->description),
         "unit, description");
     add(what, sizeof(what), !same_number(a->deadband, b->deadband), "deadband");
-    add(what, sizeof(what),
-        a->alarm_settings.deadband != b->alarm_settings.deadband || a->alarm_settings.on_delay_s != b->alarm_settings.on_delay_s ||
-            a->alarm_settings.off_delay_s != b->alarm_settings.off_delay_s || a->alarm_settings.priority != b->alarm_settings.priority ||
-            a->alarm_settings.latch != b->alarm_settings.latch,
-        "alarming");
+    add(what, sizeof(what), !same_settings(&a->alarms.settings, &b->alarms.settings), "alarming");
     if (what[0])
         say(diff, "tag %s changed: %s", b->name, what);
 }

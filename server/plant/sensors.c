@@ -29,13 +29,13 @@ size_t plant_sensors(const struct plant *plant, int asset, struct plant_sensor *
         if (!is_sensor(tag, asset))
             continue;
         sensor->tag = (int)i;
-        if (!tag->has_position) {
-            sensor->node = tag->node ? tag->node : "";
-            sensor->node_hash = XXH3_64bits_withSeed(sensor->node, strlen(sensor->node), tag->place_assumed);
+        if (!tag->place.has_position) {
+            sensor->node = tag->place.node ? tag->place.node : "";
+            sensor->node_hash = XXH3_64bits_withSeed(sensor->node, strlen(sensor->node), tag->place.assumed);
         } else {
-            transform_point(of->sensors_in_asset_frame ? transform_identity : asset_from_plant, tag->position_m, sensor->position_m);
-            if (tag->place_assumed)
-                sensor->node_hash = XXH3_64bits_withSeed(sensor->position_m, sizeof(sensor->position_m), tag->place_assumed);
+            transform_point(of->sensors_in_asset_frame ? transform_identity : asset_from_plant, tag->place.position_m, sensor->position_m);
+            if (tag->place.assumed)
+                sensor->node_hash = XXH3_64bits_withSeed(sensor->position_m, sizeof(sensor->position_m), tag->place.assumed);
         }
         sensor++;
     }

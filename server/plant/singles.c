@@ -15,7 +15,7 @@ size_t plant_singles(const struct plant *plant, int group, int *first)
 {
     size_t *sensors = mem_array(plant->asset_count, sizeof(*sensors)), count = 0;
     for (size_t i = 0; i < plant->tag_count; i++)
-        if (plant->tags[i].group == group && plant->tags[i].asset >= 0 && !plant->tags[i].place_assumed)
+        if (plant->tags[i].group == group && plant->tags[i].asset >= 0 && !plant->tags[i].place.assumed)
             sensors[plant->tags[i].asset]++;
     for (size_t a = 0; a < plant->asset_count; a++)
         if (sensors[a] == 1 && count++ == 0)
@@ -28,7 +28,7 @@ bool plant_is_single(const struct plant *plant, int tag)
 {
     const struct plant_tag *of = &plant->tags[tag];
     for (size_t i = 0; i < plant->tag_count; i++)
-        if ((int)i != tag && plant->tags[i].group == of->group && plant->tags[i].asset == of->asset && !plant->tags[i].place_assumed)
+        if ((int)i != tag && plant->tags[i].group == of->group && plant->tags[i].asset == of->asset && !plant->tags[i].place.assumed)
             return false;
     return of->group >= 0 && of->asset >= 0;
 }

@@ -29,7 +29,7 @@ struct far_sensor *far_sensors_find(const struct scene *scene, size_t *count)
     for (size_t a = 0; a < scene->asset_count; a++) {
         const struct scene_asset *asset = &scene->assets[a];
         for (size_t s = 0; s < asset->sensor_count; s++) {
-            if (asset->sensors[s].surface_distance_m <= far_limit_m(asset) || scene->plant->tags[asset->sensors[s].tag].place_assumed)
+            if (asset->sensors[s].surface_distance_m <= far_limit_m(asset) || scene->plant->tags[asset->sensors[s].tag].place.assumed)
                 continue;
             mem_grow(&found, &capacity, *count + 1, sizeof(*found));
             found[(*count)++] = (struct far_sensor){ .asset = asset, .sensor = &asset->sensors[s], .limit_m = far_limit_m(asset) };

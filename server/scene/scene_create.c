@@ -59,7 +59,7 @@ static size_t count_placed(const struct plant *plant, const struct plant_sensor 
 {
     size_t placed = 0;
     for (size_t i = 0; i < count; i++)
-        placed += plant->tags[sensors[i].tag].group == group && !plant->tags[sensors[i].tag].place_assumed;
+        placed += plant->tags[sensors[i].tag].group == group && !plant->tags[sensors[i].tag].place.assumed;
     return placed;
 }
 

@@ -70,14 +70,14 @@ bool alarm_graver(const struct alarm_grade *a, const struct alarm_grade *b)
 
 int alarm_priority(const struct plant_tag *tag, enum alarm_kind kind)
 {
-    int priority = tag->alarm_settings.priority ? tag->alarm_settings.priority : ALARM_PRIORITY_DEFAULT;
+    int priority = tag->alarms.settings.priority ? tag->alarms.settings.priority : ALARM_PRIORITY_DEFAULT;
     priority += kind == ALARM_L || kind == ALARM_H;
     return kind == ALARM_BAD || priority > ALARM_PRIORITIES ? ALARM_PRIORITIES : priority;
 }
 
 enum alarm_kind alarm_beyond(const struct plant_tag *tag, const struct reading *reading)
 {
-    const double *limits = tag->limits, value = reading->value;
+    const double *limits = tag->alarms.limits, value = reading->value;
     if (quality_is_bad(reading->quality) || !isfinite(value))
         return ALARM_NONE;
     if (value >= limits[LIMIT_HH]) /* the comparison is false for NaN: a limit that is NaN is not configured */

@@ -8,14 +8,14 @@
 #include "plant/sources/address.h"
 #include "value/quality.h"
 
-static bool is_bit(const struct plant_tag *tag)
+static bool is_bit(const struct tag_signal *signal)
 {
-    return tag->table == TABLE_COIL || tag->table == TABLE_DISCRETE || tag->bit >= 0 || tag->type == DATA_BIT;
+    return signal->table == TABLE_COIL || signal->table == TABLE_DISCRETE || signal->bit >= 0 || signal->type == DATA_BIT;
 }
 
 int decode_width(const struct plant_tag *tag)
 {
-    return is_bit(tag) ? 1 : data_type_registers(tag->type);
+    return is_bit(&tag->signal) ? 1 : data_type_registers(tag->signal.type);
 }
 
 /* Joins the words of a number. A byte order such as ABCD names the bytes in their order on the wire, where A is the most significant byte.
@@ -62,8 +62,8 @@ static double bcd_of(uint32_t digits)
 
 static double raw_of(const struct plant_tag *tag, const uint16_t *words)
 {
-    uint64_t joined = join_words(tag->byte_order, words, decode_width(tag));
-    switch (tag->type) {
+    uint64_t joined = join_words(tag->signal.byte_order, words, decode_width(tag));
+    switch (tag->signal.type) {
     case DATA_INT16: return (int16_t)joined;
     case DATA_INT32: return (int32_t)joined;
     case DATA_INT64: return (double)(int64_t)joined;
@@ -77,11 +77,11 @@ static double raw_of(const struct plant_tag *tag, const uint16_t *words)
 
 static double bit_of(const struct plant_tag *tag, uint16_t word)
 {
-    bool in_register = tag->table == TABLE_INPUT || tag->table == TABLE_HOLDING;
+    bool in_register = tag->signal.table == TABLE_INPUT || tag->signal.table == TABLE_HOLDING;
     if (in_register)
-        word = (uint16_t)join_words(tag->byte_order, &word, 1);
-    bool set = in_register && tag->bit >= 0 ? word >> tag->bit & 1 : word != 0;
-    return set != tag->negate;
+        word = (uint16_t)join_words(tag->signal.byte_order, &word, 1);
+    bool set = in_register && tag->signal.bit >= 0 ? word >> tag->signal.bit & 1 : word != 0;
+    return set != tag->scale.negate;
 }
 
 static bool beyond(double raw, double a, double b)
@@ -89,44 +89,44 @@ static bool beyond(double raw, double a, double b)
     return raw < fmin(a, b) || raw > fmax(a, b);
 }
 
-static bool is_sentinel(const struct plant_tag *tag, uint64_t bits, double raw)
+static bool is_sentinel(const struct tag_scale *scale, uint64_t bits, double raw)
 {
-    for (int i = 0; i < tag->sentinel_count; i++)
-        if (tag->sentinels[i].is_bits ? tag->sentinels[i].bits == bits : tag->sentinels[i].number == raw)
+    for (int i = 0; i < scale->sentinel_count; i++)
+        if (scale->sentinels[i].is_bits ? scale->sentinels[i].bits == bits : scale->sentinels[i].number == raw)
             return true;
     return false;
 }
 
 /* Returns the quality of a current in mA by NAMUR NE 43: from 3.8 to 20.5 mA it is a measurement; at most 3.6 or at least 21 mA means that
  * the transmitter or its loop has failed. */
-static uint32_t judge_current(const struct plant_tag *tag, double raw)
+static uint32_t judge_current(const struct tag_scale *scale, double raw)
 {
     static const double MEASURED_LOW_MA = 3.8, MEASURED_HIGH_MA = 20.5, FAILED_LOW_MA = 3.6, FAILED_HIGH_MA = 21;
-    double ma = 4 + 16 * (raw - tag->raw_low) / (tag->raw_high - tag->raw_low);
+    double ma = 4 + 16 * (raw - scale->raw_low) / (scale->raw_high - scale->raw_low);
     /* half of a step of the raw number, in mA: tolerance for the transmitter's rounding */
-    double half_step_ma = 8 / (tag->raw_high - tag->raw_low);
+    double half_step_ma = 8 / (scale->raw_high - scale->raw_low);
     double rounding_ma = half_step_ma < 0.05 ? half_step_ma : 0;
     if (ma <= FAILED_LOW_MA + rounding_ma || ma >= FAILED_HIGH_MA - rounding_ma)
         return QUALITY_BAD_SENSOR_FAILURE;
     return ma < MEASURED_LOW_MA - rounding_ma || ma > MEASURED_HIGH_MA + rounding_ma ? QUALITY_UNCERTAIN_UNITS_EXCEEDED : QUALITY_GOOD;
 }
 
-static uint32_t judge_range(const struct plant_tag *tag, double raw)
+static uint32_t judge_range(const struct tag_scale *scale, double raw)
 {
-    if (tag->ne43)
-        return judge_current(tag, raw);
-    if (tag->scaling != SCALING_NONE ? beyond(raw, tag->raw_low, tag->raw_high)
-                                     : tag->has_range && beyond(raw, tag->scaled_low, tag->scaled_high))
+    if (scale->ne43)
+        return judge_current(scale, raw);
+    if (scale->kind != SCALING_NONE ? beyond(raw, scale->raw_low, scale->raw_high)
+                                           : scale->has_range && beyond(raw, scale->scaled_low, scale->scaled_high))
         return QUALITY_UNCERTAIN_UNITS_EXCEEDED;
     return QUALITY_GOOD;
 }
 
-static double scale(const struct plant_tag *tag, double raw)
+static double scaled(const struct tag_scale *scale, double raw)
 {
-    double part = (raw - tag->raw_low) / (tag->raw_high - tag->raw_low);
-    if (tag->scaling == SCALING_SQUARE_ROOT)
+    double part = (raw - scale->raw_low) / (scale->raw_high - scale->raw_low);
+    if (scale->kind == SCALING_SQUARE_ROOT)
         part = part > 0 ? sqrt(part) : 0;
-    return tag->scaled_low + part * (tag->scaled_high - tag->scaled_low);
+    return scale->scaled_low + part * (scale->scaled_high - scale->scaled_low);
 }
 
 static void fail(struct sample *out)
@@ -136,41 +136,41 @@ static void fail(struct sample *out)
 }
 
 /* Decodes a numeric value. bits: width of `raw` on the wire. */
-static void decode_analog(const struct plant_tag *tag, uint64_t bits, double raw, struct sample *out)
+static void decode_analog(const struct tag_scale *scale, uint64_t bits, double raw, struct sample *out)
 {
     /* checked before scaling, because a scaled special value would look like a measurement */
-    if (!isfinite(raw) || is_sentinel(tag, bits, raw)) {
+    if (!isfinite(raw) || is_sentinel(scale, bits, raw)) {
         fail(out);
         return;
     }
-    double value = tag->scaling == SCALING_NONE ? raw : scale(tag, raw);
-    out->value = unit_change_value(&tag->change, tag->negate ? -value : value);
-    out->quality = judge_range(tag, raw);
+    double value = scale->kind == SCALING_NONE ? raw : scaled(scale, raw);
+    out->value = unit_change_value(&scale->change, scale->negate ? -value : value);
+    out->quality = judge_range(scale, raw);
     if (!isfinite(out->value))
         fail(out);
 }
 
 void decode_sample(const struct plant_tag *tag, const uint16_t *words, struct sample *out)
 {
-    uint64_t bits = join_words(tag->byte_order, words, decode_width(tag));
-    double raw = is_bit(tag) ? bit_of(tag, words[0]) : raw_of(tag, words);
-    if (!is_bit(tag)) {
-        decode_analog(tag, bits, raw, out);
+    uint64_t bits = join_words(tag->signal.byte_order, words, decode_width(tag));
+    double raw = is_bit(&tag->signal) ? bit_of(tag, words[0]) : raw_of(tag, words);
+    if (!is_bit(&tag->signal)) {
+        decode_analog(&tag->scale, bits, raw, out);
         return;
     }
     out->value = raw;
     out->quality = QUALITY_GOOD;
-    if (is_sentinel(tag, bits, raw))
+    if (is_sentinel(&tag->scale, bits, raw))
         fail(out);
 }
 
 void decode_number(const struct plant_tag *tag, double raw, struct sample *out)
 {
-    if (tag->type != DATA_BIT) {
-        decode_analog(tag, fabs(raw) < 9e18 ? (uint64_t)(int64_t)raw : 0, raw, out);
+    if (tag->signal.type != DATA_BIT) {
+        decode_analog(&tag->scale, fabs(raw) < 9e18 ? (uint64_t)(int64_t)raw : 0, raw, out);
         return;
     }
-    out->value = (raw != 0) != tag->negate;
+    out->value = (raw != 0) != tag->scale.negate;
     out->quality = QUALITY_GOOD;
     if (!isfinite(raw))
         fail(out);

@@ -62,7 +62,7 @@ static struct reading combine(const struct derived_state *state, const struct pl
     double values[EXPRESSION_INPUTS];
     for (size_t i = 0; i < count; i++) {
         const struct reading *one = &state->snapshot->readings[inputs[i]];
-        values[i] = unit_change_back(&plant->tags[inputs[i]].change, one->value);
+        values[i] = unit_change_back(&plant->tags[inputs[i]].scale.change, one->value);
         if (one->quality >> 30 > all.quality >> 30)
             all.quality = one->quality;
         if (one->age_ns < all.age_ns)
@@ -70,7 +70,7 @@ static struct reading combine(const struct derived_state *state, const struct pl
     }
     if (quality_is_bad(all.quality))
         return all;
-    all.value = unit_change_value(&tag->change, expression_value(tag->expression, values));
+    all.value = unit_change_value(&tag->scale.change, expression_value(tag->expression, values));
     if (!isfinite(all.value)) {
         all.value = 0;
         all.quality = QUALITY_BAD_SENSOR_FAILURE;

@@ -16,7 +16,7 @@ void modbus_take_values(struct modbus_source *modbus, struct read_plan_block *bl
         int index = modbus->plan.tags[block->first_tag + i];
         const struct plant_tag *tag = &modbus->base.plant->tags[index];
         modbus->samples[i].tag = index;
-        decode_sample(tag, words + (tag->register_index - block->first), &modbus->samples[i]);
+        decode_sample(tag, words + (tag->signal.register_index - block->first), &modbus->samples[i]);
     }
     block->busy_count = block->refused_count = block->silent_count = 0;
     block->answered = true;

@@ -19,11 +19,11 @@ static struct register_place place_of(const struct plant *plant, int tag_index)
     const struct plant_tag *tag = &plant->tags[tag_index];
     const struct plant_source *source = &plant->sources[tag->source];
     return (struct register_place){
-        .unit = tag->modbus_unit >= 0 ? tag->modbus_unit : source->unit,
-        .table = (int)tag->table,
-        .scan_ms = tag->scan_ms > 0 ? tag->scan_ms : source->poll_ms,
-        .first = tag->register_index,
-        .end = tag->register_index + decode_width(tag),
+        .unit = tag->signal.modbus_unit >= 0 ? tag->signal.modbus_unit : source->unit,
+        .table = (int)tag->signal.table,
+        .scan_ms = tag->signal.scan_ms > 0 ? tag->signal.scan_ms : source->poll_ms,
+        .first = tag->signal.register_index,
+        .end = tag->signal.register_index + decode_width(tag),
         .tag = tag_index,
     };
 }
@@ -101,11 +101,11 @@ void read_plan_finish(struct read_plan *plan)
 /* Sets the register range of a block (tags read by one request) to the range that its tags occupy. */
 static void fit_to_tags(struct read_plan_block *block, const struct read_plan *plan, const struct plant *plant)
 {
-    block->first = plant->tags[plan->tags[block->first_tag]].register_index;
+    block->first = plant->tags[plan->tags[block->first_tag]].signal.register_index;
     block->count = 0;
     for (size_t i = 0; i < block->tag_count; i++) {
         const struct plant_tag *tag = &plant->tags[plan->tags[block->first_tag + i]];
-        stretch(block, tag->register_index + decode_width(tag));
+        stretch(block, tag->signal.register_index + decode_width(tag));
     }
 }
 

@@ -49,10 +49,11 @@ static void add_block(struct text *out, const struct read_plan *plan, const stru
              block->count == 1 ? "" : "s", block->scan_ms, block->tag_count, block->tag_count == 1 ? "" : "s");
     for (size_t i = 0; i < block->tag_count; i++) {
         const struct plant_tag *tag = &plant->tags[plan->tags[block->first_tag + i]];
-        text_add(out, "    %s:%d", tables[tag->table].prefix, tag->register_index);
-        if (tag->bit >= 0)
-            text_add(out, ".%d", tag->bit);
-        text_add(out, " %s%s%s %s\n", data_type_name(tag->type), tag->byte_order ? " " : "", order_name(tag->byte_order), tag->name);
+        text_add(out, "    %s:%d", tables[tag->signal.table].prefix, tag->signal.register_index);
+        if (tag->signal.bit >= 0)
+            text_add(out, ".%d", tag->signal.bit);
+        text_add(out, " %s%s%s %s\n", data_type_name(tag->signal.type), tag->signal.byte_order ? " " : "",
+                 order_name(tag->signal.byte_order), tag->name);
     }
 }
 

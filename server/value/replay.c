@@ -44,8 +44,9 @@ static void read_lane(struct replay *replay, struct replay_lane *lane)
     const struct plant_tag *tag = &replay->base.plant->tags[lane->tag];
     char why[200];
     bool found;
-    lane->change = tag->change;
-    if (series_read(&lane->series, replay->base.config->file, *tag->address ? tag->address : tag->name, &found, why) && found) {
+    lane->change = tag->scale.change;
+    if (series_read(&lane->series, replay->base.config->file, *tag->signal.address ? tag->signal.address : tag->name, &found, why) &&
+        found) {
         const char *unit = lane->series.unit;
         if (!unit || !*unit || units_compare(unit, tag->unit, &lane->change) <= UNITS_CONVERT)
             return;

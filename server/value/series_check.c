@@ -17,7 +17,8 @@ static bool has_name(const struct series_names *names, const char *name)
 
 static void check_tag(const struct plant *plant, const struct plant_tag *tag, const struct series_names *names, struct diag *diag)
 {
-    const char *name = tag->address && *tag->address ? tag->address : tag->name, *file = plant->sources[tag->source].file;
+    const char *name = tag->signal.address && *tag->signal.address ? tag->signal.address : tag->name,
+               *file = plant->sources[tag->source].file;
     if (has_name(names, name))
         return;
     const char *near = suggest_nearest(name, names->at, names->count, sizeof(*names->at));

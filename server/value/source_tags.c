@@ -11,9 +11,9 @@ static int by_topic(const void *pa, const void *pb, void *tags_ptr)
 {
     const struct plant_tag *tags = tags_ptr;
     int a = *(const int *)pa, b = *(const int *)pb;
-    int order = strcmp(tags[a].topic, tags[b].topic);
+    int order = strcmp(tags[a].signal.topic, tags[b].signal.topic);
     if (order == 0)
-        order = strcmp(tags[a].path, tags[b].path);
+        order = strcmp(tags[a].signal.path, tags[b].signal.path);
     return order ? order : (a > b) - (a < b);
 }
 

@@ -59,7 +59,7 @@ static int64_t ns_of(double s)
 
 static void add_vouched(struct store *store, int tag)
 {
-    const struct plant_quality_tag *by = &store->plant->tags[tag].quality;
+    const struct plant_quality_tag *by = &store->plant->tags[tag].validity.quality;
     if (by->mask == 0)
         return;
     store->tags[tag].next_vouched = store->tags[by->tag].first_vouched;
@@ -77,8 +77,8 @@ struct store *store_create(const struct plant *plant)
             .quality = QUALITY_BAD_WAITING,
             .shown_quality = QUALITY_BAD_WAITING,
             .sampled_mono_ns = INT64_MIN,
-            .stale_ns = ns_of(plant->tags[i].stale_s),
-            .flatline_ns = plant->tags[i].flatline_s > 0 ? ns_of(plant->tags[i].flatline_s) : INT64_MAX,
+            .stale_ns = ns_of(plant->tags[i].validity.stale_s),
+            .flatline_ns = plant->tags[i].validity.flatline_s > 0 ? ns_of(plant->tags[i].validity.flatline_s) : INT64_MAX,
             .first_vouched = -1,
             .next_vouched = -1,
         };
@@ -114,7 +114,8 @@ static int find_source(const struct plant *plant, const char *id)
 static bool same_unit(const struct plant_tag *a, const struct plant_tag *b)
 {
     struct unit_change change;
-    bool changed = a->change.converts != b->change.converts || a->change.factor != b->change.factor || a->change.offset != b->change.offset;
+    bool changed = a->scale.change.converts != b->scale.change.converts || a->scale.change.factor != b->scale.change.factor ||
+                   a->scale.change.offset != b->scale.change.offset;
     return !changed && (!a->unit || !b->unit || units_compare(a->unit, b->unit, &change) == UNITS_SAME);
 }
 
@@ -249,7 +250,7 @@ static uint32_t heartbeat_quality(const struct store *store, size_t tag, int64_t
 /* Returns the quality that the tag's quality tag gives; Good if it has no quality tag. */
 static uint32_t vouched_quality(const struct store *store, size_t tag, int64_t now_mono_ns)
 {
-    const struct plant_quality_tag *by = &store->plant->tags[tag].quality;
+    const struct plant_quality_tag *by = &store->plant->tags[tag].validity.quality;
     if (by->mask == 0)
         return QUALITY_GOOD;
     const struct held *word = &store->tags[by->tag];

@@ -25,7 +25,7 @@ static struct plant *make_plant(void)
     for (int i = 0; i < TAGS; i++) {
         char name[16];
         snprintf(name, sizeof(name), "T-%05d", i);
-        memcpy(plant_by_hand_tag(plant, name, TABLE_HOLDING, 0, DATA_FLOAT32)->limits, limits, sizeof(limits));
+        memcpy(plant_by_hand_tag(plant, name, TABLE_HOLDING, 0, DATA_FLOAT32)->alarms.limits, limits, sizeof(limits));
     }
     return plant;
 }

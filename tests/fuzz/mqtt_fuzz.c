@@ -46,10 +46,10 @@ static struct plant *make_plant(void)
     plant->tag_count = TAGS;
     for (int i = 0; i < TAGS; i++) {
         plant->tags[i].name = mem_printf("t%d", i);
-        plant->tags[i].topic = mem_strdup(i < 2 ? "g/n" : "g/n/d");
-        plant->tags[i].path = mem_strdup(metrics[i]);
-        plant->tags[i].type = DATA_FLOAT64;
-        plant->tags[i].stale_s = PLANT_NEVER_STALE_S;
+        plant->tags[i].signal.topic = mem_strdup(i < 2 ? "g/n" : "g/n/d");
+        plant->tags[i].signal.path = mem_strdup(metrics[i]);
+        plant->tags[i].signal.type = DATA_FLOAT64;
+        plant->tags[i].validity.stale_s = PLANT_NEVER_STALE_S;
     }
     return plant;
 }

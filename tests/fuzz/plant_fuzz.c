@@ -30,12 +30,15 @@ static void check_tag(const struct plant *plant, const struct plant_tag *tag)
     require(tag->source >= -1 && tag->source < (int)plant->source_count, "source index");
     require(tag->group >= -1 && tag->group < (int)plant->group_count, "group index");
     require(tag->asset >= -1 && tag->asset < (int)plant->asset_count, "asset index");
-    require(tag->register_index >= 0 && tag->register_index <= 65535 && tag->bit >= -1 && tag->bit <= 15, "register");
-    require(tag->group < 0 || tag->asset < 0 || tag->has_position || tag->node, "sensor with a place");
-    require(isfinite(tag->strength) && isfinite(tag->decay) && tag->stale_s > 0, "numbers");
+    require(tag->signal.register_index >= 0 && tag->signal.register_index <= 65535 && tag->signal.bit >= -1 && tag->signal.bit <= 15,
+            "register");
+    require(tag->group < 0 || tag->asset < 0 || tag->place.has_position || tag->place.node, "sensor with a place");
+    require(isfinite(tag->strength) && isfinite(tag->decay) && tag->validity.stale_s > 0, "numbers");
     for (int i = 0; i < 3; i++)
-        require(isfinite(tag->position_m[i]), "position");
-    require(tag->scaling == SCALING_NONE || (tag->raw_low < tag->raw_high && tag->scaled_low < tag->scaled_high), "scaling");
+        require(isfinite(tag->place.position_m[i]), "position");
+    require(tag->scale.kind == SCALING_NONE ||
+                (tag->scale.raw_low < tag->scale.raw_high && tag->scale.scaled_low < tag->scale.scaled_high),
+            "scaling");
     int found = plant_find_tag(plant, tag->name);
     require(found >= 0 && &plant->tags[found] == tag, "names are unique and found");
 }

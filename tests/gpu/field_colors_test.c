@@ -386,9 +386,9 @@ TEST_WITH(test_operator_sees_limits, set_up, tear_down)
     struct view view;
     look_down(&view);
     for (int tag = 0; tag < PLATE_TAGS; tag++)
-        memcpy(stand.toy->plant.tags[tag].limits, (double[]){ 0, 20, 70, 90 }, 4 * sizeof(double));
+        memcpy(stand.toy->plant.tags[tag].alarms.limits, (double[]){ 0, 20, 70, 90 }, 4 * sizeof(double));
     for (int i = 0; i < LIMIT_COUNT; i++)
-        stand.toy->plant.tags[2].limits[i] = NAN;
+        stand.toy->plant.tags[2].alarms.limits[i] = NAN;
     toy_set(stand.snapshot, 0, 45, QUALITY_GOOD);
     toy_set(stand.snapshot, 1, 80, QUALITY_GOOD); /* beyond H */
     view.field.show = SHOW_OPERATOR;

@@ -162,7 +162,7 @@ static void fill(void)
 {
     toy_fill(stand.snapshot, 0);
     for (int i = 0; i < 7; i++) /* the last one has none */
-        memcpy(stand.toy->plant.tags[i].limits, (double[]){ 10, 20, 70, 100 }, LIMIT_COUNT * sizeof(double));
+        memcpy(stand.toy->plant.tags[i].alarms.limits, (double[]){ 10, 20, 70, 100 }, LIMIT_COUNT * sizeof(double));
     alarm_by_limits(&stand.toy->plant, stand.snapshot);
 }
 

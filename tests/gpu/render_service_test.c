@@ -1003,7 +1003,7 @@ static bool start(void)
     workers = workers_create(2);
     counters = counters_create();
     for (size_t i = 0; i < toy->plant.tag_count; i++)
-        toy->plant.tags[i].stale_s = 3600;
+        toy->plant.tags[i].validity.stale_s = 3600;
     store = store_create(&toy->plant);
     return make_service(false, 0);
 }

@@ -217,7 +217,7 @@ TEST_WITH(test_operator_sees_greys, set_up, tear_down)
     struct view values, limits;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &values);
     for (size_t i = 0; i < stand.toy->plant.tag_count; i++)
-        memcpy(stand.toy->plant.tags[i].limits, (double[]){ -20, -10, 110, 120 }, 4 * sizeof(double));
+        memcpy(stand.toy->plant.tags[i].alarms.limits, (double[]){ -20, -10, 110, 120 }, 4 * sizeof(double));
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         int other = 0, coloured = 0;
         values.tier = (enum tier)tier;

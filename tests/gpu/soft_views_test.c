@@ -253,7 +253,7 @@ static void set_limits(bool set)
     const double limits[LIMIT_COUNT] = { 0, 20, 70, 90 };
     for (size_t tag = 0; tag < plant->tag_count; tag++)
         for (int i = 0; i < LIMIT_COUNT; i++)
-            plant->tags[tag].limits[i] = set && tag != 2 ? limits[i] : NAN;
+            plant->tags[tag].alarms.limits[i] = set && tag != 2 ? limits[i] : NAN;
 }
 
 /* One tag has no limits: the area near it is plain. Assets without a field are grey. */

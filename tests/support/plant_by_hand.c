@@ -63,21 +63,21 @@ struct plant_tag *plant_by_hand_tag(struct plant *plant, const char *name, enum 
     bool one_register = type == DATA_BIT || type == DATA_INT16 || type == DATA_UINT16 || type == DATA_BCD;
     struct plant_tag *tag = &plant->tags[plant->tag_count++];
     *tag = (struct plant_tag){
-        .suppressed_by = -1,
-        .mirror.tag = -1,
-        .alarm_settings.priority = ALARM_PRIORITY_DEFAULT,
+        .alarms.suppressed_by = -1,
+        .alarms.mirror.tag = -1,
+        .alarms.settings.priority = ALARM_PRIORITY_DEFAULT,
         .name = mem_strdup(name),
         .source = (int)plant->source_count - 1,
         .group = -1,
         .asset = -1,
-        .modbus_unit = -1,
-        .table = table,
-        .register_index = register_index,
-        .bit = -1,
-        .type = type,
-        .byte_order = one_register ? BYTE_ORDER_NONE : BYTE_ORDER_ABCD,
-        .stale_s = 5,
-        .limits = { NAN, NAN, NAN, NAN },
+        .signal.modbus_unit = -1,
+        .signal.table = table,
+        .signal.register_index = register_index,
+        .signal.bit = -1,
+        .signal.type = type,
+        .signal.byte_order = one_register ? BYTE_ORDER_NONE : BYTE_ORDER_ABCD,
+        .validity.stale_s = 5,
+        .alarms.limits = { NAN, NAN, NAN, NAN },
         .deadband = NAN,
     };
     return tag;

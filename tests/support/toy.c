@@ -173,8 +173,8 @@ static void add_tags(struct toy *toy, struct scene_asset *asset, int index)
                                                    .asset = index,
                                                    .strength = 1,
                                                    .decay = 1,
-                                                   .has_position = true,
-                                                   .limits = { NAN, NAN, NAN, NAN } };
+                                                   .place.has_position = true,
+                                                   .alarms.limits = { NAN, NAN, NAN, NAN } };
         *sensor = (struct scene_sensor){ .tag = tag, .column = (int)i, .surface_distance_m = view->sensors[i].surface_distance_m };
         place_point(asset->placement, view->sensors[i].position_m, sensor->position_m);
         place_point(asset->placement, view->sensors[i].surface_m, sensor->surface_m);

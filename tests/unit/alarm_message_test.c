@@ -35,8 +35,8 @@ static int set_up(void **state)
     plant_by_hand_source(s.plant, "plc", 502);
     for (int i = 0; i < 2; i++) {
         struct plant_tag *tag = plant_by_hand_tag(s.plant, i ? "TT-2" : "TT-1", TABLE_HOLDING, i, DATA_INT16);
-        tag->limits[LIMIT_H] = 80;
-        tag->limits[LIMIT_HH] = 90;
+        tag->alarms.limits[LIMIT_H] = 80;
+        tag->alarms.limits[LIMIT_HH] = 90;
     }
     s.store = store_create(s.plant);
     s.alarm_service = alarm_service_start(&(struct alarm_service_params){

@@ -40,7 +40,7 @@ static int set_up(void **state)
     for (int i = 0; i < TAGS; i++) {
         char name[16];
         snprintf(name, sizeof(name), "T-%04d", i);
-        plant_by_hand_tag(s.plant, name, TABLE_HOLDING, i, DATA_INT16)->limits[LIMIT_H] = 80;
+        plant_by_hand_tag(s.plant, name, TABLE_HOLDING, i, DATA_INT16)->alarms.limits[LIMIT_H] = 80;
         s.plant->tags_by_name[i] = i;
     }
     s.store = store_create(s.plant);
@@ -226,7 +226,7 @@ static double counted(struct alarm_service_setup *s, const char *name)
 CASE(a_lost_device_is_no_flood)
 {
     for (int i = 0; i < TAGS; i++)
-        s->plant->tags[i].stale_s = 600;
+        s->plant->tags[i].validity.stale_s = 600;
     store_destroy(&s->store);
     s->store = store_create(s->plant);
     start(s);

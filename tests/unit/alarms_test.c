@@ -43,17 +43,17 @@ static void make_plant(struct stage *s, enum alarm_mode mode)
     plant_by_hand_source(s->plant, "a", 1);
     for (int i = 0; i < 5; i++) {
         struct plant_tag *tag = plant_by_hand_tag(s->plant, names[i], TABLE_HOLDING, i, i < 2 ? DATA_INT16 : DATA_BIT);
-        memcpy(tag->limits, i == 0 ? tt : i == 1 ? pt : none, sizeof(tag->limits));
-        tag->alarm_settings.deadband = i == 0 ? 2 : 0;
-        tag->alarm_settings.on_delay_s = i == 1 ? 2 : 0;
+        memcpy(tag->alarms.limits, i == 0 ? tt : i == 1 ? pt : none, sizeof(tag->alarms.limits));
+        tag->alarms.settings.deadband = i == 0 ? 2 : 0;
+        tag->alarms.settings.on_delay_s = i == 1 ? 2 : 0;
     }
-    s->plant->tags[1].suppressed_by = 2;
+    s->plant->tags[1].alarms.suppressed_by = 2;
     s->plant->tags_by_name = mem_array(5, sizeof(int));
     static const int sorted[] = { 3, 4, 1, 2, 0 };
     memcpy(s->plant->tags_by_name, sorted, sizeof(sorted));
     if (mode == ALARMS_MIRROR) {
-        s->plant->tags[3].mirror = (struct plant_mirror){ 0, LIMIT_HH, false };
-        s->plant->tags[4].mirror = (struct plant_mirror){ 0, LIMIT_HH, true };
+        s->plant->tags[3].alarms.mirror = (struct plant_mirror){ 0, LIMIT_HH, false };
+        s->plant->tags[4].alarms.mirror = (struct plant_mirror){ 0, LIMIT_HH, true };
     }
     s->plant->alarms = mode;
 }
@@ -512,9 +512,9 @@ TEST(units_are_devices_of_their_own)
     struct stage s;
     s = (struct stage){ .plant = NULL };
     make_plant(&s, ALARMS_LOCAL);
-    s.plant->tags[1].modbus_unit = 7;
-    s.plant->tags[1].alarm_settings.on_delay_s = 0;
-    s.plant->tags[1].suppressed_by = -1;
+    s.plant->tags[1].signal.modbus_unit = 7;
+    s.plant->tags[1].alarms.settings.on_delay_s = 0;
+    s.plant->tags[1].alarms.suppressed_by = -1;
     s.alarms = alarms_create(s.plant, &(struct alarms_listener){ on_change, on_tag, &s });
     s.snapshot = snapshot_create(5);
     hear_all(&s, 1, 3, QUALITY_GOOD);
@@ -567,7 +567,7 @@ TEST(a_device_without_limits_has_an_alarm)
     make_plant(&s, ALARMS_LOCAL);
     for (int tag = 0; tag < 5; tag++)
         for (int i = 0; i < LIMIT_COUNT; i++)
-            s.plant->tags[tag].limits[i] = NAN;
+            s.plant->tags[tag].alarms.limits[i] = NAN;
     s.alarms = alarms_create(s.plant, &(struct alarms_listener){ on_change, on_tag, &s });
     s.snapshot = snapshot_create(5);
     hear_all(&s, 1, 50, QUALITY_GOOD);
@@ -593,7 +593,7 @@ TEST(a_lost_source_that_never_gets_stale_has_an_alarm)
     struct stage s = { .plant = NULL };
     make_plant(&s, ALARMS_LOCAL);
     for (int tag = 0; tag < 5; tag++)
-        s.plant->tags[tag].stale_s = PLANT_NEVER_STALE_S;
+        s.plant->tags[tag].validity.stale_s = PLANT_NEVER_STALE_S;
     s.alarms = alarms_create(s.plant, &(struct alarms_listener){ on_change, on_tag, &s });
     s.snapshot = snapshot_create(5);
     hear_all(&s, 1, 50, QUALITY_GOOD);

@@ -8,7 +8,7 @@
 
 static struct plant_tag tag_of(enum data_type type, enum byte_order order)
 {
-    return (struct plant_tag){ .table = TABLE_HOLDING, .bit = -1, .type = type, .byte_order = order };
+    return (struct plant_tag){ .signal.table = TABLE_HOLDING, .signal.bit = -1, .signal.type = type, .signal.byte_order = order };
 }
 
 static struct sample decode(const struct plant_tag *tag, const uint16_t *words)
@@ -91,15 +91,20 @@ TEST(takes_as_many_registers_as_its_type)
     for (int type = DATA_BIT; type <= DATA_LBCD; type++) {
         struct plant_tag tag = tag_of((enum data_type)type, BYTE_ORDER_ABCD);
         assert_int_equal(decode_width(&tag), widths[type]);
-        tag.table = TABLE_COIL;
+        tag.signal.table = TABLE_COIL;
         assert_int_equal(decode_width(&tag), 1);
     }
 }
 
 TEST(numbers_are_decoded_as_registers_are)
 {
-    struct plant_tag tag = { .type = DATA_FLOAT64, .scaling = SCALING_LINEAR, .raw_high = 100, .scaled_high = 10, .has_range = true,
-                             .sentinel_count = 2, .sentinels = { { .number = -99 }, { .is_bits = true, .bits = 0x8000 } } };
+    struct plant_tag tag = { .signal.type = DATA_FLOAT64,
+                             .scale.kind = SCALING_LINEAR,
+                             .scale.raw_high = 100,
+                             .scale.scaled_high = 10,
+                             .scale.has_range = true,
+                             .scale.sentinel_count = 2,
+                             .scale.sentinels = { { .number = -99 }, { .is_bits = true, .bits = 0x8000 } } };
     const struct {
         double raw, value;
         uint32_t quality;
@@ -111,7 +116,7 @@ TEST(numbers_are_decoded_as_registers_are)
         decode_number(&tag, numbers[i].raw, &sample);
         assert_true(sample.value == numbers[i].value && sample.quality == numbers[i].quality);
     }
-    tag = (struct plant_tag){ .type = DATA_BIT, .negate = true };
+    tag = (struct plant_tag){ .signal.type = DATA_BIT, .scale.negate = true };
     decode_number(&tag, 7, &sample);
     assert_true(sample.value == 0 && sample.quality == QUALITY_GOOD);
 }
@@ -120,29 +125,29 @@ TEST(bits)
 {
     struct plant_tag tag = tag_of(DATA_BIT, BYTE_ORDER_NONE);
     const uint16_t word = 0x8005;
-    for (tag.bit = 0; tag.bit < 16; tag.bit++)
-        assert_true(decode(&tag, &word).value == (tag.bit == 0 || tag.bit == 2 || tag.bit == 15));
-    tag.byte_order = BYTE_ORDER_BADC; /* 0x0580 */
-    tag.bit = 7;
+    for (tag.signal.bit = 0; tag.signal.bit < 16; tag.signal.bit++)
+        assert_true(decode(&tag, &word).value == (tag.signal.bit == 0 || tag.signal.bit == 2 || tag.signal.bit == 15));
+    tag.signal.byte_order = BYTE_ORDER_BADC; /* 0x0580 */
+    tag.signal.bit = 7;
     assert_true(decode(&tag, &word).value == 1);
-    tag.negate = true;
+    tag.scale.negate = true;
     assert_true(decode(&tag, &word).value == 0);
 
-    struct plant_tag coil = { .table = TABLE_COIL, .type = DATA_BIT, .bit = -1 };
+    struct plant_tag coil = { .signal.table = TABLE_COIL, .signal.type = DATA_BIT, .signal.bit = -1 };
     assert_true(decode(&coil, (uint16_t[]){ 1 }).value == 1);
     assert_true(decode(&coil, (uint16_t[]){ 0 }).value == 0);
-    coil.negate = true;
+    coil.scale.negate = true;
     assert_true(decode(&coil, (uint16_t[]){ 0 }).value == 1);
 }
 
 static struct plant_tag scaled(enum scaling scaling, double raw_low, double raw_high, double low, double high)
 {
     struct plant_tag tag = tag_of(DATA_INT16, BYTE_ORDER_NONE);
-    tag.scaling = scaling;
-    tag.raw_low = raw_low;
-    tag.raw_high = raw_high;
-    tag.scaled_low = low;
-    tag.scaled_high = high;
+    tag.scale.kind = scaling;
+    tag.scale.raw_low = raw_low;
+    tag.scale.raw_high = raw_high;
+    tag.scale.scaled_low = low;
+    tag.scale.scaled_high = high;
     return tag;
 }
 
@@ -163,7 +168,7 @@ TEST(linear_scaling)
     check_scaled(&tag, 20000, 350, QUALITY_GOOD);
     check_scaled(&tag, 20800, 370, QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* extrapolates beyond the range */
     check_scaled(&tag, 3600, -60, QUALITY_UNCERTAIN_UNITS_EXCEEDED);
-    tag.negate = true;
+    tag.scale.negate = true;
     check_scaled(&tag, 12000, -150, QUALITY_GOOD);
     struct plant_tag reversed = scaled(SCALING_LINEAR, 0, 1000, 100, 0);
     check_scaled(&reversed, 250, 75, QUALITY_GOOD);
@@ -186,7 +191,7 @@ TEST(square_root_scaling)
 TEST(unscaled_negation)
 {
     struct plant_tag tag = tag_of(DATA_INT16, BYTE_ORDER_NONE);
-    tag.negate = true;
+    tag.scale.negate = true;
     assert_true(decode(&tag, (uint16_t[]){ 5 }).value == -5);
 }
 
@@ -196,8 +201,8 @@ TEST(what_is_no_number_is_a_sensor_failure)
     for (int i = 0; i < 3; i++) {
         struct plant_tag tag = tag_of(DATA_FLOAT32, BYTE_ORDER_ABCD);
         assert_int_equal(decode(&tag, floats[i]).quality, QUALITY_BAD_SENSOR_FAILURE);
-        tag.scaling = SCALING_SQUARE_ROOT; /* clamping must not turn a NaN into 0 */
-        tag.raw_high = tag.scaled_high = 1;
+        tag.scale.kind = SCALING_SQUARE_ROOT; /* clamping must not turn a NaN into 0 */
+        tag.scale.raw_high = tag.scale.scaled_high = 1;
         assert_int_equal(decode(&tag, floats[i]).quality, QUALITY_BAD_SENSOR_FAILURE);
         assert_true(isfinite(decode(&tag, floats[i]).value));
     }
@@ -219,12 +224,12 @@ static uint32_t quality_of_raw(struct plant_tag *tag, int raw)
 TEST(a_current_says_that_its_loop_has_failed)
 {
     struct plant_tag tag = tag_of(DATA_INT16, BYTE_ORDER_NONE);
-    tag.scaling = SCALING_LINEAR;
-    tag.has_range = true;
-    tag.raw_high = 27648;
-    tag.scaled_high = 100;
+    tag.scale.kind = SCALING_LINEAR;
+    tag.scale.has_range = true;
+    tag.scale.raw_high = 27648;
+    tag.scale.scaled_high = 100;
     assert_int_equal(quality_of_raw(&tag, -691), QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* off by default */
-    tag.ne43 = true;
+    tag.scale.ne43 = true;
     const struct {
         double ma;
         uint32_t quality;
@@ -245,25 +250,25 @@ TEST(an_open_circuit_s_value_is_no_reading)
 {
     struct plant_tag tag = tag_of(DATA_INT16, BYTE_ORDER_NONE);
     assert_int_equal(quality_of_raw(&tag, 0x8000), QUALITY_GOOD); /* off by default */
-    tag.sentinels[0] = (struct plant_sentinel){ .is_bits = true, .bits = 0x8000 };
-    tag.sentinels[1] = (struct plant_sentinel){ .number = 32767 };
-    tag.sentinel_count = 2;
+    tag.scale.sentinels[0] = (struct plant_sentinel){ .is_bits = true, .bits = 0x8000 };
+    tag.scale.sentinels[1] = (struct plant_sentinel){ .number = 32767 };
+    tag.scale.sentinel_count = 2;
     assert_int_equal(quality_of_raw(&tag, 0x8000), QUALITY_BAD_SENSOR_FAILURE);
     assert_int_equal(quality_of_raw(&tag, 32767), QUALITY_BAD_SENSOR_FAILURE);
     assert_int_equal(quality_of_raw(&tag, 32766), QUALITY_GOOD);
     assert_int_equal(quality_of_raw(&tag, 0), QUALITY_GOOD);
     struct plant_tag number = tag_of(DATA_FLOAT32, BYTE_ORDER_CDAB);
-    number.sentinels[0].number = -9999;
-    number.sentinel_count = 1;
+    number.scale.sentinels[0].number = -9999;
+    number.scale.sentinel_count = 1;
     assert_int_equal(decode(&number, (uint16_t[]){ 0x3C00, 0xC61C }).quality, QUALITY_BAD_SENSOR_FAILURE);
 }
 
 TEST(a_range_without_scaling_is_the_instrument_s)
 {
     struct plant_tag tag = tag_of(DATA_INT16, BYTE_ORDER_NONE);
-    tag.has_range = true;
-    tag.scaled_low = -50;
-    tag.scaled_high = 150;
+    tag.scale.has_range = true;
+    tag.scale.scaled_low = -50;
+    tag.scale.scaled_high = 150;
     assert_int_equal(quality_of_raw(&tag, 150), QUALITY_GOOD);
     assert_int_equal(quality_of_raw(&tag, -50), QUALITY_GOOD);
     struct sample above = decode(&tag, &(uint16_t){ 151 });

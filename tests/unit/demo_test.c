@@ -82,11 +82,11 @@ TEST(test_registers_do_not_overlap)
     static unsigned char used[65536];
     for (size_t i = 0; i < plant->tag_count; i++) {
         const struct plant_tag *tag = plant->tags + i;
-        int registers = tag->type == DATA_FLOAT32 ? 2 : 1;
-        assert_int_equal(tag->table, TABLE_HOLDING);
-        assert_int_equal(tag->byte_order, registers == 2 ? BYTE_ORDER_CDAB : BYTE_ORDER_NONE);
+        int registers = tag->signal.type == DATA_FLOAT32 ? 2 : 1;
+        assert_int_equal(tag->signal.table, TABLE_HOLDING);
+        assert_int_equal(tag->signal.byte_order, registers == 2 ? BYTE_ORDER_CDAB : BYTE_ORDER_NONE);
         for (int k = 0; k < registers; k++)
-            assert_int_equal(used[tag->register_index + k]++, 0);
+            assert_int_equal(used[tag->signal.register_index + k]++, 0);
     }
 }
 
@@ -157,7 +157,7 @@ enum { CALM, UPSET_KINDS = 3, CYCLE_S = 690, MACHINES = 5, RECOVERY_S = 60 };
 
 static bool beyond(const struct plant_tag *tag, double value, enum limit low, enum limit high)
 {
-    return value < tag->limits[low] || value > tag->limits[high]; /* NaN: no limit */
+    return value < tag->alarms.limits[low] || value > tag->alarms.limits[high]; /* NaN: no limit */
 }
 
 /* Returns the upset (1 to 3) that is running or whose effects still show, or CALM. */

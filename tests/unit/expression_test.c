@@ -122,7 +122,8 @@ TEST_WITH(quality_and_age_are_carried_through, plant_case_set_up, plant_case_tea
     plant_case_assert_loaded(c, 0);
     const struct plant *plant = c->plant;
     assert_true(plant->tags[0].source == -1 && plant->derived_count == 2 && plant->derived[0] == 3 && plant->derived[1] == 0);
-    assert_true(plant->tags[3].stale_s == 60 && plant->tags[0].stale_s == 60); /* a derived tag's stale time is that of its inputs */
+    assert_true(plant->tags[3].validity.stale_s == 60 &&
+                plant->tags[0].validity.stale_s == 60); /* a derived tag's stale time is that of its inputs */
     struct store *store = store_create(plant);
     struct snapshot *snapshot = snapshot_create(plant->tag_count);
     struct derived_state *derived = derived_create(plant);

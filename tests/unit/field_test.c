@@ -453,7 +453,7 @@ static void assert_even(const struct field_rig *rig, float value)
 TEST(test_an_assumed_place_is_the_whole_asset_evenly)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 1, .island = 100));
-    rig.plant->plant.tags[0].place_assumed = true;
+    rig.plant->plant.tags[0].place.assumed = true;
     rig.plant->plant.tags[0].strength = 0;
     set(&rig, 0, 41.7, QUALITY_GOOD);
     for (int i = 0; i < 4; i++) {
@@ -474,9 +474,9 @@ TEST(test_of_assumed_places_the_nearest_to_trouble_stands_for_all)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
     for (int i = 0; i < 3; i++) {
-        rig.plant->plant.tags[i].place_assumed = true;
+        rig.plant->plant.tags[i].place.assumed = true;
         for (int limit = 0; limit < LIMIT_COUNT; limit++)
-            rig.plant->plant.tags[i].limits[limit] = NAN;
+            rig.plant->plant.tags[i].alarms.limits[limit] = NAN;
     }
     set(&rig, 0, 40, QUALITY_GOOD);
     set(&rig, 1, 75, QUALITY_GOOD);
@@ -484,7 +484,7 @@ TEST(test_of_assumed_places_the_nearest_to_trouble_stands_for_all)
     assert_even(&rig, 75); /* range 0 to 100 without limits: 75 is farthest from the middle */
     set(&rig, 2, 5, QUALITY_GOOD);
     assert_even(&rig, 5);
-    rig.plant->plant.tags[0].limits[LIMIT_H] = 35;
+    rig.plant->plant.tags[0].alarms.limits[LIMIT_H] = 35;
     assert_even(&rig, 40); /* beyond its own limit */
     assert_as_fresh(&rig);
     set(&rig, 0, 40, QUALITY_BAD_NO_COMMUNICATION);
@@ -500,7 +500,7 @@ TEST(test_of_assumed_places_the_nearest_to_trouble_stands_for_all)
 TEST(test_beside_a_known_place_an_assumed_one_paints_nothing)
 {
     struct field_rig with = rig_create(synthetic_create(.vertices = 700, .sensors = 3)), without = with;
-    with.plant->plant.tags[2].place_assumed = true;
+    with.plant->plant.tags[2].place.assumed = true;
     set(&with, 2, 99, QUALITY_GOOD);
     without.plant = synthetic_create(.vertices = 700, .sensors = 3);
     without.field = field_create(workers, &without.plant->scene);

@@ -254,7 +254,7 @@ CASE(a_standby_records_what_time_alone_changes)
     struct history_series here = { 0 }, there = { 0 };
     char *folder = temp_path(s->folder, "standby");
     for (int i = 0; i < TAGS; i++)
-        s->plant->tags[i].stale_s = i < TAGS / 2 ? 0.5 : 3600;
+        s->plant->tags[i].validity.stale_s = i < TAGS / 2 ? 0.5 : 3600;
     store_destroy(&s->store);
     s->store = store_create(s->plant);
     struct store *mirror = store_create(s->plant);

@@ -305,11 +305,11 @@ CASE(the_longest_gap_can_be_stated)
     assert_int_equal(s->counts.gaps, 0);
     assert_true(fabs(read_at(s, "longer", 0, 60 * US_PER_S).value - 1.5) < 1e-9);
     s->longest_gap_us = 0;
-    s->plant->tags[0].states_stale = true;
-    s->plant->tags[0].stale_s = 30;
+    s->plant->tags[0].validity.states_stale = true;
+    s->plant->tags[0].validity.stale_s = 30;
     assert_true(import(s, "stale", series, OCTOBER_25, US_PER_S));
     assert_int_equal(s->counts.gaps, 1);
-    s->plant->tags[0].stale_s = 5;
+    s->plant->tags[0].validity.stale_s = 5;
     assert_true(import(s, "slower", series, OCTOBER_25, US_PER_S));
     assert_int_equal(s->counts.gaps, 0);
     assert_int_equal(s->counts.longest_us[1], 100 * US_PER_S);

@@ -554,7 +554,7 @@ CASE(test_blind_places_are_told_where_gp_knows_nothing)
     assert_true(look(&u, STRIP_M - 0.5)->value >= 100);
     assert_true(fabs((double)look(&u, place_of(1))->value - 5) < 0.5);
     for (size_t i = 0; i < u.plant->tag_count; i++)
-        u.plant->tags[i].place_assumed = true;
+        u.plant->tags[i].place.assumed = true;
     field_destroy(&u.field);
     u.field = field_create(u.workers, u.scene);
     assert_null(field_scalars(u.field, 0, &u.params, u.snapshot));

@@ -113,12 +113,12 @@ TEST_WITH(test_a_tag_that_is_another_is_unproven_again, set_up, tear_down)
     for (int change = 0; change < 6; change++) {
         *tag = was;
         switch (change) {
-        case 0: tag->register_index++; break;
-        case 1: tag->byte_order = (enum byte_order)(tag->byte_order + 1); break;
-        case 2: tag->scaled_high += 1; break;
-        case 3: tag->negate = !tag->negate; break;
-        case 4: tag->position_m[1] += 0.25; break;
-        default: tag->modbus_unit++; break;
+        case 0: tag->signal.register_index++; break;
+        case 1: tag->signal.byte_order = (enum byte_order)(tag->signal.byte_order + 1); break;
+        case 2: tag->scale.scaled_high += 1; break;
+        case 3: tag->scale.negate = !tag->scale.negate; break;
+        case 4: tag->place.position_m[1] += 0.25; break;
+        default: tag->signal.modbus_unit++; break;
         }
         assert_true(loop_check_fingerprint(f->plant, 0) != before);
         open_again(f);

@@ -86,8 +86,9 @@ static void check_wire(const struct modbus_replay *r, size_t tag)
     const struct register_rows *held = &r->held[tag], *told = &r->told[tag];
     const struct plant_tag *t = &r->plant->tags[tag];
     /* `within` is half a raw step for integer types. */
-    double step = t->scaling == SCALING_NONE ? 1 : (t->scaled_high - t->scaled_low) / (t->raw_high - t->raw_low);
-    double within = t->type == DATA_FLOAT32 ? 0 : 0.501 * step;
+    double step =
+        t->scale.kind == SCALING_NONE ? 1 : (t->scale.scaled_high - t->scale.scaled_low) / (t->scale.raw_high - t->scale.raw_low);
+    double within = t->signal.type == DATA_FLOAT32 ? 0 : 0.501 * step;
     size_t from = 0, good = 0;
     for (size_t i = 0; i < told->count; i++) {
         const struct register_row *row = &told->at[i];

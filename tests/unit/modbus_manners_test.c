@@ -67,7 +67,7 @@ static void add_blocks(struct modbus_case *s)
         char name[20];
         snprintf(name, sizeof(name), "B%d", i);
         plant_by_hand_tag(s->plant, name, TABLE_HOLDING, 500 * i, DATA_INT16);
-        s->plant->tags[i].stale_s = 30;
+        s->plant->tags[i].validity.stale_s = 30;
     }
     s->plant->sources[0].poll_ms = POLL_MS;
     modbus_case_be_impatient(s);
@@ -252,7 +252,7 @@ CASE(unit_0_is_nobody_s_where_several_units_are_read)
 {
     s->device.manner = DEVICE_RENAMED;
     add_blocks(s);
-    s->plant->tags[2].modbus_unit = 7;
+    s->plant->tags[2].signal.modbus_unit = 7;
     device_start(&s->device);
     modbus_case_start(s);
     while (s->device.requests < 8)
@@ -297,7 +297,7 @@ CASE(a_dead_unit_at_a_closing_gateway)
     s->device.answers_per_connection = 1;
     s->device.silent_unit = 7;
     add_blocks(s);
-    s->plant->tags[2].modbus_unit = 7;
+    s->plant->tags[2].signal.modbus_unit = 7;
     device_start(&s->device);
     modbus_case_start(s);
     await_line("unit 7 does not answer", 10);
@@ -324,7 +324,7 @@ CASE(a_dead_unit_that_blocks_its_gateway)
     add_blocks(s);
     s->device.dead_unit = 7;
     s->device.dead_late_ms = 3 * s->plant->sources[0].timeout_ms;
-    s->plant->tags[2].modbus_unit = 7;
+    s->plant->tags[2].signal.modbus_unit = 7;
     device_start(&s->device);
     modbus_case_start(s);
     await_line("unit 7 does not answer", 20);
@@ -343,8 +343,8 @@ static void start_gateway(struct modbus_case *s)
     for (int i = 0; i < UNITS; i++) {
         char name[20];
         snprintf(name, sizeof(name), "U%d", i);
-        plant_by_hand_tag(s->plant, name, TABLE_HOLDING, i, DATA_INT16)->modbus_unit = i + 1;
-        s->plant->tags[i].stale_s = 300;
+        plant_by_hand_tag(s->plant, name, TABLE_HOLDING, i, DATA_INT16)->signal.modbus_unit = i + 1;
+        s->plant->tags[i].validity.stale_s = 300;
     }
     s->plant->sources[0].poll_ms = POLL_MS;
     modbus_case_be_impatient(s);

@@ -36,7 +36,7 @@ CASE(values_arrive)
     plant_by_hand_tag(s->plant, "no coil", TABLE_COIL, 4, DATA_BIT);
     plant_by_hand_tag(s->plant, "contact", TABLE_DISCRETE, 4, DATA_BIT);
     plant_by_hand_tag(s->plant, "wide", TABLE_HOLDING, 100, DATA_UINT32);
-    plant_by_hand_tag(s->plant, "other unit", TABLE_HOLDING, 5, DATA_UINT16)->modbus_unit = 9;
+    plant_by_hand_tag(s->plant, "other unit", TABLE_HOLDING, 5, DATA_UINT16)->signal.modbus_unit = 9;
     device_start(&s->device);
     modbus_case_start(s);
     const double wanted[] = { 0, 1, 2, 10007, 1, 0, 1, 100 * 65536.0 + 101, 5 };
@@ -92,7 +92,7 @@ CASE(absent_at_start_then_appears)
 CASE(dies_and_returns)
 {
     modbus_case_add_registers(s, 2);
-    s->plant->tags[0].stale_s = s->plant->tags[1].stale_s = 1.0;
+    s->plant->tags[0].validity.stale_s = s->plant->tags[1].validity.stale_s = 1.0;
     device_start(&s->device);
     modbus_case_start(s);
     modbus_case_expect(s, 1, QUALITY_GOOD, 3);
@@ -329,7 +329,7 @@ CASE(device_failure_is_asked_again)
 CASE(busy_is_no_verdict)
 {
     modbus_case_add_registers(s, 2);
-    s->plant->tags[0].stale_s = s->plant->tags[1].stale_s = 0.6;
+    s->plant->tags[0].validity.stale_s = s->plant->tags[1].validity.stale_s = 0.6;
     device_start(&s->device);
     modbus_case_start(s);
     modbus_case_expect(s, 0, QUALITY_GOOD, 3);
@@ -361,7 +361,7 @@ static void check_other_unit_lives(struct modbus_case *s)
 CASE(dead_unit_behind_a_gateway_leaves_the_others_alone)
 {
     modbus_case_add_registers(s, 2);
-    s->plant->tags[1].modbus_unit = 7;
+    s->plant->tags[1].signal.modbus_unit = 7;
     s->device.dead_unit = 7;
     device_start(&s->device);
     modbus_case_start(s);
@@ -372,7 +372,7 @@ CASE(silent_unit_behind_a_gateway_leaves_the_others_alone)
 {
     modbus_case_be_impatient(s);
     modbus_case_add_registers(s, 2);
-    s->plant->tags[1].modbus_unit = 7;
+    s->plant->tags[1].signal.modbus_unit = 7;
     s->device.silent_unit = 7;
     device_start(&s->device);
     modbus_case_start(s);

@@ -19,7 +19,7 @@ static bool resolve(const char *address, char *of_source, struct plant_tag *tag,
 {
     struct plant_source source = { .opcua.name_space = of_source };
     const struct plant plant = { .sources = &source, .source_count = 1 };
-    *tag = (struct plant_tag){ .address = (char *)(uintptr_t)address };
+    *tag = (struct plant_tag){ .signal.address = (char *)(uintptr_t)address };
     bool good = opcua_address_resolve(&plant, tag, why);
     if (!good)
         assert_true(strlen(why) > 10);
@@ -44,15 +44,15 @@ TEST(addresses_are_as_written)
     char why[200];
     for (size_t i = 0; i < sizeof(good) / sizeof(*good); i++) {
         assert_true(resolve(good[i].address, "urn:own", &tag, why));
-        assert_string_equal(tag.topic, good[i].uri);
-        assert_string_equal(tag.path, good[i].id);
-        assert_int_equal(tag.element, good[i].element);
-        mem_free(tag.topic);
-        mem_free(tag.path);
+        assert_string_equal(tag.signal.topic, good[i].uri);
+        assert_string_equal(tag.signal.path, good[i].id);
+        assert_int_equal(tag.signal.element, good[i].element);
+        mem_free(tag.signal.topic);
+        mem_free(tag.signal.path);
     }
     for (size_t i = 0; i < sizeof(wrong) / sizeof(*wrong); i++) {
         assert_false(resolve(wrong[i], "urn:own", &tag, why));
-        mem_free(tag.topic);
+        mem_free(tag.signal.topic);
     }
     assert_false(resolve("s=x", NULL, &tag, why));
 }
@@ -114,7 +114,7 @@ TEST(status_codes_and_times_stay_as_they_are)
     static const uint32_t codes[] = { 0, 0x00960000, 0x00000480, 0x40930000, 0x40A50480, 0x40000001, 0x808C0000, 0x80AB0000, 0xC0000000 };
     struct plant *plant = plant_by_hand_create(1);
     plant_by_hand_source(plant, "plc", 4840);
-    plant_by_hand_tag(plant, "A", TABLE_HOLDING, 0, DATA_FLOAT64)->stale_s = PLANT_NEVER_STALE_S;
+    plant_by_hand_tag(plant, "A", TABLE_HOLDING, 0, DATA_FLOAT64)->validity.stale_s = PLANT_NEVER_STALE_S;
     struct store *store = store_create(plant);
     struct snapshot *snapshot = snapshot_create(1);
     struct stamped_writer writer;
@@ -147,7 +147,7 @@ TEST(what_is_older_than_the_machine_s_start_is_as_old_as_it_is)
     static const int64_t minute_ns = 60 * 1000000000LL;
     struct plant *plant = plant_by_hand_create(1);
     plant_by_hand_source(plant, "plc", 4840);
-    plant_by_hand_tag(plant, "A", TABLE_HOLDING, 0, DATA_FLOAT64)->stale_s = 600;
+    plant_by_hand_tag(plant, "A", TABLE_HOLDING, 0, DATA_FLOAT64)->validity.stale_s = 600;
     struct store *store = store_create(plant);
     struct snapshot *snapshot = snapshot_create(1);
     struct stamped_writer writer;

@@ -14,14 +14,15 @@ static const struct plant_group range_0_100 = { .min = 0, .max = 100 };
 
 static struct plant_tag with_limits(double ll, double l, double h, double hh)
 {
-    return (struct plant_tag){ .limits = { ll, l, h, hh } };
+    return (struct plant_tag){ .alarms.limits = { ll, l, h, hh } };
 }
 
 static void expect(const struct plant_tag *tag, double value, double place)
 {
     double got = limit_place(&range_0_100, tag, value);
     if (!(fabs(got - place) < 2e-3))
-        fail_msg("%g with %g %g %g %g: %g, expected %g", value, tag->limits[0], tag->limits[1], tag->limits[2], tag->limits[3], got, place);
+        fail_msg("%g with %g %g %g %g: %g, expected %g", value, tag->alarms.limits[0], tag->alarms.limits[1], tag->alarms.limits[2],
+                 tag->alarms.limits[3], got, place);
 }
 
 TEST(test_all_limits)
@@ -112,7 +113,8 @@ enum { SENSORS = 6, VERTICES = 400 };
 static void set_limits(struct synthetic *plant, size_t tag, double low, double high)
 {
     double range = high - low;
-    memcpy(plant->plant.tags[tag].limits, (double[]){ low - range, low, high, high + range }, sizeof(plant->plant.tags[tag].limits));
+    memcpy(plant->plant.tags[tag].alarms.limits, (double[]){ low - range, low, high, high + range },
+           sizeof(plant->plant.tags[tag].alarms.limits));
 }
 
 /* Uses the positions as readings of another plant without limits: both fields must be equal. */
@@ -162,7 +164,7 @@ TEST(test_tags_without_limits_have_no_place)
     for (size_t i = 0; i < 3; i++)
         set_limits(plant, i, 40, 60);
     for (int i = 0; i < LIMIT_COUNT; i++)
-        plant->plant.tags[1].limits[i] = NAN;
+        plant->plant.tags[1].alarms.limits[i] = NAN;
     plant->snapshot->readings[0].value = 60;
     plant->snapshot->readings[1].value = 1e6; /* takes no part */
     plant->snapshot->readings[2].value = 60;

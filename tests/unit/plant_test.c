@@ -52,11 +52,12 @@ CASE(defaults_are_as_documented)
     assert_true(s->port == 502 && s->unit == 1 && s->poll_ms == 1000 && s->timeout_ms == 1000 && s->address_base == 1);
     assert_int_equal(s->byte_order, BYTE_ORDER_NONE);
     const struct plant_tag *t = &p->tags[0];
-    assert_true(t->source == 0 && t->group == -1 && t->asset == -1 && t->modbus_unit == -1 && t->bit == -1 && t->scan_ms == 0);
-    assert_int_equal(t->type, DATA_UINT16);
-    assert_int_equal(t->scaling, SCALING_NONE);
-    assert_float_equal(t->stale_s, 5, 0);
-    assert_false(t->has_position || t->negate || t->node);
+    assert_true(t->source == 0 && t->group == -1 && t->asset == -1 && t->signal.modbus_unit == -1 && t->signal.bit == -1 &&
+                t->signal.scan_ms == 0);
+    assert_int_equal(t->signal.type, DATA_UINT16);
+    assert_int_equal(t->scale.kind, SCALING_NONE);
+    assert_float_equal(t->validity.stale_s, 5, 0);
+    assert_false(t->place.has_position || t->scale.negate || t->place.node);
     char *folder = plant_prepared_folder(p), *expected = temp_path(f->folder, "plant.prepared");
     assert_string_equal(folder, expected);
     mem_free(folder);
@@ -104,15 +105,18 @@ CASE(everything_is_read)
     assert_true(g->break_count == 3 && g->breaks[2] == 0.25 && g->isoline_count == 1 && g->isolines[0] == 0.1 && p->groups[1].log);
     assert_true(!g->cuts_singles && p->groups[1].cuts_singles);
     const struct plant_tag *t = &p->tags[0];
-    assert_true(t->register_index == 1 && t->table == TABLE_HOLDING && t->type == DATA_FLOAT32 && t->byte_order == BYTE_ORDER_BADC);
-    assert_true(t->scan_ms == 500 && t->scaling == SCALING_SQUARE_ROOT && t->raw_high == 27648 && t->scaled_low == -50 && t->negate);
-    assert_true(t->strength == 7 && t->decay == 8 && t->stale_s == 9 && t->has_position && t->position_m[2] == 3);
-    assert_true(t->limits[LIMIT_LL] == -2 && t->limits[LIMIT_L] == -0.5 && t->limits[LIMIT_HH] == 2);
+    assert_true(t->signal.register_index == 1 && t->signal.table == TABLE_HOLDING && t->signal.type == DATA_FLOAT32 &&
+                t->signal.byte_order == BYTE_ORDER_BADC);
+    assert_true(t->signal.scan_ms == 500 && t->scale.kind == SCALING_SQUARE_ROOT && t->scale.raw_high == 27648 &&
+                t->scale.scaled_low == -50 && t->scale.negate);
+    assert_true(t->strength == 7 && t->decay == 8 && t->validity.stale_s == 9 && t->place.has_position && t->place.position_m[2] == 3);
+    assert_true(t->alarms.limits[LIMIT_LL] == -2 && t->alarms.limits[LIMIT_L] == -0.5 && t->alarms.limits[LIMIT_HH] == 2);
     assert_string_equal(t->description, "say \"hi\"");
     const struct plant_tag *b = &p->tags[1];
-    assert_true(b->modbus_unit == 3 && b->table == TABLE_INPUT && b->register_index == 7 && b->bit == 4 && b->type == DATA_BIT);
-    assert_true(b->strength == 2 && b->decay == 3 && b->stale_s == 6 && b->line == 3);
-    assert_string_equal(b->node, "TI-B");
+    assert_true(b->signal.modbus_unit == 3 && b->signal.table == TABLE_INPUT && b->signal.register_index == 7 && b->signal.bit == 4 &&
+                b->signal.type == DATA_BIT);
+    assert_true(b->strength == 2 && b->decay == 3 && b->validity.stale_s == 6 && b->line == 3);
+    assert_string_equal(b->place.node, "TI-B");
     assert_string_equal(b->unit, "");
     assert_int_equal(plant_find_asset(p, "101"), 0);
     assert_int_equal(plant_find_group(p, "x"), -1);
@@ -210,11 +214,11 @@ CASE(an_assumed_place_is_another_than_the_same_place_known)
     plant_case_assert_loaded(f, 0);
     assert_int_equal(plant_sensors(f->plant, 0, &s), 5);
     assert_string_equal(s[0].node, "");
-    assert_true(s[0].node_hash != 0 && f->plant->tags[0].place_assumed);
+    assert_true(s[0].node_hash != 0 && f->plant->tags[0].place.assumed);
     assert_null(s[1].node);
-    assert_true(s[1].node_hash != 0 && f->plant->tags[1].place_assumed);
+    assert_true(s[1].node_hash != 0 && f->plant->tags[1].place.assumed);
     assert_point(s[1].position_m, 1, 2, 3);
-    assert_true(s[2].node_hash == 0 && !f->plant->tags[2].place_assumed);
+    assert_true(s[2].node_hash == 0 && !f->plant->tags[2].place.assumed);
     assert_string_equal(s[3].node, "N");
     assert_true(s[3].node_hash != s[4].node_hash);
     mem_free(s);
@@ -254,7 +258,7 @@ CASE(the_locale_changes_nothing)
     setlocale(LC_NUMERIC, "C");
     plant_case_assert_loaded(f, 0);
     assert_float_equal(f->plant->groups[0].max, 1.5, 0);
-    assert_float_equal(f->plant->tags[0].limits[LIMIT_L], 0.5, 0);
+    assert_float_equal(f->plant->tags[0].alarms.limits[LIMIT_L], 0.5, 0);
 }
 
 /* --- plant.yaml, bad -------------------------------------------------------------------------------------------------------- */
@@ -470,7 +474,7 @@ CASE(sources_say_how_they_are_reached)
     assert_true(s[2].transport == TRANSPORT_RTU && s[2].baud == 9600 && s[2].parity == 'N' && s[2].stop_bits == 2 && s[2].simulated);
     assert_true(!strcmp(s[3].kind, "replay") && s[3].speed == 60 && s[3].loop && s[3].simulated);
     assert_true(s[4].baud == 19200 && s[4].parity == 'E' && s[4].stop_bits == 1); /* Modbus over serial line 2.5.1 */
-    assert_string_equal(f->plant->tags[2].address, "Shell inlet");
+    assert_string_equal(f->plant->tags[2].signal.address, "Shell inlet");
 }
 
 CASE(keys_without_meaning_are_errors)

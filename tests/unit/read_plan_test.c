@@ -47,9 +47,9 @@ TEST(units_tables_scans_and_sources_part)
 {
     struct read_plan plan;
     struct plant *plant = plant_of_registers((int[]){ 0, 1, 2, 3, 4 }, 5, TABLE_HOLDING, DATA_INT16);
-    plant->tags[1].modbus_unit = 7;
-    plant->tags[2].table = TABLE_INPUT;
-    plant->tags[3].scan_ms = 5000;
+    plant->tags[1].signal.modbus_unit = 7;
+    plant->tags[2].signal.table = TABLE_INPUT;
+    plant->tags[3].signal.scan_ms = 5000;
     plant_by_hand_source(plant, "b", 2);
     plant->tags[4].source = 1;
     read_plan_init(&plan, plant, 0);
@@ -118,10 +118,10 @@ TEST(two_tags_may_share_registers)
 {
     struct read_plan plan;
     struct plant *plant = plant_of_registers((int[]){ 10, 10, 11, 10 }, 4, TABLE_HOLDING, DATA_FLOAT32);
-    plant->tags[1].type = DATA_BIT; /* bits of one register */
-    plant->tags[1].bit = 3;
-    plant->tags[3].type = DATA_BIT;
-    plant->tags[3].bit = 4;
+    plant->tags[1].signal.type = DATA_BIT; /* bits of one register */
+    plant->tags[1].signal.bit = 3;
+    plant->tags[3].signal.type = DATA_BIT;
+    plant->tags[3].signal.bit = 4;
     read_plan_init(&plan, plant, 0);
     assert_int_equal(plan.block_count, 1);
     assert_block(&plan, 0, 10, 3, 4);
@@ -163,7 +163,7 @@ static void check_rules(const struct plant *plant, const struct read_plan *plan)
     size_t seen = 0;
     for (size_t i = 0; i < plant->tag_count; i++)
         for (int r = 0; r < decode_width(&plant->tags[i]); r++)
-            wanted[plant->tags[i].table == TABLE_COIL][plant->tags[i].register_index + r] = 1;
+            wanted[plant->tags[i].signal.table == TABLE_COIL][plant->tags[i].signal.register_index + r] = 1;
     for (size_t b = 0; b < plan->block_count; b++) {
         const struct read_plan_block *block = &plan->blocks[b];
         int gap = 0;
@@ -172,8 +172,8 @@ static void check_rules(const struct plant *plant, const struct read_plan *plan)
         assert_int_equal(block->first_tag, seen);
         for (size_t t = 0; t < block->tag_count; t++, seen++) {
             const struct plant_tag *tag = &plant->tags[plan->tags[seen]];
-            int offset = tag->register_index - block->first;
-            assert_int_equal(tag->table, block->table);
+            int offset = tag->signal.register_index - block->first;
+            assert_int_equal(tag->signal.table, block->table);
             assert_true(offset >= 0 && offset + decode_width(tag) <= block->count);
         }
         for (int i = 0; i < block->count; i++) {
@@ -223,10 +223,10 @@ TEST(a_plan_is_put_in_words)
 {
     struct text text = { 0 };
     struct plant *plant = plant_of_registers((int[]){ 0, 2, 10, 7 }, 4, TABLE_HOLDING, DATA_FLOAT32);
-    plant->tags[3].table = TABLE_INPUT;
-    plant->tags[3].type = DATA_BIT;
-    plant->tags[3].byte_order = BYTE_ORDER_NONE;
-    plant->tags[3].bit = 3;
+    plant->tags[3].signal.table = TABLE_INPUT;
+    plant->tags[3].signal.type = DATA_BIT;
+    plant->tags[3].signal.byte_order = BYTE_ORDER_NONE;
+    plant->tags[3].signal.bit = 3;
     plant->sources[0].poll_ms = 500;
     plant->sources[0].pause_ms = 10;
     read_plan_text(&text, plant, 0);

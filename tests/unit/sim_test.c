@@ -24,8 +24,10 @@ static double random_between(double low, double high)
 /* Returns the largest error due to the raw type: half a raw step, or the precision of a float. */
 static double tolerance(const struct plant_tag *tag, double raw_low, double raw_high)
 {
-    double step = tag->type == DATA_FLOAT32 ? fmax(fabs(raw_low), fabs(raw_high)) * 1.2e-7 : tag->type == DATA_FLOAT64 ? 1e-9 : 0.500001;
-    double per_raw = tag->scaling == SCALING_NONE ? 1 : fabs((tag->scaled_high - tag->scaled_low) / (raw_high - raw_low));
+    double step = tag->signal.type == DATA_FLOAT32   ? fmax(fabs(raw_low), fabs(raw_high)) * 1.2e-7
+                  : tag->signal.type == DATA_FLOAT64 ? 1e-9
+                                                     : 0.500001;
+    double per_raw = tag->scale.kind == SCALING_NONE ? 1 : fabs((tag->scale.scaled_high - tag->scale.scaled_low) / (raw_high - raw_low));
     return step * per_raw + 1e-9;
 }
 
@@ -35,14 +37,14 @@ static void check_there_and_back(const struct plant_tag *tag, double value, doub
     struct sample sample;
     assert_true(sim_encode(tag, value, words));
     decode_sample(tag, words, &sample);
-    if (tag->scaling == SCALING_SQUARE_ROOT) { /* a raw step is a step of the squared value */
-        double low = tag->negate ? -tag->scaled_low : tag->scaled_low;
-        allowed = allowed * fabs(tag->scaled_high - tag->scaled_low) /
-                  fmax(fabs(value - low), sqrt(allowed * fabs(tag->scaled_high - tag->scaled_low)));
+    if (tag->scale.kind == SCALING_SQUARE_ROOT) { /* a raw step is a step of the squared value */
+        double low = tag->scale.negate ? -tag->scale.scaled_low : tag->scale.scaled_low;
+        allowed = allowed * fabs(tag->scale.scaled_high - tag->scale.scaled_low) /
+                  fmax(fabs(value - low), sqrt(allowed * fabs(tag->scale.scaled_high - tag->scale.scaled_low)));
     }
     if (fabs(sample.value - value) > allowed)
-        fail_msg("type %d order %d scaling %d negate %d: %.12g came back as %.12g (allowed %.3g)", tag->type, tag->byte_order, tag->scaling,
-                 tag->negate, value, sample.value, allowed);
+        fail_msg("type %d order %d scaling %d negate %d: %.12g came back as %.12g (allowed %.3g)", tag->signal.type, tag->signal.byte_order,
+                 tag->scale.kind, tag->scale.negate, value, sample.value, allowed);
     assert_int_equal(sample.quality, QUALITY_GOOD);
 }
 
@@ -59,16 +61,16 @@ TEST(what_is_encoded_is_decoded)
             for (int scaling = SCALING_NONE; scaling <= SCALING_SQUARE_ROOT; scaling++)
                 for (int negate = 0; negate < 2; negate++) {
                     double low = raws[type][0], high = raws[type][1];
-                    struct plant_tag tag = { .table = TABLE_HOLDING,
-                                             .bit = -1,
-                                             .type = (enum data_type)type,
-                                             .byte_order = (enum byte_order)order,
-                                             .scaling = (enum scaling)scaling,
-                                             .raw_low = low,
-                                             .raw_high = high,
-                                             .scaled_low = -40,
-                                             .scaled_high = 260,
-                                             .negate = negate };
+                    struct plant_tag tag = { .signal.table = TABLE_HOLDING,
+                                             .signal.bit = -1,
+                                             .signal.type = (enum data_type)type,
+                                             .signal.byte_order = (enum byte_order)order,
+                                             .scale.kind = (enum scaling)scaling,
+                                             .scale.raw_low = low,
+                                             .scale.raw_high = high,
+                                             .scale.scaled_low = -40,
+                                             .scale.scaled_high = 260,
+                                             .scale.negate = negate };
                     assert_int_equal(sim_encode_width(&tag), decode_width(&tag));
                     double from = scaling ? -40 : low, to = scaling ? 260 : high;
                     for (int i = 0; i < 50; i++) {
@@ -82,7 +84,9 @@ TEST(bytes_lie_as_the_order_says)
 {
     const uint16_t wanted[][2] = { { 0xC2ED, 0x4000 }, { 0xC2ED, 0x4000 }, { 0x4000, 0xC2ED }, { 0xEDC2, 0x0040 }, { 0x0040, 0xEDC2 } };
     for (int order = BYTE_ORDER_ABCD; order <= BYTE_ORDER_DCBA; order++) {
-        struct plant_tag tag = { .table = TABLE_INPUT, .bit = -1, .type = DATA_FLOAT32, .byte_order = (enum byte_order)order };
+        struct plant_tag tag = {
+            .signal.table = TABLE_INPUT, .signal.bit = -1, .signal.type = DATA_FLOAT32, .signal.byte_order = (enum byte_order)order
+        };
         uint16_t words[2];
         assert_true(sim_encode(&tag, -118.625, words));
         assert_int_equal(words[0], wanted[order][0]);
@@ -95,9 +99,11 @@ TEST(bits_leave_their_neighbours_alone)
     for (int order = BYTE_ORDER_NONE; order <= BYTE_ORDER_DCBA; order++)
         for (int bit = 0; bit < 16; bit++)
             for (int negate = 0; negate < 2; negate++) {
-                struct plant_tag tag = {
-                    .table = TABLE_HOLDING, .bit = bit, .type = DATA_BIT, .byte_order = (enum byte_order)order, .negate = negate
-                };
+                struct plant_tag tag = { .signal.table = TABLE_HOLDING,
+                                         .signal.bit = bit,
+                                         .signal.type = DATA_BIT,
+                                         .signal.byte_order = (enum byte_order)order,
+                                         .scale.negate = negate };
                 uint16_t word = 0xA5C3;
                 check_there_and_back(&tag, 1, 0);
                 check_there_and_back(&tag, 0, 0);
@@ -105,7 +111,7 @@ TEST(bits_leave_their_neighbours_alone)
                 int changed = word ^ 0xA5C3;
                 assert_true((changed & (changed - 1)) == 0); /* at most one bit changes */
             }
-    struct plant_tag coil = { .table = TABLE_COIL, .bit = -1, .type = DATA_BIT };
+    struct plant_tag coil = { .signal.table = TABLE_COIL, .signal.bit = -1, .signal.type = DATA_BIT };
     check_there_and_back(&coil, 1, 0);
     check_there_and_back(&coil, 0, 0);
 }
@@ -122,7 +128,9 @@ TEST(too_much_becomes_the_most)
         { DATA_INT32, 3e9, 2147483647 }, { DATA_UINT32, -1, 0 },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
-        struct plant_tag tag = { .table = TABLE_HOLDING, .bit = -1, .type = cases[i].type, .byte_order = BYTE_ORDER_ABCD };
+        struct plant_tag tag = {
+            .signal.table = TABLE_HOLDING, .signal.bit = -1, .signal.type = cases[i].type, .signal.byte_order = BYTE_ORDER_ABCD
+        };
         uint16_t words[4];
         struct sample sample;
         assert_true(sim_encode(&tag, cases[i].value, words));
@@ -133,13 +141,15 @@ TEST(too_much_becomes_the_most)
 
 TEST(only_floats_hold_no_number)
 {
-    struct plant_tag tag = { .table = TABLE_HOLDING, .bit = -1, .type = DATA_FLOAT32, .byte_order = BYTE_ORDER_CDAB };
+    struct plant_tag tag = {
+        .signal.table = TABLE_HOLDING, .signal.bit = -1, .signal.type = DATA_FLOAT32, .signal.byte_order = BYTE_ORDER_CDAB
+    };
     uint16_t words[4] = { 0 };
     struct sample sample;
     assert_true(sim_encode(&tag, NAN, words));
     decode_sample(&tag, words, &sample);
     assert_int_equal(sample.quality, QUALITY_BAD_SENSOR_FAILURE);
-    tag.type = DATA_INT16;
+    tag.signal.type = DATA_INT16;
     words[0] = 77;
     assert_false(sim_encode(&tag, NAN, words));
     assert_false(sim_encode(&tag, INFINITY, words));
@@ -149,7 +159,11 @@ TEST(only_floats_hold_no_number)
 TEST(only_named_registers_exist)
 {
     struct sim_image image = { 0 };
-    struct plant_tag tag = { .table = TABLE_HOLDING, .register_index = 10, .bit = -1, .type = DATA_FLOAT32, .byte_order = BYTE_ORDER_ABCD };
+    struct plant_tag tag = { .signal.table = TABLE_HOLDING,
+                             .signal.register_index = 10,
+                             .signal.bit = -1,
+                             .signal.type = DATA_FLOAT32,
+                             .signal.byte_order = BYTE_ORDER_ABCD };
     sim_image_add(&image, 3, &tag);
     assert_int_equal(sim_image_refusal(&image, 3, TABLE_HOLDING, 10, 2), 0);
     assert_int_equal(sim_image_refusal(&image, 3, TABLE_HOLDING, 10, 3), 2);

@@ -240,7 +240,7 @@ CASE(readings_go_on_in_another_plant)
     struct plant *plant = plant_by_hand_create(2);
     plant_by_hand_source(plant, "a", 1);
     plant_by_hand_tag(plant, "new", TABLE_HOLDING, 0, DATA_INT16);
-    plant_by_hand_tag(plant, "a1", TABLE_HOLDING, 1, DATA_INT16)->stale_s = 60;
+    plant_by_hand_tag(plant, "a1", TABLE_HOLDING, 1, DATA_INT16)->validity.stale_s = 60;
     plant->tags_by_name = by_name;
     write_one(s, 1, 42, QUALITY_GOOD, 10 * S);
     store_set_alarm(s->store, 1, ALARM_HH, ALARM_UNACKNOWLEDGED);
@@ -322,7 +322,7 @@ static void set_up_again(struct store_setup *s)
 
 CASE(a_value_that_never_moves_is_doubted)
 {
-    s->plant->tags[0].flatline_s = 60;
+    s->plant->tags[0].validity.flatline_s = 60;
     set_up_again(s);
     for (int t = 0; t < 60; t++) {
         write_one(s, 0, 7, QUALITY_GOOD, t * S);
@@ -387,8 +387,8 @@ static void on_sample_event(void *arg, const struct sample_event *event)
 CASE(other_tags_vouch)
 {
     uint32_t heard[3] = { 1, 1, 1 };
-    s->plant->tags[0].quality = (struct plant_quality_tag){ .tag = 1, .mask = 0x0C, .want = 0x04 };
-    s->plant->tags[2].quality = (struct plant_quality_tag){ .tag = 1, .mask = UINT64_MAX, .want = 0, .negate = true };
+    s->plant->tags[0].validity.quality = (struct plant_quality_tag){ .tag = 1, .mask = 0x0C, .want = 0x04 };
+    s->plant->tags[2].validity.quality = (struct plant_quality_tag){ .tag = 1, .mask = UINT64_MAX, .want = 0, .negate = true };
     set_up_again(s);
     store_listen(s->store, on_sample_event, heard);
     write_one(s, 0, 20, QUALITY_GOOD, 0);
@@ -493,7 +493,7 @@ CASE(nothing_changes_unannounced)
     int told = 0, announced = 0;
     s->plant->sources[0].heartbeat_s = 3;
     s->plant->sources[0].heartbeat_tag = 1;
-    s->plant->tags[2].quality = (struct plant_quality_tag){ .tag = 0, .mask = 1, .want = 1 };
+    s->plant->tags[2].validity.quality = (struct plant_quality_tag){ .tag = 0, .mask = 1, .want = 1 };
     set_up_again(s);
     store_watch(s->store, count_call, &told);
     srand(1);

@@ -39,13 +39,17 @@ CASE(a_kepware_export_is_read)
     assert_int_equal(c->plant->tag_count, 7);
     assert_string_equal(t[0].description, "Inlet, shell");
     assert_string_equal(t[0].unit, "degC");
-    assert_true(t[0].type == DATA_FLOAT32 && t[0].byte_order == BYTE_ORDER_CDAB && t[0].scan_ms == 500 && t[0].table == TABLE_HOLDING);
-    assert_true(t[1].type == DATA_UINT16 && t[1].byte_order == BYTE_ORDER_NONE && t[1].table == TABLE_INPUT && t[1].register_index == 4);
-    assert_true(t[1].scaling == SCALING_LINEAR && t[1].raw_high == 65535 && t[1].scaled_high == 120 && t[1].negate);
-    assert_true(t[2].type == DATA_BIT && t[2].table == TABLE_COIL && t[2].register_index == 16 && t[2].scaling == SCALING_NONE);
-    assert_true(t[3].type == DATA_BIT && t[3].table == TABLE_DISCRETE && t[3].scan_ms == 0 && t[3].stale_s == 9);
-    assert_true(t[4].type == DATA_UINT16 && t[5].type == DATA_INT64 && t[5].byte_order == BYTE_ORDER_CDAB);
-    assert_true(t[6].type == DATA_BIT && t[6].bit == 7 && t[6].byte_order == BYTE_ORDER_NONE);
+    assert_true(t[0].signal.type == DATA_FLOAT32 && t[0].signal.byte_order == BYTE_ORDER_CDAB && t[0].signal.scan_ms == 500 &&
+                t[0].signal.table == TABLE_HOLDING);
+    assert_true(t[1].signal.type == DATA_UINT16 && t[1].signal.byte_order == BYTE_ORDER_NONE && t[1].signal.table == TABLE_INPUT &&
+                t[1].signal.register_index == 4);
+    assert_true(t[1].scale.kind == SCALING_LINEAR && t[1].scale.raw_high == 65535 && t[1].scale.scaled_high == 120 && t[1].scale.negate);
+    assert_true(t[2].signal.type == DATA_BIT && t[2].signal.table == TABLE_COIL && t[2].signal.register_index == 16 &&
+                t[2].scale.kind == SCALING_NONE);
+    assert_true(t[3].signal.type == DATA_BIT && t[3].signal.table == TABLE_DISCRETE && t[3].signal.scan_ms == 0 &&
+                t[3].validity.stale_s == 9);
+    assert_true(t[4].signal.type == DATA_UINT16 && t[5].signal.type == DATA_INT64 && t[5].signal.byte_order == BYTE_ORDER_CDAB);
+    assert_true(t[6].signal.type == DATA_BIT && t[6].signal.bit == 7 && t[6].signal.byte_order == BYTE_ORDER_NONE);
 }
 
 CASE(blank_cells_take_the_group_s_values)
@@ -56,9 +60,10 @@ CASE(blank_cells_take_the_group_s_values)
                     "B;40002;temp;E-102;0;0;0;1;2;95;;\n");
     plant_case_assert_loaded(c, 0);
     const struct plant_tag *t = c->plant->tags;
-    assert_true(t[0].strength == 3 && t[0].decay == 4 && t[0].limits[LIMIT_L] == 10 && t[0].limits[LIMIT_H] == 90);
-    assert_true(isnan(t[0].limits[LIMIT_HH]) && t[0].position_m[0] == 1.5 && t[0].position_m[1] == -2 && t[0].position_m[2] == 3);
-    assert_true(t[1].strength == 1 && t[1].decay == 2 && t[1].limits[LIMIT_HH] == 95 && t[1].asset == 1 && t[1].has_position);
+    assert_true(t[0].strength == 3 && t[0].decay == 4 && t[0].alarms.limits[LIMIT_L] == 10 && t[0].alarms.limits[LIMIT_H] == 90);
+    assert_true(isnan(t[0].alarms.limits[LIMIT_HH]) && t[0].place.position_m[0] == 1.5 && t[0].place.position_m[1] == -2 &&
+                t[0].place.position_m[2] == 3);
+    assert_true(t[1].strength == 1 && t[1].decay == 2 && t[1].alarms.limits[LIMIT_HH] == 95 && t[1].asset == 1 && t[1].place.has_position);
     assert_string_equal(t[0].unit, "°C");
 }
 
@@ -78,9 +83,9 @@ CASE(byte_orders_are_resolved)
     static const enum byte_order orders[] = { BYTE_ORDER_ABCD, BYTE_ORDER_DCBA, BYTE_ORDER_BADC, BYTE_ORDER_CDAB,
                                               BYTE_ORDER_CDAB, BYTE_ORDER_NONE, BYTE_ORDER_DCBA, BYTE_ORDER_ABCD };
     for (int i = 0; i < 8; i++)
-        assert_int_equal(c->plant->tags[i].byte_order, orders[i]);
-    assert_int_equal(c->plant->tags[0].register_index, 0);
-    assert_int_equal(c->plant->tags[1].register_index, 1); /* address_base 0 */
+        assert_int_equal(c->plant->tags[i].signal.byte_order, orders[i]);
+    assert_int_equal(c->plant->tags[0].signal.register_index, 0);
+    assert_int_equal(c->plant->tags[1].signal.register_index, 1); /* address_base 0 */
     plant_case_load(c, yaml_no_order, "Tag Name,Address,Data Type,Byte Order\nA,hr:0,Float,\nB,ir:2,Double,\nC,400007,Word,\n");
     assert_null(c->plant);
     FOUND(c, { "tags.csv", 2, 14, "Byte Order: float32 has 32 bits, so one is needed: ABCD, CDAB, BADC or DCBA" },
@@ -112,11 +117,12 @@ CASE(instruments_say_what_they_can_measure)
                     "C,40003,,,,,,,,\n");
     plant_case_assert_loaded(c, 0);
     const struct plant_tag *t = c->plant->tags;
-    assert_true(t[0].ne43 && t[0].has_range && t[0].sentinel_count == 3 && t[0].flatline_s == 60);
-    assert_true(t[0].sentinels[0].is_bits && t[0].sentinels[0].bits == 0x8000);
-    assert_true(!t[0].sentinels[1].is_bits && t[0].sentinels[1].number == 32767 && t[0].sentinels[2].number == -1500);
-    assert_true(t[1].has_range && t[1].scaling == SCALING_NONE && t[1].scaled_low == -50 && t[1].scaled_high == 150);
-    assert_true(!t[2].has_range && !t[2].ne43 && t[2].sentinel_count == 0 && t[2].flatline_s == 0);
+    assert_true(t[0].scale.ne43 && t[0].scale.has_range && t[0].scale.sentinel_count == 3 && t[0].validity.flatline_s == 60);
+    assert_true(t[0].scale.sentinels[0].is_bits && t[0].scale.sentinels[0].bits == 0x8000);
+    assert_true(!t[0].scale.sentinels[1].is_bits && t[0].scale.sentinels[1].number == 32767 && t[0].scale.sentinels[2].number == -1500);
+    assert_true(t[1].scale.has_range && t[1].scale.kind == SCALING_NONE && t[1].scale.scaled_low == -50 &&
+                t[1].scale.scaled_high == 150);
+    assert_true(!t[2].scale.has_range && !t[2].scale.ne43 && t[2].scale.sentinel_count == 0 && t[2].validity.flatline_s == 0);
     plant_case_load(c, yaml,
                     "Tag Name,Address,NE 43,Open Circuit,Flatline s\n"
                     "A,40001,yes,,0\n"
@@ -141,9 +147,9 @@ CASE(tags_vouch_for_other_tags)
         { 5, UINT64_MAX, 0, true }, { 5, UINT64_MAX, 0, false }, { 6, 12, 4, false }, { 6, 3, 0, true }, { 6, 3, 1, true }
     };
     for (int i = 0; i < 5; i++)
-        assert_true(t[i].quality.tag == wanted[i].tag && t[i].quality.mask == wanted[i].mask && t[i].quality.want == wanted[i].want &&
-                    t[i].quality.negate == wanted[i].negate);
-    assert_true(t[5].quality.mask == 0);
+        assert_true(t[i].validity.quality.tag == wanted[i].tag && t[i].validity.quality.mask == wanted[i].mask &&
+                    t[i].validity.quality.want == wanted[i].want && t[i].validity.quality.negate == wanted[i].negate);
+    assert_true(t[5].validity.quality.mask == 0);
     plant_case_load(c, yaml,
                     "Tag Name,Address,Quality Tag\n"
                     "TI-1,40001,TI-1\nB,40002,TI-11\nC,40003,B&\nD,40004,B&0\nE,40005,B&2=1\nF,40006,!\nG,40007,B&1=1x\nH,40008,B\n");
@@ -163,8 +169,8 @@ CASE(directions_are_tags)
     mem_free(good);
     plant_case_assert_loaded(c, 0);
     const struct plant_tag *t = c->plant->tags;
-    assert_true(t[0].direction_count == 3 && t[0].direction[0] == 3 && t[0].direction[1] == 4 && t[0].direction[2] == 5);
-    assert_true(t[1].direction_count == 1 && t[1].direction[0] == 6 && t[2].direction_count == 0);
+    assert_true(t[0].direction.count == 3 && t[0].direction.tags[0] == 3 && t[0].direction.tags[1] == 4 && t[0].direction.tags[2] == 5);
+    assert_true(t[1].direction.count == 1 && t[1].direction.tags[0] == 6 && t[2].direction.count == 0);
     assert_true(c->plant->groups[plant_find_group(c->plant, "temp")].directed);
     char *bad = mem_printf("%sU,40001,temp,E-101,0,0,0,,A A\nV,40002,temp,E-101,1,0,0,,V\nW,40003,temp,E-101,1,0,0,,AA\n"
                            "A,40004,,,,,,,W\nB,40005,temp,E-101,,,,equipment,W\n", header);
@@ -323,11 +329,11 @@ CASE(alarms_are_of_the_tag_else_of_the_group)
                     "B,40002,,,,,,\n"
                     "STOP,10001,,,,,,\n");
     plant_case_assert_loaded(c, 0);
-    const struct plant_alarm_settings *a = &c->plant->tags[0].alarm_settings, *b = &c->plant->tags[1].alarm_settings;
+    const struct plant_alarm_settings *a = &c->plant->tags[0].alarms.settings, *b = &c->plant->tags[1].alarms.settings;
     assert_true(a->deadband == 1.5 && a->on_delay_s == 2 && a->off_delay_s == 3 && a->priority == 1 && a->latch);
-    assert_int_equal(c->plant->tags[0].suppressed_by, 2);
+    assert_int_equal(c->plant->tags[0].alarms.suppressed_by, 2);
     assert_true(b->deadband == 0 && b->on_delay_s == 0 && b->priority == ALARM_PRIORITY_DEFAULT && !b->latch);
-    assert_int_equal(c->plant->tags[1].suppressed_by, -1);
+    assert_int_equal(c->plant->tags[1].alarms.suppressed_by, -1);
     assert_int_equal(c->plant->alarms, ALARMS_DISPLAY);
     plant_case_load(c, yaml,
                     "Tag Name,Address,Priority,Suppressed By,Mirrors\n"
@@ -349,10 +355,11 @@ CASE(bits_mirror_alarms)
                     "A2,10002,TT 101 hh Acknowledged\n"
                     "A3,10003,A3 ALM\n");
     plant_case_assert_loaded(c, 0);
-    const struct plant_mirror *one = &c->plant->tags[1].mirror, *two = &c->plant->tags[2].mirror, *three = &c->plant->tags[3].mirror;
+    const struct plant_mirror *one = &c->plant->tags[1].alarms.mirror, *two = &c->plant->tags[2].alarms.mirror,
+                              *three = &c->plant->tags[3].alarms.mirror;
     assert_true(one->tag == 0 && one->limit == LIMIT_HH && !one->acknowledged);
     assert_true(two->tag == 0 && two->limit == LIMIT_HH && two->acknowledged);
-    assert_true(three->tag == 3 && three->limit == LIMIT_COUNT && c->plant->tags[0].mirror.tag == -1);
+    assert_true(three->tag == 3 && three->limit == LIMIT_COUNT && c->plant->tags[0].alarms.mirror.tag == -1);
     plant_case_load(c, mirror,
                     "Tag Name,Address,Mirrors\n"
                     "TT,40001,TT H\n"

@@ -139,12 +139,12 @@ CASE(rows_are_in_their_own_unit)
     plant_case_assert_loaded(c, 0);
     const struct plant_tag *t = c->plant->tags;
     assert_string_equal(t[0].unit, "°C");
-    assert_string_equal(t[0].own_unit, "°F");
-    assert_true(fabs(t[0].limits[LIMIT_L] - 10) < 1e-9 && fabs(t[0].limits[LIMIT_H] - 90) < 1e-9); /* a temperature */
-    assert_true(fabs(t[0].deadband - 1) < 1e-9 && fabs(t[0].alarm_settings.deadband - 5) < 1e-9);  /* a difference */
-    assert_true(t[1].limits[LIMIT_H] == 90 && t[1].alarm_settings.deadband == 2);                  /* the group's */
-    assert_true(t[4].limits[LIMIT_H] == 80 && t[4].deadband == 1 && !t[4].change.converts);
-    assert_true(!t[3].change.converts && !t[5].change.converts);
+    assert_string_equal(t[0].scale.own_unit, "°F");
+    assert_true(fabs(t[0].alarms.limits[LIMIT_L] - 10) < 1e-9 && fabs(t[0].alarms.limits[LIMIT_H] - 90) < 1e-9); /* a temperature */
+    assert_true(fabs(t[0].deadband - 1) < 1e-9 && fabs(t[0].alarms.settings.deadband - 5) < 1e-9);               /* a difference */
+    assert_true(t[1].alarms.limits[LIMIT_H] == 90 && t[1].alarms.settings.deadband == 2);                        /* the group's */
+    assert_true(t[4].alarms.limits[LIMIT_H] == 80 && t[4].deadband == 1 && !t[4].scale.change.converts);
+    assert_true(!t[3].scale.change.converts && !t[5].scale.change.converts);
     assert_string_equal(t[3].unit, "°F");
     struct history_tag *kept = history_tags(c->plant);
     assert_true(fabs(kept[1].within - 0.2 / 100 * 200) < 1e-9); /* a span of 360 °F is a span of 200 °C */

@@ -44,7 +44,7 @@ static bool read_device(const char *text, bool rtu, struct plant_source *source,
 
 static void print_value(enum data_type type, enum byte_order order, const uint16_t *words, int width)
 {
-    struct plant_tag tag = { .table = TABLE_HOLDING, .bit = -1, .type = type, .byte_order = order };
+    struct plant_tag tag = { .signal.table = TABLE_HOLDING, .signal.bit = -1, .signal.type = type, .signal.byte_order = order };
     struct sample sample;
     decode_sample(&tag, words, &sample);
     if (quality_is_bad(sample.quality))

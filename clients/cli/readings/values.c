@@ -55,7 +55,7 @@ static bool take_unit(const struct csv *csv, const struct csv_row *row, const st
                       double *value)
 {
     const char *unit = cell(row, columns->unit);
-    struct unit_change change = tag->change;
+    struct unit_change change = tag->scale.change;
     if (*unit && units_compare(unit, tag->unit, &change) > UNITS_CONVERT) {
         diag_error(csv->diag, csv->path, row->cells[columns->unit].line, row->cells[columns->unit].column,
                    "unit '%s' cannot be converted to '%s', in which %s is shown", unit, tag->unit, tag->name);

@@ -154,18 +154,18 @@ static void lose_equipment(struct planning *p, const struct plant_tag *tag)
 static void follow_node(struct planning *p, const struct plant_tag *tag)
 {
     char *pattern = NULL;
-    switch (asset_patterns_follow(&p->patterns, tag->node, p->before, &pattern)) {
+    switch (asset_patterns_follow(&p->patterns, tag->place.node, p->before, &pattern)) {
     case ASSET_PATTERN_SAME: break;
     case ASSET_PATTERN_OTHER: {
         struct tag_edit *edit = edit_tag(p, tag);
         edit->node = pattern;
-        if (tag->place_assumed)
+        if (tag->place.assumed)
             edit->place = "equipment";
-        say(p, REVISION_TAG, "renamed", tag->name, "its node %s is now %s", tag->node, pattern);
+        say(p, REVISION_TAG, "renamed", tag->name, "its node %s is now %s", tag->place.node, pattern);
         return; /* the edit now owns `pattern` and frees it */
     }
     case ASSET_PATTERN_GONE: {
-        char *detail = mem_printf("its node %s is no longer in the model", tag->node);
+        char *detail = mem_printf("its node %s is no longer in the model", tag->place.node);
         lose_place(p, tag, detail);
         mem_free(detail);
     }
@@ -181,7 +181,7 @@ static void follow_part(struct planning *p, const struct plant_tag *tag, const s
     double now[3];
     if (whole->change == STATES_CHANGED) {
         double at[3] = { 0 };
-        in_model(asset, tag->position_m, at);
+        in_model(asset, tag->place.position_m, at);
         int node = model_states_nearest(&p->states, p->before, at);
         bool *one = mem_array(old->header.count, sizeof(*one));
         if (node >= 0)
@@ -193,13 +193,13 @@ static void follow_part(struct planning *p, const struct plant_tag *tag, const s
         lose_place(p, tag, "the surface below it has changed shape");
         return;
     }
-    moved_in_list(asset, motion.motion, tag->position_m, now);
-    double distance_m = vec_distance(now, tag->position_m);
+    moved_in_list(asset, motion.motion, tag->place.position_m, now);
+    double distance_m = vec_distance(now, tag->place.position_m);
     if (distance_m <= tolerance_m)
         return;
     struct tag_edit *edit = edit_tag(p, tag);
     memcpy(edit->position_m, now, sizeof(now));
-    if (tag->place_assumed)
+    if (tag->place.assumed)
         edit->place = "equipment";
     say(p, REVISION_TAG, "moved", tag->name, "%.3f m, with %s", distance_m, asset->id);
 }
@@ -213,9 +213,9 @@ static void follow_asset(struct planning *p, size_t index, const struct states_m
             continue;
         if (!whole)
             lose_equipment(p, tag);
-        else if (tag->has_position)
+        else if (tag->place.has_position)
             follow_part(p, tag, whole);
-        else if (tag->node)
+        else if (tag->place.node)
             follow_node(p, tag);
     }
 }

@@ -148,7 +148,7 @@ static bool is_one_place(const struct plant_models_check *check, const struct pl
 static void check_node(struct plant_models_check *check, const struct plant_asset *asset, const struct plant_tag *tag)
 {
     char why[WHY_BYTES], numbers[120] = "";
-    size_t count = nodes_find(tag->node, check->header.nodes, check->header.count, check->found, why, sizeof(why));
+    size_t count = nodes_find(tag->place.node, check->header.nodes, check->header.count, check->found, why, sizeof(why));
     if (count == 0) {
         diag_error(check->diag, check->plant->tags_path, tag->line, tag->column, "tag %s: asset %s: %s", tag->name, asset->id, why);
         return;
@@ -160,7 +160,7 @@ static void check_node(struct plant_models_check *check, const struct plant_asse
                                    check->header.nodes[check->found[i]].number);
     diag_error(check->diag, check->plant->tags_path, tag->line, tag->column,
                "tag %s: asset %s: the model has %zu nodes '%.120s', in different places (%s%s): name one of them by its number or its path",
-               tag->name, asset->id, count, tag->node, numbers, count > SHOWN_NODES ? ", ..." : "");
+               tag->name, asset->id, count, tag->place.node, numbers, count > SHOWN_NODES ? ", ..." : "");
 }
 
 /* --- assets --------------------------------------------------------------------------------------------------------------------- */
@@ -183,7 +183,8 @@ static bool check_asset(struct plant_models_check *check, size_t index, double s
             check->counted[i] = true;
         }
     for (size_t i = 0; i < plant->tag_count; i++)
-        if (plant->tags[i].asset == (int)index && plant->tags[i].group >= 0 && plant->tags[i].node && !plant->tags[i].has_position)
+        if (plant->tags[i].asset == (int)index && plant->tags[i].group >= 0 && plant->tags[i].place.node &&
+            !plant->tags[i].place.has_position)
             check_node(check, asset, &plant->tags[i]);
     if (!(box.low[0] <= box.high[0])) {
         if (!check->header.partial)

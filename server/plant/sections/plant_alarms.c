@@ -83,18 +83,18 @@ static void read_priority(struct tag_columns *columns, struct plant_alarm_settin
 
 void plant_alarms_read_row(struct tag_columns *columns, struct plant *plant, struct plant_tag *tag, struct alarm_references *references)
 {
-    struct plant_alarm_settings *alarm_settings = &tag->alarm_settings;
+    struct plant_alarm_settings *alarm_settings = &tag->alarms.settings;
     *alarm_settings = (struct plant_alarm_settings){ .priority = ALARM_PRIORITY_DEFAULT };
     if (tag->group >= 0)
         *alarm_settings = plant->groups[tag->group].alarm_settings;
     if (cell_number(columns, COL_ALARM_DEADBAND, 0, PLANT_MAX_VALUE, &alarm_settings->deadband))
-        alarm_settings->deadband = unit_change_span(&tag->change, alarm_settings->deadband);
+        alarm_settings->deadband = unit_change_span(&tag->scale.change, alarm_settings->deadband);
     cell_number(columns, COL_ON_DELAY, 0, MAX_DELAY_S, &alarm_settings->on_delay_s);
     cell_number(columns, COL_OFF_DELAY, 0, MAX_DELAY_S, &alarm_settings->off_delay_s);
     read_priority(columns, alarm_settings);
     if (cell_given(columns, COL_LATCH))
         alarm_settings->latch = cell_flag(columns, COL_LATCH);
-    tag->suppressed_by = tag->mirror.tag = -1;
+    tag->alarms.suppressed_by = tag->alarms.mirror.tag = -1;
     keep_reference(columns, plant, COL_SUPPRESSED_BY, references);
     keep_reference(columns, plant, COL_MIRRORS, references);
     if (cell_given(columns, COL_MIRRORS) && plant->alarms != ALARMS_MIRROR)
@@ -110,9 +110,9 @@ static void resolve_suppression(struct plant *plant, struct diag *diag, const st
     int by = plant_find_tag(plant, reference->text);
     if (by < 0)
         reference_error(reference, "Suppressed By: there is no tag '%.60s'", reference->text);
-    else if (plant->tags[by].type != DATA_BIT)
+    else if (plant->tags[by].signal.type != DATA_BIT)
         reference_error(reference, "Suppressed By: '%.60s' is not a Boolean", reference->text);
-    plant->tags[reference->tag].suppressed_by = by;
+    plant->tags[reference->tag].alarms.suppressed_by = by;
 }
 
 /* If the last word of the text is in the list, cuts that word off and returns its index in the list; otherwise returns -1. */
@@ -134,7 +134,7 @@ static void resolve_mirror(struct plant *plant, struct diag *diag, const struct 
 {
     static const char *const acknowledged[] = { "acknowledged" };
     static const char *const kinds[] = { "LL", "L", "H", "HH", "ALM" };
-    struct plant_mirror *mirror = &plant->tags[reference->tag].mirror;
+    struct plant_mirror *mirror = &plant->tags[reference->tag].alarms.mirror;
     char *text = mem_strdup(reference->text);
     mirror->acknowledged = take_word(text, acknowledged, 1) == 0;
     int kind = take_word(text, kinds, 5);
@@ -145,7 +145,7 @@ static void resolve_mirror(struct plant *plant, struct diag *diag, const struct 
                         reference->text);
     else if (mirror->tag < 0)
         reference_error(reference, "Mirrors: there is no tag '%.60s'", text);
-    else if (plant->tags[reference->tag].type != DATA_BIT)
+    else if (plant->tags[reference->tag].signal.type != DATA_BIT)
         reference_error(reference, "Mirrors: '%.60s' is not a Boolean", plant->tags[reference->tag].name);
     mem_free(text);
 }
@@ -153,9 +153,9 @@ static void resolve_mirror(struct plant *plant, struct diag *diag, const struct 
 static void check_mirrored_once(const struct plant *plant, struct diag *diag, const struct alarm_references *references)
 {
     for (size_t i = 0; i < references->count; i++) {
-        const struct plant_mirror *one = &plant->tags[references->at[i].tag].mirror;
+        const struct plant_mirror *one = &plant->tags[references->at[i].tag].alarms.mirror;
         for (size_t k = 0; k < i && references->at[i].column == COL_MIRRORS && one->tag >= 0; k++) {
-            const struct plant_mirror *other = &plant->tags[references->at[k].tag].mirror;
+            const struct plant_mirror *other = &plant->tags[references->at[k].tag].alarms.mirror;
             if (references->at[k].column == COL_MIRRORS && other->tag == one->tag && other->limit == one->limit &&
                 other->acknowledged == one->acknowledged)
                 reference_error(&references->at[i], "Mirrors: '%.60s' is already mirrored at line %d", references->at[i].text,

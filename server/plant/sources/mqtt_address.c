@@ -40,7 +40,7 @@ static const char *field_text(const struct plant *plant, const struct plant_tag 
 {
     switch (field) {
     case FIELD_TAG: return tag->name;
-    case FIELD_ASSET: return tag->asset >= 0 ? plant->assets[tag->asset].id : tag->lost_asset;
+    case FIELD_ASSET: return tag->asset >= 0 ? plant->assets[tag->asset].id : tag->place.lost_asset;
     case FIELD_GROUP: return tag->group >= 0 ? plant->groups[tag->group].id : NULL;
     default: return *address ? address : NULL;
     }
@@ -95,20 +95,20 @@ static bool check_topic(const char *topic, bool sparkplug, char why[200])
 bool mqtt_address_resolve(const struct plant *plant, struct plant_tag *tag, char why[200])
 {
     const struct plant_mqtt *mqtt = &plant->sources[tag->source].mqtt;
-    const char *sharp = strchr(tag->address, '#');
-    char *address = sharp ? mem_printf("%.*s", (int)(sharp - tag->address), tag->address) : mem_strdup(tag->address);
+    const char *sharp = strchr(tag->signal.address, '#');
+    char *address = sharp ? mem_printf("%.*s", (int)(sharp - tag->signal.address), tag->signal.address) : mem_strdup(tag->signal.address);
     struct text topic = { 0 };
     bool by_template = mqtt->topic && (!*address || strstr(mqtt->topic, field_names[FIELD_ADDRESS]));
     bool good = !by_template || fill_template(plant, tag, address, &topic, why);
-    tag->topic = mem_strdup(by_template && topic.at ? topic.at : address);
-    tag->path = mem_strdup(sharp && sharp[1] ? sharp + 1 : mqtt->payload == MQTT_SPARKPLUG ? tag->name : "");
-    good = good && check_topic(tag->topic, mqtt->payload == MQTT_SPARKPLUG, why);
-    if (good && *tag->path && mqtt->payload == MQTT_NUMBER) {
+    tag->signal.topic = mem_strdup(by_template && topic.at ? topic.at : address);
+    tag->signal.path = mem_strdup(sharp && sharp[1] ? sharp + 1 : mqtt->payload == MQTT_SPARKPLUG ? tag->name : "");
+    good = good && check_topic(tag->signal.topic, mqtt->payload == MQTT_SPARKPLUG, why);
+    if (good && *tag->signal.path && mqtt->payload == MQTT_NUMBER) {
         snprintf(why, 200, "a path after # has no meaning for payload: number");
         good = false;
     }
-    if (good && *tag->path && mqtt->payload == MQTT_JSON)
-        good = json_path_check(tag->path, false, why);
+    if (good && *tag->signal.path && mqtt->payload == MQTT_JSON)
+        good = json_path_check(tag->signal.path, false, why);
     text_finish(&topic);
     mem_free(address);
     return good;

@@ -85,18 +85,18 @@ static char *read_namespace(const char **at, const char *of_source, char why[200
 
 bool opcua_address_resolve(const struct plant *plant, struct plant_tag *tag, char why[200])
 {
-    const char *at = tag->address;
-    if (!read_element(&at, &tag->element)) {
+    const char *at = tag->signal.address;
+    if (!read_element(&at, &tag->signal.element)) {
         snprintf(why, 200, "expected an element from 0 to 1000000 in brackets");
         return false;
     }
-    tag->topic = read_namespace(&at, plant->sources[tag->source].opcua.name_space, why);
-    if (!tag->topic)
+    tag->signal.topic = read_namespace(&at, plant->sources[tag->source].opcua.name_space, why);
+    if (!tag->signal.topic)
         return false;
     if (!check_identifier(at)) {
         snprintf(why, 200, "%s", EXPECTED);
         return false;
     }
-    tag->path = mem_strdup(at);
+    tag->signal.path = mem_strdup(at);
     return true;
 }

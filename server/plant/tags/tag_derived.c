@@ -23,9 +23,10 @@ static bool parse(const struct tag_link *link, struct plant *plant, struct diag 
     struct plant_tag *tag = &plant->tags[link->tag];
     char why[200];
     size_t at;
-    tag->expression = expression_parse(tag->address + 1, find_tag, plant, why, &at);
+    tag->expression = expression_parse(tag->signal.address + 1, find_tag, plant, why, &at);
     if (!tag->expression)
-        diag_error(diag, plant->tags_path, link->line, link->column, "Address: '%.60s': %s, at character %zu", tag->address, why, at + 2);
+        diag_error(diag, plant->tags_path, link->line, link->column, "Address: '%.60s': %s, at character %zu", tag->signal.address, why,
+                   at + 2);
     return tag->expression != NULL;
 }
 
@@ -37,13 +38,14 @@ static void check_units(const struct tag_link *link, const struct plant *plant, 
     size_t count = expression_inputs(tag->expression, &inputs);
     for (size_t i = 0; i < count; i++) {
         const struct plant_tag *first = &plant->tags[inputs[0]], *one = &plant->tags[inputs[i]];
-        const struct plant_tag *other = unit_kind(tag->own_unit) && unit_kind(tag->own_unit) == unit_kind(one->own_unit) ? tag : first;
+        const struct plant_tag *other =
+            unit_kind(tag->scale.own_unit) && unit_kind(tag->scale.own_unit) == unit_kind(one->scale.own_unit) ? tag : first;
         struct unit_change change;
-        if (units_compare(one->own_unit, other->own_unit, &change) != UNITS_CONVERT)
+        if (units_compare(one->scale.own_unit, other->scale.own_unit, &change) != UNITS_CONVERT)
             continue;
         diag_warning(diag, plant->tags_path, link->line, link->column,
                      "Address: '%.60s' combines %.60s in %.20s with %.60s in %.20s; convert one of them in the expression",
-                     tag->address, one->name, one->own_unit, other->name, other->own_unit);
+                     tag->signal.address, one->name, one->scale.own_unit, other->name, other->scale.own_unit);
         return;
     }
 }
@@ -63,8 +65,8 @@ static bool visit(struct derived_walk *walk, int index)
     for (size_t i = 0; i < count; i++) {
         if (!visit(walk, inputs[i]))
             return false;
-        if (!tag->states_stale)
-            tag->stale_s = fmax(tag->stale_s, walk->plant->tags[inputs[i]].stale_s);
+        if (!tag->validity.states_stale)
+            tag->validity.stale_s = fmax(tag->validity.stale_s, walk->plant->tags[inputs[i]].validity.stale_s);
     }
     walk->marks[index] = DONE;
     walk->plant->derived[walk->plant->derived_count++] = index;

@@ -79,7 +79,7 @@ bool tag_is_derived(const struct tag_columns *columns)
 
 void tag_links_add(struct tag_links *links, struct tag_links *derived, struct tag_columns *columns, struct plant *plant, size_t tag)
 {
-    struct plant_quality_tag *quality = &plant->tags[tag].quality;
+    struct plant_quality_tag *quality = &plant->tags[tag].validity.quality;
     const char *text = cell_text(columns, COL_QUALITY_TAG);
     if (tag_is_derived(columns))
         add(derived, columns, COL_ADDRESS, tag, NULL);
@@ -108,12 +108,12 @@ static void report_unknown(const struct plant *plant, struct diag *diag, const c
 static void resolve_quality(const struct tag_link *link, struct plant *plant, struct diag *diag)
 {
     struct plant_tag *tag = &plant->tags[link->tag];
-    tag->quality.tag = plant_find_tag(plant, link->to);
-    if (tag->quality.tag < 0)
+    tag->validity.quality.tag = plant_find_tag(plant, link->to);
+    if (tag->validity.quality.tag < 0)
         report_unknown(plant, diag, plant->tags_path, link->line, link->column, "Quality Tag", link->to);
-    else if (tag->quality.tag == (int)link->tag)
+    else if (tag->validity.quality.tag == (int)link->tag)
         diag_error(diag, plant->tags_path, link->line, link->column, "Quality Tag: expected another tag than '%.60s' itself", link->to);
-    else if (plant->tags[tag->quality.tag].quality.mask != 0)
+    else if (plant->tags[tag->validity.quality.tag].validity.quality.mask != 0)
         diag_error(diag, plant->tags_path, link->line, link->column, "Quality Tag: '%.60s' has a quality tag of its own", link->to);
 }
 
@@ -125,12 +125,12 @@ static void resolve_direction(const struct tag_link *link, struct plant *plant, 
         report_unknown(plant, diag, plant->tags_path, link->line, link->column, "Direction", link->to);
     else if (to == (int)link->tag)
         diag_error(diag, plant->tags_path, link->line, link->column, "Direction: expected other tags than '%.60s' itself", link->to);
-    else if (tag->group < 0 || tag->asset < 0 || tag->place_assumed)
+    else if (tag->group < 0 || tag->asset < 0 || tag->place.assumed)
         diag_error(diag, plant->tags_path, link->line, link->column,
                    "Direction: '%.60s' needs a group, an asset and its own place, where the direction starts", tag->name);
-    else if (tag->direction_count < 3)
-        tag->direction[tag->direction_count++] = to;
-    if (tag->direction_count > 0)
+    else if (tag->direction.count < 3)
+        tag->direction.tags[tag->direction.count++] = to;
+    if (tag->direction.count > 0)
         plant->groups[tag->group].directed = true;
 }
 

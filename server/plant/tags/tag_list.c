@@ -56,7 +56,7 @@ static void read_group_and_asset(struct tag_list *list)
     if (plant->group_count > 0)
         tag->group = cell_reference(&list->columns, COL_GROUP, "group", plant->groups, plant->group_count, sizeof(*plant->groups));
     if (plant->keeps_orphans && is_lost(list))
-        tag->lost_asset = mem_strdup(cell_text(&list->columns, COL_ASSET));
+        tag->place.lost_asset = mem_strdup(cell_text(&list->columns, COL_ASSET));
     else if (plant->asset_count > 0)
         tag->asset = cell_reference(&list->columns, COL_ASSET, "asset", plant->assets, plant->asset_count, sizeof(*plant->assets));
     list->group = tag->group >= 0 ? &plant->groups[tag->group] : NULL;
@@ -71,9 +71,9 @@ static void read_position(struct tag_list *list)
     int given = 0, good = 0;
     for (int i = 0; i < 3; i++) {
         given += cell_given(&list->columns, axes[i]);
-        good += cell_number(&list->columns, axes[i], -PLANT_MAX_M, PLANT_MAX_M, &tag->position_m[i]);
+        good += cell_number(&list->columns, axes[i], -PLANT_MAX_M, PLANT_MAX_M, &tag->place.position_m[i]);
     }
-    tag->has_position = good == 3;
+    tag->place.has_position = good == 3;
     for (int i = 0; i < 3 && given > 0; i++)
         if (!cell_given(&list->columns, axes[i]))
             cell_error(&list->columns, axes[i], "%s: expected a number, since a position needs X, Y and Z", tag_column_name(axes[i]));
@@ -85,20 +85,20 @@ static void read_place(struct tag_list *list)
     struct plant_tag *tag = list->tag;
     const char *place = cell_text(columns, COL_PLACE);
     read_position(list);
-    tag->place_assumed = !strcasecmp(place, "equipment");
-    if (*place && !tag->place_assumed && strcasecmp(place, "position") != 0)
+    tag->place.assumed = !strcasecmp(place, "equipment");
+    if (*place && !tag->place.assumed && strcasecmp(place, "position") != 0)
         cell_error(columns, COL_PLACE, "Place: expected position or equipment, found '%.60s'", place);
     bool has_xyz = cell_given(columns, COL_X) || cell_given(columns, COL_Y) || cell_given(columns, COL_Z);
     if (cell_given(columns, COL_NODE))
-        tag->node = mem_strdup(cell_text(columns, COL_NODE));
-    if (has_xyz && tag->node)
+        tag->place.node = mem_strdup(cell_text(columns, COL_NODE));
+    if (has_xyz && tag->place.node)
         cell_warning(columns, COL_NODE, "Node has no effect, because X, Y, Z are given");
     if (!cell_given(columns, COL_GROUP))
         return;
     if (!cell_given(columns, COL_ASSET))
         cell_warning(columns, columns->at[COL_ASSET] >= 0 ? COL_ASSET : COL_GROUP, "'%.60s' has a group but no asset, so no field uses it",
                      tag->name);
-    else if (!has_xyz && !tag->node && !tag->place_assumed)
+    else if (!has_xyz && !tag->place.node && !tag->place.assumed)
         cell_error(columns, columns->at[COL_NODE] >= 0 ? COL_NODE : COL_ASSET,
                    "'%.60s' has a group and an asset but no place: expected Node, or X, Y and Z, or Place: equipment", tag->name);
 }
@@ -130,9 +130,9 @@ static void read_unit(struct tag_list *list)
     if (*text && of_group && !*of_group)
         cell_warning(&list->columns, COL_ENG_UNITS, "Eng Units: '%.60s', but its group has no unit", text);
     else if (*text && of_group && !list->group->as_written)
-        match = units_compare(text, of_group, &tag->change);
-    tag->own_unit = mem_strdup(*text || !of_group ? text : of_group);
-    tag->unit = mem_strdup(match == UNITS_CONVERT ? of_group : tag->own_unit);
+        match = units_compare(text, of_group, &tag->scale.change);
+    tag->scale.own_unit = mem_strdup(*text || !of_group ? text : of_group);
+    tag->unit = mem_strdup(match == UNITS_CONVERT ? of_group : tag->scale.own_unit);
     if (match == UNITS_OTHER_KIND || match == UNITS_UNKNOWN)
         report_unit(list, match, text);
 }
@@ -142,21 +142,21 @@ static void read_limits(struct tag_list *list)
 {
     static const enum tag_column names[LIMIT_COUNT] = { [LIMIT_LL] = COL_LL, [LIMIT_L] = COL_L, [LIMIT_H] = COL_H, [LIMIT_HH] = COL_HH };
     struct tag_columns *columns = &list->columns;
-    double *limits = list->tag->limits;
+    double *limits = list->tag->alarms.limits;
     bool own[LIMIT_COUNT], any = false;
     int lower, upper;
     for (int i = 0; i < LIMIT_COUNT; i++) {
         limits[i] = list->group ? list->group->limits[i] : NAN;
         own[i] = cell_number(columns, names[i], -PLANT_MAX_VALUE, PLANT_MAX_VALUE, &limits[i]);
         if (own[i])
-            limits[i] = unit_change_value(&list->tag->change, limits[i]);
+            limits[i] = unit_change_value(&list->tag->scale.change, limits[i]);
         any |= own[i];
     }
     if (any && plant_limits_wrong(limits, &lower, &upper))
         cell_error(columns, names[own[upper] ? upper : lower], "%s%s is %.9g, but %s%s is %.9g%s%s; expected LL < L < H < HH",
                    plant_limit_names[lower], own[lower] ? "" : " of the group", limits[lower], plant_limit_names[upper],
-                   own[upper] ? "" : " of the group", limits[upper], list->tag->change.converts ? ", in " : "",
-                   list->tag->change.converts ? list->tag->unit : "");
+                   own[upper] ? "" : " of the group", limits[upper], list->tag->scale.change.converts ? ", in " : "",
+                   list->tag->scale.change.converts ? list->tag->unit : "");
 }
 
 /* Returns whether the source reports the loss of values by itself, so that a silent tag is not stale. This holds for Sparkplug nodes, which
@@ -175,18 +175,18 @@ static void read_timing(struct tag_list *list)
     double scan_ms = 0;
     if (strcmp(cell_text(&list->columns, COL_SCAN_RATE), "0") != 0)
         cell_number(&list->columns, COL_SCAN_RATE, 10, 86400000, &scan_ms);
-    tag->scan_ms = (int)ceil(scan_ms);
-    int poll_ms = tag->scan_ms ? tag->scan_ms : tag->source >= 0 ? list->plant->sources[tag->source].poll_ms : 1000;
-    tag->stale_s = is_announced(list) ? PLANT_NEVER_STALE_S : fmax(5, 3 * poll_ms / 1000.0);
-    tag->states_stale = cell_number(&list->columns, COL_STALE, 1e-3, 1e6, &tag->stale_s);
-    cell_number(&list->columns, COL_FLATLINE, 1e-3, 1e8, &tag->flatline_s);
+    tag->signal.scan_ms = (int)ceil(scan_ms);
+    int poll_ms = tag->signal.scan_ms ? tag->signal.scan_ms : tag->source >= 0 ? list->plant->sources[tag->source].poll_ms : 1000;
+    tag->validity.stale_s = is_announced(list) ? PLANT_NEVER_STALE_S : fmax(5, 3 * poll_ms / 1000.0);
+    tag->validity.states_stale = cell_number(&list->columns, COL_STALE, 1e-3, 1e6, &tag->validity.stale_s);
+    cell_number(&list->columns, COL_FLATLINE, 1e-3, 1e8, &tag->validity.flatline_s);
 }
 
 static void read_deadband(struct tag_list *list)
 {
     list->tag->deadband = NAN;
     if (cell_number(&list->columns, COL_DEADBAND, 0, PLANT_MAX_VALUE, &list->tag->deadband))
-        list->tag->deadband = unit_change_span(&list->tag->change, list->tag->deadband);
+        list->tag->deadband = unit_change_span(&list->tag->scale.change, list->tag->deadband);
 }
 
 static void read_weights(struct tag_list *list)
@@ -208,9 +208,9 @@ static void read_row(struct tag_list *list)
         .description = mem_strdup(cell_text(&list->columns, COL_DESCRIPTION)),
         .line = csv_cell_line(&list->columns.csv, name),
         .column = csv_cell_column(&list->columns.csv, name),
-        .modbus_unit = -1,
-        .bit = -1,
-        .element = -1,
+        .signal.modbus_unit = -1,
+        .signal.bit = -1,
+        .signal.element = -1,
     };
     if (name >= 0 && !*list->tag->name)
         cell_error(&list->columns, COL_NAME, "Tag Name: expected a name, found none");

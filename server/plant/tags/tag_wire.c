@@ -35,7 +35,7 @@ static bool read_stated_order(struct tag_wire *wire, const struct modbus_address
         return false;
     }
     if (address->byte_order && *out != address->byte_order) {
-        cell_error(wire->columns, COL_BYTE_ORDER, "Byte Order: '%s' contradicts the address '%.60s'", text, wire->tag->address);
+        cell_error(wire->columns, COL_BYTE_ORDER, "Byte Order: '%s' contradicts the address '%.60s'", text, wire->tag->signal.address);
         return false;
     }
     return true;
@@ -45,18 +45,18 @@ static void read_byte_order(struct tag_wire *wire, const struct modbus_address *
 {
     struct plant_tag *tag = wire->tag;
     enum byte_order order;
-    if (!read_stated_order(wire, address, &order) || tag->type == DATA_BIT)
+    if (!read_stated_order(wire, address, &order) || tag->signal.type == DATA_BIT)
         return;
-    int registers = data_type_registers(tag->type);
+    int registers = data_type_registers(tag->signal.type);
     if (!order && registers > 1 && tag->source >= 0)
         order = wire->plant->sources[tag->source].byte_order;
-    tag->byte_order = order;
+    tag->signal.byte_order = order;
     if (order || registers == 1)
         return;
     enum tag_column column = wire->columns->at[COL_BYTE_ORDER] >= 0 ? COL_BYTE_ORDER : COL_DATA_TYPE;
     cell_error(wire->columns, column,
                "Byte Order: %s has %d bits, so one is needed: ABCD, CDAB, BADC or DCBA here, or byte_order in the tag's source",
-               data_type_name(tag->type), registers * 16);
+               data_type_name(tag->signal.type), registers * 16);
 }
 
 /* Reads the data type. Kepware's "Default" means Word, or Boolean if the address is one bit. Returns false after an error (reported). */
@@ -65,10 +65,10 @@ static bool read_type(struct tag_wire *wire, const struct modbus_address *addres
     struct plant_tag *tag = wire->tag;
     const char *text = cell_text(wire->columns, COL_DATA_TYPE);
     bool one_bit = address->table == TABLE_COIL || address->table == TABLE_DISCRETE || address->bit >= 0;
-    tag->type = one_bit ? DATA_BIT : DATA_UINT16;
+    tag->signal.type = one_bit ? DATA_BIT : DATA_UINT16;
     if (!*text || !strcasecmp(text, "Default"))
         return true;
-    if (!data_type_parse(text, &tag->type)) {
+    if (!data_type_parse(text, &tag->signal.type)) {
         const char *near = data_type_suggest(text);
         if (near)
             cell_error(wire->columns, COL_DATA_TYPE, "Data Type: unknown type '%.60s'; did you mean '%s'?", text, near);
@@ -76,11 +76,12 @@ static bool read_type(struct tag_wire *wire, const struct modbus_address *addres
             cell_error(wire->columns, COL_DATA_TYPE, "Data Type: unknown type '%.60s'; expected one of: %s", text, data_type_all);
         return false;
     }
-    if (one_bit && tag->type != DATA_BIT)
-        cell_error(wire->columns, COL_DATA_TYPE, "Data Type: expected Boolean, since '%.60s' is one bit, found '%s'", tag->address, text);
-    else if (!one_bit && tag->type == DATA_BIT)
-        cell_error(wire->columns, COL_ADDRESS, "Address: expected a bit such as %.60s.0, since the type is %s", tag->address, text);
-    return one_bit == (tag->type == DATA_BIT);
+    if (one_bit && tag->signal.type != DATA_BIT)
+        cell_error(wire->columns, COL_DATA_TYPE, "Data Type: expected Boolean, since '%.60s' is one bit, found '%s'", tag->signal.address,
+                   text);
+    else if (!one_bit && tag->signal.type == DATA_BIT)
+        cell_error(wire->columns, COL_ADDRESS, "Address: expected a bit such as %.60s.0, since the type is %s", tag->signal.address, text);
+    return one_bit == (tag->signal.type == DATA_BIT);
 }
 
 /* Returns true if the value at the address already is a number in engineering units: from a file, or computed from other tags. */
@@ -95,14 +96,14 @@ static bool is_number(const struct tag_wire *wire)
 static void check_base(struct tag_wire *wire, int registers)
 {
     struct plant_tag *tag = wire->tag;
-    const char *bang = strchr(tag->address, '!'), *place = bang ? bang + 1 : tag->address;
+    const char *bang = strchr(tag->signal.address, '!'), *place = bang ? bang + 1 : tag->signal.address;
     if (registers == 1 || !(*place >= '0' && *place <= '9') || tag->source < 0 || wire->plant->sources[tag->source].base_stated)
         return;
     cell_error(wire->columns, COL_ADDRESS,
                "Address: '%.60s': %s has %d bits, so state whether registers are counted from 0 or 1: by address_base in the source, or "
                "here by %s:%d (from 0, as on the wire; %s:%d if registers are counted from 0)",
-               tag->address, data_type_name(tag->type), registers * 16, tag->table == TABLE_INPUT ? "ir" : "hr", tag->register_index,
-               tag->table == TABLE_INPUT ? "ir" : "hr", tag->register_index + 1);
+               tag->signal.address, data_type_name(tag->signal.type), registers * 16, tag->signal.table == TABLE_INPUT ? "ir" : "hr",
+               tag->signal.register_index, tag->signal.table == TABLE_INPUT ? "ir" : "hr", tag->signal.register_index + 1);
 }
 
 static bool comes_from(const struct tag_wire *wire, const char *kind)
@@ -117,12 +118,12 @@ static void read_published(struct tag_wire *wire)
     struct plant_tag *tag = wire->tag;
     const char *text = cell_text(wire->columns, COL_DATA_TYPE);
     char why[200];
-    tag->type = DATA_FLOAT64;
-    if (*text && strcasecmp(text, "Default") != 0 && !data_type_parse(text, &tag->type))
+    tag->signal.type = DATA_FLOAT64;
+    if (*text && strcasecmp(text, "Default") != 0 && !data_type_parse(text, &tag->signal.type))
         cell_error(wire->columns, COL_DATA_TYPE, "Data Type: unknown type '%.60s'; expected one of: %s", text, data_type_all);
     bool is_opcua = comes_from(wire, "opcua");
     if (is_opcua ? !opcua_address_resolve(wire->plant, tag, why) : !mqtt_address_resolve(wire->plant, tag, why))
-        cell_error(wire->columns, COL_ADDRESS, "Address: '%.60s': %s", tag->address, why);
+        cell_error(wire->columns, COL_ADDRESS, "Address: '%.60s': %s", tag->signal.address, why);
 }
 
 static void read_address(struct tag_wire *wire)
@@ -130,37 +131,37 @@ static void read_address(struct tag_wire *wire)
     struct plant_tag *tag = wire->tag;
     struct modbus_address address;
     char why[200];
-    tag->address = mem_strdup(cell_text(wire->columns, COL_ADDRESS));
+    tag->signal.address = mem_strdup(cell_text(wire->columns, COL_ADDRESS));
     if (is_number(wire)) {
-        tag->type = DATA_FLOAT64;
+        tag->signal.type = DATA_FLOAT64;
         return;
     }
     if (comes_from(wire, "mqtt") || comes_from(wire, "opcua")) {
         read_published(wire);
         return;
     }
-    if (!*tag->address) {
+    if (!*tag->signal.address) {
         if (tag->source >= 0 && wire->columns->at[COL_ADDRESS] >= 0)
             cell_error(wire->columns, COL_ADDRESS, "Address: expected the address of a register, such as 400001 or hr:0");
         return;
     }
     int base = tag->source >= 0 ? wire->plant->sources[tag->source].address_base : 1;
-    if (!address_parse(tag->address, base, &address, why)) {
-        cell_error(wire->columns, COL_ADDRESS, "Address: '%.60s': %s", tag->address, why);
+    if (!address_parse(tag->signal.address, base, &address, why)) {
+        cell_error(wire->columns, COL_ADDRESS, "Address: '%.60s': %s", tag->signal.address, why);
         return;
     }
-    tag->modbus_unit = address.unit;
-    tag->table = address.table;
-    tag->register_index = address.index;
-    tag->bit = address.bit;
+    tag->signal.modbus_unit = address.unit;
+    tag->signal.table = address.table;
+    tag->signal.register_index = address.index;
+    tag->signal.bit = address.bit;
     if (!read_type(wire, &address))
         return;
     read_byte_order(wire, &address);
-    int registers = data_type_registers(tag->type);
+    int registers = data_type_registers(tag->signal.type);
     check_base(wire, registers);
     if (address.index + registers > 65536)
         cell_error(wire->columns, COL_ADDRESS, "Address: '%.60s': %s needs %d registers, but the last register is 65535",
-                   tag->address, data_type_name(tag->type), registers);
+                   tag->signal.address, data_type_name(tag->signal.type), registers);
 }
 
 /* --- scaling ---------------------------------------------------------------------------------------------------------------- */
@@ -186,22 +187,22 @@ static void read_scaling(struct tag_wire *wire)
     struct plant_tag *tag = wire->tag;
     const char *text = cell_text(wire->columns, COL_SCALING);
     if (!strcasecmp(text, "Linear"))
-        tag->scaling = SCALING_LINEAR;
+        tag->scale.kind = SCALING_LINEAR;
     else if (!strcasecmp(text, "Square Root"))
-        tag->scaling = SCALING_SQUARE_ROOT;
+        tag->scale.kind = SCALING_SQUARE_ROOT;
     else if (*text && strcasecmp(text, "None") != 0)
         cell_error(wire->columns, COL_SCALING, "Scaling: expected None, Linear or Square Root, found '%.60s'", text);
-    if (tag->scaling != SCALING_NONE && is_number(wire))
+    if (tag->scale.kind != SCALING_NONE && is_number(wire))
         cell_error(wire->columns, COL_SCALING, "Scaling: expected None, since the value is in engineering units already");
-    tag->has_range =
-        tag->scaling != SCALING_NONE || (cell_given(wire->columns, COL_SCALED_LOW) && cell_given(wire->columns, COL_SCALED_HIGH));
-    if (tag->scaling != SCALING_NONE)
-        read_range(wire, COL_RAW_LOW, COL_RAW_HIGH, &tag->raw_low, &tag->raw_high);
+    tag->scale.has_range =
+        tag->scale.kind != SCALING_NONE || (cell_given(wire->columns, COL_SCALED_LOW) && cell_given(wire->columns, COL_SCALED_HIGH));
+    if (tag->scale.kind != SCALING_NONE)
+        read_range(wire, COL_RAW_LOW, COL_RAW_HIGH, &tag->scale.raw_low, &tag->scale.raw_high);
     else if (!*text && cell_given(wire->columns, COL_RAW_LOW) && cell_given(wire->columns, COL_SCALED_LOW))
         cell_warning(wire->columns, COL_RAW_LOW, "Scaling is blank, so the raw range has no effect; write Linear or None");
-    if (tag->has_range)
-        read_range(wire, COL_SCALED_LOW, COL_SCALED_HIGH, &tag->scaled_low, &tag->scaled_high);
-    tag->negate = cell_flag(wire->columns, COL_NEGATE);
+    if (tag->scale.has_range)
+        read_range(wire, COL_SCALED_LOW, COL_SCALED_HIGH, &tag->scale.scaled_low, &tag->scale.scaled_high);
+    tag->scale.negate = cell_flag(wire->columns, COL_NEGATE);
     for (enum tag_column clamp = COL_CLAMP_LOW; clamp <= COL_CLAMP_HIGH; clamp++)
         if (cell_flag(wire->columns, clamp))
             cell_warning(wire->columns, clamp, "%s has no effect: values beyond the range are marked as out of range",
@@ -213,8 +214,8 @@ static void read_scaling(struct tag_wire *wire)
 static void read_ne43(struct tag_wire *wire)
 {
     struct plant_tag *tag = wire->tag;
-    tag->ne43 = cell_flag(wire->columns, COL_NE43);
-    if (tag->ne43 && tag->scaling == SCALING_NONE)
+    tag->scale.ne43 = cell_flag(wire->columns, COL_NE43);
+    if (tag->scale.ne43 && tag->scale.kind == SCALING_NONE)
         cell_error(wire->columns, COL_NE43, "NE 43: expected Scaling Linear or Square Root, whose Raw Low is 4 mA and Raw High 20 mA");
 }
 
@@ -234,7 +235,7 @@ static void read_sentinels(struct tag_wire *wire)
     char *texts = mem_strdup(cell_text(wire->columns, COL_OPEN_CIRCUIT)), *rest = texts;
     struct plant_tag *tag = wire->tag;
     for (const char *text; (text = strtok_r(rest, " |", &rest));)
-        if (tag->sentinel_count == PLANT_SENTINELS || !read_sentinel(text, &tag->sentinels[tag->sentinel_count++])) {
+        if (tag->scale.sentinel_count == PLANT_SENTINELS || !read_sentinel(text, &tag->scale.sentinels[tag->scale.sentinel_count++])) {
             cell_error(wire->columns, COL_OPEN_CIRCUIT,
                        "Open Circuit: expected at most %d raw values such as 0x8000 or -32768, found '%.60s'", PLANT_SENTINELS, text);
             break;

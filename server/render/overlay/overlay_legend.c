@@ -82,7 +82,7 @@ static bool shows_assumed(const struct pen *pen)
 {
     const struct plant *plant = pen->scene->plant;
     for (size_t i = 0; i < plant->tag_count; i++)
-        if (plant->tags[i].place_assumed && plant->tags[i].asset >= 0 && plant->tags[i].group == pen->view.field.group)
+        if (plant->tags[i].place.assumed && plant->tags[i].asset >= 0 && plant->tags[i].group == pen->view.field.group)
             return true;
     return false;
 }

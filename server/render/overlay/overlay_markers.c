@@ -39,7 +39,7 @@ static void draw_mark(struct pen *pen, const struct frame_marker *marker, bool b
     cairo_fill(pen->cairo);
     pen_ink(pen, marker->occluded ? 0.7 : 1);
     overlay_outline(pen, x, y, radius, overlay_unproven(pen, marker->tag));
-    if (pen->scene->plant->tags[marker->tag].place_assumed)
+    if (pen->scene->plant->tags[marker->tag].place.assumed)
         overlay_outline(pen, x, y, 1.75 * radius, false); /* outer circle: the position is only approximate */
     if (bad) {
         double arm = 0.62 * radius;

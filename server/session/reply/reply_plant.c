@@ -132,8 +132,8 @@ json_t *reply_tag(const struct plant *plant, const struct plant_tag *t)
         json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "name", string(t->name), "description", string(t->description ? t->description : ""),
                   "unit", string(t->unit ? t->unit : ""), "source", t->source < 0 ? json_null() : string(plant->sources[t->source].id),
                   "group", t->group < 0 ? json_null() : string(plant->groups[t->group].id), "asset",
-                  t->asset < 0 ? json_null() : string(plant->assets[t->asset].id), "limits", limits(t->limits));
-    if (t->place_assumed)
+                  t->asset < 0 ? json_null() : string(plant->assets[t->asset].id), "limits", limits(t->alarms.limits));
+    if (t->place.assumed)
         json_object_set_new(object, "place", json_string("equipment"));
     return object;
 }

@@ -14,7 +14,7 @@ void mqtt_topics_init(struct mqtt_topics *topics, const struct plant *plant, int
     topics->tags = source_tags_by_topic(plant, source, &topics->tag_count);
     topics->at = mem_array(topics->tag_count, sizeof(*topics->at));
     for (size_t i = 0; i < topics->tag_count; i++) {
-        const char *name = plant->tags[topics->tags[i]].topic;
+        const char *name = plant->tags[topics->tags[i]].signal.topic;
         if (topics->count == 0 || strcmp(topics->at[topics->count - 1].name, name) != 0)
             topics->at[topics->count++] = (struct mqtt_topic){ .name = name, .tags = &topics->tags[i] };
         topics->at[topics->count - 1].tag_count++;

@@ -188,8 +188,8 @@ static size_t tags_named(const struct sparkplug *sparkplug, size_t topic, const 
     const struct mqtt_topic *of = &sparkplug->params.topics->at[topic];
     const struct plant_tag *tags = sparkplug->params.plant->tags;
     size_t at, end;
-    search_sorted(at, of->tag_count, strcmp(tags[of->tags[at]].path, name) < 0);
-    for (end = at; end < of->tag_count && !strcmp(tags[of->tags[end]].path, name);)
+    search_sorted(at, of->tag_count, strcmp(tags[of->tags[at]].signal.path, name) < 0);
+    for (end = at; end < of->tag_count && !strcmp(tags[of->tags[end]].signal.path, name);)
         end++;
     *first = at;
     return end - at;
@@ -238,7 +238,7 @@ static bool take_metric(struct sparkplug *sparkplug, const struct sparkplug_metr
 {
     struct stamped_value value = { .quality = metric->quality, .utc_ns = metric->utc_ns };
     uint32_t born = sparkplug->types[tag], type = metric->type ? metric->type : born;
-    const char *name = sparkplug->params.plant->tags[tag].path;
+    const char *name = sparkplug->params.plant->tags[tag].signal.path;
     if (metric->is_null && !quality_is_bad(value.quality))
         value.quality = QUALITY_BAD_SENSOR_FAILURE;
     bool good = type == born && (quality_is_bad(value.quality) || sparkplug_number(metric, type, &value.value));
@@ -314,7 +314,7 @@ static bool take_birth(struct sparkplug *sparkplug, struct sparkplug_node *node,
     }
     if (missing > 0)
         log_warn(sparkplug->params.log, "source %s: %s: its birth certificate has no metric '%.60s'%s", sparkplug->params.source, of->name,
-                 sparkplug->params.plant->tags[first].path, missing > 1 ? ", and not some others" : "");
+                 sparkplug->params.plant->tags[first].signal.path, missing > 1 ? ", and not some others" : "");
     return good;
 }
 

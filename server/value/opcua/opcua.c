@@ -57,7 +57,7 @@ static void on_value(void *arg, size_t index, const UA_DataValue *data)
     for (size_t i = 0; i < node->tag_count; i++) {
         struct stamped_value value;
         int tag = node->tags[i];
-        good &= opcua_value_read(data, opcua->base.plant->tags[tag].element, &value, why);
+        good &= opcua_value_read(data, opcua->base.plant->tags[tag].signal.element, &value, why);
         stamped_writer_add(&opcua->writer, tag, &value, false, true);
     }
     stamped_writer_end(&opcua->writer);
