@@ -181,6 +181,7 @@ for (const one of [series, buckets]) {
     add('trend_values', 'statistics', [one, 0, 10e6], ENDS);
     add('trend_values', 'valueAt', [one, 1.5e6], ENDS);
 }
+add('trend_values', 'withNewest', [{ min: 1, max: 2, mean: 1.5, known: 1 }, 3], ENDS);
 add('history', 'limitLines', [[{ limits: { H: 80, L: 20 } }]], { call: (tags) => history.limitLines(tags, () => 0) });
 add('history', 'nextTo', [marks, 1.5e6, false], ENDS);
 add('history', 'clustered', [marks, 2e6], ENDS);

@@ -9,7 +9,7 @@ import {
 } from '../../clients/web/core/history.js';
 import { fieldInstant, fieldText } from '../../clients/web/core/instant.js';
 import { LEAST_US, panned, readRange, zoomed } from '../../clients/web/core/trend_range.js';
-import { alarmSpans, bands, statistics, valueAt } from '../../clients/web/core/trend_values.js';
+import { alarmSpans, bands, statistics, valueAt, withNewest } from '../../clients/web/core/trend_values.js';
 
 const GOOD_CODE = 0, UNCERTAIN_CODE = 0x408f0000, BAD_CODE = 0x80050000;
 const points = (...list) => ({ step: false, bucket_us: 0, points: list });
@@ -56,6 +56,13 @@ test('statistics are means over time, and say for which part of it they are', ()
     const { min, max, mean, known } = of(intervals, 0, 40e6);
     assert.deepEqual([min, max, known], [1, 99, 35 / 40]);
     assert.ok(Math.abs(mean - (5 * 10 + 5 * 20 + 8 * 5) / 35) < 1e-9, 'with the straight line between the intervals');
+});
+
+test('minimum and maximum include a value that is newer than the series', () => {
+    const stats = { min: 2, max: 8, mean: 5, known: 0.5 };
+    assert.deepEqual([9, 1, 5].map((value) => withNewest(stats, value)),
+        [{ ...stats, max: 9 }, { ...stats, min: 1 }, stats]);
+    assert.deepEqual(withNewest(null, 4), { min: 4, max: 4 }, 'nothing is recorded yet');
 });
 
 test('the value at an instant is that of the drawn line', () => {

@@ -61,6 +61,12 @@ export function statistics(series, fromUs, toUs) {
     };
 }
 
+// Returns statistics whose minimum and maximum include a value that is newer than the series. `stats` null: the series has no values.
+export function withNewest(stats, value) {
+    const { min, max } = stats ?? { min: value, max: value };
+    return { ...stats, min: Math.min(min, value), max: Math.max(max, value) };
+}
+
 // Returns the value at an instant, of intervals the mean; null: none.
 export function valueAt({ points, bucket_us: length, step }, us) {
     let low = 0, high = points.length;

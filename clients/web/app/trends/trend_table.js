@@ -2,7 +2,7 @@
 // The table next to the trend charts: for each tag its value at the crosshair, its present or shown value, and minimum, mean and maximum
 // of the shown period.
 import { numberText } from '../../core/format.js';
-import { statistics, valueAt } from '../../core/trend_values.js';
+import { statistics, valueAt, withNewest } from '../../core/trend_values.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText, setVariable } from '../common/dom.js';
 
@@ -57,12 +57,14 @@ export class TrendTable {
         const lacks = [...this.stats.values()].some((one) => one && one.known < FULL);
         byId('trend-tags').classList.toggle('lacks', lacks);
         for (const [tag, cells] of this.rows) {
-            const decimals = view.decimalsOf(tag), { value, quality } = session.model.readings[tag.index], stats = this.stats.get(tag);
-            const text = (number) => numberText(number ?? null, decimals);
+            const decimals = view.decimalsOf(tag), { value, quality } = session.model.readings[tag.index];
+            if (!isPast && view.isLive && quality !== 'bad' && value !== null) // the recorded series ends some seconds ago
+                this.stats.set(tag, withNewest(this.stats.get(tag), value));
+            const stats = this.stats.get(tag), text = (number) => numberText(number ?? null, decimals);
             setText(cells.now, quality === 'bad' ? say('novalue') : text(value));
             for (const name of ['min', 'mean', 'max'])
                 setText(cells[name], text(stats?.[name]));
-            setText(cells.known, stats ? `${numberText(Math.floor(100 * stats.known), 0)} %` : '0 %');
+            setText(cells.known, `${numberText(Math.floor(100 * (stats?.known ?? 0)), 0)} %`);
         }
     }
 

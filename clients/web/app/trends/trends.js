@@ -9,7 +9,7 @@ import { panned, readRange, zoomed } from '../../core/trend_range.js';
 import { alarmSpans } from '../../core/trend_values.js';
 import { say } from '../../core/words.js';
 import { onCrosshair } from '../common/crosshair.js';
-import { byId, make, setText } from '../common/dom.js';
+import { byId, make, phone, setText } from '../common/dom.js';
 import { fillSegments, markSegment } from '../common/choices.js';
 import { LOOKS } from './chart_style.js';
 import { listenToDrags } from './drag_in.js';
@@ -23,12 +23,12 @@ const MOVES = ['earlier', 'later', 'in', 'out', 'back'];
 const MOST = LOOKS.light.lines.length, UNITS_PER_PLOT = 2, FRESH_MS = 5000, NOW_MS = 1000, SETTLED_MS = 250, PAN = 0.5, ZOOM = 2;
 const ALARM_ROWS = 2000, MATCHES = 30, MOST_BACK = 50, ALMOST_US = 2e6;
 const HEAD_PX = 24, ROW_PX = 22; // heights in the table
-// true: this page is a trend pane of a wall, and the chart fills the pane
-const isPane = () => document.body.classList.contains('pane-trend');
+// true: charts fill what the table leaves of a wall's pane or of a phone's sheet
+const fills = () => document.body.classList.contains('pane-trend') || phone.matches;
 
 // Returns the height of each of `count` charts next to a table of `rows` rows.
 function heightOf(count, rows) {
-    if (isPane())
+    if (fills())
         return Math.max(80, byId('trend-chart').clientHeight / count);
     const least = Math.max(120, Math.min(210, 0.2 * innerHeight)); // must equal the height of #trend-chart in the style sheet
     const one = Math.max(least, Math.min(0.26 * innerHeight, HEAD_PX + ROW_PX * rows)); // as high as the table
