@@ -4,7 +4,7 @@ import { ageText, decimalsFor, numberText, unitText } from '../../core/format.js
 import { statusText } from '../../core/quality.js';
 import { say } from '../../core/words.js';
 import { linksOf } from '../assets/about.js';
-import { standBeside } from './card_position.js';
+import { placeInPicture, standBeside } from './card_position.js';
 import { clock } from '../common/clock.js';
 import { byId, glyph, limitFlag, make, setText } from '../common/dom.js';
 import { closeButton, fill } from '../common/widgets.js';
@@ -109,7 +109,9 @@ export class Card {
     }
 
     place(marker) {
-        const at = marker && this.overlay.placeOf(marker);
-        standBeside(this.element, this.viewport, at && [at.x, at.y]);
+        const { tag, session, viewport, overlay } = this, { x, y } = marker ? overlay.placeOf(marker) : {};
+        const at = marker ? [x, y] : tag.position && placeInPicture(session, viewport, tag.position);
+        const isInside = at && at[0] >= 0 && at[0] <= viewport.width && at[1] >= 0 && at[1] <= viewport.height;
+        standBeside(this.element, viewport, marker || isInside ? at : null, overlay, tag);
     }
 }

@@ -1,36 +1,68 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Chooses the position of a card over the picture, next to the point that the card describes and never over it.
+// Chooses the position of a card over the picture: next to the point that the card describes, never over it, and over as few other markers
+// as possible.
+import { projector } from '../../core/camera.js';
+import { halves } from '../../core/split_view.js';
 import { byId } from '../common/dom.js';
 
 const AWAY_PX = 16, RIM_PX = 8, TALLEST_PX = 280;
+const RING_PX = 14, RING_COST = 3; // half the width of an alarm ring; a covered ring weighs as much as that many covered markers
 
 // Returns the card's { left, top, most (largest height) } for the point `at` ([x, y]; null: none) within the free part of the picture
-// (left, top, right, bottom). The card stands on the side with more room; if neither side is wide enough, above or below the point. Pure.
-export function cardPlace({ wide, tall }, { left, top, right, bottom }, at) {
-    const within = (low, n, high) => Math.round(Math.max(low, Math.min(high, n))), height = Math.min(tall, TALLEST_PX, bottom - top);
+// (left, top, right, bottom). marks: other markers, [x, y, isRing]. last: the previous place, which the card leaves only for one that
+// covers less. Of places that cover equally much, the card stands on the side with more room; if neither side is wide enough, above or
+// below the point. Pure.
+export function cardPlace(card, free, at, marks = [], last = null) {
+    const tall = Math.min(card.tall, TALLEST_PX, free.bottom - free.top), covers = ({ left, top }) => marks.reduce((sum, [x, y, isRing]) =>
+        (x > left - RING_PX && x < left + card.wide + RING_PX && y > top - RING_PX && y < top + tall + RING_PX
+            ? sum + (isRing ? RING_COST : 1) : sum), 0);
+    const places = placesOf(card.wide, tall, free, at).map((place) => ({ ...place, cost: covers(place) }));
+    const [best] = [...places].sort((a, b) => a.cost - b.cost), same = places.find(({ side }) => side === last?.side);
+    return same && same.cost <= best.cost ? same : best;
+}
+
+// Returns all places for a card of that size, the preferred ones first: { side, left, top, most }.
+function placesOf(wide, tall, { left, top, right, bottom }, at) {
+    const within = (low, n, high) => Math.round(Math.max(low, Math.min(high, n))), full = Math.min(TALLEST_PX, bottom - top);
+    const place = (side, x, y, most = full) => ({ side, left: within(left, x, right - wide), top: within(top, y, bottom - tall), most });
     if (!at)
-        return { left, top: within(top, bottom, bottom - height), most: Math.min(TALLEST_PX, bottom - top) };
-    const [x, y] = at, rooms = [x - AWAY_PX - left, right - x - AWAY_PX], most = Math.max(...rooms);
-    if (most >= wide || (x < left - AWAY_PX || x > right + AWAY_PX)) {
-        const beside = rooms[1] >= rooms[0] ? x + AWAY_PX : x - AWAY_PX - wide;
-        return { left: within(left, beside, right - wide), top: within(top, y - height / 2, bottom - height),
-            most: Math.min(TALLEST_PX, bottom - top) };
-    }
-    const above = y - AWAY_PX - top, below = bottom - y - AWAY_PX, room = Math.max(above, below);
-    const low = Math.min(height, room);
-    return { left: within(left, x - wide / 2, right - wide), top: Math.round(below >= above ? y + AWAY_PX : y - AWAY_PX - low),
-        most: Math.min(TALLEST_PX, room) };
+        return [place('corner', left, bottom)];
+    const [x, y] = at, isOutside = x < left - AWAY_PX || x > right + AWAY_PX;
+    const rooms = { left: x - AWAY_PX - left, right: right - x - AWAY_PX, above: y - AWAY_PX - top, below: bottom - y - AWAY_PX };
+    const sides = ['right', 'left'].sort((a, b) => rooms[b] - rooms[a]).filter((side, i) => rooms[side] >= wide || (isOutside && i === 0));
+    const beside = sides.flatMap((side) => [y - tall / 2, y - AWAY_PX, y + AWAY_PX - tall].map((up, i) =>
+        place(`${side}${i}`, side === 'right' ? x + AWAY_PX : x - AWAY_PX - wide, up)));
+    const [high, low] = rooms.above > rooms.below ? ['above', 'below'] : ['below', 'above'];
+    const levels = [high, low].filter((level, i) => rooms[level] >= tall || (i === 0 && beside.length === 0));
+    return [...beside, ...levels.flatMap((level) => [x - wide / 2, x - AWAY_PX, x + AWAY_PX - wide].map((along, i) => {
+        const most = Math.min(TALLEST_PX, rooms[level]), height = Math.min(tall, most);
+        return { ...place(`${level}${i}`, along, 0, most), top: Math.round(level === 'below' ? y + AWAY_PX : y - AWAY_PX - height) };
+    }))];
+}
+
+// Returns where a point of the plant is in the picture on the screen, in CSS pixels; null: behind the camera. half: of a split view.
+export function placeInPicture({ picture, shown }, { width, height }, position, half = 0) {
+    const part = picture && halves(shown, picture.shownWidth)[half];
+    const at = part && projector(picture.camera, part.width, picture.fullHeight)(position);
+    return at ? [((part.left + at[0]) * width) / picture.shownWidth, (at[1] * height) / picture.fullHeight] : null;
 }
 
 // Positions the card next to the point `at` ([x, y] in CSS pixels), clear of the status banner and the legend. If `at` is null, the card
-// stands in a corner.
-export function standBeside(element, { width, height }, at) {
+// stands in a corner. Other visible markers of `overlay` stay uncovered where there is room.
+const places = new WeakMap(); // element -> { of (what the card describes), place }
+export function standBeside(element, { width, height }, at, overlay, of) {
     const banner = byId('banner'), legend = byId('legend'), lies = legend.offsetWidth > width / 2;
     const above = banner.hidden ? 0 : banner.offsetTop + banner.offsetHeight, strip = lies ? legend.offsetTop + legend.offsetHeight : 0;
     const beside = lies || legend.hidden || legend.offsetLeft <= 0 ? width : legend.offsetLeft;
     const free = { left: RIM_PX, top: RIM_PX + Math.max(above, strip), right: beside - RIM_PX, bottom: height - RIM_PX };
+    const marks = overlay.markers.filter(({ tag, occluded, alarm }) => tag !== of && (alarm || !occluded)).map((marker) => {
+        const { x, y } = overlay.placeOf(marker);
+        return [x, y, Boolean(marker.alarm)];
+    });
     element.style.maxHeight = '';
-    const place = cardPlace({ wide: element.offsetWidth, tall: element.offsetHeight }, free, at);
+    const last = places.get(element), card = { wide: element.offsetWidth, tall: element.offsetHeight };
+    const place = cardPlace(card, free, at, marks, last?.of === of ? last.place : null);
+    places.set(element, { of, place });
     element.style.maxHeight = `${Math.max(0, place.most)}px`;
     element.style.transform = `translate(${place.left}px, ${place.top}px)`;
 }

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The card of a point on the plant's surface: its equipment, the field's value there, the sensors that contribute to it, and the
 // uncertainty.
-import { projector } from '../../core/camera.js';
 import { decimalsFor, numberText, unitText } from '../../core/format.js';
-import { halves } from '../../core/split_view.js';
 import { askPick } from '../../core/requests.js';
 import { say } from '../../core/words.js';
-import { standBeside } from './card_position.js';
+import { placeInPicture, standBeside } from './card_position.js';
 import { byId, glyph, make } from '../common/dom.js';
 import { closeButton, fill } from '../common/widgets.js';
 
@@ -14,8 +12,8 @@ const SAME_M = 0.05;
 
 export class Place {
     // showAsset(how, asset) hides an asset, makes it transparent or isolates it.
-    constructor({ session, viewport, showAsset }) {
-        Object.assign(this, { session, viewport, showAsset });
+    constructor({ session, viewport, overlay, showAsset }) {
+        Object.assign(this, { session, viewport, overlay, showAsset });
         this.element = byId('place');
         new ResizeObserver(() => this.show()).observe(this.element);
         this.picked = null;
@@ -79,13 +77,7 @@ export class Place {
     }
 
     project() {
-        const { picture, shown } = this.session;
-        const half = picture && halves(shown, picture.shownWidth)[this.half];
-        if (!half)
-            return null;
-        const at = projector(picture.camera, half.width, picture.fullHeight)(this.picked.position);
-        const { width, height } = this.viewport;
-        return at && [((half.left + at[0]) * width) / picture.shownWidth, (at[1] * height) / picture.fullHeight];
+        return placeInPicture(this.session, this.viewport, this.picked.position, this.half);
     }
 
     number(value) {
@@ -121,6 +113,6 @@ export class Place {
     // Moves the card with its point when the picture moves.
     show() {
         if (this.picked)
-            standBeside(this.element, this.viewport, this.project());
+            standBeside(this.element, this.viewport, this.project(), this.overlay, this.picked);
     }
 }
