@@ -13,6 +13,7 @@ import { freePort } from './support/ports.mjs';
 import { long } from './support/promise.mjs';
 import { sweep } from './support/sweep.mjs';
 import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { until } from './support/until.mjs';
 
 const skip = notBuilt();
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -205,8 +206,7 @@ test('a code, a state or a whole answer once more, another browser, another issu
 
 test('keys that are rotated are fetched, not more often than they may be', { skip: skip || long }, async () => {
     provider.rotate();
-    await sleep(10500); // waits since the last request for keys, so that keys may be requested again
-    assert.equal((await new Browser().signIn()).status, 303);
+    await until('keys being requested again', async () => (await new Browser().signIn()).status === 303);
     const asked = () => provider.asked.filter((url) => url === '/jwks').length, before_ = asked();
     provider.change = (claims, header) => { header.kid = 'made up'; };
     for (let i = 0; i < 5; i++)

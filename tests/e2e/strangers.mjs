@@ -133,7 +133,9 @@ test('anyone who looks on is told of no reading, tag or person, and follows nobo
     assert.ok(picks.some((pick) => pick.asset && pick.position), 'what is there may be asked');
     assert.ok(picks.every((pick) => pick.value === null && pick.nearest.length === 0 && pick.sensor === null));
     await plant.tell('set TI-1 82.5');
-    await new Promise((done) => setTimeout(done, 1500)); // waits longer than any message about the change takes
+    await engineer.until('the change', (c) => c.texts.some((m) => m.type === 'tags' && JSON.stringify(m.values).includes('82.5')));
+    stranger.say({ type: 'ping', t: 1 });
+    await stranger.text('pong');
     const types = new Set(stranger.texts.map((m) => m.type));
     for (const type of ['tags', 'markers', 'alarms', 'proofs', 'alarmed'])
         assert.ok(!types.has(type), type);

@@ -107,8 +107,9 @@ test('an alarm comes to the pane that is for it, and leaves once it is acknowled
     await page.locator('.pane.views.called h2', { hasText: 'PI-1' }).waitFor({ timeout: 60000 });
     await page.locator('.pane.alarms li.waiting', { hasText: 'PI-1' }).waitFor();
     assert.ok(await page.locator('.tile[data-alarm]:not([data-alarm=""])').count() > 0);
-    await page.waitForTimeout(4000);
-    await page.waitForFunction(() => !document.querySelector('.pane.views.coming'), null, { timeout: 60000 });
+    await page.waitForFunction(() => [...document.querySelectorAll('.pane.views')].some((pane) => !pane.classList.contains('coming') &&
+        /PI-1/.test(pane.querySelector('h2').textContent) &&
+        pane.querySelector('iframe').contentWindow.plantcast?.session.shown.group === 'pressure'), null, { timeout: 60000 });
     assert.equal(await page.evaluate(() => globalThis.mixed), 0, 'its name stands over no picture of another quantity');
     await shoot(page, 'wall-display-alarm');
     await page.evaluate(() => {
