@@ -9,6 +9,7 @@ import { after, before, test } from 'node:test';
 import { folderOfTests } from './support/folders.mjs';
 import { BIN, missing, Program, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 import { freePort } from './support/ports.mjs';
+import { sweep } from './support/sweep.mjs';
 
 const absent = missing();
 if (!existsSync(join(BIN, 'plantcast-init')))
@@ -190,8 +191,9 @@ const processesOf = (file) => readdirSync('/proc').filter((pid) => /^\d+$/.test(
     }
 }).filter(([program, ...args]) => /plantcast/.test(program) && args.includes(file)).map(([program]) => basename(program));
 
-for (const [how, end] of [['kill of make alone', (make) => make.kill('SIGTERM')], ['kill -9 of make alone', (make) => make.kill('SIGKILL')],
-    ['Ctrl-C', (make) => process.kill(-make.pid, 'SIGINT')], ['a closed terminal', (make) => process.kill(-make.pid, 'SIGHUP')]])
+const ENDINGS = [['kill of make alone', (make) => make.kill('SIGTERM')], ['kill -9 of make alone', (make) => make.kill('SIGKILL')],
+    ['Ctrl-C', (make) => process.kill(-make.pid, 'SIGINT')], ['a closed terminal', (make) => process.kill(-make.pid, 'SIGHUP')]];
+for (const [how, end] of sweep(ENDINGS, [ENDINGS[1], ENDINGS[2]]))
     test(`the simulator and the daemon of \`make run\` end by ${how}`, { skip: skip || notReleased, timeout: 200000 }, async (t) => {
         const own = await simulatedPlant(), port = await freePort(), stamp = statSync(join(OUT, 'codecs')).mtimeMs;
         t.after(() => own.destroy());
