@@ -4,6 +4,6 @@ import { describe } from 'node:test';
 import './support/browser.mjs'; // imported here, so that the browser ends with the program and not with the first subject
 
 describe('list_pages', { concurrency: 2 }, () => {
-    for (const subject of ['alarms', 'engineer', 'accepting', 'assets', 'present'])
+    for (const subject of ['alarms', 'engineer', 'accepting', 'assets', 'present', 'leaks'])
         describe(subject, { concurrency: 1 }, () => import(`./list_pages/${subject}.mjs`));
 });

@@ -78,6 +78,7 @@ export class AlarmList {
         this.shareRoom(open);
         byId('alarms').hidden = !open;
         byId('alarm-strip').setAttribute('aria-expanded', open);
+        this.readJournal();
         this.show();
         if (open)
             byId('alarms-close').focus();
@@ -109,9 +110,16 @@ export class AlarmList {
             byId(id).hidden = journal;
         for (const id of ['alarms-journal', 'journal-which', 'journal-order'])
             byId(id).hidden = !journal;
-        if (journal)
-            this.modules.use('journal', (part) => part.open(this));
+        this.readJournal();
         this.show();
+    }
+
+    // Reads the journal if it has come into sight, and empties it if not.
+    readJournal() {
+        if (this.open && this.journalOpen)
+            this.modules.use('journal', (part) => part.open(this), 'open');
+        else
+            this.modules.there('journal')?.rest();
     }
 
     // Role of the user, which decides about the actions offered; null while no messages arrive from the server.

@@ -71,7 +71,9 @@ export class Timeline {
         byId('time-toggle').setAttribute('aria-expanded', open);
         if (open)
             this.turnTo(this.atUs);
-        else if (this.atUs !== null)
+        else
+            byId('time-track').replaceChildren(); // marks of alarms accumulate, and are drawn again when the bar opens
+        if (!open && this.atUs !== null)
             travel(this.session, null);
     }
 

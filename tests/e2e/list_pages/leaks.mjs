@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Opening and closing every part of the page, and alarms that come and go, leave no nodes, listeners or memory behind.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { openPage, settle, travel, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import { notBuilt, startTiny } from '../support/tiny_plant.mjs';
+
+const options = { skip: notBuilt(), timeout: 300000 };
+const WARM_UP = 3, CYCLES = 5, HEAP_KB = 25; // HEAP_KB: largest growth of the heap per cycle
+const TRIES = 40, PAUSE_MS = 250;            // the page may differ for a moment, for example while a message is shown
+// Without compiled code, whose size depends on the time that functions run, the size of the heap is nearly the same in each run.
+const JITLESS = ['--js-flags=--jitless'];
+let plant, browser, page, devTools;
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await startTiny();
+    browser = await openPage(plant.url, { viewport: { width: 1280, height: 800 }, args: JITLESS });
+    page = browser.page;
+    await waitForPicture(page);
+    await waitForHealth(page, 'live');
+    await page.waitForFunction(() => Boolean(globalThis.plantcast.session.time.fromUs));
+    devTools = await page.context().newCDPSession(page);
+    await devTools.send('Performance.enable');
+    await devTools.send('HeapProfiler.enable');
+});
+after(async () => {
+    await browser?.close();
+    await plant?.stop();
+});
+
+async function measure() {
+    await devTools.send('HeapProfiler.collectGarbage');
+    const { metrics } = await devTools.send('Performance.getMetrics');
+    const { Nodes: nodes, JSEventListeners: listeners, JSHeapUsedSize: heap } =
+        Object.fromEntries(metrics.map(({ name, value }) => [name, value]));
+    return { nodes, listeners, heap };
+}
+
+// Returns how many nodes each element of the document with an id contains directly or through elements without an id.
+const contents = () => page.evaluate(() => {
+    const counts = {}, walker = document.createTreeWalker(document);
+    for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+        const { id } = (node.parentElement ?? document.documentElement).closest('[id], html');
+        counts[id] = (counts[id] ?? 0) + 1;
+    }
+    return counts;
+});
+
+const shows = (selector, is = true) => page.waitForFunction(([wanted, on]) =>
+    [...document.querySelectorAll(wanted)].some((element) => element.checkVisibility()) === on, [selector, is]);
+async function press(id) {
+    await page.waitForFunction((name) => document.getElementById(name) !== null, id);
+    await page.evaluate((name) => document.getElementById(name).click(), id);
+}
+
+async function setAlarm(on) {
+    await plant.ask(`set TI-1 ${on ? 95 : 80}`);
+    await page.waitForFunction((is) => globalThis.plantcast.session.model.alarms.list().some(({ tag, state }) =>
+        tag.name === 'TI-1' && state === (is ? 'unacknowledged' : 'returned')), on);
+}
+
+async function twice(button, selector) {
+    const was = await page.locator(selector).isVisible();
+    for (const is of [!was, was]) {
+        await press(button);
+        await shows(selector, is);
+    }
+}
+
+async function dialog(button, selector) {
+    await press(button);
+    await shows(selector);
+    await page.keyboard.press('Escape');
+    await shows(selector, false);
+}
+
+const ACTIONS = {
+    alarm: async () => {
+        await setAlarm(true);
+        await setAlarm(false);
+    },
+    journal: async () => {
+        await press('alarm-strip');
+        await press('journal-tab');
+        await shows('#journal-list tr');
+        await setAlarm(true);
+        await setAlarm(false);
+        await press('alarms-tab');
+        await shows('#alarms-list tr');
+        await press('alarm-strip');
+        await shows('#alarms', false);
+    },
+    card: async () => {
+        for (const name of ['TI-1', 'TI-2', null])
+            await page.evaluate((tag) => globalThis.plantcast.selectTag(tag && globalThis.plantcast.session.model.tag(tag)), name);
+        await shows('#card', false);
+    },
+    trend: async () => {
+        await page.evaluate(() => globalThis.plantcast.showTrend(globalThis.plantcast.session.model.tag('TI-1')));
+        await shows('#trend-chart canvas');
+        await press('trend-close');
+        await shows('#trends', false);
+    },
+    past: async () => {
+        await travel(page, await page.evaluate(() => globalThis.plantcast.session.time.fromUs + 1e6));
+        await page.waitForFunction(() => globalThis.plantcast.session.picture.past);
+        await shows('#timeline');
+        await press('time-toggle');
+        await page.waitForFunction(() => !globalThis.plantcast.session.picture.past);
+        await shows('#timeline', false);
+    },
+    split: async () => {
+        for (const is of [true, false]) {
+            await press('split-toggle');
+            await page.waitForFunction((on) => Boolean(globalThis.plantcast.session.params.split) === on, is);
+        }
+    },
+    theme: async () => {
+        await press('theme');
+        await press('theme');
+    },
+    views: () => twice('views-toggle', '#views'),
+    picture: () => twice('picture-toggle', '#picture-panel'),
+    equipment: () => twice('assets-toggle', '#assets'),
+    help: () => dialog('help-open', 'dialog[open]'),
+    share: () => dialog('share-open', 'dialog[open]'),
+    group: async () => {
+        for (const group of ['pressure', 'temperature']) {
+            await page.evaluate((id) => globalThis.plantcast.session.setParams({ group: id }), group);
+            await settle(page);
+        }
+    },
+};
+
+test('cycles of all actions leave as many nodes and listeners as before', options, async (t) => {
+    const cycles = async (count) => {
+        for (let i = 0; i < count; i++)
+            for (const act of Object.values(ACTIONS))
+                await act();
+        await settle(page);
+    };
+    await cycles(WARM_UP);
+    const first = await measure(), contained = await contents();
+    await cycles(CYCLES);
+    let last = await measure();
+    for (let i = 0; i < TRIES && (last.nodes > first.nodes || last.listeners > first.listeners); i++) {
+        await new Promise((go) => setTimeout(go, PAUSE_MS));
+        last = await measure();
+    }
+    const contains = await contents(), grownKb = (last.heap - first.heap) / 1024 / CYCLES;
+    const grown = Object.keys(contains).filter((id) => contains[id] > (contained[id] ?? 0)).map((id) => [id, contained[id], contains[id]]);
+    const said = JSON.stringify({ first, last, grown });
+    t.diagnostic(said);
+    assert.ok(last.nodes <= first.nodes && last.listeners <= first.listeners, said);
+    assert.ok(grownKb < HEAP_KB, `${grownKb} kB a cycle, ${said}`);
+    assert.deepEqual(browser.errors, []);
+});
