@@ -31,14 +31,17 @@ const nowText = (session, alarm) => limitText(session, alarm, !['lost', 'silent'
 
 const ageOf = (ms) => say('walls.age', { age: ms === null ? '–' : ageText(ms) });
 
-// Returns a text with the quantities of tags, and the age of the oldest of their usable readings.
-function aboutTags({ model }, names) {
-    const tags = names.map((name) => model.tag(name)).filter(Boolean);
-    const groups = [...new Set(tags.map(({ group }) => model.group(group)))].filter(Boolean);
-    const good = tags.filter(({ index }) => model.readings[index].quality !== 'bad');
+// Returns the age of the oldest usable reading of tags; null: there is none.
+function oldestMs({ model }, names) {
+    const good = names.map((name) => model.tag(name)).filter((tag) => tag && model.readings[tag.index].quality !== 'bad');
     const ages = good.map(({ index }) => model.ageMs(index, clock.now())).filter((ms) => ms !== null);
-    const oldest = ages.length > 0 ? Math.max(...ages) : null;
-    return [groups.map(quantityText).join(', '), ageOf(oldest)].filter(Boolean).join(' · ');
+    return ages.length > 0 ? Math.max(...ages) : null;
+}
+
+// Returns a text with the quantities of tags, and the age of the oldest of their usable readings.
+function aboutTags(session, names) {
+    const { model } = session, groups = [...new Set(names.map((name) => model.group(model.tag(name)?.group)))].filter(Boolean);
+    return [groups.map(quantityText).join(', '), ageOf(oldestMs(session, names))].filter(Boolean).join(' · ');
 }
 
 const timeOf = (session, us) => zoneClock(session.model.plant.time_zone)(us / 1000).time;
@@ -115,7 +118,7 @@ function ViewsPane(pane, context) {
         page.session.setParams({ ...(tag.group ? { group: tag.group } : {}), clip: null, split: null, range: null });
         page.flyToTag(tag);
         words.replaceChildren(badge(alarm.priority, isGone(alarm.state)), make('b', {}, ` ${say(`kind.${alarm.kind}`)} ${tag.name} `),
-            make('span', { class: 'state' }), make('span', { class: 'raised' }),
+            make('span', { class: 'raised' }), make('span', { class: 'state' }),
             make('span', {}, say('walls.since', { time: timeOf(session, alarm.raisedUs) })));
         sayNow(alarm);
     }
@@ -267,7 +270,7 @@ function TilesPane(pane, { session, body, title }) {
     let fitted = '';
     return { tick() {
         const room = `${body.clientWidth} ${body.clientHeight} ${getComputedStyle(body.parentNode).fontSize}`;
-        setText(about, aboutTags(session, pane.items));
+        setText(about, ageOf(oldestMs(session, pane.items)));
         for (const tile of tiles) {
             const tag = session.model.tag(tile.name), group = session.model.group(tag?.group);
             if (!tag || !group)
@@ -289,13 +292,16 @@ function TilesPane(pane, { session, body, title }) {
     } };
 }
 
-// Reduces the font size of a pane until its content fits.
+// Makes a pane's content fit: first by the compact form, in which values are as large as names, then by smaller letters.
 function fitIn(body) {
-    for (let part = 1; part > LEAST_PART; part *= 0.94) {
+    body.classList.remove('compact');
+    setVariable(body, '--part', 1);
+    const fits = () => body.scrollHeight <= body.clientHeight + 1;
+    if (fits())
+        return;
+    body.classList.add('compact');
+    for (let part = 1; part > LEAST_PART && !fits(); part *= 0.94)
         setVariable(body, '--part', part);
-        if (body.scrollHeight <= body.clientHeight + 1)
-            break;
-    }
 }
 
 const shareOf = ({ min, max }, value) => Math.max(0, Math.min(1, (value - min) / (max - min)));
