@@ -193,7 +193,7 @@ function AlarmsPane(pane, { session, call, title, body }) {
         make('span', { class: 'what' }, [nowText(session, alarm), alarm.tag.description].filter(Boolean).join(' · ')),
         make('time', {}, timeOf(session, alarm.raisedUs)));
     const rowOfMany = ({ asset, count, worst }) => make('li', { class: 'waiting' }, badge(worst.priority),
-        make('b', { class: 'asset' }, asset ?? worst.tag.name), make('span', { class: 'what' },
+        make('b', {}, make('span', { class: 'tag' }, asset ?? worst.tag.name)), make('span', { class: 'what' },
             say('walls.many', { count, worst: `${worst.tag.name} ${worst.kind.length > 2 ? say(`kind.${worst.kind}`) : worst.kind}` })),
         make('time', {}, timeOf(session, worst.raisedUs)));
 
