@@ -58,10 +58,10 @@ void wire_put_frame(const struct wire_frame *frame, uint8_t out[WIRE_FRAME_HEADE
 
 void wire_put_depth(const struct wire_depth *depth, uint8_t out[WIRE_DEPTH_HEADER_BYTES])
 {
-    enum { PLAIN_ENCODING = 1 };
+    enum { PREDICTED_MASKS = 2 };
     uint8_t *at = out;
     at = put(at, WIRE_TYPE_DEPTH, 1);
-    at = put(at, PLAIN_ENCODING, 1);
+    at = put(at, PREDICTED_MASKS, 1);
     at = put(at, depth->flags, 2);
     at = put(at, depth->payload_bytes, 4);
     at = put(at, depth->seq, 4);

@@ -4,20 +4,22 @@
 
 #include <math.h>
 #include <stdatomic.h>
+#include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
 
 #include "base/mem.h"
 #include "render/matrix.h"
 
-enum { MASK_SIDE = 4, MASK_BYTES = MASK_SIDE * MASK_SIDE / 8, MASK_PX = DEPTH_CELL_PX / MASK_SIDE, MOST_LEVELS = 4095 };
-static const uint64_t BLOCK_BITS = 3ull | 3ull << DEPTH_CELL_PX; /* mask bits of a square of MASK_PX pixels */
+enum { MASK_SIDE = DEPTH_CELL_PX / 2, MASK_BYTES = MASK_SIDE * MASK_SIDE / 8, MOST_LEVELS = 4095 };
 enum { ESCAPE = 255, MOST_SYMBOL_BYTES = 3 };
+enum { PART_DIVIDED, PART_BACK, PART_NEAR, PART_MASKS, PARTS }; /* of the payload */
+enum { MOST_BLOCK_BYTES = 100 };                                /* that ends of blocks add to a payload */
 /* Movement of the camera, relative to the distance of the surfaces, for which depth must be right to a fraction of a pixel: an orbit by
    six degrees. */
 static const double MOVEMENT = 0.1;
 /* smallest shift, in pixels, by which such a movement separates the sides of a step; and of depths that differ by one code */
-static const double STEP_SHIFT_PX = 1.5, UNIT_SHIFT_PX = 0.6;
+static const double STEP_SHIFT_PX = 2, UNIT_SHIFT_PX = 1.5;
 static const double LEAST_INVERSE = 1e-5; /* ground farther away than 100 km counts as background; 1/m */
 
 /* --- from the depth buffer to metres ----------------------------------------------------------------------------------------- */
@@ -94,7 +96,7 @@ struct coder {
     int width_px, height_px, columns, rows;
     float *nears, *fars; /* depths; -INFINITY: background */
     uint8_t *swapped;    /* 1: the ground, which the mask leaves out, is nearer than the surface */
-    uint16_t *near, *far;
+    uint16_t *near, *far, *masks; /* masks: of divided cells */
     uint8_t *data;
     size_t data_bytes;
     float low, unit; /* depth of the code 1, and difference between two codes */
@@ -105,11 +107,12 @@ static bool coder_init(struct coder *coder)
 {
     size_t count = (size_t)coder->columns * (size_t)coder->rows;
     coder->nears = mem_try_array(2 * count, sizeof(*coder->nears));
-    coder->near = mem_try_array(2 * count, sizeof(*coder->near));
+    coder->near = mem_try_array(3 * count, sizeof(*coder->near));
     coder->swapped = mem_try_array(count, 1);
     coder->data = mem_try_array(count, 1 + 2 * MOST_SYMBOL_BYTES + MASK_BYTES);
     coder->fars = coder->nears + count;
     coder->far = coder->near + count;
+    coder->masks = coder->far + count;
     return coder->nears && coder->near && coder->swapped && coder->data;
 }
 
@@ -197,30 +200,40 @@ static uint8_t *put_divided(const struct coder *coder, uint8_t *out)
     return out + bytes;
 }
 
-static uint8_t *put_near(const struct coder *coder, uint8_t *out)
+/* Predicts a code from its neighbours, as the median of left, up and the plane through the three (LOCO-I; Weinberger et al., 2000). */
+static inline int predicted_back(int left, int up, int corner)
+{
+    if (!left || !up || !corner)
+        return left ? left : up;
+    int least = left < up ? left : up, most = left < up ? up : left;
+    return corner >= most ? least : corner <= least ? most : left + up - corner;
+}
+
+/* Writes the code of each cell's farthest surface. */
+static uint8_t *put_back(const struct coder *coder, uint8_t *out)
 {
     int columns = coder->columns;
     for (int row = 0; row < coder->rows; row++) {
-        const uint16_t *here = coder->near + (size_t)row * (size_t)columns, *above = row ? here - columns : NULL;
-        for (int c = 0; c < columns; c++) {
-            int left = c ? here[c - 1] : 0, up = above ? above[c] : 0, corner = c && above ? above[c - 1] : 0, predicted = left ? left : up;
-            if (left && up && corner) {
-                predicted = left + up - corner;
-                predicted = predicted < 1 ? 1 : predicted > coder->levels ? coder->levels : predicted;
-            }
-            out = put_symbol(out, here[c], predicted);
-        }
+        const uint16_t *here = coder->far + (size_t)row * (size_t)columns, *above = row ? here - columns : NULL;
+        for (int c = 0; c < columns; c++)
+            out = put_symbol(out, here[c], predicted_back(c ? here[c - 1] : 0, above ? above[c] : 0, c && above ? above[c - 1] : 0));
     }
     return out;
 }
 
-static uint8_t *put_far(const struct coder *coder, uint8_t *out)
+/* Writes the code before the step of each divided cell. Predicts the first of the neighbours' near codes that is before the step. */
+static uint8_t *put_near(const struct coder *coder, uint8_t *out)
 {
-    size_t i = 0;
+    size_t i = 0, columns = (size_t)coder->columns;
+    const uint16_t *near = coder->near;
     for (int row = 0; row < coder->rows; row++)
-        for (int c = 0; c < coder->columns; c++, i++)
-            if (coder->near[i] != coder->far[i])
-                out = put_symbol(out, coder->far[i], c ? coder->far[i - 1] : 0);
+        for (int c = 0; c < coder->columns; c++, i++) {
+            int back = coder->far[i];
+            if (near[i] == back)
+                continue;
+            int left = c ? near[i - 1] : 0, up = row ? near[i - columns] : 0, corner = c && row ? near[i - columns - 1] : 0;
+            out = put_symbol(out, near[i], left > back ? left : up > back ? up : corner > back ? corner : back);
+        }
     return out;
 }
 
@@ -228,39 +241,65 @@ static uint8_t *put_far(const struct coder *coder, uint8_t *out)
    seen less than a second image of a handrail. */
 static unsigned coarse_mask(uint64_t mask)
 {
-    unsigned out = 0;
-    for (int y = 0; y < MASK_SIDE; y++)
-        for (int x = 0; x < MASK_SIDE; x++) {
-            uint64_t block = mask >> (y * MASK_PX * DEPTH_CELL_PX + x * MASK_PX);
-            out |= (unsigned)((block & BLOCK_BITS) != 0) << (y * MASK_SIDE + x);
+    mask |= mask >> 1; /* bits 0, 2, 4 and 6 of every second row: whether a pixel of their square is near */
+    mask |= mask >> DEPTH_CELL_PX;
+    mask &= 0x0055005500550055;
+    mask = (mask | mask >> 1) & 0x0033003300330033;
+    mask = (mask | mask >> 2) & 0x000f000f000f000f;
+    mask = (mask | mask >> 12) & 0x000000ff000000ff;
+    return (unsigned)((mask | mask >> 24) & 0xffff);
+}
+
+/* Returns the mask of a neighbour of cell `i`: that of an undivided neighbour says to which side its surface belongs. */
+static unsigned mask_beside(const struct coder *coder, size_t neighbour, size_t i)
+{
+    int back = coder->far[neighbour];
+    if (coder->near[neighbour] != back)
+        return coder->masks[neighbour];
+    return abs(back - coder->near[i]) < abs(back - coder->far[i]) ? 0xffff : 0;
+}
+
+/* Writes where masks differ from their prediction. The prediction of a bit is that of the bits to the left and above it if they are equal,
+   otherwise the opposite of the bit between the two: an edge continues. */
+static uint8_t *put_masks(const struct coder *coder, uint8_t *out)
+{
+    size_t i = 0, columns = (size_t)coder->columns;
+    for (int row = 0; row < coder->rows; row++)
+        for (int c = 0; c < coder->columns; c++, i++) {
+            if (coder->near[i] == coder->far[i])
+                continue;
+            unsigned mask = coarse_mask(coder->swapped[i] ? ~coder->cells[i].mask : coder->cells[i].mask);
+            unsigned west = c ? mask_beside(coder, i - 1, i) : 0, north = row ? mask_beside(coder, i - columns, i) : 0;
+            unsigned left = (mask << 1 & 0xeeee) | (west >> 3 & 0x1111), up = (mask << 4 & 0xfff0) | north >> 12;
+            unsigned between = (left << 4 & 0xfff0) | (north >> 11 & 0xe) | (west >> 3 & 1);
+            unsigned differs = mask ^ ((left & up) | ((left ^ up) & ~between));
+            coder->masks[i] = (uint16_t)mask;
+            *out++ = (uint8_t)differs;
+            *out++ = (uint8_t)(differs >> 8);
         }
     return out;
 }
 
-static uint8_t *put_masks(const struct coder *coder, uint8_t *out)
-{
-    size_t count = (size_t)coder->columns * (size_t)coder->rows;
-    for (size_t i = 0; i < count; i++) {
-        if (coder->near[i] == coder->far[i])
-            continue;
-        unsigned mask = coarse_mask(coder->swapped[i] ? ~coder->cells[i].mask : coder->cells[i].mask);
-        *out++ = (uint8_t)mask;
-        *out++ = (uint8_t)(mask >> 8);
-    }
-    return out;
-}
-
-static uint8_t *deflated(const uint8_t *data, size_t count, size_t *bytes)
+/* Deflates the parts of the payload, each into blocks with Huffman codes of their own. Symbols before steps and masks have few runs. */
+static uint8_t *deflated(const uint8_t *data, uint8_t *const ends[PARTS], size_t *bytes)
 {
     enum { RAW = -15, MEMORY = 8, LEVEL = 1 };
-    z_stream stream = { .next_in = (uint8_t *)(uintptr_t)data, .avail_in = (uInt)count };
+    z_stream stream = { .next_in = (uint8_t *)(uintptr_t)data };
     if (deflateInit2(&stream, LEVEL, Z_DEFLATED, RAW, MEMORY, Z_RLE) != Z_OK)
         return NULL;
-    size_t most = deflateBound(&stream, count);
+    size_t most = deflateBound(&stream, (uLong)(ends[PARTS - 1] - data)) + MOST_BLOCK_BYTES;
     uint8_t *out = mem_try_array(most, 1);
     stream.next_out = out;
     stream.avail_out = (uInt)most;
-    bool good = out && deflate(&stream, Z_FINISH) == Z_STREAM_END;
+    bool good = out != NULL;
+    for (int part = 0; part < PARTS && good; part++) {
+        stream.avail_in = (uInt)(ends[part] - stream.next_in);
+        if (part == PARTS - 1)
+            good = deflate(&stream, Z_FINISH) == Z_STREAM_END;
+        else if (stream.avail_in > 0)
+            good = deflate(&stream, Z_BLOCK) == Z_OK;
+        good &= part != PART_BACK || deflateParams(&stream, LEVEL, Z_HUFFMAN_ONLY) == Z_OK;
+    }
     *bytes = stream.total_out;
     deflateEnd(&stream);
     if (!good) {
@@ -274,9 +313,12 @@ static struct depth_grid *make(struct coder *coder)
 {
     find_depths(coder);
     find_codes(coder);
-    uint8_t *end = put_masks(coder, put_far(coder, put_near(coder, put_divided(coder, coder->data))));
+    uint8_t *ends[PARTS], *end = coder->data;
+    uint8_t *(*const put[PARTS])(const struct coder *, uint8_t *) = { put_divided, put_back, put_near, put_masks };
+    for (int part = 0; part < PARTS; part++)
+        ends[part] = end = put[part](coder, end);
     size_t data_bytes = (size_t)(end - coder->data), bytes;
-    uint8_t *payload = deflated(coder->data, data_bytes, &bytes);
+    uint8_t *payload = deflated(coder->data, ends, &bytes);
     if (!payload)
         return NULL;
     struct depth_grid *grid = mem_new(sizeof(*grid));

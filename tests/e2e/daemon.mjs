@@ -181,7 +181,7 @@ test('depth grids come before their pictures, to clients that ask for them', { s
         const frame = client.frames.find((f) => f.seq === depth.seq);
         assert.equal(client.frames.indexOf(frame), depth.before, 'each grid comes right before its picture');
         assert.deepEqual([depth.x, depth.y, depth.width, depth.height], [0, 0, frame.full_width, frame.full_height]);
-        assert.deepEqual([depth.columns, depth.rows, depth.encoding], [40, 23, 1]);
+        assert.deepEqual([depth.columns, depth.rows, depth.encoding], [40, 23, 2]);
         assert.equal(depth.payload.length, depth.payload_bytes);
         assert.equal(inflateRawSync(depth.payload).length, depth.data_bytes);
     }

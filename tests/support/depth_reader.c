@@ -2,7 +2,7 @@
 /* Inflates a depth grid and undoes its prediction. */
 #include "tests/support/depth_reader.h"
 
-#include <string.h>
+#include <stdlib.h>
 #include <zlib.h>
 
 #include "base/mem.h"
@@ -37,27 +37,58 @@ static bool inflate_all(const struct depth_grid *grid, uint8_t *out)
     return good;
 }
 
-static void read_near(struct depth_read *read, struct payload_bytes *bytes)
+static int middle_of(int a, int b, int c)
 {
-    int columns = read->wire.columns;
-    for (int i = 0; i < columns * read->wire.rows; i++) {
-        int left = i % columns ? read->near[i - 1] : 0, up = i >= columns ? read->near[i - columns] : 0;
-        int corner = i % columns && i >= columns ? read->near[i - columns - 1] : 0, predicted = left ? left : up;
-        if (left && up && corner) {
-            predicted = left + up - corner;
-            predicted = predicted < 1 ? 1 : predicted > read->wire.levels ? read->wire.levels : predicted;
-        }
-        read->near[i] = symbol(bytes, predicted);
+    int least = a < b ? a : b, most = a < b ? b : a;
+    return c < least ? least : c > most ? most : c;
+}
+
+struct codes_beside {
+    int left, up, corner; /* 0 beyond the edge */
+};
+
+static struct codes_beside codes_beside_of(const uint16_t *codes, int i, int columns)
+{
+    return (struct codes_beside){ i % columns ? codes[i - 1] : 0, i >= columns ? codes[i - columns] : 0,
+                                i % columns && i >= columns ? codes[i - columns - 1] : 0 };
+}
+
+static void read_far(struct depth_read *read, struct payload_bytes *bytes)
+{
+    for (int i = 0; i < read->wire.columns * read->wire.rows; i++) {
+        struct codes_beside n = codes_beside_of(read->far, i, read->wire.columns);
+        bool all = n.left && n.up && n.corner;
+        read->far[i] = symbol(bytes, all ? middle_of(n.left, n.up, n.left + n.up - n.corner) : n.left ? n.left : n.up);
     }
+}
+
+static uint16_t near_symbol(const struct depth_read *read, struct payload_bytes *bytes, int i)
+{
+    struct codes_beside n = codes_beside_of(read->near, i, read->wire.columns);
+    int far = read->far[i];
+    return symbol(bytes, n.left > far ? n.left : n.up > far ? n.up : n.corner > far ? n.corner : far);
+}
+
+/* Returns the mask bit (x, y) of the whole grid for the prediction in a cell; 0 beyond the edge. */
+static int bit_at(const struct depth_read *read, int cell, int x, int y)
+{
+    int side = read->wire.mask_side, other = y / side * read->wire.columns + x / side;
+    if (x < 0 || y < 0)
+        return 0;
+    if (read->masks[other])
+        return read->masks[other][y % side * side + x % side];
+    return abs(read->near[other] - read->near[cell]) < abs(read->near[other] - read->far[cell]);
 }
 
 static void read_mask(struct depth_read *read, struct payload_bytes *bytes, int cell)
 {
-    int bits = read->wire.mask_side * read->wire.mask_side;
-    read->masks[cell] = mem_array((size_t)bits, 1);
-    for (int b = 0, byte = 0; b < bits; b++) {
+    int side = read->wire.mask_side, x0 = cell % read->wire.columns * side, y0 = cell / read->wire.columns * side;
+    read->masks[cell] = mem_array((size_t)(side * side), 1);
+    for (int b = 0, byte = 0; b < side * side; b++) {
+        int x = x0 + b % side, y = y0 + b / side, left = bit_at(read, cell, x - 1, y), up = bit_at(read, cell, x, y - 1);
+        int between = b == 0 ? left : bit_at(read, cell, x - 1, y - 1);
         byte = b % 8 ? byte : (int)next(bytes);
-        read->masks[cell][b] = byte >> b % 8 & 1;
+        read->masks[cell][b] = (uint8_t)((left == up ? left : !between) ^ (byte >> b % 8 & 1));
     }
 }
 
@@ -71,11 +102,9 @@ bool depth_read_init(struct depth_read *read, const struct depth_grid *grid)
     read->masks = mem_array((size_t)count, sizeof(*read->masks));
     struct payload_bytes bytes = { data + (count + 7) / 8, data + grid->wire.data_bytes, inflate_all(grid, data) };
     if (bytes.good)
-        read_near(read, &bytes);
-    for (int i = 0; i < count && bytes.good; i++) {
-        bool divided = data[i / 8] >> i % 8 & 1;
-        read->far[i] = divided ? symbol(&bytes, i % columns ? read->far[i - 1] : 0) : read->near[i];
-    }
+        read_far(read, &bytes);
+    for (int i = 0; i < count && bytes.good; i++)
+        read->near[i] = data[i / 8] >> i % 8 & 1 ? near_symbol(read, &bytes, i) : read->far[i];
     for (int i = 0; i < count && bytes.good; i++)
         if (data[i / 8] >> i % 8 & 1)
             read_mask(read, &bytes, i);

@@ -248,7 +248,7 @@ TEST(the_ground_is_behind_surfaces)
 
 TEST(the_header_has_the_bytes_of_the_protocol)
 {
-    static const uint8_t expected[WIRE_DEPTH_HEADER_BYTES] = { 2, 1, 3, 0, 0x10, 0x20, 0, 0, 7, 0, 0, 0, 0x64, 0, 0, 0, 0x65, 0, 0x2c, 1,
+    static const uint8_t expected[WIRE_DEPTH_HEADER_BYTES] = { 2, 2, 3, 0, 0x10, 0x20, 0, 0, 7, 0, 0, 0, 0x64, 0, 0, 0, 0x65, 0, 0x2c, 1,
                                                                0xc9, 0, 0x2c, 1, 13, 0, 38, 0, 8, 4, 0xff, 0x0f, 0, 0, 0, 0x3f, 0, 0,
                                                                0, 0xbf, 1, 2, 3, 0 };
     uint8_t bytes[WIRE_DEPTH_HEADER_BYTES];

@@ -35,6 +35,21 @@ function hit(camera, x, y) {
     return best;
 }
 
+// Returns where a mask differs from its prediction, bit by bit from its definition.
+function unexpected(cell, { columns, near, far, masks }) {
+    const at = (x, y) => { // x, y: in bits, from the cell's top left
+        const [dx, dy] = [x, y].map((v) => Math.floor(v / SIDE)), other = cell + dx + dy * columns;
+        if (other < 0 || cell % columns + dx < 0)
+            return false;
+        const distance = (code) => Math.abs(near[other] - code);
+        return far[other] >= 0 ? masks[other][(y - dy * SIDE) * SIDE + x - dx * SIDE] : distance(near[cell]) < distance(far[cell]);
+    };
+    return masks[cell].map((bit, i) => {
+        const x = i % SIDE, y = Math.floor(i / SIDE), left = at(x - 1, y), up = at(x, y - 1);
+        return bit !== (left === up ? left : !(i === 0 ? left : at(x - 1, y - 1)));
+    });
+}
+
 // Encodes the scene as PROTOCOL.md says. A cell is divided where it shows the box and something else.
 function encode(camera) {
     const parallel = camera.height_m !== undefined, columns = Math.ceil(WIDTH / CELL), rows = Math.ceil(HEIGHT / CELL);
@@ -69,18 +84,20 @@ function encode(camera) {
         const d = value - prediction, s = d >= 0 ? 2 * d : -2 * d - 1;
         out.push(...(s < 255 ? [s] : [255, value & 255, value >> 8]));
     };
-    near.forEach((value, i) => {
-        const left = i % columns ? near[i - 1] : 0, up = near[i - columns] ?? 0, corner = i % columns ? near[i - columns - 1] ?? 0 : 0;
-        symbol(value, left && up && corner ? Math.max(1, Math.min(LEVELS, left + up - corner)) : left || up);
+    const back = near.map((value, i) => (far[i] >= 0 ? far[i] : value)), middle = (...codes) => codes.sort((a, b) => a - b)[1];
+    const beside = (codes, i) => [i % columns ? codes[i - 1] : 0, codes[i - columns] ?? 0, i % columns ? codes[i - columns - 1] ?? 0 : 0];
+    back.forEach((value, i) => {
+        const [left, up, corner] = beside(back, i);
+        symbol(value, left && up && corner ? middle(left, up, left + up - corner) : left || up);
     });
-    far.forEach((value, i) => value >= 0 && symbol(value, i % columns === 0 ? 0 : far[i - 1] >= 0 ? far[i - 1] : near[i - 1]));
-    far.forEach((value, i) => value >= 0 && out.push(...bits(masks[i])));
+    far.forEach((value, i) => value >= 0 && symbol(near[i], beside(near, i).find((code) => code > value) ?? value));
+    far.forEach((value, i) => value >= 0 && out.push(...bits(unexpected(i, { columns, near, far, masks }))));
     return { bytes: packed(Uint8Array.from(out), { parallel, columns, rows, base, unit }), near, far, all };
 }
 
 function packed(data, { parallel, columns, rows, base, unit, width = WIDTH }) {
     const payload = deflateRawSync(data), bytes = new Uint8Array(44 + payload.length), view = new DataView(bytes.buffer);
-    bytes.set([2, 1, parallel ? 1 : 0, 0]);
+    bytes.set([2, 2, parallel ? 1 : 0, 0]);
     view.setUint32(4, payload.length, true);
     view.setUint32(8, 7, true);
     [0, 0, width, HEIGHT, width, HEIGHT, columns, rows].forEach((value, i) => view.setUint16(12 + 2 * i, value, true));

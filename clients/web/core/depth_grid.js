@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Parses depth grids (protocol/PROTOCOL.md): the coarse depth of a picture, from which warp_mesh.js builds a mesh.
 
-const HEADER_BYTES = 44, ENCODING = 1, FLAG_PARALLEL = 1, FLAG_MORE = 2, MAX_LEVELS = 4095, LONG = 255;
+const HEADER_BYTES = 44, ENCODING = 2, FLAG_PARALLEL = 1, FLAG_MORE = 2, MAX_LEVELS = 4095, LONG = 255;
 const MAX_CELLS = 1 << 20, MAX_MASK_PX = 1 << 24;
 
 function need(condition, what) {
@@ -52,47 +52,89 @@ class Symbols {
     }
 }
 
-// Returns `near`, `far` (-1: the cell is not divided) and the position behind them.
+// Returns the median of left, up and the plane through all three codes, which is 0 where a neighbour is missing.
+function predicted(left, up, corner) {
+    if (!left || !up || !corner)
+        return left || up;
+    return Math.max(Math.min(left, up), Math.min(Math.max(left, up), left + up - corner));
+}
+
+// Returns `near`, `far` (-1: the cell is not divided), `back` (codes of the farthest surfaces) and the position behind them.
 function readCodes({ columns, rows, levels }, bytes) {
-    const count = columns * rows, near = new Int16Array(count), far = new Int16Array(count).fill(-1), bits = Math.ceil(count / 8);
-    const symbols = new Symbols(bytes, bits, levels), divided = (i) => bytes[i >> 3] & (1 << (i & 7));
+    const count = columns * rows, back = new Int16Array(count), far = new Int16Array(count).fill(-1), bits = Math.ceil(count / 8);
+    const symbols = new Symbols(bytes, bits, levels);
     for (let y = 0, i = 0; y < rows; y++)
         for (let x = 0; x < columns; x++, i++) {
-            const left = x > 0 ? near[i - 1] : 0, up = y > 0 ? near[i - columns] : 0, corner = x > 0 && y > 0 ? near[i - columns - 1] : 0;
-            near[i] = symbols.next(left && up && corner ? Math.max(1, Math.min(levels, left + up - corner)) : left || up);
+            const left = x > 0 ? back[i - 1] : 0, up = y > 0 ? back[i - columns] : 0, corner = x > 0 && y > 0 ? back[i - columns - 1] : 0;
+            back[i] = symbols.next(predicted(left, up, corner));
         }
+    const near = back.slice();
     for (let i = 0; i < count; i++)
-        if (divided(i)) {
-            far[i] = symbols.next(i % columns === 0 ? 0 : far[i - 1] >= 0 ? far[i - 1] : near[i - 1]);
+        if (bytes[i >> 3] & (1 << (i & 7))) {
+            const x = i % columns, beside = [x > 0 ? near[i - 1] : 0, near[i - columns] ?? 0, x > 0 ? near[i - columns - 1] ?? 0 : 0];
+            far[i] = back[i];
+            near[i] = symbols.next(beside.find((code) => code > back[i]) ?? back[i]);
             need(far[i] < near[i], `a near code of ${near[i]} behind ${far[i]}`);
         }
-    return { near, far, at: symbols.at };
+    return { near, far, back, at: symbols.at };
+}
+
+// Reads the masks of divided cells.
+class Masks {
+    constructor({ columns, rows, maskSide }, { near, far, back }) {
+        Object.assign(this, { columns, maskSide, near, far, back, wide: columns * maskSide });
+        this.bits = new Uint8Array(this.wide * rows * maskSide); // 255 where the picture is near
+        this.row = new Uint8Array(maskSide); // bits above the row being read
+    }
+
+    // Returns to which side of cell `i` the surface of an undivided neighbour belongs: 1 near, 0 far; null: the neighbour has a mask.
+    sideOf(neighbour, i) {
+        const { near, far, back } = this;
+        if (far[neighbour] >= 0)
+            return null;
+        return Math.abs(back[neighbour] - near[i]) < Math.abs(back[neighbour] - far[i]) ? 1 : 0;
+    }
+
+    read(i, bytes, at) {
+        const { columns, maskSide, wide, bits, row } = this, x = i % columns, first = (i - x) * maskSide * maskSide + x * maskSide;
+        const west = x > 0 ? this.sideOf(i - 1, i) : 0, north = i >= columns ? this.sideOf(i - columns, i) : 0;
+        for (let bx = 0; bx < maskSide; bx++)
+            row[bx] = north ?? bits[first - wide + bx] & 1;
+        for (let by = 0, bit = 0, corner; by < maskSide; by++) {
+            const start = first + by * wide, beside = west ?? bits[start - 1] & 1;
+            let left = beside, between = by === 0 ? beside : corner;
+            for (let bx = 0; bx < maskSide; bx++, bit++) {
+                const up = row[bx], expected = left === up ? left : 1 - between;
+                between = up;
+                left = row[bx] = expected ^ (bytes[at + (bit >> 3)] >> (bit & 7) & 1);
+                bits[start + bx] = -left;
+            }
+            corner = beside;
+        }
+    }
 }
 
 // Returns one byte for each mask bit of the whole grid: 255 where the picture is near.
-function readMasks({ columns, rows, maskSide }, bytes, far, start) {
-    const masks = new Uint8Array(columns * rows * maskSide * maskSide), each = Math.ceil(maskSide * maskSide / 8);
-    let at = start;
-    for (let i = 0; i < far.length; i++) {
-        if (far[i] < 0)
-            continue;
-        const corner = (Math.floor(i / columns) * columns * maskSide + i % columns) * maskSide;
-        for (let bit = 0; bit < maskSide * maskSide; bit++)
-            if (bytes[at + (bit >> 3)] & (1 << (bit & 7)))
-                masks[corner + Math.floor(bit / maskSide) * columns * maskSide + bit % maskSide] = 255;
+function readMasks(grid, bytes, codes) {
+    const masks = new Masks(grid, codes), each = Math.ceil(grid.maskSide ** 2 / 8);
+    let { at } = codes;
+    codes.far.forEach((far, i) => {
+        if (far < 0)
+            return;
+        masks.read(i, bytes, at);
         at += each;
-    }
+    });
     need(at === bytes.length, `${bytes.length} bytes where ${at} are needed`);
-    return masks;
+    return masks.bits;
 }
 
 // Parses the inflated payload of a grid. Returns the grid with `near` and `far` (codes by cell; far -1: one surface) and `masks`.
 export function readGrid(header, bytes) {
     need(bytes.length === header.dataBytes, `${bytes.length} bytes, ${header.dataBytes} stated`);
-    const { near, far, at } = readCodes(header, bytes);
+    const codes = readCodes(header, bytes), { near, far } = codes;
     const isEmpty = near.every((code) => code === 0); // then the base has no meaning
     need(header.parallel || header.base > 0 || isEmpty, `a depth of ${header.base}`);
-    return { ...header, payload: null, near, far, masks: readMasks(header, bytes, far, at) };
+    return { ...header, payload: null, near, far, masks: readMasks(header, bytes, codes) };
 }
 
 async function inflate(payload, most) {

@@ -6,7 +6,7 @@ import { distance } from './camera_moves.js';
 import { add, dot, length, scale, subtract } from './vector.js';
 
 const STEEPEST = 6; // steepest slope of a surface along the view, as a tangent: cells that differ by more show two surfaces
-const FLAT_SHARE = 0.002, FLAT_CODES = 2; // deviation from a plane within which cells are merged
+const FLAT_SHARE = 0.002, FLAT_CODES = 0.8; // deviation from a plane within which cells are merged
 const BLOCK = 16; // largest side of a merged block, in cells
 const LAP_PX = 0.5; // overlap of merged blocks, which hides cracks between blocks of different sizes
 export const WHOLE = 0, NEAR = 1, FAR = 2; // which pixels of its cells a quad shows: all, those before the step, those behind
@@ -18,7 +18,7 @@ class Sheets {
         Object.assign(this, grid);
         const step = STEEPEST * heightAt(camera, 1) / grid.height * grid.cellPx / Math.abs(grid.unit);
         // Largest difference between codes of one surface in neighbouring cells, by code.
-        const mostAt = (code) => Math.max(4, grid.parallel ? step : step * this.depthOf(code));
+        const mostAt = (code) => Math.max(2, grid.parallel ? step : step * this.depthOf(code));
         this.most = Float32Array.from({ length: grid.levels + 1 }, (_, code) => mostAt(code));
     }
 

@@ -11,18 +11,14 @@ static const float LEAST_GAP = 0.25f;
 
 SOFT_INLINE float least_of_all(lanes x)
 {
-    float least = x[0];
-    for (int i = 1; i < LANES; i++)
-        least = x[i] < least ? x[i] : least;
-    return least;
+    x = lanes_least(x, __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3));
+    x = lanes_least(x, __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5));
+    return x[0] < x[1] ? x[0] : x[1];
 }
 
 SOFT_INLINE float most_of_all(lanes x)
 {
-    float most = x[0];
-    for (int i = 1; i < LANES; i++)
-        most = x[i] > most ? x[i] : most;
-    return most;
+    return -least_of_all(-x);
 }
 
 SOFT_INLINE lanes row_at(const float *depth, size_t pitch_px, int row)
