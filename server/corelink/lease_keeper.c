@@ -425,6 +425,14 @@ void lease_keeper_promised(struct lease_keeper *keeper, const char *node, uint64
     pthread_mutex_unlock(&keeper->thread.lock);
 }
 
+int64_t lease_keeper_confirmed_age_ns(struct lease_keeper *keeper)
+{
+    pthread_mutex_lock(&keeper->thread.lock);
+    int64_t age_ns = now_of_lease() + LEASE_HOLD_NS - keeper->lease.until_ns;
+    pthread_mutex_unlock(&keeper->thread.lock);
+    return age_ns;
+}
+
 bool lease_keeper_is_alone(struct lease_keeper *keeper)
 {
     pthread_mutex_lock(&keeper->thread.lock);

@@ -48,6 +48,9 @@ bool lease_keeper_is_alone(struct lease_keeper *keeper); /* Returns whether this
 void lease_keeper_set_standby(struct lease_keeper *keeper, const char *node, bool follows);
 /* Returns a new sequence number for a question to the standby, which the caller must send now; notes the time. */
 uint64_t lease_keeper_ask(struct lease_keeper *keeper);
+/* Returns how long ago the newest request was sent that the database or the standby has confirmed: this node was certainly the leader
+   then. */
+int64_t lease_keeper_confirmed_age_ns(struct lease_keeper *keeper);
 /* Processes the standby's promise in answer to the question with that number. */
 void lease_keeper_promised(struct lease_keeper *keeper, const char *node, uint64_t number);
 

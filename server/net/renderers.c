@@ -20,6 +20,7 @@
 #include "net/core_end.h"
 #include "session/session_proxy.h"
 
+#define ACTED "acted_ns" /* member of a queued answer: monotonic time at which its action was on disk */
 enum { TICK_US = 200000, MAX_MESSAGE_BYTES = 256 * 1024 /* maximum size of one message */, MAX_ANSWERS = 1024, SEND_TIMEOUT_S = 5 };
 static const int64_t MAX_READINGS_DELAY_NS = 500 * NS_PER_MS, STANDBY_TIMEOUT_NS = 2 * NS_PER_S;
 
@@ -58,7 +59,7 @@ struct renderer_peer {
     struct lists_seen lists;
     bool *links;            /* connection state of each source, as last sent; by source index */
     json_t *hello;          /* this core's introduction, to be sent first; NULL: already sent */
-    json_t *answers;        /* answers to be sent */
+    json_t *answers;        /* answers to be sent, in order of ACTED; that member is not sent */
     struct deed *deeds;     /* forwarded actions whose answers wait until the actions are on disk */
     int64_t told_ns;        /* monotonic: when readings were last sent */
     int64_t since_ns;       /* monotonic: since when a message waits to be sent; 0: none waits */
@@ -160,7 +161,8 @@ static void settle(struct renderer_peer *renderer)
             at = &deed->next;
             continue;
         }
-        json_array_append_new(renderer->answers, json_pack("{s:s,s:O,s:o}", "type", "answer", "id", deed->id, "texts", texts));
+        json_array_append_new(renderer->answers, json_pack("{s:s,s:O,s:o,s:I}", "type", "answer", "id", deed->id, "texts", texts, ACTED,
+                                                           (json_int_t)clock_mono_ns()));
         *at = deed->next;
         end_deed(deed);
         lws_callback_on_writable(renderer->wsi);
@@ -351,6 +353,7 @@ static bool send_answer(struct renderer_peer *renderer)
 {
     json_t *answer = json_incref(json_array_get(renderer->answers, 0));
     json_array_remove(renderer->answers, 0);
+    json_object_del(answer, ACTED);
     return send_message(renderer, answer);
 }
 
@@ -396,6 +399,16 @@ static bool standby_lacks(const struct server_context *server)
     return false;
 }
 
+/* Returns whether the next answer may be sent. If the lease was not confirmed after the action, a core that is cut off from standby and
+   database would tell clients that an action is done which the next leader never receives. */
+static bool may_answer(const struct server_context *server, const struct renderer_peer *renderer)
+{
+    const json_t *acted = json_object_get(json_array_get(renderer->answers, 0), ACTED);
+    struct lease_keeper *keeper = server->params.keeper;
+    return acted && !standby_lacks(server) &&
+           (!keeper || lease_keeper_confirmed_age_ns(keeper) < clock_mono_ns() - json_integer_value(acted));
+}
+
 static bool send_hello(struct renderer_peer *renderer)
 {
     json_t *hello = renderer->hello;
@@ -423,7 +436,7 @@ static bool send_next(struct server_context *server, struct renderer_peer *rende
         good = send_question(server, renderer);
     else if (waits)
         good = send_readings(server, renderer);
-    else if (json_array_size(renderer->answers) > 0 && !standby_lacks(server))
+    else if (may_answer(server, renderer))
         good = send_answer(renderer);
     else if (links_differ(server, renderer))
         good = send_links(server, renderer);

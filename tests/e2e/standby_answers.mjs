@@ -49,3 +49,20 @@ test('an answer comes once the standby has what was done', { skip, timeout: 2400
         await two.restart(core);
     }
 });
+
+test('a leader that is cut off from both confirms nothing that the next leader lacks', { skip, timeout: 240000 }, async (t) => {
+    const core = await two.leader(), other = two.other(core), renderer = await two.renderer('r2');
+    await two.followed(core);
+    await two.plant.tell('set TI-1 95');
+    const alarm = async (node) => (await (await node.fetch('/api/v1/alarms')).json()).alarms.find(({ tag }) => tag === 'TI-1');
+    await until('the alarm at the renderer and the standby', async () => await alarm(renderer) && await alarm(other.node));
+    const anna = await renderer.client({}, { token: two.nodes.tokens.operator });
+    await two.takeOver(t, core, async () => {
+        await Promise.all([core.toDatabase.cut(), other.toOther.cut()]);
+        anna.say({ type: 'alarm', seq: 1, action: 'acknowledge', alarms: [['TI-1', 'H']] });
+    });
+    const isConfirmed = anna.texts.some(({ type, done }) => type === 'alarmed' && done === 1), { state } = await alarm(other.node);
+    t.diagnostic(`${isConfirmed ? 'confirmed' : 'not confirmed'}, and ${state} at the next leader`);
+    assert.ok(!isConfirmed || state === 'acknowledged', `confirmed, and ${state} at the next leader`);
+    anna.close();
+});
