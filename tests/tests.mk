@@ -34,11 +34,15 @@ scale: all $(out)/tests/scale/facility
 	@tests/scale/run $(out) $(bin) --singles 250 --assets 100 --triangles 22200
 
 # A day of a plant's life in an hour, or in so many minutes: make soak minutes=5. Then half an hour of clients that come, drag, stall and
-# are cut off.
+# are cut off. Then a whole host with a fault a minute for two hours; alone: make soak-host minutes=30.
 soak: all tests
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) MINUTES=$(or $(minutes),60) node --test tests/long/day.mjs
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) SOAK_S=$(or $(SOAK_S),1800) node --test tests/e2e/flow.mjs
-.PHONY: soak
+	@$(MAKE) --no-print-directory soak-host
+# seed=N repeats the order of the faults of an earlier run. The table is in build/soak-host.txt, also during the run.
+soak-host: all $(out)/tests/faults/clock_off.so
+	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) MINUTES=$(or $(minutes),120) $(if $(seed),SEED=$(seed)) node --test tests/long/host.mjs
+.PHONY: soak soak-host
 
 checked: demo plants style layers headers
 # Plants that many tests show, where their models are.

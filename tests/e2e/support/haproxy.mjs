@@ -11,13 +11,15 @@ const PROGRAM = '/usr/sbin/haproxy', SHIPPED = new URL('../../../deploy/proxy/ha
 export const missingHaproxy = () => (existsSync(PROGRAM) ? null : 'haproxy is not installed');
 
 export class Haproxy {
-    // renderers: [{ port, agentPort }]; core and standby: { port }. host: address of all daemons; ca: file with their certificates
-    static async start(renderers, core, standby = null, { host = '127.0.0.1', ca = null } = {}) {
+    // renderers: [{ port, agentPort }]; core and standby: { port }. host: address of all daemons. ca and coreCa: files with certificates of
+    // renderers and cores; null: without TLS. port: port of the balancer; default: a free one
+    static async start(renderers, core, standby = null, { host = '127.0.0.1', ca = null, coreCa = ca, port: own = null } = {}) {
         const proxy = new Haproxy();
         proxy.folder = mkdtempSync(join(tmpdir(), 'plantcast-haproxy-'));
-        proxy.port = await freePort();
-        const tls = ca ? ` ssl verify required ca-file ${ca}` : '';
-        let text = readFileSync(SHIPPED, 'utf8').replaceAll(/ ssl verify required ca-file \S+/g, tls)
+        proxy.port = own ?? await freePort();
+        const authorities = [ca, coreCa]; // in the order of the shipped file
+        const tls = (authority) => (authority ? ` ssl verify required ca-file ${authority}` : '');
+        let text = readFileSync(SHIPPED, 'utf8').replaceAll(/ ssl verify required ca-file \S+/g, () => tls(authorities.shift()))
             .replace(/bind :443 .*/, `bind 127.0.0.1:${proxy.port}`).replace('/run/haproxy', proxy.folder)
             .replace('server core 10.0.0.10:8443', `server core ${host}:${core.port}`);
         if (standby)

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Raises alarms in the simulated device without a pause, lets operators acknowledge each, and clears it. Compares the journals of both
+// cores with what was done.
+import { setTimeout as sleep } from 'node:timers/promises';
+
+const KIND = 'H', HIGH = 95, NORMAL = 50, SHOWN_MS = 60000, STEP_MS = 100, JOURNAL_MS = 30000, ROWS = 1000;
+const EVENTS = ['raise', 'acknowledge', 'clear'];
+
+export class AlarmCycles {
+    // plant: sends commands to the simulator; operators: who acknowledge; tags: alarms go on for each at the same time.
+    constructor(plant, operators, tags) {
+        Object.assign(this, { plant, operators, tags, failures: [], total: 0, notKept: 0, idle: new Set() });
+        this.isPaused = this.isOver = false;
+        this.counts = new Map(tags.map((tag) => [tag, 0]));
+        this.newest = new Map();
+        tags.forEach((tag, i) => this.run(tag, i));
+    }
+
+    async run(tag, turn) {
+        for (; !this.isOver; turn++) {
+            if (this.isPaused) {
+                this.idle.add(tag);
+                await sleep(STEP_MS);
+                continue;
+            }
+            this.idle.delete(tag);
+            await this.cycle(tag, this.operators[turn % this.operators.length]);
+            this.counts.set(tag, this.counts.get(tag) + 1);
+            this.total++;
+        }
+    }
+
+    async cycle(tag, operator) {
+        await this.plant.tell(`set ${tag} ${HIGH}`);
+        await this.shown(tag, 'is raised', (state) => state === 'unacknowledged' || state === 'acknowledged');
+        await this.acknowledge(tag, operator);
+        await this.plant.tell(`set ${tag} ${NORMAL}`);
+        await this.shown(tag, 'is cleared', (state) => state === undefined || state === 'normal');
+    }
+
+    // A user repeats an action that was not confirmed.
+    async acknowledge(tag, operator) {
+        for (const end = performance.now() + SHOWN_MS; performance.now() < end; await sleep(STEP_MS)) {
+            const answer = await operator.acknowledge(tag, KIND);
+            if (answer?.not_kept)
+                this.notKept++;
+            if (answer?.done === 1 || operator.alarms.get(`${tag} ${KIND}`) === 'acknowledged')
+                return;
+        }
+        this.failures.push(`${tag}: no acknowledgement within ${SHOWN_MS / 1000} s at ${operator.name}`);
+    }
+
+    async shown(tag, what, is) {
+        const end = performance.now() + SHOWN_MS;
+        while (!this.operators.every(({ alarms, live }) => live && is(alarms.get(`${tag} ${KIND}`)))) {
+            if (performance.now() > end) {
+                const states = this.operators.map(({ alarms, live }) => `${live ? '' : 'not live '}${alarms.get(`${tag} ${KIND}`)}`);
+                this.failures.push(`${tag}: not shown to all operators within ${SHOWN_MS / 1000} s that it ${what}: ${states.join(', ')}`);
+                return;
+            }
+            await sleep(STEP_MS);
+        }
+    }
+
+    async pause() {
+        this.isPaused = true;
+        while (this.idle.size < this.tags.length)
+            await sleep(STEP_MS);
+    }
+    resume() {
+        this.isPaused = false;
+        this.idle.clear();
+    }
+
+    // While paused: compares the cycles since the last comparison with a core's journal, and waits until a standby has received its rows.
+    // Returns { lost, twice }: rows that the journal lacks, and that it has too often.
+    async compare(core) {
+        const since = this.newest.get(core.name) ?? 0;
+        for (const end = performance.now() + JOURNAL_MS; ; await sleep(500)) {
+            const rows = await journal(core, since), found = this.difference(rows);
+            if (found.lost > 0 && performance.now() < end)
+                continue;
+            this.newest.set(core.name, Math.max(since, ...rows.map(({ id }) => id)));
+            return found;
+        }
+    }
+    difference(rows) {
+        let lost = 0, twice = 0;
+        for (const [tag, count] of this.counts)
+            for (const event of EVENTS) {
+                const off = rows.filter((row) => row.tag === tag && row.kind === KIND && row.event === event).length - count;
+                lost += Math.max(0, -off);
+                twice += Math.max(0, off);
+            }
+        return { lost, twice };
+    }
+    begin() {
+        for (const tag of this.tags)
+            this.counts.set(tag, 0);
+    }
+}
+
+// Returns the rows with an id above `since`, newest first.
+async function journal(core, since) {
+    const rows = [];
+    for (let before = ''; ;) {
+        const answer = await core.node.fetch(`/api/v1/alarms/journal?limit=${ROWS}${before}`);
+        const { rows: more, next_before: next } = await answer.json();
+        rows.push(...more.filter(({ id }) => id > since));
+        if (more.length === 0 || more.at(-1).id <= since || !next)
+            return rows;
+        before = `&before=${next}`;
+    }
+}

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One plant with all of its programs on this machine: two cores with PostgreSQL, two renderers with TLS, HAProxy, Prometheus, operators and
+// the load generator. Each core has a small disk and a clock of its own; each link between the programs can be cut.
+import { spawn, spawnSync } from 'node:child_process';
+import { appendFileSync, mkdirSync, readFileSync, renameSync, statfsSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { connect } from 'node:tls';
+import { SetClock } from '../../e2e/support/clocks.mjs';
+import { Haproxy } from '../../e2e/support/haproxy.mjs';
+import { Node } from '../../e2e/support/nodes.mjs';
+import { freePort } from '../../e2e/support/ports.mjs';
+import { PostgresServer } from '../../e2e/support/postgres_server.mjs';
+import { BIN } from '../../e2e/support/tiny_plant.mjs';
+import { sleep, TwoCores, until } from '../../e2e/support/two_cores.mjs';
+import { AlarmCycles } from './alarms.mjs';
+import { Operator } from './operators.mjs';
+import { Alerts, Footprint } from './watch.mjs';
+
+const NEW_KEY = '-newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes';
+const OPERATORS = 4, LOAD_SESSIONS = 4, LOAD_S = 20, DISK_MB = 48, RECOVERY_S = 60;
+const ACCESS = ['--behind-proxy', '--host', 'plant.example', '--host', '127.0.0.1'];
+
+function run(program, args, options = {}) {
+    return new Promise((done) => {
+        const child = spawn(program, args, { stdio: ['ignore', 'pipe', 'pipe'], ...options });
+        let said = '';
+        for (const pipe of [child.stdout, child.stderr])
+            pipe.on('data', (chunk) => { said += chunk; });
+        child.on('exit', (code) => done({ code, said }));
+        child.on('error', ({ message }) => done({ code: -1, said: message }));
+    });
+}
+function openssl(folder, command) {
+    const { status, stderr } = spawnSync('openssl', command.split(' '), { cwd: folder, encoding: 'utf8' });
+    if (status !== 0)
+        throw new Error(`openssl ${command}: ${stderr}`);
+}
+
+export class Site {
+    static async start() {
+        const site = new Site();
+        site.server = await PostgresServer.start();
+        site.server.makeDatabase('plants');
+        const two = site.two = await TwoCores.create(site.server, '', ACCESS);
+        site.plant = two.plant;
+        site.folder = two.plant.folder;
+        site.slacken();
+        await site.plant.set({ 'TI-1': 50, 'PI-1': 50 });
+        site.makeAuthority();
+        for (const core of Object.values(two.cores))
+            site.equip(core);
+        await Promise.all([two.start('one'), two.start('two')]);
+        await two.followed(await two.leader());
+        site.renderers = [];
+        for (const name of ['r1', 'r2'])
+            site.renderers.push(await site.makeRenderer(name));
+        await site.balance();
+        site.operators = Array.from({ length: OPERATORS }, (_, i) => new Operator({ name: `operator ${i + 1}`,
+            port: () => site.proxy.port, token: two.nodes.tokens.operator, watched: 'TI-2' }));
+        site.cycles = new AlarmCycles(site.plant, site.operators, ['TI-1', 'PI-1']);
+        const targets = [...Object.values(two.cores).map(({ port, name }) => ({ port, node: `core ${name}`, scheme: 'http' })),
+            ...site.renderers.map(({ port, name }) => ({ port, node: `renderer ${name}`, scheme: 'https' }))];
+        site.alerts = await Alerts.start(site.folder, targets, two.nodes.tokens.viewer, join(site.folder, 'ca.pem'));
+        site.footprint = new Footprint(() => site.processes());
+        site.load = site.generateLoad();
+        return site;
+    }
+
+    // Gives readings and the device more time, because the machine is busy, and polls less often.
+    slacken() {
+        const tags = join(this.folder, 'tags.csv');
+        writeFileSync(tags, readFileSync(tags, 'utf8').replace(/,1,90$/gm, ',3,90'));
+        writeFileSync(this.two.file, readFileSync(this.two.file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 1000')
+            .replace('poll_ms: 100', 'poll_ms: 250'));
+    }
+
+    equip(core) {
+        core.disk = join(this.folder, core.name, 'history');
+        core.runtime = join(this.folder, core.name, 'run');
+        for (const path of [core.disk, core.runtime])
+            mkdirSync(path);
+        const { status, stderr } = spawnSync('mount', ['-t', 'tmpfs', '-o', `size=${DISK_MB}m`, 'tmpfs', core.disk], { encoding: 'utf8' });
+        if (status !== 0)
+            throw new Error(stderr);
+        core.clock = new SetClock(join(this.folder, core.name, 'clock'));
+        core.before = [...core.clock.starter(), `RUNTIME_DIRECTORY=${core.runtime}`];
+    }
+
+    makeAuthority() {
+        openssl(this.folder, `req -x509 ${NEW_KEY} -keyout ca.key -out ca.pem -days 9 -subj /CN=Works`);
+        for (const name of ['r1', 'r2'])
+            this.certify(name);
+    }
+    // Replaces a renderer's certificate as an administrator does: the key first. Both files are replaced atomically.
+    certify(name) {
+        openssl(this.folder, `req ${NEW_KEY} -keyout new.key -out new.csr -subj /CN=plant.example ` +
+            '-addext subjectAltName=DNS:plant.example,DNS:localhost,IP:127.0.0.1');
+        openssl(this.folder, 'x509 -req -in new.csr -CA ca.pem -CAkey ca.key -CAcreateserial -copy_extensions copy -days 9 -out new.pem');
+        renameSync(join(this.folder, 'new.key'), join(this.folder, `${name}.key`));
+        renameSync(join(this.folder, 'new.pem'), join(this.folder, `${name}.pem`));
+    }
+    serial({ port }) {
+        return new Promise((done, fail) => {
+            const socket = connect({ port, host: '127.0.0.1', rejectUnauthorized: false }, () => {
+                done(socket.getPeerCertificate().serialNumber);
+                socket.destroy();
+            });
+            socket.on('error', fail);
+        });
+    }
+
+    async makeRenderer(name) {
+        const links = [];
+        for (const { port } of Object.values(this.two.cores))
+            links.push(await this.two.network.link(port));
+        const renderer = { name, links, port: await freePort(), agentPort: await freePort() };
+        renderer.runtime = join(this.folder, `${name}.run`);
+        mkdirSync(renderer.runtime);
+        return this.startRenderer(renderer);
+    }
+    async startRenderer(renderer) {
+        const { nodes, file } = this.two, { name, links, port, agentPort, runtime } = renderer;
+        const cores = links.flatMap((link) => ['--core', `ws://127.0.0.1:${link.port}`]);
+        renderer.node = new Node(this.plant, ['--role', 'render', ...cores, '--core-token-file', nodes.rendererFile, '--node', name,
+            '--port', String(port), '--agent-port', String(agentPort), '--tls-cert', join(this.folder, `${name}.pem`),
+            '--tls-key', join(this.folder, `${name}.key`), '--tokens', nodes.tokenFile, ...ACCESS], file,
+        ['env', `RUNTIME_DIRECTORY=${runtime}`]);
+        renderer.program = renderer.node.program;
+        nodes.all.push(renderer.node);
+        await renderer.node.ready();
+        return renderer;
+    }
+
+    async balance() {
+        this.proxy = await Haproxy.start(this.renderers, this.two.cores.one, this.two.cores.two,
+            { ca: join(this.folder, 'ca.pem'), coreCa: null, port: this.proxy?.port });
+    }
+
+    processes() {
+        return [...Object.values(this.two.cores).map((core) => ({ name: `core ${core.name}`, pid: core.program.child.pid })),
+            ...this.renderers.map(({ name, program }) => ({ name: `renderer ${name}`, pid: program.child.pid })),
+            { name: 'haproxy', pid: this.proxy.child.pid }];
+    }
+
+    async generateLoad() {
+        const token = join(this.folder, 'load.token');
+        writeFileSync(token, this.two.nodes.tokens.viewer);
+        while (!this.isOver) {
+            await this.plantcast('probe', `http://127.0.0.1:${this.proxy.port}/`, '--sessions', String(LOAD_SESSIONS), '--seconds',
+                String(LOAD_S), '--motion', 'random', '--hz', '5', '--size', '160x90', '--blind', '--token-file', token, '--json');
+            await sleep(1000);
+        }
+    }
+
+    // Waits until all programs work and all operators see the plant; returns why not, or null.
+    async recovered() {
+        const leader = await this.two.leader(RECOVERY_S).catch((error) => error);
+        if (leader instanceof Error)
+            return leader.message;
+        let lacking;
+        const whole = async () => {
+            const up = Object.entries(await this.proxy.servers().catch(() => ({ none: {} })));
+            lacking = [...up.filter(([, { status }]) => !/^UP/.test(status)).map(([name]) => `${name} is not up at the balancer`),
+                ...this.operators.filter(({ sees }) => !sees).map(({ name }) => `${name} sees nothing`),
+                ...await leader.node.metric('plantcast_core_standby', leader.node.token) === 1 ? [] : ['no standby follows'],
+                ...await leader.node.metric('plantcast_renderers', leader.node.token) === 2 ? [] : ['not two renderers']];
+            return lacking.length === 0;
+        };
+        try {
+            await until('the whole plant', () => whole().catch((error) => { lacking = [error.message]; return false; }), RECOVERY_S);
+            return null;
+        } catch {
+            return lacking.join(', ');
+        }
+    }
+
+    // Fills a core's disk to the last block, until freeDisk().
+    fillDisk(core) {
+        const { bavail, bsize } = statfsSync(core.disk);
+        writeFileSync(join(core.disk, 'filler'), Buffer.alloc(bavail * bsize));
+        try {
+            appendFileSync(join(core.disk, 'filler'), Buffer.alloc(4096));
+        } catch { /* full */ }
+    }
+    freeDisk(core) { spawnSync('rm', [join(core.disk, 'filler')]); }
+
+    plantcast(...args) { return run(join(BIN, 'plantcast'), args); }
+
+    async destroy() {
+        this.isOver = true;
+        this.alerts?.end();
+        this.footprint?.end();
+        if (this.cycles)
+            this.cycles.isOver = true;
+        for (const operator of this.operators ?? [])
+            operator.leave();
+        await this.load;
+        await this.proxy?.destroy();
+        for (const core of Object.values(this.two?.cores ?? {}))
+            spawnSync('umount', ['-l', core.disk]);
+        await this.two?.destroy();
+        await this.server?.destroy();
+    }
+}
+
+export { sleep, until };

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A real Prometheus with the shipped rules and configuration, in which a minute is a second; and the memory and descriptors of processes.
+import { spawn } from 'node:child_process';
+import { copyFileSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join, resolve } from 'node:path';
+import { freePort } from '../../e2e/support/ports.mjs';
+
+const SHIPPED = resolve('deploy/prometheus'), UNITS_S = { s: 1, m: 60, h: 3600, d: 86400 }, POLL_MS = 500, FASTER = 60;
+
+// Divides the durations of `for:` and of ranges by 60.
+const hasten = (rules) => rules.replaceAll(/(for: |\[)(\d+)([smhd])(:1m)?/g, (whole, before, n, unit, step) =>
+    `${before}${Math.max(1000, Math.round(n * UNITS_S[unit] * 1000 / FASTER))}ms${step ? ':1s' : ''}`);
+
+export class Alerts {
+    // targets: [{ port, node, scheme }]; ca: certificates of the https targets.
+    static async start(folder, targets, token, ca) {
+        const alerts = new Alerts(), port = await freePort();
+        Object.assign(alerts, { port, firing: new Map(), fired: [] });
+        writeFileSync(join(folder, 'rules.yml'), hasten(readFileSync(join(SHIPPED, 'rules.yml'), 'utf8')));
+        writeFileSync(join(folder, 'plantcast.token'), token);
+        const lines = targets.map(({ port: at, node, scheme }) =>
+            `      - { targets: ["127.0.0.1:${at}"], labels: { plant: plant1, node: ${node}, __scheme__: ${scheme} } }\n`);
+        writeFileSync(join(folder, 'prometheus.yml'), readFileSync(join(SHIPPED, 'prometheus-cores.yml'), 'utf8')
+            .replaceAll('15s', '1s').replace(/( +- \{ targets: .*\n)+/, lines.join('')));
+        copyFileSync(ca, join(folder, 'plantcast.pem'));
+        const options = [`--config.file=${join(folder, 'prometheus.yml')}`, `--storage.tsdb.path=${join(folder, 'tsdb')}`,
+            '--storage.tsdb.retention.time=3h', `--web.listen-address=127.0.0.1:${port}`];
+        alerts.child = spawn('prometheus', options, { stdio: ['ignore', 'ignore', 'pipe'] });
+        alerts.said = '';
+        alerts.child.stderr.on('data', (chunk) => { alerts.said = (alerts.said + chunk).slice(-5000); });
+        alerts.timer = setInterval(() => alerts.poll().catch(() => {}), POLL_MS);
+        return alerts;
+    }
+
+    async ask(path) { return (await fetch(`http://127.0.0.1:${this.port}/api/v1/${path}`)).json(); }
+    async poll() {
+        const { data } = await this.ask('alerts'), now = performance.now();
+        const firing = new Set(data.alerts.filter(({ state }) => state === 'firing').map(({ labels }) => labels.alertname));
+        for (const name of firing)
+            if (!this.firing.has(name)) {
+                this.firing.set(name, now);
+                this.fired.push({ name, at: now });
+            }
+        for (const name of this.firing.keys())
+            if (!firing.has(name))
+                this.firing.delete(name);
+    }
+    // Names of alerts that fired since then, or did already.
+    since(at) { return new Set([...this.firing.keys(), ...this.fired.filter((one) => one.at >= at).map(({ name }) => name)]); }
+    // Returns the number of targets that Prometheus reads.
+    async read() { return (await this.ask('targets')).data.activeTargets.filter(({ health }) => health === 'up').length; }
+
+    end() {
+        clearInterval(this.timer);
+        this.child.kill();
+    }
+}
+
+const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
+export class Footprint {
+    constructor(processes) { // returns [{ name, pid }] of the processes that run now
+        Object.assign(this, { processes, samples: new Map(), began: new Map() });
+        this.timer = setInterval(() => this.sample(), 5000);
+    }
+    sample() {
+        for (const { name, pid } of this.processes()) {
+            try {
+                const status = readFileSync(`/proc/${pid}/status`, 'utf8');
+                const of = (key) => Number(status.match(new RegExp(`^${key}:\\s+(\\d+)`, 'm'))[1]);
+                if (!this.began.has(pid))
+                    this.began.set(pid, Date.now());
+                const row = { age_s: (Date.now() - this.began.get(pid)) / 1000, memory_mb: of('VmRSS') / 1024, threads: of('Threads'),
+                    descriptors: readdirSync(`/proc/${pid}/fd`).length };
+                this.samples.set(name, [...this.samples.get(name) ?? [], row]);
+            } catch { /* the process has ended */ }
+        }
+    }
+    // Returns per process [first third, last third] of the medians, of samples after the start of a process.
+    rows() {
+        return [...this.samples].map(([name, all]) => {
+            const settled = all.filter(({ age_s }) => age_s > 20), third = Math.ceil(settled.length / 3);
+            const ends = (key) => [settled.slice(0, third), settled.slice(-third)].map((part) => median(part.map((row) => row[key])));
+            const figures = { memory_mb: ends('memory_mb'), descriptors: ends('descriptors'), threads: ends('threads') };
+            return { name, count: settled.length, ...figures };
+        }).filter(({ count }) => count >= 6);
+    }
+    end() { clearInterval(this.timer); }
+}
