@@ -173,6 +173,7 @@ void plant_runtime_open_lists(struct plant_runtime *runtime)
     const struct plant_runtime_context *context = runtime->context;
     runtime->services.named_views = named_views_open(context->log, runtime->plant, runtime->services.history_folder, context->file_writer);
     runtime->services.notes = notes_open(context->log, runtime->services.history_folder, context->file_writer);
+    runtime->services.short_links = short_links_open(context->log, runtime->services.history_folder, context->file_writer);
     runtime->services.wall_remote = wall_remote_open(context->log, runtime->plant, runtime->services.history_folder, context->file_writer);
     runtime->services.pairings = pairings_open(context->log, runtime->services.history_folder, context->file_writer);
 }
@@ -311,6 +312,7 @@ void plant_runtime_destroy(struct plant_runtime **pointer)
     placing_destroy(&runtime->services.placing);
     named_views_close(&runtime->services.named_views);
     notes_close(&runtime->services.notes);
+    short_links_close(&runtime->services.short_links);
     wall_remote_close(&runtime->services.wall_remote);
     other_plants_stop(&runtime->services.other_plants);
     pairings_close(&runtime->services.pairings);

@@ -40,6 +40,7 @@ enum message_type {
     MESSAGE_LOOP_CHECK,
     MESSAGE_SAVE_VIEW,
     MESSAGE_REMOVE_VIEW,
+    MESSAGE_SHARE_VIEW,
     MESSAGE_NOTE,
     MESSAGE_REMOVE_NOTE,
     MESSAGE_DISPLAY,
@@ -231,7 +232,8 @@ struct message {
     struct assumed_filter accept; /* accept_places */
     char kept[65];                /* in restore_tags: name of the stored version of the tag list */
     struct loop_check_request loop_check;
-    struct named_view_edit view_edit; /* save_view sets all members; remove_view only the id; send_to_wall only view and title */
+    struct named_view_edit view_edit; /* save_view sets all members; remove_view only the id; share_view only the address;
+                                         send_to_wall only view and title */
     struct note_request note;         /* note, remove_note */
     struct wall_request wall;         /* display, send_to_wall, point */
     struct pair_request pair;         /* pair, unpair */

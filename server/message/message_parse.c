@@ -261,6 +261,7 @@ static const struct {
     { "prove", MESSAGE_LOOP_CHECK, loop_check_parse },
     { "save_view", MESSAGE_SAVE_VIEW, save_view_parse },
     { "remove_view", MESSAGE_REMOVE_VIEW, remove_view_parse },
+    { "share_view", MESSAGE_SHARE_VIEW, share_view_parse },
     { "note", MESSAGE_NOTE, note_parse },
     { "remove_note", MESSAGE_REMOVE_NOTE, remove_note_parse },
     { "display", MESSAGE_DISPLAY, display_parse },

@@ -55,6 +55,10 @@ bool role_may_send(enum role role, const struct message *message, struct message
         message_fail(error, "not_allowed", "a wall's display needs a token");
         return false;
     }
+    if (message->type == MESSAGE_SHARE_VIEW && role < ROLE_VIEWER) {
+        message_fail(error, "not_allowed", "to share views by short links needs a token");
+        return false;
+    }
     if (message->signed_frames && role < ROLE_VIEWER) {
         message_fail(error, "not_allowed", "signed frames contain readings: they need a token");
         return false;
@@ -97,6 +101,7 @@ bool message_is_handed_on(const struct message *message)
     case MESSAGE_ALARM:
     case MESSAGE_SAVE_VIEW:
     case MESSAGE_REMOVE_VIEW:
+    case MESSAGE_SHARE_VIEW:
     case MESSAGE_NOTE:
     case MESSAGE_REMOVE_NOTE:
     case MESSAGE_SEND_TO_WALL:

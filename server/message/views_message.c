@@ -19,20 +19,32 @@ static bool parse_id(const json_t *o, struct message *out, struct message_error 
     return false;
 }
 
+static bool parse_address(const json_t *o, struct named_view_edit *edit, struct message_error *error)
+{
+    if (!need_words(o, "view", true, edit->address, sizeof(edit->address), error))
+        return false;
+    const char *wrong = named_view_address_wrong(edit->address);
+    if (wrong)
+        message_fail(error, "bad_field", "view: %s", wrong);
+    return !wrong;
+}
+
 bool save_view_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
     struct named_view_edit *edit = &out->view_edit;
     double at = -1;
     (void)plant;
     if (!parse_id(o, out, error) || !need_words(o, "title", true, edit->title, sizeof(edit->title), error) ||
-        !need_words(o, "view", true, edit->address, sizeof(edit->address), error) ||
-        !may_number(o, "at", 0, NAMED_VIEWS, &at, NULL, error))
+        !parse_address(o, edit, error) || !may_number(o, "at", 0, NAMED_VIEWS, &at, NULL, error))
         return false;
     edit->at = (int)at;
-    const char *wrong = named_view_address_wrong(edit->address);
-    if (wrong)
-        message_fail(error, "bad_field", "view: %s", wrong);
-    return !wrong;
+    return true;
+}
+
+bool share_view_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    (void)plant;
+    return need_seq(o, &out->seq, error) && parse_address(o, &out->view_edit, error);
 }
 
 bool remove_view_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
@@ -47,6 +59,15 @@ char *view_edit_do(struct named_views *views, const struct message *message, con
     bool saves = message->type == MESSAGE_SAVE_VIEW;
     enum refusal_code why = saves ? named_views_save(views, edit, who, time_us) : named_views_remove(views, edit->id);
     json_t *answer = json_pack("{s:s,s:I,s:s,s:b}", "type", "view_saved", "seq", (json_int_t)message->seq, "id", edit->id, "kept", !why);
+    refusal_add(answer, why);
+    return json_text(answer, 0);
+}
+
+char *share_view_do(struct short_links *links, const struct message *message, int64_t time_us)
+{
+    char id[SHORT_LINK_ID_BYTES];
+    enum refusal_code why = short_links_share(links, message->view_edit.address, time_us, id);
+    json_t *answer = json_pack("{s:s,s:I,s:s,s:b}", "type", "view_shared", "seq", (json_int_t)message->seq, "id", id, "kept", !why);
     refusal_add(answer, why);
     return json_text(answer, 0);
 }

@@ -1,14 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The messages `save_view` and `remove_view`, with which users edit named views. Thread: the loop. */
+/* The messages `save_view` and `remove_view`, with which users edit named views, and `share_view`, which makes a short link. Thread: the
+   loop. */
 #ifndef MESSAGE_VIEWS_MESSAGE_H
 #define MESSAGE_VIEWS_MESSAGE_H
 #include "message/message.h"
+#include "views/short_links.h"
 
-/* save_view_parse() and its sibling parse the messages into out->view_edit. They return false with *error saying what is wrong. */
+/* save_view_parse() and its siblings parse the messages into out->view_edit. They return false with *error saying what is wrong. */
 bool save_view_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool remove_view_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
+bool share_view_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 /* Saves or removes the view. who: the user's name; time_us: UTC. Returns the answer; free with mem_free(). */
 char *view_edit_do(struct named_views *views, const struct message *message, const char *who, int64_t time_us);
+/* Shares a view by a short link. time_us: UTC. Returns the answer; free with mem_free(). */
+char *share_view_do(struct short_links *links, const struct message *message, int64_t time_us);
 /* The part of the walls that a client's token allows the client to see. */
 struct walls_reader {
     const char *wall; /* wall and display of a paired device, which may see nothing else; NULL: all walls */

@@ -45,7 +45,8 @@ static void take_lists(struct server_context *server, const json_t *lists)
         !notes_mirror(plant->notes, json_object_get(lists, "notes")) ||
         !wall_remote_mirror(plant->wall_remote, json_object_get(lists, "walls")) ||
         !wall_remote_mirror_pointers(plant->wall_remote, json_object_get(lists, "pointed")) ||
-        !pairings_mirror(plant->pairings, json_object_get(lists, "pairings"), clock_mono_ns()))
+        !pairings_mirror(plant->pairings, json_object_get(lists, "pairings"), clock_mono_ns()) ||
+        (json_object_get(lists, "links") && !short_links_mirror(plant->short_links, json_object_get(lists, "links"))))
         log_err(server->params.log, "core: malformed lists");
     streams_on_alarms(server);
 }

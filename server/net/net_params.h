@@ -16,6 +16,7 @@
 #include "loopcheck/loop_checks.h"
 #include "views/named_views.h"
 #include "views/notes.h"
+#include "views/short_links.h"
 #include "views/wall_remote.h"
 #include "placing/tag_file.h"
 #include "service/render_service.h"

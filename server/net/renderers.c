@@ -25,7 +25,7 @@ enum { TICK_US = 200000, MAX_MESSAGE_BYTES = 256 * 1024 /* maximum size of one m
 static const int64_t MAX_READINGS_DELAY_NS = 500 * NS_PER_MS, STANDBY_TIMEOUT_NS = 2 * NS_PER_S;
 
 struct lists_seen {
-    uint64_t views, notes, walls, pointed, pairings;
+    uint64_t views, notes, walls, pointed, pairings, links;
 };
 
 struct deed {
@@ -308,7 +308,8 @@ static struct lists_seen lists_now(const struct server_context *server)
 {
     const struct plant_services *plant = &server->params.plant;
     return (struct lists_seen){ named_views_number(plant->named_views), notes_number(plant->notes), wall_remote_number(plant->wall_remote),
-                                wall_remote_pointer_number(plant->wall_remote), pairings_number(plant->pairings) };
+                                wall_remote_pointer_number(plant->wall_remote), pairings_number(plant->pairings),
+                                short_links_number(plant->short_links) };
 }
 
 static bool send_lists(const struct server_context *server, struct renderer_peer *renderer)
@@ -318,6 +319,8 @@ static bool send_lists(const struct server_context *server, struct renderer_peer
     json_t *message = json_pack("{s:s,s:O,s:O,s:O,s:o,s:o}", "type", "lists", "views", named_views_list(plant->named_views), "notes",
                                 notes_list(plant->notes), "walls", wall_remote_list(plant->wall_remote), "pointed",
                                 json_loads(pointed, 0, NULL), "pairings", pairings_told(plant->pairings, clock_mono_ns()));
+    if (!renderer->lists_sent || renderer->lists.links != short_links_number(plant->short_links))
+        json_object_set(message, "links", short_links_list(plant->short_links));
     renderer->lists = lists_now(server);
     renderer->lists_sent = true;
     mem_free(pointed);

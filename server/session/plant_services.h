@@ -12,6 +12,7 @@ struct plant_services {
     struct alarm_service *alarm_service;   /* NULL: no alarms */
     struct placing *placing;               /* NULL: sensors cannot be placed */
     struct named_views *named_views;
+    struct short_links *short_links;
     struct notes *notes;
     struct wall_remote *wall_remote;
     struct pairings *pairings;

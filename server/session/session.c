@@ -268,6 +268,13 @@ static void on_view_edit(struct session *session, const struct message *message,
     session_kept_reply(session, &action, "view", session_view_what(message), answer);
 }
 
+static void on_share_view(struct session *session, const struct message *message, int64_t now_utc_ns)
+{
+    const struct kept_action action = session_kept_begin(session);
+    char *answer = share_view_do(session->context->services->short_links, message, now_utc_ns / 1000);
+    session_kept_reply(session, &action, "view", session_view_what(message), answer);
+}
+
 static void on_note(struct session *session, const struct message *message, int64_t now_utc_ns)
 {
     const struct session_context *context = session->context;
@@ -361,6 +368,7 @@ static bool act(struct session *session, const struct message *message, int64_t 
     case MESSAGE_LOOP_CHECK: return session_check_loop(session, message, error);
     case MESSAGE_SAVE_VIEW:
     case MESSAGE_REMOVE_VIEW: on_view_edit(session, message, now_utc_ns); return true;
+    case MESSAGE_SHARE_VIEW: on_share_view(session, message, now_utc_ns); return true;
     case MESSAGE_NOTE:
     case MESSAGE_REMOVE_NOTE: on_note(session, message, now_utc_ns); return true;
     case MESSAGE_DISPLAY: return on_display(session, message, error);

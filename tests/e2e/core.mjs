@@ -76,14 +76,18 @@ test('an acknowledgement at one renderer is done by the core, with the name, and
     anna.close();
 });
 
-test('notes and views of one node are there at the others', options, async () => {
+test('notes, views and short links of one node are there at the others', options, async () => {
     const anna = await a.client({}, { token: nodes.tokens.operator });
     anna.say({ type: 'note', seq: 1, text: 'leaks a little', asset: 'E-101' });
     await anna.text('noted');
     anna.say({ type: 'save_view', seq: 2, id: 'pump', title: 'The pump', view: 'asset=P-101A' });
     await anna.text('view_saved');
+    anna.say({ type: 'share_view', seq: 3, view: 'asset=P-101A' });
+    const { id, kept } = await anna.text('view_shared');
+    assert.deepEqual([id, kept], ['vyj5ny9g', true]);
     await all(async (node) => (await (await node.fetch('/api/v1/notes')).text()).includes('leaks a little'));
     await all(async (node) => (await (await node.fetch('/api/v1/views')).text()).includes('The pump'));
+    await all(async (node) => (await (await node.fetch(`/api/v1/link?id=${id}`)).text()) === '{"view":"asset=P-101A"}');
     anna.close();
 });
 

@@ -117,6 +117,8 @@ const ACTIONS = [
         async () => (await listed('/api/v1/views')).includes('The pump')],
     ['remove a view', { type: 'remove_view', id: 'pump' }, 'view_saved', 'view',
         async () => !(await listed('/api/v1/views')).includes('The pump')],
+    ['share a view', { type: 'share_view', view: 'asset=P-101A' }, 'view_shared', 'view',
+        async () => (await listed('/api/v1/link?id=vyj5ny9g')).includes('asset=P-101A')],
     ['send to a wall', { type: 'send_to_wall', wall: 'room', display: 1, area: 'main', view: 'group=pressure', title: 'Look here' },
         'sent_to_wall', 'wall', async () => (await told('walls')).includes('Look here')],
     ['check a loop', { type: 'prove', tag: 'TI-2', expected: 20, tolerance: 1, remark: 'by hand' }, 'proved', 'proof',
@@ -225,6 +227,7 @@ function freezable(folder) {
 const inFiles = async (at) => [
     [{ type: 'note', text: 'leaks a little', asset: 'E-101' }, 'noted'],
     [{ type: 'save_view', id: 'pump', title: 'The pump', view: 'asset=P-101A' }, 'view_saved'],
+    [{ type: 'share_view', view: 'asset=P-101A' }, 'view_shared'],
     [{ type: 'send_to_wall', wall: 'room', display: 1, area: 'main', view: 'group=pressure', title: 'Look here' }, 'sent_to_wall'],
     [{ type: 'prove', tag: 'TI-1', expected: 95.5, tolerance: 1, remark: 'by hand' }, 'proved'],
     [{ type: 'pair', digits: (await (await device(at)).json()).digits }, 'paired'],

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Named views survive a restart, keep their content and share one order; views of the plant file stay as written there. */
+/* Named views survive a restart, keep their content and share one order; views of the plant file stay as written there. Short links
+   survive a restart, and the newest ones are kept. */
 #include "tests/support/test.h"
 
 #include <jansson.h>
@@ -7,6 +8,7 @@
 #include "base/mem.h"
 #include "tests/support/temp.h"
 #include "views/named_views.h"
+#include "views/short_links.h"
 
 enum { NOON_S = 1767268800 };
 struct named_views_fixture {
@@ -163,4 +165,72 @@ CASE(without_a_folder_none_is_saved)
     edit.title[0] = (char)0xff; /* a title of invalid UTF-8 is refused without any change */
     assert_int_not_equal(named_views_save(f->views, &edit, "kim", 1), REFUSAL_NONE);
     assert_order(f, "all");
+}
+
+/* --- short links */
+
+static const int64_t NOON_US = INT64_C(1000000) * NOON_S, DAY_US = INT64_C(86400000000);
+
+CASE(a_short_link_depends_on_its_view_and_survives_a_restart)
+{
+    char id[SHORT_LINK_ID_BYTES], again[SHORT_LINK_ID_BYTES], other[SHORT_LINK_ID_BYTES];
+    struct short_links *links = short_links_open(f->log, f->history, NULL);
+    assert_int_equal(short_links_share(links, "asset=P-101A", NOON_US, id), REFUSAL_NONE);
+    assert_string_equal(id, "vyj5ny9g");
+    assert_int_equal(short_links_share(links, "asset=P-101A", NOON_US + 1, again), REFUSAL_NONE);
+    assert_string_equal(again, id);
+    assert_int_equal(short_links_number(links), 1); /* the file was not written again */
+    assert_int_equal(short_links_share(links, "asset=P-101B", NOON_US, other), REFUSAL_NONE);
+    assert_string_not_equal(other, id);
+    short_links_close(&links);
+    links = short_links_open(f->log, f->history, NULL);
+    assert_string_equal(short_links_find(links, id), "asset=P-101A");
+    assert_null(short_links_find(links, "vyj5ny9"));
+    short_links_close(&links);
+}
+
+CASE(an_id_that_another_view_has_gets_longer)
+{
+    char id[SHORT_LINK_ID_BYTES], *path = temp_write_text(f->folder, "history/" SHORT_LINKS_FILE,
+                                                          "{\"links\":[{\"id\":\"vyj5ny9g\",\"view\":\"group=t\",\"time_us\":1}]}");
+    struct short_links *links = short_links_open(f->log, f->history, NULL);
+    assert_int_equal(short_links_share(links, "asset=P-101A", NOON_US, id), REFUSAL_NONE);
+    assert_int_equal(strlen(id), 9);
+    assert_string_equal(short_links_find(links, id), "asset=P-101A");
+    assert_string_equal(short_links_find(links, "vyj5ny9g"), "group=t");
+    short_links_close(&links);
+    mem_free(path);
+}
+
+CASE(a_further_short_link_replaces_the_one_unused_for_longest)
+{
+    char first[SHORT_LINK_ID_BYTES], second[SHORT_LINK_ID_BYTES], id[SHORT_LINK_ID_BYTES], view[40];
+    struct short_links *links = short_links_open(f->log, f->history, NULL);
+    assert_int_equal(short_links_share(links, "asset=first", NOON_US, first), REFUSAL_NONE);
+    assert_int_equal(short_links_share(links, "asset=second", NOON_US, second), REFUSAL_NONE);
+    for (int i = 2; i < SHORT_LINKS; i++) {
+        snprintf(view, sizeof(view), "asset=%d", i);
+        assert_int_equal(short_links_share(links, view, NOON_US, id), REFUSAL_NONE);
+    }
+    assert_int_equal(short_links_share(links, "asset=first", NOON_US + DAY_US, id), REFUSAL_NONE); /* used a day later */
+    assert_int_equal(short_links_share(links, "asset=another", NOON_US + DAY_US, id), REFUSAL_NONE);
+    assert_int_equal(json_array_size(short_links_list(links)), SHORT_LINKS);
+    assert_string_equal(short_links_find(links, first), "asset=first");
+    assert_null(short_links_find(links, second));
+    short_links_close(&links);
+}
+
+CASE(a_mirror_takes_only_valid_short_links)
+{
+    char id[SHORT_LINK_ID_BYTES];
+    struct short_links *links = short_links_open(f->log, NULL, NULL);
+    assert_int_equal(short_links_share(links, "asset=first", NOON_US, id), REFUSAL_UNRECORDED);
+    json_t *good = json_loads("[{\"id\":\"abcdefgh\",\"view\":\"group=t\",\"time_us\":1}]", 0, NULL);
+    json_t *bad = json_loads("[{\"id\":\"abcdefgh\",\"view\":\"a blank\",\"time_us\":1}]", 0, NULL);
+    assert_true(short_links_mirror(links, good));
+    assert_false(short_links_mirror(links, bad));
+    assert_string_equal(short_links_find(links, "abcdefgh"), "group=t");
+    short_links_close(&links);
+    json_decref(good);
+    json_decref(bad);
 }

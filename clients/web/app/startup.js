@@ -35,8 +35,9 @@ await fold();
 if (query.has('wall'))
     await (await import('./wall/wall.js')).hangOnWall(location.search, page);
 
+const short = location.hash.startsWith('#v=') ? await (await import('./sharing/short_link.js')).openShort() : {};
 const named = location.hash.length > 1 ? (await import('../core/address.js')).readAddress(location.hash) : {};
-export const address = { camera: null, params: {}, tag: null, time: {}, ...named };
+export const address = { camera: null, params: {}, tag: null, time: {}, ...named, ...short };
 
 // JPEG can be shown immediately. Whether the browser decodes H.264 is tested only after some pictures (main.js), unless the URL asks for
 // H.264.

@@ -2,6 +2,10 @@
 // Links that open the current view on another device.
 import { writeAddress } from './address.js';
 
+// Roles whose views the server stores for short links.
+export const SHARERS = ['viewer', 'operator', 'engineer'];
+export const shortLink = (location, id) => new URL(`v/${id}`, location.origin + location.pathname).href;
+
 // Returns URLs { view, follow, tag, asset }; the last two only if one is selected. Links to tag and asset contain nothing else, because QR
 // codes with fewer modules are easier to scan.
 export function shareLinks({ location, session, tag }) {

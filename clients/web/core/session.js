@@ -572,6 +572,6 @@ const HANDLERS = {
             this[type] = message.displays ? message : message.list;
             this.emit(type);
         }])),
-    ...Object.fromEntries('alarmed gaps places_accepted tags_diff tags_saved proved view_saved noted sent_to_wall paired'.split(' ')
-        .map((type) => [type, function passOn(message) { this.emit(type, message); }])),
+    ...Object.fromEntries('alarmed gaps places_accepted tags_diff tags_saved proved view_saved view_shared noted sent_to_wall paired'
+        .split(' ').map((type) => [type, function passOn(message) { this.emit(type, message); }])),
 };

@@ -63,6 +63,7 @@ placeless: this sensor has no location in this quantity
 narrow: the picture is too narrow to split
 memory: the server is short of memory; the last picture stays
 gone: this user is no longer connected
+linkless: this short link is unknown or no longer stored: ask for a new one
 coreless: history is unavailable: the core cannot be reached; try again
 unrecorded: no history is recorded (history: record: no)
 unreadable: history cannot be read; the server’s log says why

@@ -103,6 +103,16 @@ static int file(struct server_context *server, struct http_exchange *request, co
     return request_answer(request, HTTP_STATUS_OK, found->type, bytes, found->count, "etag:", found->etag);
 }
 
+/* Sends the browser of a short link to the page, which asks for the link's view by its own rights. The address is a relative one, because a
+   proxy may serve the page below another path. */
+static int open_link(struct http_exchange *request, const char *id)
+{
+    char to[sizeof("../#v=") + SHORT_LINK_ID_BYTES];
+    bool plain = id[strspn(id, "abcdefghijklmnopqrstuvwxyz0123456789")] == 0 && strlen(id) < SHORT_LINK_ID_BYTES;
+    snprintf(to, sizeof(to), "%s#v=%s", strchr(id, '/') ? "/" : "../", plain && *id ? id : "unknown");
+    return request_answer(request, HTTP_STATUS_SEE_OTHER, HTTP_TEXT, NULL, 0, "location:", to);
+}
+
 enum { VIEWS = 1, DISPLAY = 2, NODE = 4 };
 
 static const struct {
@@ -127,6 +137,7 @@ static const struct {
     { "/api/v1/neighbours", api_neighbours, ROLE_VIEWER, 0 },
     { "/api/v1/proofs", api_loop_checks, ROLE_VIEWER, 0 },
     { "/api/v1/views", api_views, ROLE_VIEWER, 0 },
+    { "/api/v1/link", api_link, ROLE_OPEN, 0 },
     { "/api/v1/walls", api_walls, ROLE_VIEWER, VIEWS | DISPLAY },
     { "/api/v1/other_plants", api_other_plants, ROLE_VIEWER, DISPLAY },
     { "/api/v1/other_plants/picture", ask_other_picture, ROLE_VIEWER, DISPLAY },
@@ -241,6 +252,8 @@ static int serve(struct server_context *server, struct http_exchange *request, c
     for (size_t i = 0; i < sizeof(routes) / sizeof(routes[0]); i++)
         if (!strcmp(routes[i].path, path))
             return serve_route(server, request, i);
+    if (!strncmp(path, SHORT_LINK_PATH, strlen(SHORT_LINK_PATH)))
+        return open_link(request, path + strlen(SHORT_LINK_PATH));
     return file(server, request, path);
 }
 

@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/system/memory.h"
+#include "base/text/json_text.h"
 #include "base/metrics/process_counters.h"
 #include "net/http/http_impl.h"
 #include "net/connection.h"
@@ -231,6 +232,19 @@ int api_views(struct server_context *server, struct http_exchange *request)
     if (!request_args(request->wsi, &args, &error) || args.count > 1 || (args.count == 1 && strncmp(args.list[0], "id=", 3) != 0))
         return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected no argument, or id=ID\n");
     return request_answer_json(request, reply_views_text(&server->session_context, args.count ? args.list[0] + 3 : NULL));
+}
+
+/* Returns the view of a short link. */
+int api_link(struct server_context *server, struct http_exchange *request)
+{
+    struct message_error error = { 0 };
+    struct args args;
+    if (!request_args(request->wsi, &args, &error) || args.count != 1 || !arg_of(&args, "id"))
+        return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected id=ID\n");
+    const char *view = short_links_find(server->params.plant.short_links, arg_of(&args, "id"));
+    if (!view)
+        return request_refuse(request, HTTP_STATUS_NOT_FOUND, REFUSAL_LINKLESS);
+    return request_answer_json(request, json_text(json_pack("{s:s}", "view", view), 0));
 }
 
 /* Lists the notes in force between `from` and `to`; by default from an hour ago until now. */

@@ -122,6 +122,7 @@ int api_import_matches(struct server_context *server, struct http_exchange *requ
 int api_alarms(struct server_context *server, struct http_exchange *request);
 int api_plant(struct server_context *server, struct http_exchange *request);
 int api_views(struct server_context *server, struct http_exchange *request);
+int api_link(struct server_context *server, struct http_exchange *request);
 int api_notes(struct server_context *server, struct http_exchange *request);
 int api_walls(struct server_context *server, struct http_exchange *request);
 int api_other_plants(struct server_context *server, struct http_exchange *request);

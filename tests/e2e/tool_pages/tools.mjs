@@ -239,14 +239,17 @@ test('links to the view, the tag and the equipment, each with a code that a came
     const links = {};
     for (const kind of ['This view', 'This equipment', 'This tag']) {
         await page.locator('#share-kind label', { hasText: kind }).click();
+        if (kind === 'This view') // the server's short link takes the place of the long one
+            await page.waitForFunction(() => /\/v\/\w{8}$/.test(document.getElementById('share-link').value));
         const link = await page.locator('#share-link').inputValue();
         await page.waitForFunction(() => document.querySelector('#share-code svg path'));
         assert.equal(await scan(page), link, kind);
+        const width = Number((await page.locator('#share-code svg').getAttribute('viewBox')).split(' ')[2]);
+        assert.ok(width - 2 * 4 <= 33, `${width} modules with margins`);
         links[kind] = link;
     }
     assert.equal(links['This tag'], `${url}#tag=TI-1`);
     assert.equal(links['This equipment'], `${url}#asset=E-101`);
-    assert.match(links['This view'], /colormap=cividis.*range=0,120.*camera=/);
     assert.match(await page.locator('#share-note').textContent(), /this machine only/);
     await shoot(page, 'share');
     assert.match(await page.locator('#share-people').textContent(), /Nobody is following you\./);
@@ -254,10 +257,15 @@ test('links to the view, the tag and the equipment, each with a code that a came
     const asked = await view(page);
     const other = await openPage(links['This view'], SCREEN);
     await waitForPicture(other.page);
+    assert.match(other.page.url(), /#group=.*colormap=cividis.*range=0,120.*camera=/);
     const there = await view(other.page);
     there.camera.eye.forEach((m, i) => assert.ok(Math.abs(m - asked.camera.eye[i]) < 1e-3, 'the same camera'));
     for (const name of ['group', 'colormap', 'range', 'selected', 'show'])
         assert.deepEqual(there.params[name], asked.params[name], name);
+    await other.page.goto(`${url}v/nosuch`);
+    await waitForPicture(other.page);
+    await other.page.locator('#toast', { hasText: 'this short link is unknown or no longer stored' }).waitFor();
+    await shoot(other.page, 'short-link-unknown');
     await other.close();
 });
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Handles the link that opened the page: goes to the tag or equipment that it names, and reports what does not exist in this plant.
+import { SHARERS } from '../../core/links.js';
 import { put, refusalText } from '../../core/refusals.js';
+import { expand } from './short_link.js';
 
 const NOTE_MS = 20000;
 
@@ -9,8 +11,8 @@ export class Arrival {
         this.page = page;
     }
 
-    // link: { camera, params, tag } of the link that opened the page; null after the first call. refused: `error` messages of the server
-    // that refuse parts of this page's view.
+    // link: { camera, params, tag, short, expanded } of the link that opened the page; null after the first call. refused: `error`
+    // messages of the server that refuse parts of this page's view.
     come(link, refused) {
         const { session, selection, selectTag, tell } = this.page, { model } = session;
         const why = refused.map(({ text, refusal }) => refusalText(text, refusal)), unknown = selection.tag && !model.tag(selection.tag);
@@ -20,8 +22,20 @@ export class Arrival {
         }
         if (link && !link.camera)
             this.goTo(model.tag(link.tag), model.asset(link.params.selected));
+        if (link?.short)
+            this.open(link);
         if (why.length > 0)
             tell(put(link ? 'page.link' : 'page.refused', { why: why.join('; '), text: why.join('; ') }), NOTE_MS);
+    }
+
+    // Marks a short link as used, or opens it if it could not be opened before the user signed in.
+    async open({ short, expanded }) {
+        const { session, tell } = this.page;
+        if (expanded && SHARERS.includes(session.role))
+            session.post({ type: 'share_view', seq: ++session.toldSeq, view: expanded });
+        if (!expanded)
+            await expand(short, session.token).then(() => location.reload(),
+                (error) => tell(put('page.link', { why: error.message }), NOTE_MS));
     }
 
     goTo(tag, asset) {

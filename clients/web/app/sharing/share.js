@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The share dialog: links to the current view, with a QR code; the list of sessions that follow this view, and handing the lead to a
 // follower.
-import { shareLinks } from '../../core/links.js';
+import { shareLinks, SHARERS, shortLink } from '../../core/links.js';
 import { followerNames, leaderName } from '../../core/people.js';
 import { giveLead } from '../../core/requests.js';
 import { say } from '../../core/words.js';
@@ -19,6 +19,7 @@ export class Share {
         for (const name of ['followers', 'welcome'])
             session.on(name, () => this.count());
         this.count();
+        session.on('view_shared', ({ seq, id, kept }) => kept && seq === this.asked && this.showView(shortLink(location, id)));
         for (const name of ['followers', 'following', 'params', 'camera', 'welcome', 'time'])
             session.on(name, () => this.dialog.open && this.show());
     }
@@ -51,11 +52,26 @@ export class Share {
             return;
         this.kind = this.selection.tag ? 'tag' : 'view';
         this.dialog.showModal();
+        const { view } = shareLinks({ location, session: this.session, tag: this.selection.tag });
+        this.showView(view);
+        this.shorten(view);
+    }
+
+    // Asks the server for a short link to a view. Until the answer comes, or without one, the long link is shown.
+    shorten(link) {
+        this.asked = ++this.session.toldSeq;
+        if (SHARERS.includes(this.session.role))
+            this.session.post({ type: 'share_view', seq: this.asked, view: new URL(link).hash.slice(1) });
+    }
+
+    // Shows a link to the view that was shown when the dialog was opened.
+    showView(link) {
+        this.view = link;
         this.show();
     }
 
     show() {
-        const links = shareLinks({ location, session: this.session, tag: this.selection.tag });
+        const links = { ...shareLinks({ location, session: this.session, tag: this.selection.tag }), view: this.view };
         const kinds = Object.keys(links);
         if (!links[this.kind])
             this.kind = 'view';

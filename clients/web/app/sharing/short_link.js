@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Opens short links.
+import { ask } from '../../core/history.js';
+import { stored } from '../common/storage.js';
+
+// Replaces the short link in the page's address by the view that the server stored. Returns a promise of the view.
+export async function expand(id, token) {
+    const { view } = await (await ask('api/v1/link', { id }, token)).json();
+    history.replaceState(null, '', `${location.pathname}${location.search}#${view}`);
+    return view;
+}
+
+// Opens the short link of the page's address. Returns a promise of { short (its id), expanded (its view; null: it could not be opened) }.
+// arrival.js tries again when the user has signed in, and says why it fails.
+export async function openShort() {
+    const short = location.hash.slice('#v='.length);
+    return { short, expanded: await expand(short, stored('token')).catch(() => null) };
+}

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Stores short links as JSON, in the same form in memory and in the file, those that were unused for longest first. */
+#include "views/short_links.h"
+
+#include <openssl/evp.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "plant/walls/wall.h"
+#include "views/kept_list.h"
+
+enum { FEWEST_ID_CHARS = 8 /* 40 bits: an id cannot be found by trying */ };
+static const int64_t USED_US = INT64_C(86400000000); /* a link is marked as used at most once a day, because each change writes the file */
+
+struct short_links {
+    struct kept_list kept; /* { id, view, time_us }; time_us: when the link was last marked as used, UTC */
+};
+
+static bool good_list(const json_t *list)
+{
+    if (!json_is_array(list) || json_array_size(list) > SHORT_LINKS)
+        return false;
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        const json_t *link = json_array_get(list, i);
+        const char *id = json_string_value(json_object_get(link, "id")), *view = json_string_value(json_object_get(link, "view"));
+        if (!id || strlen(id) >= SHORT_LINK_ID_BYTES || !view || named_view_address_wrong(view) ||
+            !json_is_integer(json_object_get(link, "time_us")) || kept_list_find(list, id) != i)
+            return false;
+    }
+    return true;
+}
+
+static const struct kept_list_kind LINKS = { SHORT_LINKS_FILE, "links", "id, view and time_us", good_list };
+
+struct short_links *short_links_open(struct log *log, const char *folder, struct file_writer *writer)
+{
+    struct short_links *links = mem_new(sizeof(*links));
+    kept_list_open(&links->kept, log, folder, &LINKS, writer);
+    return links;
+}
+
+void short_links_close(struct short_links **pointer)
+{
+    if (!*pointer)
+        return;
+    kept_list_close(&(*pointer)->kept);
+    mem_free(*pointer);
+    *pointer = NULL;
+}
+
+static const char *member(const json_t *list, size_t at, const char *name)
+{
+    return json_string_value(json_object_get(json_array_get(list, at), name));
+}
+
+/* Writes the id of a view, made from its SHA-256, and returns its index in the list, or the list's length. An id that another view has got
+   one character more. */
+static size_t find_view(const json_t *list, const char *view, char id[SHORT_LINK_ID_BYTES])
+{
+    static const char digits[] = "abcdefghijkmnpqrstuvwxyz23456789"; /* 32 characters that are not mistaken for one another */
+    uint8_t hash[EVP_MAX_MD_SIZE] = { 0 };
+    EVP_Digest(view, strlen(view), hash, NULL, EVP_sha256(), NULL);
+    size_t length = 0, at = 0;
+    do {
+        for (size_t more = length ? 1 : FEWEST_ID_CHARS; more > 0 && length < SHORT_LINK_ID_BYTES - 1; more--, length++)
+            id[length] = digits[hash[length] % 32];
+        id[length] = 0;
+        at = kept_list_find(list, id);
+    } while (at < json_array_size(list) && strcmp(member(list, at, "view"), view) != 0 && length < SHORT_LINK_ID_BYTES - 1);
+    return at;
+}
+
+enum refusal_code short_links_share(struct short_links *links, const char *view, int64_t now_us, char id[SHORT_LINK_ID_BYTES])
+{
+    json_t *newest = kept_list_newest(&links->kept);
+    size_t at = find_view(newest, view, id);
+    const json_t *old = json_array_get(newest, at);
+    enum refusal_code why = kept_list_refusal(&links->kept);
+    if (why || (old && now_us - json_integer_value(json_object_get(old, "time_us")) < USED_US))
+        return why;
+    json_t *list = json_copy(newest);
+    json_array_remove(list, at);
+    while (json_array_size(list) >= SHORT_LINKS)
+        json_array_remove(list, 0);
+    json_array_append_new(list, json_pack("{s:s,s:s,s:I}", "id", id, "view", view, "time_us", (json_int_t)now_us));
+    return kept_list_put(&links->kept, list);
+}
+
+const char *short_links_find(const struct short_links *links, const char *id)
+{
+    return member(links->kept.list, kept_list_find(links->kept.list, id), "view");
+}
+
+uint64_t short_links_number(const struct short_links *links)
+{
+    return links->kept.number;
+}
+
+json_t *short_links_list(const struct short_links *links)
+{
+    return links->kept.list;
+}
+
+bool short_links_mirror(struct short_links *links, json_t *list)
+{
+    return kept_list_mirror(&links->kept, list);
+}
