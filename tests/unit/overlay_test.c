@@ -100,6 +100,29 @@ TEST(any_number_of_alarms_fits)
         stand.snapshot->readings[i].alarm = ALARM_NONE;
 }
 
+/* Returns the lightest or darkest blue of the header's card in a frame of the light or dark theme. */
+static int extreme(bool dark, bool lightest)
+{
+    struct view view;
+    view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
+    view.dark = dark;
+    struct frame *frame = draw_view(2, false, &view);
+    int found = lightest ? 0 : 255;
+    for (int y = 12; y < 24; y++)
+        for (int x = 12; x < 60; x++) {
+            int blue = frame->bgrx[y * frame->stride_bytes + 4 * x];
+            found = (blue > found) == lightest ? blue : found;
+        }
+    frame_unref(&frame);
+    return found;
+}
+
+TEST(cards_are_as_light_or_dark_as_the_backdrop)
+{
+    assert_true(extreme(false, true) > 250 && extreme(false, false) < 90);
+    assert_true(extreme(true, true) > 180 && extreme(true, false) < 90);
+}
+
 /* A frame for anonymous viewers must not depend on any reading. */
 static struct frame *draw_bare(double value, enum alarm_kind alarm)
 {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shift notes: their positions in the plant, and until when they are valid.
+import { zoneClock } from './format.js';
 import { say } from './words.js';
 
 // Returns the note's position [x, y, z], or null if this plant no longer has its tag or equipment.
@@ -18,6 +19,18 @@ export const isOfPlant = ({ tag, asset, position }) => !tag && !asset && !positi
 
 // Returns the name of what a note is about.
 export const whereText = (model, note) => whereOf(model, note) ?? say(isOfPlant(note) ? 'notes.plant' : 'notes.place');
+
+const timeText = (model, us) => {
+    const { date, time } = zoneClock(model.plant.time_zone)(us / 1000);
+    return `${date} ${time.slice(0, 5)}`;
+};
+export const endText = (model, { until_us: until }) => (until ? say('notes.ends', { time: timeText(model, until) }) : null);
+
+// Returns what a note is about, who wrote it and when, and until when it is valid.
+export function aboutText(model, note) {
+    const made = say('named.by', { who: note.by, time: timeText(model, note.time_us) });
+    return [whereText(model, note), made, endText(model, note)].filter(Boolean).join(' · ');
+}
 
 // Returns the notes that are valid now, or at the past instant atUs.
 export const inForce = (notes, nowUs, atUs = null) => notes.filter(({ time_us: from, until_us: until, ended_us: ended }) => (atUs === null

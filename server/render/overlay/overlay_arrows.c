@@ -33,7 +33,7 @@ static void stroke_both(struct pen *pen, double width, bool dashed)
     cairo_set_line_width(pen->cairo, width + 2 * pen->unit);
     cairo_stroke_preserve(pen->cairo);
     cairo_set_dash(pen->cairo, dash, dashed ? 2 : 0, 0);
-    pen_ink(pen, 1);
+    pen_dark(pen, 1);
     cairo_set_line_width(pen->cairo, width);
     cairo_stroke(pen->cairo);
     cairo_set_dash(pen->cairo, NULL, 0, 0);

@@ -268,7 +268,13 @@ static void fill_box(struct pen *pen, const struct label_box *box, const uint8_t
 {
     cairo_rectangle(pen->cairo, box->x, box->y, box->width, box->height);
     pen_rgb(pen, rgb);
-    cairo_fill(pen->cairo);
+    cairo_fill_preserve(pen->cairo);
+    if (pen->frame->view.dark) { /* some colours are as dark as the card */
+        pen_ink(pen, 0.5);
+        cairo_set_line_width(pen->cairo, fmax(1, pen->unit));
+        cairo_stroke(pen->cairo);
+    }
+    cairo_new_path(pen->cairo);
 }
 
 static void draw_stripes(struct pen *pen, const struct label_box *box)

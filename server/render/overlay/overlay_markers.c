@@ -37,7 +37,7 @@ static void draw_mark(struct pen *pen, const struct frame_marker *marker, bool b
     cairo_arc(pen->cairo, x, y, radius, 0, 2 * M_PI);
     cairo_set_source_rgba(pen->cairo, 1, 1, 1, marker->occluded ? 0.35 : 0.95);
     cairo_fill(pen->cairo);
-    pen_ink(pen, marker->occluded ? 0.7 : 1);
+    pen_dark(pen, marker->occluded ? 0.7 : 1);
     overlay_outline(pen, x, y, radius, overlay_unproven(pen, marker->tag));
     if (pen->scene->plant->tags[marker->tag].place.assumed)
         overlay_outline(pen, x, y, 1.75 * radius, false); /* outer circle: the position is only approximate */
@@ -70,7 +70,7 @@ void overlay_ring(struct pen *pen, double x, double y, double radius, int priori
     cairo_set_source_rgb(pen->cairo, 1, 1, 1); /* light rim, outside the dark one */
     cairo_set_line_width(pen->cairo, fmax(4.6, (wide + 0.4) * radius));
     cairo_stroke_preserve(pen->cairo);
-    pen_ink(pen, 1);
+    pen_dark(pen, 1);
     cairo_set_line_width(pen->cairo, fmax(3.0, (wide + 0.19) * radius));
     cairo_stroke_preserve(pen->cairo);
     cairo_set_source_rgb(pen->cairo, color[0], color[1], color[2]);
@@ -165,7 +165,7 @@ static void draw_leader(struct pen *pen, const struct label_item *item, const st
     cairo_set_line_width(pen->cairo, fmax(2.5, 2.5 * pen->unit));
     cairo_stroke_preserve(pen->cairo);
     cairo_set_line_width(pen->cairo, fmax(1, pen->unit));
-    pen_ink(pen, 1);
+    pen_dark(pen, 1);
     cairo_stroke(pen->cairo);
 }
 
@@ -367,7 +367,7 @@ static void label_isolines(struct pen *pen)
         cairo_rectangle(pen->cairo, box.x, box.y, box.width, box.height);
         cairo_set_source_rgba(pen->cairo, 1, 1, 1, 0.75);
         cairo_fill(pen->cairo);
-        pen_ink(pen, 1);
+        pen_dark(pen, 1);
         pen_text(pen, box.x + pad, box.y + pad + 0.66 * pen->text_px, text);
     }
     mem_free(done);

@@ -45,9 +45,16 @@ void pen_rounded_path(struct pen *pen, const struct label_box *box)
 void pen_card(struct pen *pen, const struct label_box *box)
 {
     pen_rounded_path(pen, box);
-    cairo_set_source_rgba(pen->cairo, 1, 1, 1, 0.88);
+    bool dark = pen->frame->view.dark;
+    if (dark)
+        cairo_set_source_rgba(pen->cairo, 0.17, 0.19, 0.22, 0.92);
+    else
+        cairo_set_source_rgba(pen->cairo, 1, 1, 1, 0.88);
     cairo_fill_preserve(pen->cairo);
-    cairo_set_source_rgba(pen->cairo, 0.35, 0.40, 0.46, 0.35);
+    if (dark)
+        cairo_set_source_rgba(pen->cairo, 1, 1, 1, 0.2);
+    else
+        cairo_set_source_rgba(pen->cairo, 0.35, 0.40, 0.46, 0.35);
     cairo_set_line_width(pen->cairo, fmax(1, pen->unit));
     cairo_stroke(pen->cairo);
 }
@@ -58,6 +65,14 @@ void pen_rgb(struct pen *pen, const uint8_t rgb[3])
 }
 
 void pen_ink(struct pen *pen, double alpha)
+{
+    if (pen->frame->view.dark)
+        cairo_set_source_rgba(pen->cairo, 0.91, 0.92, 0.93, alpha);
+    else
+        pen_dark(pen, alpha);
+}
+
+void pen_dark(struct pen *pen, double alpha)
 {
     cairo_set_source_rgba(pen->cairo, 0.10, 0.13, 0.17, alpha);
 }

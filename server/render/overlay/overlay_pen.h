@@ -37,13 +37,14 @@ void pen_choose_half(struct pen *pen, int half);
 bool pen_is_free(const struct pen *pen, const struct label_box *box);
 /* Marks a box as taken. */
 void pen_take(struct pen *pen, const struct label_box *box);
-/* Draws a light card with a thin border, as a background for text. */
+/* Draws a card with a thin border, as a background for text: light or dark, like the backdrop. */
 void pen_card(struct pen *pen, const struct label_box *box);
 /* Sets the path to the outline of a box with rounded corners. */
 void pen_rounded_path(struct pen *pen, const struct label_box *box);
-/* pen_rgb sets an sRGB colour, pen_ink the text colour. */
+/* pen_rgb sets an sRGB colour, pen_ink the colour of text on cards, pen_dark that of marks, which have light rims. */
 void pen_rgb(struct pen *pen, const uint8_t rgb[3]);
 void pen_ink(struct pen *pen, double alpha);
+void pen_dark(struct pen *pen, double alpha);
 /* Sets the font. size: a multiple of text_px. */
 void pen_font(struct pen *pen, double size, bool bold);
 /* Returns the width of a text in the current font. */

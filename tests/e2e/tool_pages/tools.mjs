@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tools of the toolbar: frozen values, a distance, a picture, links with a QR code, following and leading, dark and light.
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 import jsqr from 'jsqr';
 import {
-    drawnAt, grab, openPage, PHONE, readPng, settle, shoot, TABLET, view, waitForHealth, waitForPicture,
+    drawnAt, grab, openPage, PHONE, readPng, SCREENSHOTS, settle, shoot, SHOOTS, TABLET, view, waitForHealth, waitForPicture,
 } from '../support/browser.mjs';
 import { contrast, deltaE } from '../support/pixels.mjs';
 import { notBuilt, TinyPlant } from '../support/tiny_plant.mjs';
@@ -168,6 +169,46 @@ test('the picture that is kept is the one that is seen', options, async () => {
     await page.locator('#snapshot').click();
     await page.waitForFunction(() => /under a name/.test(document.getElementById('toast').textContent));
     await page.evaluate(() => globalThis.plantcast.session.setParams({ show: 'value', ghost: [] }));
+});
+
+test('a saved picture has the page\'s theme, and below it the notes in force', options, async () => {
+    const noteIds = () => page.evaluate(() => globalThis.plantcast.session.notes.map(({ id }) => id));
+    const post = (message) => page.evaluate((one) => {
+        const { session } = globalThis.plantcast;
+        session.post({ seq: ++session.toldSeq, ...one });
+    }, message);
+    const save = async (name) => {
+        const download = page.waitForEvent('download');
+        await page.locator('#snapshot').click();
+        const bytes = readFileSync(await (await download).path());
+        if (SHOOTS) {
+            mkdirSync(SCREENSHOTS, { recursive: true });
+            writeFileSync(join(SCREENSHOTS, `${name}.png`), bytes);
+        }
+        return readPng(page, bytes);
+    };
+    const at = ({ width, rgba }, x, y) => [...rgba.slice(4 * (y * width + x), 4 * (y * width + x) + 3)];
+    const plain = await save('saved-plain');
+    await post({ type: 'note', text: 'Flange weeps, permit 4711 is open', tag: 'TI-1' });
+    await post({ type: 'note', text: `Night shift: ${'watch the cooling water and call the engineer. '.repeat(2)}` });
+    await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 2);
+    const light = await save('saved-notes');
+    assert.equal(light.width, plain.width);
+    assert.ok(light.height > plain.height + 60, `${plain.height} and ${light.height} px high`);
+    assert.ok(Math.min(...at(light, light.width - 3, light.height - 3)) > 230, 'a light list');
+    const turn = async (surface) => {
+        await page.keyboard.press('z');
+        await page.waitForFunction((is) => getComputedStyle(document.documentElement).getPropertyValue('--surface').trim() === is, surface);
+    };
+    await turn('#2b3137');
+    const dark = await save('saved-notes-dark');
+    assert.equal(dark.height, light.height);
+    assert.ok(Math.max(...at(dark, dark.width - 3, dark.height - 3)) < 80, 'a dark list');
+    assert.ok(Math.max(...at(dark, 12, 12)) < 110, 'a dark card'); // of the header
+    await turn('#f4f5f6');
+    for (const id of await noteIds())
+        await post({ type: 'remove_note', id });
+    await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 0);
 });
 
 test('the legend says that values are not to be read from a glossy look', options, async () => {

@@ -2,9 +2,8 @@
 // Shift notes: pins in the picture, also on walls, and a list and a form in the panel of views. Also shows the position at which a desk
 // points.
 import { projector } from '../../core/camera.js';
-import { zoneClock } from '../../core/format.js';
 import { ask } from '../../core/history.js';
-import { inForce, isOfPlant, placeOf, whereOf, whereText } from '../../core/notes.js';
+import { aboutText, endText, inForce, isOfPlant, placeOf, whereOf, whereText } from '../../core/notes.js';
 import { refusalText } from '../../core/refusals.js';
 import { halves } from '../../core/split_view.js';
 import { say } from '../../core/words.js';
@@ -150,30 +149,21 @@ export class Notes {
     }
 
     pinOf(note) {
-        const pin = make('button', { type: 'button', class: 'note-pin', title: this.aboutOf(note), onclick: () => this.lookAt(note) },
+        const title = aboutText(this.session.model, note);
+        const pin = make('button', { type: 'button', class: 'note-pin', title, onclick: () => this.lookAt(note) },
             make('span', {}, note.text));
         byId('overlay').before(pin); // below alarm rings and their labels
         return pin;
     }
 
-    timeOf(us) {
-        const { date, time } = zoneClock(this.session.model.plant.time_zone)(us / 1000);
-        return `${date} ${time.slice(0, 5)}`;
-    }
-
     // Returns who wrote a note, and until when it is in force.
-    authorOf({ by, until_us: until }) {
-        return [by, until ? say('notes.ends', { time: this.timeOf(until) }) : null].filter(Boolean).join(' · ');
-    }
-
-    aboutOf({ by, time_us: us, until_us: until, ...note }) {
-        const made = say('named.by', { who: by, time: this.timeOf(us) }), at = whereText(this.session.model, note);
-        return [at, made, until ? say('notes.ends', { time: this.timeOf(until) }) : null].filter(Boolean).join(' · ');
+    authorOf(note) {
+        return [note.by, endText(this.session.model, note)].filter(Boolean).join(' · ');
     }
 
     rowOf(note) {
         const button = (name, f) => make('button', { type: 'button', class: name, onclick: f }, say(`notes.${name}`));
-        return make('li', { 'data-id': note.id }, make('b', {}, note.text), make('small', {}, this.aboutOf(note)),
+        return make('li', { 'data-id': note.id }, make('b', {}, note.text), make('small', {}, aboutText(this.session.model, note)),
             this.may && note.by === this.name ? button('edit', () => this.edit(note)) : null,
             this.may ? button('end', () => this.remove(note.id)) : null);
     }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Saves a picture as a file: redrawn by the server or, if the server signs frames, the exact frame on the screen.
+// Saves a picture as a file: redrawn by the server, with the notes in force, or, if the server signs frames, the exact frame on the screen.
 import { ask } from '../../core/history.js';
+import { inForce } from '../../core/notes.js';
 import { snapshotQuery } from '../../core/query.js';
+import { halves } from '../../core/split_view.js';
 import { language, say } from '../../core/words.js';
 import { make, styled } from '../common/dom.js';
 import { closeButton } from '../common/widgets.js';
@@ -66,7 +68,14 @@ export class Snapshot {
             throw new Error(say('snapshot.unnamed'));
         const query = { ...snapshotQuery({ carried: session.carried(), camera, size, time }), language };
         const answer = await ask('snapshot.png', query, session.token);
-        return { blob: await answer.blob(), us: time.atUs ?? session.clockUs() };
+        const us = time.atUs ?? session.clockUs();
+        return { blob: await this.withNotes(await answer.blob(), { camera, half: halves(session.params, size.width)[0] }), us };
+    }
+
+    // Returns a promise of the picture with its notes. A signed file stays as the server sent it.
+    async withNotes(blob, place) {
+        const { session } = this, { model, signs } = session, notes = inForce(session.notes, session.clockUs(), session.time.atUs);
+        return signs || notes.length === 0 ? blob : (await import('./snapshot_notes.js')).addNotes(blob, notes, { model, ...place });
     }
 
     // Requests that the next refined frame be signed; once it is on the screen, returns its PNG file.
