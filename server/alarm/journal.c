@@ -24,7 +24,7 @@ struct journal {
     struct log *log;
     char *folder;
     double keep_days;
-    int64_t newest_utc_ns; /* UTC time of the newest row that the file had when the journal was opened */
+    int64_t last_utc_ns; /* UTC time of the last row, of the file at opening or of journal_add_entry() */
     struct {
         counter *rows, *lost, *waiting, *good;
     } counters;
@@ -191,9 +191,9 @@ int journal_settled(struct journal *journal, const struct settling_ticket *ticke
     return state;
 }
 
-int64_t journal_newest_utc_ns(const struct journal *journal)
+int64_t journal_last_utc_ns(const struct journal *journal)
 {
-    return journal->newest_utc_ns;
+    return journal->last_utc_ns;
 }
 
 struct journal_entry journal_entry_of(const struct alarm_change *change, const char *tag)
@@ -215,8 +215,7 @@ struct journal_entry journal_entry_of(const struct alarm_change *change, const c
 
 void journal_add_entry(struct journal *journal, const struct journal_entry *entry)
 {
-    if (entry->utc_ns > journal->newest_utc_ns)
-        journal->newest_utc_ns = entry->utc_ns;
+    journal->last_utc_ns = entry->utc_ns;
     put(journal, entry);
 }
 
@@ -257,11 +256,6 @@ static void restore(void *arg, const char *tag, const struct alarm *alarm)
         alarms_restore(restoring->alarms, index, alarm, restoring->now);
 }
 
-static void note_newest(void *arg, const struct journal_row *row)
-{
-    ((struct journal *)arg)->newest_utc_ns = row->t_us * 1000;
-}
-
 /* Restores the alarm states from the file. If the file is damaged, restores none: the thread renames it before it writes. */
 static void restore_all(struct journal *journal, struct alarms *alarms, struct instant now)
 {
@@ -270,9 +264,8 @@ static void restore_all(struct journal *journal, struct alarms *alarms, struct i
     struct journal_file *file = journal_file_read(journal->log, journal->folder, &error);
     if (file)
         journal_file_states(file, restore, &restoring);
-    const struct journal_query newest = { .to_us = INT64_MAX, .before_id = INT64_MAX, .limit = 1 };
     if (file)
-        journal_file_rows(file, &newest, note_newest, journal);
+        journal->last_utc_ns = journal_file_last_us(file) * 1000;
     journal_file_close(&file);
 }
 

@@ -43,6 +43,8 @@ int journal_file_write(struct journal_file *file, const struct journal_entry *en
 int journal_file_forget(struct journal_file *file, int64_t before_us); /* deletes rows older than before_us */
 /* Calls each() for the stored state of every alarm, as of the last write to the journal. */
 int journal_file_states(struct journal_file *file, void (*each)(void *arg, const char *tag, const struct alarm *alarm), void *arg);
+/* Returns the time of the row that was written last; 0: none. Its time may be earlier than those of other rows, where a clock was set. */
+int64_t journal_file_last_us(struct journal_file *file);
 int journal_file_rows(struct journal_file *file, const struct journal_query *query, void (*each)(void *arg, const struct journal_row *row),
                       void *arg);
 int journal_file_at(struct journal_file *file, int64_t t_us, void (*each)(void *arg, const struct journal_row *row), void *arg);

@@ -52,7 +52,7 @@ struct renderer_peer {
     bool samples_sent;
     bool asks;                    /* true: the peer must be asked for its promise not to lead (corelink/lease.h) */
     struct core_samples *samples; /* samples for the peer's history, to be sent; NULL: none */
-    int64_t journal_utc_ns;       /* standby: UTC time of the newest change in the standby's own alarm journal */
+    int64_t journal_utc_ns;       /* standby: UTC time of the last change in its own alarm journal; INT64_MIN: rows were sent */
     uint64_t told;                /* standby: sequence number of the newest notifier state that was sent to it */
     uint64_t rows;                /* standby: sequence number of the last journal row that was sent to it */
     uint64_t alarms;              /* sequence number of the last change of alarms that was sent */
@@ -334,6 +334,7 @@ static bool send_alarms(const struct server_context *server, struct renderer_pee
     json_t *message = core_alarms_message(server->params.plant.alarm_service, since, clock_utc_ns(), &renderer->alarms);
     if (renderer->stands_by)
         core_alarms_add_rows(message, server->params.plant.alarm_service, &renderer->rows, renderer->journal_utc_ns);
+    renderer->journal_utc_ns = INT64_MIN; /* from now on the peer lacks all later rows, whatever their times */
     return send_message(renderer, message);
 }
 

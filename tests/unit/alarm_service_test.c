@@ -288,3 +288,37 @@ CASE(a_damaged_journal_is_set_aside)
     assert_int_equal(read_rows(s, NULL, 100000, INT64_MAX).count, TAGS);
     mem_free(path);
 }
+
+static void count_entry(void *arg, const struct journal_entry *row)
+{
+    (void)row;
+    ++*(int *)arg;
+}
+
+/* Returns the number of rows that a core lacks whose journal ends with a row of that time. */
+static int lacking(struct alarm_service_setup *s, int64_t after_utc_ns)
+{
+    int count = 0;
+    assert_int_equal(alarm_service_rows(s->alarm_service, 0, after_utc_ns, count_entry, &count), 3);
+    return count;
+}
+
+CASE(rows_that_follow_a_wrong_clock_are_not_taken_for_old)
+{
+    int64_t now_ns = clock_utc_ns() / 1000 * 1000, hour_ns = 3600 * NS_PER_S;
+    start(s);
+    for (int i = 0; i < 3; i++) { /* the clock was an hour ahead for the second row */
+        struct journal_entry row = { .alarm = { .kind = ALARM_H, .priority = 1, .limit = NAN }, .changed = true, .value = NAN };
+        row.utc_ns = now_ns + i * NS_PER_S + (i == 1 ? hour_ns : 0);
+        snprintf(row.tag, sizeof(row.tag), "T-0001");
+        alarm_service_mirror_row(s->alarm_service, &row);
+    }
+    assert_int_equal(lacking(s, now_ns), 2);
+    assert_int_equal(lacking(s, now_ns + NS_PER_S + hour_ns), 1);
+    assert_int_equal(lacking(s, now_ns + 2 * NS_PER_S), 0);
+    assert_int_equal(lacking(s, now_ns - 1000), 3);
+    assert_int_equal(lacking(s, INT64_MIN), 3);
+    alarm_service_stop(&s->alarm_service);
+    start(s);
+    assert_int_equal(alarm_service_journal_utc_ns(s->alarm_service), now_ns + 2 * NS_PER_S);
+}
