@@ -75,6 +75,8 @@ test('each pane shows what it is for', options, async () => {
     }, null, { timeout: 30000 });
     await page.locator('.clock b').filter({ hasText: /^\d\d:\d\d:\d\d$/ }).waitFor();
     assert.match(await paneTitle('alarms').textContent(), /Alarms/);
+    const letters = await page.locator('.tile .name, .pane.alarms').evaluateAll((all) => all.map((e) => getComputedStyle(e).fontSize));
+    assert.deepEqual([...new Set(letters)].length, 1, `tiles have letters as large as those of alarms: ${letters}`);
     await shoot(page, 'wall-display');
 });
 

@@ -2,7 +2,7 @@
 // Named views: those of the plant file and those that users save in the page, shared by all, in one order, with their earlier versions.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { openPage, settle, shoot, view, waitForPicture } from '../support/browser.mjs';
+import { land, openPage, settle, shoot, view, waitForPicture } from '../support/browser.mjs';
 import { notBuilt, startTiny } from '../support/tiny_plant.mjs';
 
 const why = notBuilt();
@@ -98,4 +98,28 @@ test('they are put in another order, removed, and outlive the page', options, as
     await page.locator('#named-list li:nth-child(2)').getByRole('button', { name: 'Remove' }).click();
     await page.waitForFunction(() => globalThis.plantcast.session.views.length === 2);
     assert.deepEqual((await views()).map(({ id }) => id), ['above', 'tank-von-suden']);
+});
+
+test('a view without a flight ends a flight whose module still loads', options, async () => {
+    let release;
+    const held = new Promise((go) => { release = go; });
+    const late = async (route) => {
+        await held;
+        await route.continue();
+    };
+    const other = await openPage(plant.url, { viewport: { width: 1200, height: 720 } }, null,
+        (on) => on.route('**/camera_controller.js*', late));
+    await waitForPicture(other.page);
+    await other.page.evaluate(async () => {
+        const { flyToTag, modules, session } = globalThis.plantcast;
+        await modules.get('commands');
+        flyToTag(session.model.tag('TI-1'));
+        (await modules.get('views')).openNamed('above', false);
+    });
+    await other.page.waitForFunction(() => globalThis.plantcast.session.params.colormap === 'turbo');
+    release();
+    await other.page.waitForFunction(() => Boolean(globalThis.plantcast.cameraController));
+    await land(other.page);
+    await isFrom(other.page, [8, 2, 30]);
+    await other.close();
 });

@@ -48,13 +48,19 @@ export class NamedViews {
     look(text, fly = true) {
         const { session, modules } = this, { camera, params, tag } = viewOf(session, text), found = session.model.tag(tag);
         session.setParams(params);
-        modules.use('commands', (commands) => commands.selectTag(found));
-        if (fly)
-            modules.use('cameraController', (cameraController) => cameraController.flyTo(camera));
-        else {
-            modules.there('cameraController')?.land(); // ends a running flight, which would continue to its own destination
+        if (!fly)
             session.setCamera(camera);
-        }
+        modules.use('commands', (commands) => {
+            commands.selectTag(found);
+            if (fly)
+                modules.use('cameraController', (controller) => controller.flyTo(camera));
+            else if (modules.awaited.has('cameraController'))
+                // ends a flight that runs, or that waits for this module, and that would go on to its own destination
+                modules.use('cameraController', (controller) => {
+                    controller.land();
+                    session.setCamera(camera);
+                });
+        });
     }
 
     // --- saving
