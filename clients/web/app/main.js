@@ -131,8 +131,6 @@ session.on('params', async () => {
 let moved = false;
 session.on('camera', () => {
     moved = true;
-    if (session.reprojects)
-        modules.prepare('warp');
     saveAddress();
     viewport.invalidate();
 });

@@ -28,7 +28,7 @@ const isNear = (a, b) => ['eye', 'target'].every((name) => length(subtract(a[nam
 export class CameraController {
     // handlers: functions for input that does not move the camera: { click(x, y, kind), point({ x, y } or null), command(name),
     // group(index) }.
-    constructor({ viewport, session, handlers }) {
+    constructor({ viewport, session, handlers, modules }) {
         Object.assign(this, { viewport, session, handlers });
         this.gestures = new Gestures();
         this.keys = new HeldKeys();
@@ -48,6 +48,7 @@ export class CameraController {
         // stays in the home view, because the picture's shape changes when a view is split or unsplit
         session.on('params', () => this.stayHome());
         probeCodecs(); // tests H.264 now, because the camera is about to move
+        session.greeted(() => session.reprojects && modules.prepare('warp'));
     }
 
     // Handles an event from input.js.
@@ -67,6 +68,7 @@ export class CameraController {
         const place = this.place(event);
         if (!this.gestures.active)
             this.takeHold(place);
+        this.viewport.invalidate(); // lets the warp load the picture before the first move
         this.gestures.down({ ...place, kind: event.pointerType, button: event.button, shift: event.shiftKey, ctrl: event.ctrlKey });
     }
 
