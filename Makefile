@@ -186,7 +186,8 @@ $(out)/lib/$(1).a: $(call objects,$(filter-out $(without),$(wildcard $(foreach d
 endef
 $(foreach l,$(layers),$(eval $(call archive_rule,$(l))))
 # Loops of the software rasterizer once more for machines with AVX2, and for those with AVX-512 (render/soft/kernels.h).
-wide_sources := $(foreach f,faces feature_edges kernels raster resolve_field resolve_preview resolve_surfaces,server/render/soft/$(f).c)
+wide_names := faces feature_edges kernels pixel_lists raster resolve resolve_field resolve_preview resolve_surfaces
+wide_sources := $(wide_names:%=server/render/soft/%.c)
 wide_objects := $(foreach w,wide widest,$(patsubst %.c,$(out)/obj/%.$(w).o,$(wide_sources)))
 $(out)/lib/render.a: $(if $(filter x86_64%,$(shell $(CC) -dumpmachine 2>/dev/null)),$(wide_objects))
 $(out)/lib/protocol.a: $(call objects,$(wildcard protocol/*.c))

@@ -179,12 +179,12 @@ static void tally_square(const struct pixel_field *field, double size_m, struct 
     pixel_lists_finish(&lists);
 }
 
-static void tally_fields(int count, bool paper, bool odd)
+static void tally_fields(int count, bool paper, bool odd, int rounds)
 {
     static const double sizes[] = { 0.02, 0.1, 0.4, 1.5 };
     for (int s = 0; s < 4; s++) {
         struct list_tally tally = { 0 };
-        for (int round = 0; round < sweep(40, 6); round++) {
+        for (int round = 0; round < rounds; round++) {
             struct pixel_field field;
             make_field(&field, count, paper, odd);
             tally_square(&field, sizes[s], &tally);
@@ -204,5 +204,7 @@ TEST(test_lists_are_as_good_as_all_sensors)
     random_state = sweep_seed();
     for (int i = 0; i < 3; i++)
         for (int way = 0; way < 4; way++)
-            tally_fields(counts[i], way & 1, way & 2);
+            tally_fields(counts[i], way & 1, way & 2, sweep(40, 6));
+    tally_fields(MOST_SENSORS, false, false, sweep(10, 1));
+    tally_fields(MOST_SENSORS, true, true, sweep(10, 1));
 }

@@ -15,4 +15,5 @@ const struct soft_kernels soft_kernels_of_set = {
     .shade_surfaces = refined_shade_surfaces,
     .shade_sky = refined_shade_sky,
     .ink_band = refined_ink_band,
+    .color_bands = resolve_color_bands,
 };

@@ -39,15 +39,12 @@ struct soft_kernels {
     void (*shade_sky)(const struct refined *refined, int row, const uint8_t *wanted, uint32_t *colors);
     /* Draws the feature edges of a band (group of pixel rows) into the visibility buffer's ink (lines drawn over pixels). */
     void (*ink_band)(const struct refined *refined, int band);
+    /* Colours bands of a visibility buffer: a task of workers_for(). arg: struct resolve_job */
+    void (*color_bands)(void *arg, size_t begin, size_t end);
 };
 /* _wide (AVX2) and _widest (AVX-512) exist on x86 only */
 extern const struct soft_kernels soft_kernels_plain, soft_kernels_wide, soft_kernels_widest;
 
-#ifndef SOFT_SET /* suffix of the kernel table being compiled */
-#define SOFT_SET _plain
-#endif
-#define SOFT_JOIN(name, set) name##set
-#define SOFT_IN_SET(name, set) SOFT_JOIN(name, set)
 #define soft_kernels_of_set SOFT_IN_SET(soft_kernels, SOFT_SET)
 #define soft_place_part SOFT_IN_SET(soft_place_part, SOFT_SET)
 #define soft_carry_part SOFT_IN_SET(soft_carry_part, SOFT_SET)
@@ -61,6 +58,7 @@ extern const struct soft_kernels soft_kernels_plain, soft_kernels_wide, soft_ker
 #define refined_shade_surfaces SOFT_IN_SET(refined_shade_surfaces, SOFT_SET)
 #define refined_shade_sky SOFT_IN_SET(refined_shade_sky, SOFT_SET)
 #define refined_ink_band SOFT_IN_SET(refined_ink_band, SOFT_SET)
+#define resolve_color_bands SOFT_IN_SET(resolve_color_bands, SOFT_SET)
 void soft_place_part(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
 void soft_carry_part(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
 void soft_find_faces(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_found *found, const struct soft_part *part);
@@ -75,5 +73,6 @@ void refined_shade_gloss(const struct refined *refined, struct visibility_band *
 void refined_shade_surfaces(const struct refined *refined, const struct refined_item *items, size_t count, uint32_t *colors, float *alphas);
 void refined_shade_sky(const struct refined *refined, int row, const uint8_t *wanted, uint32_t *colors);
 void refined_ink_band(const struct refined *refined, int band);
+void resolve_color_bands(void *arg, size_t begin, size_t end);
 
 #endif

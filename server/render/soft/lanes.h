@@ -12,6 +12,11 @@
 
 #define SOFT_KERNEL SIMD_CLONES("avx2")
 #define SOFT_INLINE SIMD_BODY
+#ifndef SOFT_SET /* suffix of the functions that are compiled once for each instruction set (kernels.h) */
+#define SOFT_SET _plain
+#endif
+#define SOFT_JOIN(name, set) name##set
+#define SOFT_IN_SET(name, set) SOFT_JOIN(name, set)
 
 enum { LANES = 8 }; /* numbers per vector; must be at most SOFT_STRETCH_LEAST */
 typedef float lanes __attribute__((vector_size(32), aligned(4)));

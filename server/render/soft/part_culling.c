@@ -142,7 +142,7 @@ static void add_pixels(struct raster *raster, struct soft_mesh *mesh, const stru
     struct soft_pixels *to = &raster->pixels[raster->pixels_count];
     mesh->pixels = (int32_t)raster->pixels_count++;
     pixel_field_copy(&to->field, field);
-    to->every = (struct pixel_list){ .count = field->count };
+    to->every = pixel_list_of_all(field);
     to->mesh = (uint32_t)(mesh - raster->meshes);
     for (int c = 0; c < 3; c++)
         middle[c] = 0.5 * ((double)header->bounds_min_m[c] + (double)header->bounds_max_m[c]);

@@ -120,6 +120,21 @@ SOFT_INLINE void pixel_sum_shepard(const struct pixel_field *field, const struct
         pixel_add_far(field, list, at, near2, lanes_exp2(0.5f * field->power * near_log2 + list->top), sums);
 }
 
+/* Sums inverse squares of the distances, of lists whose sensors are all used. Unlike other weights these need no nearest sensor: they are
+   small enough for a float even at a sensor. */
+SOFT_INLINE void pixel_sum_inverse_square(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3],
+                                          struct eight_sums *sums)
+{
+    const lanes least = (lanes){ 0 } + 1e-24f;
+    for (int i = 0; i < list->count; i++) {
+        const struct pixel_sensor *sensor = pixel_listed(field, list, i);
+        lanes weight = sensor->strength / lanes_most(pixel_square(sensor, at), least);
+        pixel_add(sensor, weight, weight, sums);
+    }
+    if (list->has_far)
+        pixel_add_far(field, list, at, least, (lanes){ 0 } + list->unit, sums);
+}
+
 /* For paper: nearness to a sensor, 1 at the sensor and 0 at the radius R, and the exponent of the sensor's weight. */
 SOFT_INLINE lanes pixel_exponent(const struct pixel_field *field, const struct pixel_sensor *sensor, lanes square, lanes *near)
 {
@@ -161,14 +176,29 @@ SOFT_INLINE void pixel_sum_paper(const struct pixel_field *field, const struct p
         pixel_add_far(field, list, at, near2, lanes_exp2(list->top - top), sums);
 }
 
+SOFT_INLINE void pixel_value_of(const struct pixel_field *field, const struct eight_sums *sums, struct eight_values *out)
+{
+    lanes none = { 0 };
+    lanes_int any = sums->total > 0.0f;
+    lanes value = sums->values / lanes_choose(any, sums->total, none + 1.0f) * field->scale + field->offset;
+    out->value = lanes_choose(any, lanes_clamp(value, field->low, field->high), none + field->empty);
+    out->uncertain = (sums->marked > 0.0f) & (2.0f * sums->marked >= sums->total);
+}
+
 /* Evaluates the field at eight points. at: x, y, z in the coordinates of sensors[].place_m. list: sensors to sum, and polynomials of the
    others. */
 SOFT_INLINE void pixel_lanes_at(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3], struct eight_values *out)
 {
     lanes none = { 0 };
-    struct eight_nearest nearest = pixel_nearest(field, list, at);
     const lanes_int no = { 0 };
     *out = (struct eight_values){ none, no, no, no };
+    if (list->all_used && list->count > 0 && field->show == PIXEL_SUM && pixel_is_inverse_square(field)) {
+        struct eight_sums sums = { none, none, none };
+        pixel_sum_inverse_square(field, list, at, &sums);
+        pixel_value_of(field, &sums, out);
+        return;
+    }
+    struct eight_nearest nearest = pixel_nearest(field, list, at);
     if (field->show == PIXEL_DISTANCE) {
         out->value = lanes_root(nearest.used);
         return;
@@ -179,10 +209,8 @@ SOFT_INLINE void pixel_lanes_at(const struct pixel_field *field, const struct pi
     else
         pixel_sum_shepard(field, list, at, nearest.used, &sums);
     const float reach2 = field->reach_m < 1e15f ? field->reach_m * field->reach_m : 0.5f * PIXEL_FAR2;
-    lanes_int any = sums.total > 0.0f, reached = nearest.used <= reach2, lost = nearest.lost < nearest.used;
-    lanes value = sums.values / lanes_choose(any, sums.total, none + 1.0f) * field->scale + field->offset;
-    out->value = lanes_choose(any, lanes_clamp(value, field->low, field->high), none + field->empty);
-    out->uncertain = (sums.marked > 0.0f) & (2.0f * sums.marked >= sums.total);
+    lanes_int reached = nearest.used <= reach2, lost = nearest.lost < nearest.used;
+    pixel_value_of(field, &sums, out);
     /* seen * 2^(log2(e)/2 (near/s)^2), where near is the distance of the nearest sensor and s the size of a hot spot; the limit `most` caps
        the result */
     if (field->show == PIXEL_BLIND) {

@@ -11,7 +11,7 @@
 
 enum { DEPTH = 4, SHORT_LIST = 8 }; /* DEPTH: levels of squares, 128 to 16 pixels; SHORT_LIST: lists of at most so many sensors
                                           are not shortened */
-static const float FAR_M = 1e15f, MOST_SHARE = 0.125f, LOG2_E = 1.44269504f;
+static const float FAR_M = 1e15f, MOST_SHARE = 0.0625f, LOG2_E = 1.44269504f;
 
 enum node_column { PLACE_X, PLACE_Y, PLACE_Z, VALUE, STRENGTH, DECAY, STATE, INDEX, COLUMNS };
 
@@ -26,8 +26,11 @@ struct node {
 
 struct building {
     const struct pixel_field *field;
-    float *errors;               /* error if the sensor becomes far, by index in the parent's list; INFINITY: must stay near; -1: has no
-                                    weight */
+    /* Readings, for shepard: an error of a sensor's weight changes a value by no more than that error times (1/2 + away * |reading -
+       middle|) times the spread of the readings. paper: away is 0 */
+    float middle, away;
+    float *errors;               /* this change if the sensor becomes far, in spreads, by index in the parent's list; INFINITY: must stay
+                                    near; -1: has no weight */
     struct node nodes[DEPTH + 1]; /* by level; [0]: all sensors */
 };
 
@@ -51,12 +54,12 @@ struct eight_sensors {
 SOFT_INLINE void load(const struct node *node, int first, struct eight_sensors *out)
 {
     lanes_int state = *(const lanes_int *)(const void *)(node->columns[STATE] + first), zero = { 0 };
+    out->counts = LANES_IOTA_INT < node->count - first;
     for (int c = 0; c < 3; c++)
-        out->at[c] = *(const lanes *)(node->columns[c] + first);
+        out->at[c] = lanes_choose(out->counts, *(const lanes *)(node->columns[c] + first), (lanes){ 0 });
     out->value = *(const lanes *)(node->columns[VALUE] + first);
     out->strength = *(const lanes *)(node->columns[STRENGTH] + first);
     out->decay = *(const lanes *)(node->columns[DECAY] + first);
-    out->counts = LANES_IOTA_INT < node->count - first;
     out->used = ((state & PIXEL_USABLE) != zero) & out->counts;
     out->no_limits = ((state & PIXEL_NO_LIMITS) != zero) & ~out->used & out->counts;
     out->lost = out->counts & ~out->used & ~out->no_limits;
@@ -80,9 +83,6 @@ SOFT_INLINE lanes weight_at(const struct pixel_field *field, const struct eight_
             log += of->decay * lanes_log2(near);
             none = (near <= 1e-30f) & (of->decay > 0.0f);
         }
-    } else if (field->power == 2.0f && !(field->reach_m < INFINITY)) {
-        lanes over = 1.0f / lanes_most(distance, all(1e-12f));
-        return of->strength * lanes_exp2(all(-top)) * over * over;
     } else {
         log = -field->power * lanes_log2(distance);
     }
@@ -95,9 +95,25 @@ SOFT_INLINE lanes weight_at(const struct pixel_field *field, const struct eight_
 }
 
 struct jet { /* a weight as a quadratic function of the place: value and derivatives by the distance at the box's centre, a bound of the
-                error in the box, and the smallest weight in the box */
-    lanes value, first, second, error, least;
+                error in the box, and the smallest weight in the box. tilt: added to the slope to lower the error */
+    lanes value, first, second, tilt, error, least;
 };
+
+/* Inverse squares. With q = radius / distance, t the cosine of the angle between the ways from the box's centre to a place and to the
+   sensor, and p = distance of the place from the centre / radius, the weight is its value at the centre times the sum of U_n(t) (p q)^n,
+   n = 0, 1, ..., where U_n are Chebyshev polynomials of the second kind and at most n + 1. U_3(t) p^3 differs from 2 t p by at most 2, and
+   U_4(t) p^4 from 4 (t p)^2 - 1 by at most 2, so the terms for n = 3 and 4 are replaced by these. The others are neglected. */
+SOFT_INLINE void inverse_square_jet(const struct eight_sensors *of, lanes distance, float radius, float top, struct jet *out)
+{
+    lanes over = 1.0f / lanes_most(distance, all(1e-12f)), last = 1.0f / (distance + radius), q = lanes_least(radius * over, all(0.999f));
+    lanes strength = of->strength * lanes_exp2(all(-top)), value = strength * over * over, q2 = q * q, left = 1.0f / (1.0f - q);
+    out->value = value - value * q2 * q2;
+    out->first = -2.0f * value * over;
+    out->second = value * over * over * (6.0f + 8.0f * q2);
+    out->tilt = out->first * q2;
+    out->error = value * q2 * q * (2.0f + 2.0f * q + q2 * (6.0f - 5.0f * q) * left * left);
+    out->least = strength * last * last;
+}
 
 /* Derivatives of a weight's logarithm by the distance: the first, second and third. Each is a sum of terms of one sign. */
 struct logarithm {
@@ -148,6 +164,10 @@ SOFT_INLINE void jet_of(const struct pixel_field *field, const struct eight_sens
                         struct jet *out)
 {
     lanes zero = { 0 }, near_m = lanes_most(distance - radius, zero), far_m = distance + radius;
+    if (pixel_is_inverse_square(field)) {
+        inverse_square_jet(of, distance, radius, top, out);
+        return;
+    }
     lanes most = weight_at(field, of, near_m, term, top), least = weight_at(field, of, far_m, term, top);
     lanes_int smooth = near_m > 1e-12f;
     if (field->paper)
@@ -160,6 +180,7 @@ SOFT_INLINE void jet_of(const struct pixel_field *field, const struct eight_sens
     lanes error = most * (radius * radius * radius / 6) * lanes_most(along, across), middle = 0.5f * (most + least);
     smooth &= error < most - middle;
     lanes value = weight_at(field, of, distance, term, top);
+    out->tilt = zero;
     out->value = lanes_choose(smooth, value, middle);
     out->first = lanes_choose(smooth, -value * here.first, zero);
     out->second = lanes_choose(smooth, value * (here.first * here.first + here.second), zero);
@@ -199,9 +220,10 @@ SOFT_INLINE void add_terms(lanes to[PIXEL_TERMS], const struct jet *jet, lanes_i
 {
     const lanes zero = { 0 }, first = lanes_choose(chosen, times * jet->first, zero);
     lanes bend = first / lanes_most(distance, all(1e-12f)), second = 0.5f * (lanes_choose(chosen, times * jet->second, zero) - bend);
+    const lanes slope = first + lanes_choose(chosen, times * jet->tilt, zero);
     to[0] += lanes_choose(chosen, times * jet->value, zero);
     for (int c = 0; c < 3; c++)
-        to[1 + c] += first * away[c];
+        to[1 + c] += slope * away[c];
     bend *= 0.5f;
     to[4] += second * away[0] * away[0] + bend;
     to[5] += 2.0f * second * away[0] * away[1];
@@ -253,16 +275,44 @@ SOFT_INLINE void bound_nearest(const struct pixel_field *field, const struct nod
         out->top = fmaxf(out->top, from->far.top);
 }
 
+struct centre_sums {
+    lanes weights, by_distance, along[3];
+};
+
+/* For inverse squares: adds to the sums from which least_by_centre() bounds the sum of all weights in the box. */
+SOFT_INLINE void add_at_centre(const struct eight_sensors *of, lanes distance, float radius, float top, const lanes away[3],
+                               struct centre_sums *sums)
+{
+    lanes over = 1.0f / lanes_most(distance, all(0.01f * radius)), q = radius * over, strength = of->strength * lanes_exp2(all(-top));
+    lanes weight = lanes_choose(of->used, strength * over * over, (lanes){ 0 });
+    sums->weights += weight;
+    sums->by_distance += weight * q * q;
+    for (int c = 0; c < 3; c++)
+        sums->along[c] += weight * q * (distance * over) * away[c];
+}
+
+/* Cauchy: the sum of s_i / D_i is at least (sum of p_i)^2 / (sum of p_i^2 D_i / s_i) for any p_i. Here D_i are squared distances, s_i
+   strengths and p_i the weights at the centre, so the last sum is a quadratic function of the place. */
+SOFT_INLINE float least_by_centre(const struct centre_sums *sums)
+{
+    float weights = sum_of(sums->weights), along = 0;
+    for (int c = 0; c < 3; c++)
+        along += sum_of(sums->along[c]) * sum_of(sums->along[c]);
+    return weights > 0 ? weights * weights / (weights + 2 * sqrtf(along) + sum_of(sums->by_distance)) : 0;
+}
+
 /* Fills building->errors. Returns a lower bound, in the box, of the sum of the weights of the list's sensors. */
 SOFT_INLINE float bound_errors(const struct building *building, const struct node *from, const struct box *box,
                                const struct nearest_bounds *nearest)
 {
     const struct pixel_field *field = building->field;
     const float lost_m = fminf(nearest->used, nearest->lost), no_limits_m = fminf(nearest->used, nearest->no_limits);
+    const bool square = pixel_is_inverse_square(field);
+    struct centre_sums sums = { 0 };
     lanes least = { 0 }, away[3];
     for (int i = 0; i < from->count; i += LANES) {
         struct eight_sensors of;
-        struct jet jet, term = { { 0 }, { 0 }, { 0 }, { 0 }, { 0 } };
+        struct jet jet, term = { { 0 }, { 0 }, { 0 }, { 0 }, { 0 }, { 0 } };
         load(from, i, &of);
         lanes distance = distances_of(&of, box, away), near_m = distance - box->radius;
         jet_of(field, &of, distance, box->radius, false, nearest->top, &jet);
@@ -270,12 +320,16 @@ SOFT_INLINE float bound_errors(const struct building *building, const struct nod
             jet_of(field, &of, distance, box->radius, true, nearest->top, &term);
         lanes_int near = (of.used & (near_m <= nearest->used)) | (of.lost & (near_m <= lost_m)) | (of.no_limits & (near_m <= no_limits_m));
         lanes error = jet.error + term.error;
+        if (!field->paper)
+            error *= 0.5f + building->away * lanes_most(of.value - building->middle, building->middle - of.value);
         near |= of.used & ~(error < FAR_M);
         error = lanes_choose(near, all(INFINITY), lanes_choose(of.used, error, all(-1)));
         least += lanes_choose(of.used, jet.least, (lanes){ 0 });
         memcpy(building->errors + i, &error, sizeof(error));
+        if (square)
+            add_at_centre(&of, distance, box->radius, nearest->top, away, &sums);
     }
-    return sum_of(least);
+    return fmaxf(sum_of(least), square ? least_by_centre(&sums) : 0);
 }
 
 /* Returns the sum of those errors that are at most `most`. */
@@ -353,7 +407,7 @@ SOFT_INLINE void split(const struct building *building, const struct node *from,
 }
 
 /* Makes a node from its parent. last: the node may use all of the error that is left; other nodes leave a part for their children. */
-SOFT_KERNEL static void make_node(const struct building *building, const struct node *from, const struct box *box, bool last,
+static void make_node(const struct building *building, const struct node *from, const struct box *box, bool last,
                                   struct node *to)
 {
     struct nearest_bounds nearest;
@@ -401,14 +455,20 @@ static int level_apart(const struct pixel_cell *a, const struct pixel_cell *b)
     return level;
 }
 
-static float spread_of(const struct pixel_field *field)
+/* Returns the spread of the readings, and sets building->middle and ->away. */
+static float find_spread(struct building *building)
 {
+    const struct pixel_field *field = building->field;
     float low = INFINITY, high = -INFINITY;
     for (int i = 0; i < field->count; i++)
         if (field->sensors[i].state & PIXEL_USABLE) {
             low = fminf(low, field->sensors[i].value);
             high = fmaxf(high, field->sensors[i].value);
         }
+    if (high > low) {
+        building->middle = 0.5f * (low + high);
+        building->away = 1 / (high - low);
+    }
     return (field->paper ? fmaxf(fabsf(low), fabsf(high)) : high - low) * fabsf(field->scale);
 }
 
@@ -422,20 +482,30 @@ static void add_list(struct pixel_lists *lists, const struct node *node, const s
     list->column = cell->column;
     list->row = cell->row;
     list->first = lists->sensor_count;
+    list->unit = lanes_exp2(all(list->top))[0];
     if (repeats) { /* the cell has the same list as the cell before */
         list->first = list[-1].first;
+        list->all_used = list[-1].all_used;
         return;
+    }
+    list->all_used = true;
+    for (int i = 0; i < node->count; i++) {
+        uint32_t state;
+        memcpy(&state, node->columns[STATE] + i, sizeof(state));
+        list->all_used &= (state & PIXEL_USABLE) != 0;
     }
     mem_grow(&lists->sensors, &lists->sensor_capacity, lists->sensor_count + (size_t)node->count + 1, sizeof(*lists->sensors));
     memcpy(lists->sensors + lists->sensor_count, node->columns[INDEX], (size_t)node->count * sizeof(*lists->sensors));
     lists->sensor_count += (size_t)node->count;
 }
 
-static void fill_root(const struct pixel_field *field, float step, struct node *root)
+static void fill_root(struct building *building, float step)
 {
-    const float spread = spread_of(field);
+    const struct pixel_field *field = building->field;
+    const float spread = find_spread(building);
+    struct node *root = &building->nodes[0];
     root->count = field->count;
-    root->left = spread > 0 ? fminf(step * (1 - MOST_SHARE) / spread, MOST_SHARE) : MOST_SHARE;
+    root->left = spread > 0 ? fminf(step * (1 - 2 * MOST_SHARE) / spread, MOST_SHARE) : MOST_SHARE;
     for (uint32_t i = 0; i < (uint32_t)field->count; i++) {
         const struct pixel_sensor *sensor = &field->sensors[i];
         const float *at = sensor->place_m, numbers[] = { at[0], at[1], at[2], sensor->value, sensor->strength, sensor->decay };
@@ -450,13 +520,14 @@ void pixel_lists_add(struct pixel_lists *lists, const struct pixel_field *field,
 {
     const size_t padded = (size_t)field->count + LANES;
     struct building building = { .field = field };
-    float *memory = mem_array(((DEPTH + 1) * COLUMNS + 1) * padded, sizeof(*memory)), *next = memory + padded;
+    mem_grow(&lists->room, &lists->room_capacity, ((DEPTH + 1) * COLUMNS + 1) * padded, sizeof(*lists->room));
+    float *next = lists->room + padded;
     int depth = DEPTH;
-    building.errors = memory;
+    building.errors = lists->room;
     for (int level = 0; level <= DEPTH; level++)
         for (int c = 0; c < COLUMNS; c++, next += padded)
             building.nodes[level].columns[c] = next;
-    fill_root(field, step, &building.nodes[0]);
+    fill_root(&building, step);
     for (size_t i = 0; i < count; i++) {
         int level = i == 0 ? 1 : level_apart(&cells[i - 1], &cells[i]);
         bool repeats = level > depth;
@@ -468,7 +539,6 @@ void pixel_lists_add(struct pixel_lists *lists, const struct pixel_field *field,
         depth = repeats ? depth : level - 1;
         add_list(lists, &building.nodes[depth], &cells[i], repeats);
     }
-    mem_free(memory);
 }
 
 void pixel_lists_settle(struct pixel_lists *lists)
@@ -481,5 +551,6 @@ void pixel_lists_finish(struct pixel_lists *lists)
 {
     mem_free(lists->lists);
     mem_free(lists->sensors);
+    mem_free(lists->room);
     *lists = (struct pixel_lists){ 0 };
 }

@@ -5,6 +5,8 @@
    nothing is kept when sensors or readings change. Private to soft/. */
 #ifndef RENDER_SOFT_PIXEL_LISTS_H
 #define RENDER_SOFT_PIXEL_LISTS_H
+#include <math.h>
+
 #include "field/pixel_field.h"
 #include "render/soft/lanes.h"
 
@@ -21,11 +23,12 @@ struct pixel_list {
     const uint32_t *sensors; /* indices of the near sensors in field->sensors; NULL: the first `count` sensors */
     size_t first;            /* index of the list's first sensor in pixel_lists.sensors */
     int count;
+    bool all_used;  /* true: the readings of all listed sensors count */
     bool has_far;   /* true: at least one sensor is far, so the polynomials are not 0 */
     bool has_marks; /* true: a far sensor's reading is Uncertain */
     /* Polynomials of the far sensors' sums: of weights, of weights times values, and of the weights of Uncertain sensors, all times 2^-top.
-       Coefficients of 1, x, y, z, xx, xy, xz, yy, yz, zz, with x, y, z from the centre in metres. */
-    float top, centre[3], total[PIXEL_TERMS], values[PIXEL_TERMS], marked[PIXEL_TERMS];
+       `unit` is 2^top. Coefficients of 1, x, y, z, xx, xy, xz, yy, yz, zz, with x, y, z from the centre in metres. */
+    float top, unit, centre[3], total[PIXEL_TERMS], values[PIXEL_TERMS], marked[PIXEL_TERMS];
     uint32_t mesh, column, row; /* mesh and position of the list's cell, copied from struct pixel_cell */
     uint32_t next;              /* set and read by the caller only */
 };
@@ -34,7 +37,14 @@ struct pixel_lists {
     struct pixel_list *lists;
     uint32_t *sensors;
     size_t count, capacity, sensor_count, sensor_capacity;
+    float *room; /* working memory */
+    size_t room_capacity;
 };
+
+#define pixel_lists_step SOFT_IN_SET(pixel_lists_step, SOFT_SET)
+#define pixel_lists_add SOFT_IN_SET(pixel_lists_add, SOFT_SET)
+#define pixel_lists_settle SOFT_IN_SET(pixel_lists_settle, SOFT_SET)
+#define pixel_lists_finish SOFT_IN_SET(pixel_lists_finish, SOFT_SET)
 
 /* Returns the largest error of a list's values: three quarters of a step of 1/255 of the range. scale: from struct frame_uniforms. */
 float pixel_lists_step(const float *scale);
@@ -43,6 +53,21 @@ void pixel_lists_add(struct pixel_lists *lists, const struct pixel_field *field,
 /* Sets the pointer `sensors` of all lists. Call it after the last pixel_lists_add(), which may move the array. */
 void pixel_lists_settle(struct pixel_lists *lists);
 void pixel_lists_finish(struct pixel_lists *lists); /* a zeroed struct is fine; it can be used again */
+
+/* Returns whether a sensor's weight is its strength / distance^2. */
+static inline bool pixel_is_inverse_square(const struct pixel_field *field)
+{
+    return !field->paper && field->power == 2.0f && !(field->reach_m < INFINITY);
+}
+
+/* Returns the list of all sensors of a field. */
+static inline struct pixel_list pixel_list_of_all(const struct pixel_field *field)
+{
+    struct pixel_list all = { .count = field->count, .all_used = true };
+    for (int i = 0; i < field->count; i++)
+        all.all_used &= (field->sensors[i].state & PIXEL_USABLE) != 0;
+    return all;
+}
 
 /* Returns the number of a cell in its square along a curve, on which each aligned square of cells is a range. */
 static inline uint32_t pixel_cells_order(uint32_t column, uint32_t row)

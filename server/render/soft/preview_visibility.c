@@ -4,6 +4,7 @@
 
 #include "base/mem.h"
 #include "render/pick/markers.h"
+#include "render/soft/kernels.h"
 #include "render/soft/ramps.h"
 #include "render/soft/tile.h"
 
@@ -179,7 +180,8 @@ bool soft_resolve_again(struct soft *soft, const struct frame_context *context, 
     const struct resolve_paint paint = { soft_colormap(soft, &context->colormap, context->view->look == LOOK_GLOSSY && !buffer->gloss),
                                          block.scale[3], block.lines[0], context->colormap.nearest };
     resolve_read(buffer, context, soft->workers);
-    resolve_colors(buffer, &paint, soft->workers, 0, buffer->band_count, frame);
+    struct resolve_job coloring = { buffer, paint, 0, frame };
+    workers_for(soft->workers, (size_t)buffer->band_count, 2, soft->kernels->color_bands, &coloring);
     if (points->count > 0)
         isolines_find(context, points, buffer->depth, (size_t)buffer->width_px, frame);
     frame->depth[0] = depth_grid_ref(buffer->grid);

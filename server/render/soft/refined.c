@@ -333,8 +333,9 @@ bool refined_step(struct refined *refined, const struct frame_context *context, 
         break;
     case REFINED_COLOR:
         done = advance(refined, bands, BANDS, &begin, &end);
-        const struct resolve_paint paint = { raster->colormap, raster->block.scale[3], raster->block.lines[0], raster->lines };
-        resolve_colors(refined->buffer, &paint, workers, (int)begin, (int)(end - begin), frame);
+        struct resolve_job coloring = { .buffer = refined->buffer, .first = begin, .frame = frame };
+        coloring.paint = (struct resolve_paint){ raster->colormap, raster->block.scale[3], raster->block.lines[0], raster->lines };
+        workers_for(workers, end - begin, 2, raster->soft->kernels->color_bands, &coloring);
         break;
     case REFINED_DONE: return true;
     }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "render/soft/kernels.h"
 #include "render/soft/resolve_pixels.h"
 #include "render/soft/tones.h"
 #include "render/soft/visibility_buffer_impl.h"
@@ -15,7 +16,6 @@ struct coloring {
     /* log: the scale is logarithmic; rich: there are isolines, or the scale is logarithmic, so the slower code path is used */
     bool log, rich;
     struct frame *frame;
-    size_t first_band;
     const struct band_lists *lists; /* sensor lists of the band being coloured */
 };
 
@@ -459,7 +459,7 @@ SOFT_INLINE lanes_int color_lanes(const struct coloring *coloring, const struct 
 
 /* Colours one band (group of pixel rows). Where the width is no multiple of eight, the last eight pixels of a row overlap the eight
    before. */
-SOFT_KERNEL static void color_band(const struct coloring *coloring, int number)
+static void color_band(const struct coloring *coloring, int number)
 {
     const struct visibility_buffer *buffer = coloring->buffer;
     const struct visibility_band *band = &buffer->bands[number];
@@ -499,25 +499,19 @@ static void make_lists(const struct visibility_buffer *buffer, const struct visi
     }
 }
 
-static void color_bands(void *arg, size_t begin, size_t end)
+void resolve_color_bands(void *arg, size_t begin, size_t end)
 {
-    struct coloring coloring = *(const struct coloring *)arg;
+    const struct resolve_job *job = arg;
+    const struct visibility_buffer *buffer = job->buffer;
+    const bool log = is_log(buffer->scale);
     for (size_t i = begin; i < end; i++) {
-        const size_t number = coloring.first_band + i;
-        struct band_lists lists = { .columns = (coloring.buffer->width_px + CELL_PX - 1) / CELL_PX };
-        coloring.lists = &lists;
-        if (coloring.buffer->evaluates)
-            make_lists(coloring.buffer, &coloring.buffer->bands[number], &lists);
+        const size_t number = job->first + i;
+        struct band_lists lists = { .columns = (buffer->width_px + CELL_PX - 1) / CELL_PX };
+        struct coloring coloring = { buffer, buffer->scale, job->paint, log, log || job->paint.line_px > 0, job->frame, &lists };
+        if (buffer->evaluates)
+            make_lists(buffer, &buffer->bands[number], &lists);
         color_band(&coloring, (int)number);
         pixel_lists_finish(&lists.lists);
         mem_free(lists.of_cells);
     }
-}
-
-void resolve_colors(const struct visibility_buffer *buffer, const struct resolve_paint *paint, struct workers *workers, int first,
-                    int count, struct frame *frame)
-{
-    bool log = is_log(buffer->scale);
-    struct coloring coloring = { buffer, buffer->scale, *paint, log, log || paint->line_px > 0, frame, (size_t)first, NULL };
-    workers_for(workers, (size_t)count, 2, color_bands, &coloring);
 }

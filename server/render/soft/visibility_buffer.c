@@ -322,7 +322,7 @@ void resolve_read(struct visibility_buffer *buffer, const struct frame_context *
             continue;
         buffer->finds_cells |= (field->pixels.count > PIXEL_FEW) != (mesh->pixels.count > PIXEL_FEW);
         pixel_field_copy(&mesh->pixels, &field->pixels);
-        mesh->every = (struct pixel_list){ .count = field->pixels.count };
+        mesh->every = pixel_list_of_all(&field->pixels);
         if (field->pixels.count == 0)
             workers_for(workers, mesh->vertex_count, VERTICES_AT_ONCE, read_vertices, &job);
         mesh->read = true;

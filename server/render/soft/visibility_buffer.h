@@ -138,8 +138,12 @@ bool visibility_buffer_settle(struct visibility_buffer *buffer, struct workers *
 void resolve_read(struct visibility_buffer *buffer, const struct frame_context *context, struct workers *workers);
 /* Stores the slopes of the triangle that visibility_add_triangle() added last. weights: from soft_weights(). Runs on a worker. */
 void visibility_add_slopes(struct visibility_band *band, const double weights[3][3]);
-/* Colours `count` bands (groups of pixel rows), from the band with index `first` on. */
-void resolve_colors(const struct visibility_buffer *buffer, const struct resolve_paint *paint, struct workers *workers, int first,
-                    int count, struct frame *frame);
+/* Bands (groups of pixel rows) to colour from band `first` on; argument of color_bands in kernels.h. */
+struct resolve_job {
+    const struct visibility_buffer *buffer;
+    struct resolve_paint paint;
+    size_t first;
+    struct frame *frame;
+};
 
 #endif
