@@ -136,5 +136,7 @@ size_t field_sensors(struct field *field, int asset, const struct field_params *
    parameters took them. out->count is 0 if the field must be interpolated between vertices, or is the same everywhere. The caller frees
    the sensors with pixel_field_finish(). */
 void field_pixels(struct field *field, int asset, const struct field_params *params, struct pixel_field *out);
+/* Returns how many of `count` vertices need values for a picture: none if the field is evaluated at each pixel. */
+size_t field_vertices(struct field *field, int asset, const struct field_params *params, size_t count);
 
 #endif

@@ -118,3 +118,12 @@ void field_pixels(struct field *field, int asset, const struct field_params *par
     else if (state && state->weights && layout_is_exact(layout, params->interpolation, params->distance))
         fill_sum(state, out);
 }
+
+size_t field_vertices(struct field *field, int asset, const struct field_params *params, size_t count)
+{
+    struct field_params room;
+    params = field_params_of(field, asset, params, &room);
+    const struct field_layout *layout = field_layout(field, asset, params);
+    bool evaluated = layout && params->show != SHOW_DISTANCE && layout_is_exact(layout, params->interpolation, params->distance);
+    return evaluated ? 0 : count;
+}

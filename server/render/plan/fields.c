@@ -127,9 +127,10 @@ static void show(struct fields_entry *entry)
     const struct scalars *now = entry->behind;
     if (now) {
         entry->ready = now->ready;
-        memcpy(entry->shown, now->at, now->ready * sizeof(*entry->shown));
+        if (now->ready > 0)
+            memcpy(entry->shown, now->at, now->ready * sizeof(*entry->shown));
         entry->uploaded = false;
-        entry->hashed = 0;
+        entry->hashed = SIZE_MAX;
         entry->flags_version = now->flags_version;
         entry->travel = now->travel;
         entry->behind = NULL;
@@ -178,11 +179,17 @@ static void take_directions(struct fields *fields, struct fields_entry *entry, c
     }
 }
 
+size_t fields_vertices(const struct fields *fields, int asset, const struct field_params *params, size_t count)
+{
+    return fields->reference ? count : field_vertices(fields->field, asset, params, count);
+}
+
 /* Finds or creates the entry of one asset and notes whether its values are out of date. NULL: the asset has nothing to show. */
-static struct fields_entry *look(struct fields *fields, const struct fields_ask *ask, int asset, size_t count)
+static struct fields_entry *look(struct fields *fields, const struct fields_ask *ask, int asset, size_t all)
 {
     struct field_params room;
     const struct field_params *params = field_params_of(fields->field, asset, ask->params, &room);
+    size_t count = fields_vertices(fields, asset, params, all);
     const struct scalars *scalars = field_scalars_of(fields->field, asset, params, ask->snapshot, count);
     if (!scalars && !field_covers(fields->field, asset, params))
         return NULL;
@@ -198,6 +205,12 @@ static struct fields_entry *look(struct fields *fields, const struct fields_ask 
         return &fields->lost;
     struct pixel_field pixels;
     field_pixels(fields->field, asset, params, &pixels);
+    if (pixels.count == 0 && count < all) { /* one sensor is left, or none */
+        count = all;
+        scalars = field_scalars_of(fields->field, asset, params, ask->snapshot, count);
+        if (!scalars)
+            return &fields->lost;
+    }
     if (fresh || entry->ready < count || can_be_seen(entry, scalars, &pixels)) {
         entry->behind = scalars;
         pixel_field_finish(&entry->pixels);
@@ -261,8 +274,11 @@ void fields_get(struct fields *fields, const struct fields_ask *ask, const struc
 {
     struct fields_entry **changed = mem_array(ask->asset_count, sizeof(*changed));
     struct fields_shown showing = { changed };
-    size_t count = 0;
-    field_update_all(fields->field, ask->assets, ask->counts, ask->asset_count, ask->params, ask->snapshot);
+    size_t count = 0, *counts = mem_array(ask->asset_count, sizeof(*counts));
+    for (size_t i = 0; i < ask->asset_count; i++)
+        counts[i] = fields_vertices(fields, ask->assets[i], ask->params, ask->counts[i]);
+    field_update_all(fields->field, ask->assets, counts, ask->asset_count, ask->params, ask->snapshot);
+    mem_free(counts);
     for (size_t i = 0; i < ask->asset_count; i++) {
         struct fields_entry *entry = look(fields, ask, ask->assets[i], ask->counts[i]);
         entries[ask->assets[i]] = entry;

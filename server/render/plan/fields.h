@@ -21,7 +21,7 @@ struct fields_entry {
        is an upper bound of the error of any shown value */
     double travel;
     uint64_t content; /* hash of the first `hashed` shown scalars, as many as the last request needed */
-    size_t hashed;
+    size_t hashed;          /* SIZE_MAX: `content` is out of date */
     /* sensors of a field that is evaluated at pixels; count 0: the field is interpolated between vertices, from `shown` */
     struct pixel_field pixels;
     struct scalar *shown;
@@ -63,6 +63,8 @@ struct fields_ask {
 /* Writes the entry of each requested asset into `entries` (indexed by asset). NULL: the asset has nothing to show. An asset that there is
    no room for gets an entry that shows no data; logged. Valid until the next fields_trim(). */
 void fields_get(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries);
+/* Returns how many of `count` vertices of an asset need values for fields_get(). */
+size_t fields_vertices(const struct fields *fields, int asset, const struct field_params *params, size_t count);
 /* Uploads the entries of these assets; call before the GPU draws with them. Returns false if an entry did not fit, which is logged: its
    element of `entries` then points to an entry that shows no data. */
 bool fields_upload(struct fields *fields, const int *assets, size_t count, const struct fields_entry **entries);

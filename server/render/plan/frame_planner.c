@@ -115,10 +115,11 @@ bool frame_plan_prepare(struct frame_plan *plan, const struct frame_planner *pla
     bool ready = true;
     if (budget_ns == INT64_MAX)
         return true; /* nothing to do without a time limit: frame_plan_complete() then computes the fields, many assets in parallel */
-    for (size_t i = 0; i < plan->visible_count && ready && plan->view.look != LOOK_MATERIALS; i++)
-        while (ready &&
-               !field_advance(planner->fields->field, plan->visible[i], &plan->view.field, snapshot, plan->vertex_counts[i], slice))
+    for (size_t i = 0; i < plan->visible_count && ready && plan->view.look != LOOK_MATERIALS; i++) {
+        size_t count = fields_vertices(planner->fields, plan->visible[i], &plan->view.field, plan->vertex_counts[i]);
+        while (ready && !field_advance(planner->fields->field, plan->visible[i], &plan->view.field, snapshot, count, slice))
             ready = clock_mono_ns() - begin_ns < budget_ns;
+    }
     plan->field_ns += clock_mono_ns() - begin_ns;
     return ready;
 }
