@@ -94,7 +94,7 @@ static void hash_field(XXH3_state_t *state, const struct plant *plant, const str
         XXH3_64bits_update(state, "d", 1);
     if (is_alone(plant, sensors, count, sensor) && !straight_looks_at_paper(group, 1))
         XXH3_64bits_update(state, "s", 1);
-    if (plant_group_is_exact(group, count_of_group(plant, sensors, count, sensor)))
+    if (plant_group_is_exact(group))
         XXH3_64bits_update(state, "x", 1);
     if (tag->place.assumed)
         XXH3_64bits_update(state, "e", 1);

@@ -34,7 +34,7 @@ static void add_group(struct linear_error *linear, const struct plant *plant, in
     for (uint32_t i = 0; i < linear->sensor_count; i++)
         if (plant->tags[sensors[i].tag].group == group && !plant->tags[sensors[i].tag].place.assumed)
             to->columns[to->count++] = i;
-    if (to->count == 0 || plant_group_is_exact(from, to->count)) {
+    if (to->count == 0 || plant_group_is_exact(from)) {
         mem_free(to->columns);
         return;
     }

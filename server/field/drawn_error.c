@@ -368,8 +368,7 @@ static bool is_as_prepared(const struct weights *weights, const struct field_par
     const struct plant_group *group = layout->group;
     if (layout->trial || params->override_count > 0 || params->distance == DISTANCE_HEAT || params->reach_m != group->reach_m)
         return false;
-    if (plant_group_is_exact(group, layout->sensor_count)) /* renderers evaluate this field at each pixel, so preparation subdivided no
-                                                              triangle for the group */
+    if (plant_group_is_exact(group)) /* preparation subdivided no triangle for the group */
         return false;
     for (size_t i = 0; i < layout->sensor_count; i++)
         if (weights->configured[i] && !weights->takes_part[i])

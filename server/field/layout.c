@@ -127,7 +127,7 @@ const float *layout_along(const struct layout_sensor *sensor, enum distance_mode
 
 bool layout_is_exact(const struct field_layout *layout, enum interpolation interpolation, enum distance_mode mode)
 {
-    return !layout->assumed && plant_is_exact(interpolation, mode, layout->sensor_count);
+    return !layout->assumed && plant_is_exact(interpolation, mode);
 }
 
 bool layout_is_in_file(const struct layout_sensor *sensor, enum distance_mode mode)
