@@ -178,9 +178,9 @@ static bool run_distances(const struct prep_options *options, struct log *log, s
     struct prepare prepare;
     int asset = plant_find_asset(plant, options->asset), tag = plant_find_tag(plant, options->sensor);
     if (asset < 0)
-        diag_error(diag, plant->path, 0, 0, "there is no asset %s", options->asset);
+        diag_error(diag, plant->files.path, 0, 0, "there is no asset %s", options->asset);
     if (tag < 0)
-        diag_error(diag, plant->tags_path, 0, 0, "there is no tag %s", options->sensor);
+        diag_error(diag, plant->files.tags_path, 0, 0, "there is no tag %s", options->sensor);
     if (asset < 0 || tag < 0)
         return false;
     struct prepare_params params = { .folder = folder, .only = options->asset };
@@ -215,7 +215,7 @@ static bool run_all(const struct prep_options *options, struct log *log, struct 
         .folder = folder, .only = options->asset, .progress = stderr, .patience = patience, .stop = &interrupted
     };
     if (options->asset && plant_find_asset(plant, options->asset) < 0) {
-        diag_error(diag, plant->path, 0, 0, "there is no asset %s", options->asset);
+        diag_error(diag, plant->files.path, 0, 0, "there is no asset %s", options->asset);
         return false;
     }
     if (!say_early(plant, options->memory_bytes))
@@ -260,8 +260,8 @@ static bool confine_self(const struct plant *plant, const char *folder, char **a
     child_paths_add(&paths, "/proc/self/exe", CONFINE_EXECUTE);
     child_paths_add_modules(&paths);
     child_paths_add(&paths, folder, CONFINE_WRITE);
-    child_paths_add(&paths, plant->tags_path, CONFINE_READ);
-    child_paths_add_beside(&paths, plant->path, beside);
+    child_paths_add(&paths, plant->files.tags_path, CONFINE_READ);
+    child_paths_add_beside(&paths, plant->files.path, beside);
     for (size_t i = 0; i < plant->asset_count; i++)
         if (i == 0 || strcmp(plant->assets[i].model, plant->assets[i - 1].model) != 0) {
             child_paths_add(&paths, plant->assets[i].model, CONFINE_READ);
@@ -274,7 +274,7 @@ static bool confine_self(const struct plant *plant, const char *folder, char **a
     int status = child_self_confine(&paths, notifies, argv);
     child_paths_finish(&paths);
     if (status != 0)
-        diag_error(diag, plant->path, 0, 0, "plantcast-prep cannot be confined: %s", strerror(-status));
+        diag_error(diag, plant->files.path, 0, 0, "plantcast-prep cannot be confined: %s", strerror(-status));
     return status == 0;
 }
 

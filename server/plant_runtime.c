@@ -45,10 +45,10 @@ static void warn_of_far_sensors(struct log *log, const struct scene *scene)
     size_t count;
     struct far_sensor *far = far_sensors_find(scene, &count);
     for (size_t i = 0; i < count && i < 10; i++)
-        log_warn(log, "%s: sensor %s is %.3f m from the surface of %s (at most %.3f m is expected)", scene->plant->tags_path,
+        log_warn(log, "%s: sensor %s is %.3f m from the surface of %s (at most %.3f m is expected)", scene->plant->files.tags_path,
                  scene->plant->tags[far[i].sensor->tag].name, far[i].sensor->surface_distance_m, far[i].asset->plant->id, far[i].limit_m);
     if (count > 10)
-        log_warn(log, "%s: %zu more sensors are far from their surface; plantcastd --check lists them", scene->plant->tags_path,
+        log_warn(log, "%s: %zu more sensors are far from their surface; plantcastd --check lists them", scene->plant->files.tags_path,
                  count - 10);
     mem_free(far);
 }
@@ -143,7 +143,7 @@ static bool start_publisher(struct plant_runtime *runtime)
 
 static bool start_other_plants(struct plant_runtime *runtime)
 {
-    return runtime->plant->other_plant_count == 0 ||
+    return runtime->plant->screens.other_plant_count == 0 ||
            (runtime->services.other_plants = other_plants_start(runtime->context->log, runtime->plant));
 }
 
@@ -159,7 +159,7 @@ static void start_placing(struct plant_runtime *runtime)
                                                                          .folder = folder,
                                                                          .notify = context->notify,
                                                                          .notify_arg = context->notify_arg });
-    runtime->services.tag_list = tag_file_read(runtime->plant->tags_path, &why);
+    runtime->services.tag_list = tag_file_read(runtime->plant->files.tags_path, &why);
     if (!runtime->services.tag_list) {
         char text[REFUSAL_TEXT_BYTES];
         refusal_text(&why, text);

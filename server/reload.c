@@ -138,10 +138,10 @@ static void refuse(struct reload *reload, const struct diag *diag, const char *w
     }
     if (why)
         json_array_append_new(errors, json_string(why));
-    log_event(log, LOG_ERROR, EVENT_RELOAD_REFUSED, "reload: keeping the configuration %s%s%s", (*reload->runtime)->plant->hash,
+    log_event(log, LOG_ERROR, EVENT_RELOAD_REFUSED, "reload: keeping the configuration %s%s%s", (*reload->runtime)->plant->files.hash,
               why ? ": " : "", why ? why : "");
     answer(reload, false,
-           json_pack("{s:b,s:s,s:o}", "reloaded", false, "configuration", (*reload->runtime)->plant->hash, "errors", errors));
+           json_pack("{s:b,s:s,s:o}", "reloaded", false, "configuration", (*reload->runtime)->plant->files.hash, "errors", errors));
 }
 
 /* --- the switch ------------------------------------------------------------------------------------------------------- */
@@ -195,10 +195,10 @@ static void say_difference(struct reload *reload, const struct plant_diff *diff,
         json_array_append_new(changes, json_string(diff->lines[i]));
     }
     log_event(log, LOG_INFO, EVENT_RELOADED, "reload: configuration %s in place of %s, after %.1f s, by %s",
-              (*reload->runtime)->plant->hash, before, took_s, reload->by);
+              (*reload->runtime)->plant->files.hash, before, took_s, reload->by);
     answer(reload, true,
-           json_pack("{s:b,s:s,s:s,s:o}", "reloaded", true, "configuration", (*reload->runtime)->plant->hash, "before", before, "changes",
-                     changes));
+           json_pack("{s:b,s:s,s:s,s:o}", "reloaded", true, "configuration", (*reload->runtime)->plant->files.hash, "before", before,
+                     "changes", changes));
 }
 
 /* Switches the daemon to the new plant. The old plant's sources end in this function, so it cannot be undone: if a thread of the new
@@ -207,7 +207,7 @@ static void put_in_force(struct reload *reload, struct plant_runtime *after, con
 {
     struct plant_runtime *before = *reload->runtime;
     struct swap both = { .net = reload->net, .after = after };
-    char *hash = mem_strdup(before->plant->hash);
+    char *hash = mem_strdup(before->plant->files.hash);
     pthread_mutex_lock(&reload->put_lock);
     bool good = net_call(reload->net, release_recording, reload->net);
     if (good) {
@@ -222,7 +222,7 @@ static void put_in_force(struct reload *reload, struct plant_runtime *after, con
         plant_runtime_destroy(&before);
         malloc_trim(0);
         reload_count(reload->context->counters, hash, false);
-        reload_count(reload->context->counters, after->plant->hash, true);
+        reload_count(reload->context->counters, after->plant->files.hash, true);
         say_difference(reload, diff, hash, (double)(clock_mono_ns() - begun_ns) / 1e9);
     } else {
         log_err(reload->context->log, "reload: the new plant cannot be activated; the daemon ends, and loads it at its next start");
@@ -392,7 +392,7 @@ static void import_locked(struct reload *reload, struct import_order *order, int
     const struct import_job_params params = { .log = context->log,
                                               .import = reload->import,
                                               .plant_path = context->params->plant_path,
-                                              .tags_path = (*reload->runtime)->plant->tags_path,
+                                              .tags_path = (*reload->runtime)->plant->files.tags_path,
                                               .prepared = folder,
                                               .lock = lock,
                                               .quotas = &context->params->access.quotas,

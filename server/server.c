@@ -325,7 +325,7 @@ static bool read_plant(struct server *server)
 
 static void record(const struct server *server, const char *event)
 {
-    char *what = mem_printf("plantcastd " PLANTCAST_VERSION ", configuration %s", server->runtime->plant->hash);
+    char *what = mem_printf("plantcastd " PLANTCAST_VERSION ", configuration %s", server->runtime->plant->files.hash);
     audit_say(server->audit, &(struct audit_entry){ .event = event, .result = "done", .what = what });
     mem_free(what);
 }
@@ -455,7 +455,7 @@ static bool server_start(struct server *server)
     if (!(server->context.file_writer = server->file_writer = file_writer_start(server->log, on_pictures, server)))
         return false;
     server->web = find_web(server->params.web);
-    reload_count(server->counters, server->runtime->plant->hash, true);
+    reload_count(server->counters, server->runtime->plant->files.hash, true);
     supervision_starting(server->supervision, "drawing the first picture");
     return make_keeper(server) && plant_runtime_start_recording(server->runtime, NULL) && plant_runtime_start_sources(server->runtime) &&
            plant_runtime_start_render_service(server->runtime, NULL, 0) && start_import(server) && start_agent(server) &&
@@ -565,9 +565,9 @@ static void print_left_out(struct log *log, const struct plant *plant, const cha
         const struct manifest_entry *entry = manifest_find(&manifest, asset->id);
         size_t count = entry ? entry->left_out_count : 0;
         for (size_t i = 0; i < count && i < SHOWN; i++)
-            printf("%s:%d: warning: model %s: left out: %s\n", plant->path, asset->line, asset->model, entry->left_out[i]);
+            printf("%s:%d: warning: model %s: left out: %s\n", plant->files.path, asset->line, asset->model, entry->left_out[i]);
         if (count > SHOWN)
-            printf("%s:%d: warning: model %s: %zu more textures or extensions are left out\n", plant->path, asset->line, asset->model,
+            printf("%s:%d: warning: model %s: %zu more textures or extensions are left out\n", plant->files.path, asset->line, asset->model,
                    count - SHOWN);
     }
     manifest_finish(&manifest);
@@ -598,8 +598,8 @@ static int check_prepared(const struct server_params *params, const struct plant
         struct far_sensor *far = far_sensors_find(scene, &count);
         for (size_t i = 0; i < count; i++) {
             const struct plant_tag *tag = &plant->tags[far[i].sensor->tag];
-            printf("%s:%d: warning: sensor %s is %.3f m from the surface of %s (at most %.3f m is expected)\n", plant->tags_path, tag->line,
-                   tag->name, far[i].sensor->surface_distance_m, far[i].asset->plant->id, far[i].limit_m);
+            printf("%s:%d: warning: sensor %s is %.3f m from the surface of %s (at most %.3f m is expected)\n", plant->files.tags_path,
+                   tag->line, tag->name, far[i].sensor->surface_distance_m, far[i].asset->plant->id, far[i].limit_m);
         }
         mem_free(far);
         view_named_check_all(scene, print_wrong_view, (void *)params->plant_path);
@@ -616,7 +616,7 @@ static size_t count_sensors(const struct plant *plant, struct diag *diag)
     for (size_t i = 0; i < plant->tag_count; i++)
         count += plant->tags[i].group >= 0 && plant->tags[i].asset >= 0;
     if (count == 0 && plant->tag_count > 0)
-        diag_warning(diag, plant->tags_path, 0, 0, "none of the %zu tags is a sensor (Group, Asset and a place): there is no field",
+        diag_warning(diag, plant->files.tags_path, 0, 0, "none of the %zu tags is a sensor (Group, Asset and a place): there is no field",
                      plant->tag_count);
     return count;
 }

@@ -73,7 +73,7 @@ static void choose_range(const struct plant *plant, const struct plant_tag *tag,
 static struct process *make_process(const struct plant *plant, struct diag *diag)
 {
     struct csv csv;
-    if (!csv_open(&csv, plant->tags_path, diag))
+    if (!csv_open(&csv, plant->files.tags_path, diag))
         return NULL;
     struct process_tag *tags = mem_array(plant->tag_count, sizeof(*tags));
     int value_column = csv_find(&csv, "Sim Value"), loop_column = csv_find(&csv, "Sim Loop");

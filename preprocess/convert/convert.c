@@ -100,14 +100,14 @@ static bool convert_one(const struct plant *plant, const struct plant_conversion
     struct text from = { 0 }, to = { 0 };
     bool good = add_hash(how->from, how->command, &from);
     if (!good) {
-        diag_error(diag, plant->path, how->line, 0, "convert: '%s' cannot be read: %s", how->from, strerror(errno));
+        diag_error(diag, plant->files.path, how->line, 0, "convert: '%s' cannot be read: %s", how->from, strerror(errno));
     } else if (!is_made(made, how, from.at)) {
         fprintf(progress, "plantcast-prep: making %s from %s\n", how->model, how->from);
         good = make(how, why) && add_hash(how->model, "", &to);
         if (good)
             json_object_set_new(made, how->model, json_pack("{s:s,s:s}", "from", from.at, "model", to.at));
         else
-            diag_error(diag, plant->path, how->line, 0, "convert: '%s' could not be created: %s", how->model, why);
+            diag_error(diag, plant->files.path, how->line, 0, "convert: '%s' could not be created: %s", how->model, why);
     }
     text_finish(&from);
     text_finish(&to);
@@ -133,7 +133,7 @@ bool convert_run(const struct plant *plant, const char *folder, FILE *progress, 
         char *text = json_text(json_incref(made), 0);
         int status = atomic_file_put(path, text, strlen(text));
         if (status != 0)
-            diag_error(diag, plant->path, 0, 0, "'%s' cannot be written: %s", path, strerror(-status));
+            diag_error(diag, plant->files.path, 0, 0, "'%s' cannot be written: %s", path, strerror(-status));
         good = good && status == 0;
         mem_free(text);
     }

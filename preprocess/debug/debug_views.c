@@ -121,7 +121,7 @@ static void write_one(struct views *views, const struct plant_asset *asset, cons
         fprintf(views->params->say, "%s: %zu bridges, %zu points added\n", path, surface_report(subject.surface)->bridges,
                 surface_report(subject.surface)->samples);
     if (!good) {
-        diag_error(views->diag, views->plant->path, asset->line, 0, "asset %s: %s", asset->id, why);
+        diag_error(views->diag, views->plant->files.path, asset->line, 0, "asset %s: %s", asset->id, why);
         views->failed = true;
     }
     subject_finish(&subject);
@@ -145,7 +145,7 @@ static void write_model(struct views *views, struct model_file *model)
         if (strcmp(asset->model, model->path) != 0 || !is_wanted(views, asset))
             continue;
         if (!model->was_parsed && !model_file_parse(model)) {
-            diag_error(views->diag, views->plant->path, asset->line, 0, "asset %s: %s: %s", asset->id, model->path, model->why);
+            diag_error(views->diag, views->plant->files.path, asset->line, 0, "asset %s: %s: %s", asset->id, model->path, model->why);
             views->failed = true;
             return;
         }
@@ -161,11 +161,12 @@ bool debug_views_write(struct log *log, struct workers *workers, const struct pl
     struct model_files models = { 0 };
     int tag = params->sensor ? plant_find_tag(plant, params->sensor) : 0;
     if (params->sensor && (tag < 0 || plant->tags[tag].asset < 0 || plant->tags[tag].group < 0)) {
-        diag_error(diag, plant->tags_path, tag < 0 ? 0 : plant->tags[tag].line, 0, "tag %s is not a sensor of an asset", params->sensor);
+        diag_error(diag, plant->files.tags_path, tag < 0 ? 0 : plant->tags[tag].line, 0, "tag %s is not a sensor of an asset",
+                   params->sensor);
         return false;
     }
     if (mkdir(params->folder, 0777) != 0 && errno != EEXIST) {
-        diag_error(diag, plant->path, 0, 0, "%s: cannot be created: %s", params->folder, strerror(errno));
+        diag_error(diag, plant->files.path, 0, 0, "%s: cannot be created: %s", params->folder, strerror(errno));
         return false;
     }
     for (size_t i = 0; i < plant->asset_count; i++)

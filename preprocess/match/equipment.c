@@ -58,8 +58,8 @@ static void add_asset(const struct model_index *site, size_t model, size_t node,
 {
     const struct model_tree *tree = &site->models[model];
     const char *name = tree->nodes[node].name, *description = description_of(&tree->more[node]);
-    size_t folder = strlen(site->plant->folder);
-    bool inside = !strncmp(tree->path, site->plant->folder, folder) && tree->path[folder] == '/';
+    size_t folder = strlen(site->plant->files.folder);
+    bool inside = !strncmp(tree->path, site->plant->files.folder, folder) && tree->path[folder] == '/';
     const char *area = tree->nodes[node].parent >= 0 ? tree->nodes[tree->nodes[node].parent].name : "";
     size_t alike = 0;
     for (size_t m = 0; m < site->model_count; m++)

@@ -55,7 +55,7 @@ static bool fail_at(const char *path, const char *why)
 
 static char *beside(const struct matching_run *run, const char *name)
 {
-    return mem_printf("%s/%s", run->plant->folder, name);
+    return mem_printf("%s/%s", run->plant->files.folder, name);
 }
 
 /* --- reading ---------------------------------------------------------------------------------------------------------------- */
@@ -148,7 +148,7 @@ static bool read_plant(struct matching_run *run)
         return fail_at(params->plant, strerror(errno));
     char *path = beside(run, "matches.csv");
     run->plant_before = mem_strdup(run->plant_text);
-    run->tags_before = text_read_file(run->plant->tags_path, max_list_bytes, &bytes);
+    run->tags_before = text_read_file(run->plant->files.tags_path, max_list_bytes, &bytes);
     run->matches_before = text_read_file(path, max_list_bytes, &bytes);
     mem_free(path);
     if (!model_index_read(&run->site, run->plant, why))
@@ -171,9 +171,8 @@ static bool read_lists(struct matching_run *run)
     bool good = !params->decisions || decisions_read(&run->before, params->decisions, why) || fail_at(params->decisions, why);
     good = good && (decisions_read(&run->before, path, why) || fail_at(path, why));
     mem_free(path);
-    return good && read_optional(run, "match_rules.csv", matcher_read_rules) &&
-           read_optional(run, "aliases.csv", matcher_read_aliases) &&
-           (tag_rows_read(&run->rows, run->plant->tags_path, why) || fail_at(run->plant->tags_path, why));
+    return good && read_optional(run, "match_rules.csv", matcher_read_rules) && read_optional(run, "aliases.csv", matcher_read_aliases) &&
+           (tag_rows_read(&run->rows, run->plant->files.tags_path, why) || fail_at(run->plant->files.tags_path, why));
 }
 
 /* --- deciding --------------------------------------------------------------------------------------------------------------- */
@@ -427,14 +426,14 @@ static void say_written(const char *path, const char *before, const char *text)
  * people. */
 static bool write_files(struct matching_run *run, const char *matches_path)
 {
-    const char *plant = run->params->plant, *tags = run->plant->tags_path;
+    const char *plant = run->params->plant, *tags = run->plant->files.tags_path;
     struct file_set set = { 0 };
     bool good = add_one(&set, plant, run->plant_before, run->new_text) && add_one(&set, tags, run->tags_before, run->tags_text.at) &&
                 add_one(&set, matches_path, run->matches_before, run->matches_text.at) && is_as_read(plant, run->plant_before) &&
                 is_as_read(tags, run->tags_before) && is_as_read(matches_path, run->matches_before);
     if (good) {
         int status = file_set_commit(&set);
-        good = status == 0 || fail_at(run->plant->folder, strerror(-status));
+        good = status == 0 || fail_at(run->plant->files.folder, strerror(-status));
     }
     file_set_abandon(&set);
     if (good) {
@@ -608,7 +607,7 @@ static bool take_answer(struct matching_run *run, int file)
 static void add_paths(const struct matching_run *run, struct child_paths *paths)
 {
     const struct matching_params *params = run->params;
-    const char *const stated[] = { params->tags, params->decisions, run->plant->tags_path };
+    const char *const stated[] = { params->tags, params->decisions, run->plant->files.tags_path };
     static const char *const names[] = { "matches.csv", "match_rules.csv", "aliases.csv" };
     for (size_t i = 0; i < sizeof(stated) / sizeof(stated[0]); i++)
         child_paths_add(paths, stated[i], CONFINE_READ);

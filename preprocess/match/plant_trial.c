@@ -18,8 +18,8 @@ static char *with_list(const char *text, const char *list)
 
 struct plant *plant_trial_load(const struct plant *plant, const char *text, const char *tags, const char *program)
 {
-    char *name = mem_printf(".trial.%d.csv", (int)getpid()), *list = mem_printf("%s/%s", plant->folder, name),
-         *path = mem_printf("%s/.trial.%d.yaml", plant->folder, (int)getpid()), *changed = tags ? with_list(text, name) : NULL;
+    char *name = mem_printf(".trial.%d.csv", (int)getpid()), *list = mem_printf("%s/%s", plant->files.folder, name),
+         *path = mem_printf("%s/.trial.%d.yaml", plant->files.folder, (int)getpid()), *changed = tags ? with_list(text, name) : NULL;
     const char *all = changed ? changed : text;
     struct plant *loaded = NULL;
     int status = atomic_file_put(path, all, strlen(all));

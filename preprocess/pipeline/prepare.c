@@ -75,7 +75,7 @@ static void fail(struct prepare_run *run, const char *file, int line, const char
 
 static void fail_asset(struct prepare_run *run, const struct prepare_asset *asset, const char *why)
 {
-    fail(run, run->prepare->plant->path, asset->plant->line, "asset %s: %s: %s", asset->plant->id, asset->plant->model, why);
+    fail(run, run->prepare->plant->files.path, asset->plant->line, "asset %s: %s: %s", asset->plant->id, asset->plant->model, why);
 }
 
 /* Marks an asset as failed because its model is invalid, or lacks something to which the plant refers. */
@@ -131,7 +131,7 @@ static bool have_parsed(struct prepare_run *run, struct model_file *model)
         return model->good;
     if (!model_file_parse(model)) {
         model->good = false;
-        fail(run, run->prepare->plant->path, model->line, "%s: %s", model->path, model->why);
+        fail(run, run->prepare->plant->files.path, model->line, "%s: %s", model->path, model->why);
     }
     return model->good;
 }
@@ -155,7 +155,7 @@ static bool look_up_cut(struct prepare_run *run, struct prepare_asset *asset, ui
         const struct plant_tag *tag = &run->prepare->plant->tags[sensor->tag];
         if (!sensor->node || geometry_node_place(&model->parsed, &params, sensor->node, sensor->position_m, why))
             continue;
-        fail(run, run->prepare->plant->tags_path, tag->line, "tag %s: asset %s: %s", tag->name, asset->plant->id, why);
+        fail(run, run->prepare->plant->files.tags_path, tag->line, "tag %s: asset %s: %s", tag->name, asset->plant->id, why);
         if (!asset->missing)
             lose(asset, why);
     }
@@ -319,7 +319,7 @@ static bool is_built(struct prepare_run *run, const struct prepare_asset *asset,
     if (!good)
         fail_asset(run, asset, why);
     else if (status != 0)
-        fail(run, run->prepare->plant->path, asset->plant->line, "asset %s: %s cannot be written: %s", asset->plant->id,
+        fail(run, run->prepare->plant->files.path, asset->plant->line, "asset %s: %s cannot be written: %s", asset->plant->id,
              run->params->folder, strerror(-status));
     return good && status == 0;
 }
@@ -486,13 +486,13 @@ static void warn(struct prepare_run *run, const struct prepare_asset *asset)
 {
     const struct plant *plant = run->prepare->plant;
     if (asset->rebuilt_because)
-        diag_warning(run->diag, plant->path, asset->plant->line, 0, "asset %s: the prepared file was not usable (%s) and is rebuilt",
+        diag_warning(run->diag, plant->files.path, asset->plant->line, 0, "asset %s: the prepared file was not usable (%s) and is rebuilt",
                      asset->plant->id, asset->rebuilt_because);
     for (size_t s = 0; asset->surface_distances_m && s < asset->sensor_count; s++) {
         const struct plant_tag *tag = &plant->tags[asset->sensors[s].tag];
         double distance_m = (double)asset->surface_distances_m[s];
         if (distance_m > asset->far_m)
-            diag_warning(run->diag, plant->tags_path, tag->line, 0, "tag %s: %.3f m from the surface of asset %s (more than %.3f m)",
+            diag_warning(run->diag, plant->files.tags_path, tag->line, 0, "tag %s: %.3f m from the surface of asset %s (more than %.3f m)",
                          tag->name, distance_m, asset->plant->id, asset->far_m);
     }
 }
@@ -557,7 +557,7 @@ static void write_manifest(struct prepare_run *run)
     }
     int status = folder_finish(run->params->folder, entries, prepare->asset_count, run->failed ? NULL : &prepare->removed);
     if (status != 0)
-        fail(run, prepare->plant->path, 0, "%s: the manifest cannot be written: %s", run->params->folder, strerror(-status));
+        fail(run, prepare->plant->files.path, 0, "%s: the manifest cannot be written: %s", run->params->folder, strerror(-status));
     mem_free(entries);
     mem_free(tags);
 }
@@ -575,7 +575,7 @@ bool prepare_run(struct prepare *prepare, struct log *log, struct workers *worke
         prepare->assets[i] =
             (struct prepare_asset){ .plant = &plant->assets[i], .wanted = !params->only || strcmp(plant->assets[i].id, params->only) == 0 };
     if (mkdir(params->folder, 0777) != 0 && errno != EEXIST)
-        fail(&run, plant->path, 0, "%s: cannot be created: %s", params->folder, strerror(errno));
+        fail(&run, plant->files.path, 0, "%s: cannot be created: %s", params->folder, strerror(errno));
     int lock = run.failed ? -1 : folder_lock(params->folder, log, params->stop);
     if (!run.failed) {
         model_cache_read(&run.known, params->folder);

@@ -41,18 +41,18 @@ bool distances_print(const struct prepare *prepare, const char *folder, int asse
     struct folder_file file;
     char why[200] = "there is none";
     if (column < 0) {
-        diag_error(diag, prepare->plant->tags_path, prepare->plant->tags[tag].line, 0, "tag %s is not a sensor of asset %s",
+        diag_error(diag, prepare->plant->files.tags_path, prepare->plant->tags[tag].line, 0, "tag %s is not a sensor of asset %s",
                    prepare->plant->tags[tag].name, asset->plant->id);
         return false;
     }
     if (prepare->plant->tags[tag].place.assumed && !sensor_distances_matter(prepare->plant, asset->sensors, asset->sensor_count)) {
-        diag_error(diag, prepare->plant->tags_path, prepare->plant->tags[tag].line, 0,
+        diag_error(diag, prepare->plant->files.tags_path, prepare->plant->tags[tag].line, 0,
                    "tag %s: its place on asset %s is assumed: it represents the whole asset, so there are no distances from it",
                    prepare->plant->tags[tag].name, asset->plant->id);
         return false;
     }
     if (folder_open(&file, folder, asset->key, why) != 1) {
-        diag_error(diag, prepare->plant->path, asset->plant->line, 0, "asset %s: its file in %s: %s", asset->plant->id, folder, why);
+        diag_error(diag, prepare->plant->files.path, asset->plant->line, 0, "asset %s: its file in %s: %s", asset->plant->id, folder, why);
         return false;
     }
     const struct asset_view *view = &file.view;

@@ -209,7 +209,7 @@ static void on_refused(struct core_link *link, const json_t *message)
 
 static struct core_identity own_identity(const struct core_link *link)
 {
-    return (struct core_identity){ link->params.version, link->params.plant->name, link->params.plant->hash };
+    return (struct core_identity){ link->params.version, link->params.plant->name, link->params.plant->files.hash };
 }
 
 static void on_core(struct core_link *link, const json_t *message)

@@ -114,8 +114,8 @@ int colormap_add(const char *name, const uint8_t rgb[256][3])
 
 void colormaps_of_plant(const struct plant *plant)
 {
-    for (size_t i = 0; i < plant->colormap_count; i++)
-        colormap_add(plant->colormaps[i].name, (const uint8_t(*)[3])plant->colormaps[i].rgb);
+    for (size_t i = 0; i < plant->display.colormap_count; i++)
+        colormap_add(plant->display.colormaps[i].name, (const uint8_t(*)[3])plant->display.colormaps[i].rgb);
 }
 
 int colormap_find(const char *name)

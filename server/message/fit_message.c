@@ -100,7 +100,7 @@ bool view_query_camera(const struct scene *scene, const struct plant *plant, con
 {
     json_t *fit_o = json_object();
     struct fit_message fit;
-    bool fits = json_object_get(o, "fit") || json_object_get(o, "side") || (!scene->plant->view.set && !has_camera(o));
+    bool fits = json_object_get(o, "fit") || json_object_get(o, "side") || (!scene->plant->display.view.set && !has_camera(o));
     json_object_set(fit_o, "id", json_object_get(o, "fit"));
     json_object_set(fit_o, "side", json_object_get(o, "side"));
     json_object_set(fit_o, "projection", json_object_get(o, "projection"));

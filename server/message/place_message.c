@@ -17,8 +17,8 @@
 /* Returns the path of the tag list's file with symlinks resolved: saving replaces that file and stores earlier versions next to it. */
 static const char *list_path(const struct plant *plant, char real[PATH_MAX])
 {
-    const char *path = plant->tags_path ? realpath(plant->tags_path, real) : NULL;
-    return path ? path : plant->tags_path ? plant->tags_path : "";
+    const char *path = plant->files.tags_path ? realpath(plant->files.tags_path, real) : NULL;
+    return path ? path : plant->files.tags_path ? plant->files.tags_path : "";
 }
 
 /* --- parsing messages ---------------------------------------------------------------------------------------------------------- */
@@ -236,7 +236,7 @@ static char *conflict_text(const struct plant *plant, const struct message *mess
     size_t more;
     json_t *lines = lines_of(before, now, &more);
     return json_text(json_pack("{s:s,s:I,s:s,s:b,s:n,s:o,s:I}", "type", "tags_diff", "seq", (json_int_t)message->seq, "file",
-                               text_base_name(plant->tags_path), "conflict", true, "hash", "lines", lines, "more", (json_int_t)more),
+                               text_base_name(plant->files.tags_path), "conflict", true, "hash", "lines", lines, "more", (json_int_t)more),
                      9);
 }
 
@@ -284,7 +284,8 @@ static char *diff_text(const struct plant *plant, const struct message *message,
     json_t *lines = lines_of(before, after, &more);
     tag_file_hash(after, hash);
     return json_text(json_pack("{s:s,s:I,s:s,s:b,s:s,s:o,s:I}", "type", "tags_diff", "seq", (json_int_t)message->seq, "file",
-                               text_base_name(plant->tags_path), "conflict", false, "hash", hash, "lines", lines, "more", (json_int_t)more),
+                               text_base_name(plant->files.tags_path), "conflict", false, "hash", hash, "lines", lines, "more",
+                               (json_int_t)more),
                      9);
 }
 
@@ -317,8 +318,8 @@ static char *accepted_text(const struct plant *plant, const struct message *mess
     }
     json_t *names = names_of(plant, outcome, ASSUMED_ACCEPTED, ACCEPTED_NAMES, &count);
     return json_text(json_pack("{s:s,s:I,s:s,s:I,s:o,s:o,s:s}", "type", "places_accepted", "seq", (json_int_t)message->seq, "file",
-                               text_base_name(plant->tags_path), "count", (json_int_t)count, "tags", names, "refused", refused, "hash",
-                               hash),
+                               text_base_name(plant->files.tags_path), "count", (json_int_t)count, "tags", names, "refused", refused,
+                               "hash", hash),
                      0);
 }
 
@@ -327,7 +328,7 @@ char *tags_diff_text(const struct scene *scene, const char *before, const struct
 {
     const struct plant *plant = scene->plant;
     struct refusal why;
-    char *now = tag_file_read(plant->tags_path, &why), *text = NULL;
+    char *now = tag_file_read(plant->files.tags_path, &why), *text = NULL;
     uint8_t *outcome = mem_array(plant->tag_count + 1, 1);
     bool conflict = now && strcmp(now, before) != 0;
     char *after = now && !conflict ? wanted_list(scene, before, set, message, outcome, &why) : NULL;

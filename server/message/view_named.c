@@ -40,8 +40,8 @@ bool view_named_check(const struct scene *scene, const char *address, struct mes
 
 void view_named_check_all(const struct scene *scene, view_named_say *say, void *arg)
 {
-    for (size_t i = 0; i < scene->plant->view_count; i++) {
-        const struct named_view *view = &scene->plant->views[i];
+    for (size_t i = 0; i < scene->plant->screens.view_count; i++) {
+        const struct named_view *view = &scene->plant->screens.views[i];
         struct message_error error = { 0 };
         if (!view_named_check(scene, view->address, &error))
             say(arg, view, error.text);

@@ -174,7 +174,7 @@ static bool put_clip(struct view_address *out, const struct clip *clip)
 static bool put_common(struct view_address *out, const struct plant *plant, const struct view *view)
 {
     return put_numbers(out, "light", view->light_dir, 3) &&
-           view_address_add(out, "environment", view->environment ? plant->environments[view->environment - 1].name : "sky") &&
+           view_address_add(out, "environment", view->environment ? plant->display.environments[view->environment - 1].name : "sky") &&
            view_address_add(out, "backdrop", name_of(names_backdrop, view->dark)) &&
            view_address_add(out, "arrows", name_of(names_arrows, (int)view->directions)) &&
            view_address_add(out, "strip", name_of(names_strip, view->strip)) &&

@@ -127,8 +127,8 @@ static bool is_told(const struct plant *plant, const struct walls_reader *reader
 static json_t *tours_of(const struct plant *plant, const struct walls_reader *reader)
 {
     json_t *tours = json_array();
-    for (size_t t = 0; t < plant->tour_count; t++) {
-        const struct tour *tour = &plant->tours[t];
+    for (size_t t = 0; t < plant->screens.tour_count; t++) {
+        const struct tour *tour = &plant->screens.tours[t];
         if (!is_told(plant, reader, tour))
             continue;
         json_t *stops = json_array();
@@ -174,8 +174,8 @@ char *walls_text(const struct plant *plant, const struct walls_reader *reader)
     static const struct walls_reader anyone;
     reader = reader ? reader : &anyone;
     json_t *walls = json_array();
-    for (size_t i = 0; i < plant->wall_count; i++) {
-        const struct wall *wall = &plant->walls[i];
+    for (size_t i = 0; i < plant->screens.wall_count; i++) {
+        const struct wall *wall = &plant->screens.walls[i];
         if (reader->wall && strcmp(wall->id, reader->wall) != 0)
             continue;
         json_t *said = json_pack("{s:s,s:f,s:f,s:o}", "id", wall->id, "inches", wall->inches, "distance_m", wall->metres, "displays",

@@ -93,7 +93,7 @@ void renderers_make_key(struct server_context *server)
 static struct core_identity own_identity(const struct server_context *server)
 {
     const struct plant *plant = server->session_context.plant;
-    return (struct core_identity){ server->params.version, plant->name, plant->hash };
+    return (struct core_identity){ server->params.version, plant->name, plant->files.hash };
 }
 
 /* Returns whether the other core's lease promises count. A core with other plant files cannot be a standby, but its promise not to lead is

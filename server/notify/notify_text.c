@@ -169,7 +169,7 @@ void notify_mail_text(struct text *out, const struct plant *plant, const struct 
     text_add(out, "\r\n");
     add_header(out, "Subject", subject.at);
     add_date(out, now_us);
-    text_add(out, "Message-ID: <%s.%s%s>\r\n", message->id, plant->hash, domain ? domain : "@plantcast");
+    text_add(out, "Message-ID: <%s.%s%s>\r\n", message->id, plant->files.hash, domain ? domain : "@plantcast");
     text_add(out, "Auto-Submitted: auto-generated\r\nX-Priority: %d\r\nMIME-Version: 1.0\r\n", message->items[0].priority == 1 ? 1 : 3);
     text_add(out, "Content-Type: text/plain; charset=utf-8\r\nContent-Transfer-Encoding: base64\r\n\r\n");
     for (size_t at = 0; at < body.length; at += BASE64_LINE) {

@@ -33,8 +33,8 @@ static double *surface_distances(const struct scene *scene)
 static double *confidences(const struct plant *plant)
 {
     double *confidence = mem_array(plant->tag_count + 1, sizeof(*confidence));
-    const char *slash = strrchr(plant->tags_path, '/');
-    char *path = mem_printf("%.*smatches.csv", slash ? (int)(slash + 1 - plant->tags_path) : 0, plant->tags_path);
+    const char *slash = strrchr(plant->files.tags_path, '/');
+    char *path = mem_printf("%.*smatches.csv", slash ? (int)(slash + 1 - plant->files.tags_path) : 0, plant->files.tags_path);
     struct diag diag = { 0 };
     struct csv csv;
     for (size_t i = 0; i < plant->tag_count; i++)

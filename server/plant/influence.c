@@ -80,12 +80,12 @@ void plant_influence_check(const struct plant *plant, struct diag *diag)
         if (!plant_prepares(group, INTERPOLATION_FIN))
             continue;
         if (isnan(group->ambient))
-            diag_error(diag, plant->path, group->line, 0,
+            diag_error(diag, plant->files.path, group->line, 0,
                        "group %s: fin needs 'ambient', the value around the assets, in %s: far from sensors the wall cools to it",
                        group->id, *group->unit ? group->unit : "the group's unit");
         for (size_t a = 0; a < plant->asset_count; a++)
             if (plant->assets[a].thickness_m <= 0 && has_sensor(plant, (int)g, (int)a))
-                diag_error(diag, plant->path, plant->assets[a].line, 0,
+                diag_error(diag, plant->files.path, plant->assets[a].line, 0,
                            "asset %s: fin, which group %s asks for, needs 'thickness_m', that of its wall", plant->assets[a].id, group->id);
     }
 }

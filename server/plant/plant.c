@@ -25,7 +25,7 @@ static char *folder_of(const char *path)
 /* Hashes the bytes of both files, so that the old hash returns when a file is changed back. */
 static void hash_files(struct plant *plant)
 {
-    const char *const paths[] = { plant->path, plant->tags_path };
+    const char *const paths[] = { plant->files.path, plant->files.tags_path };
     XXH3_state_t *state = XXH3_createState();
     XXH3_64bits_reset(state);
     for (size_t i = 0; i < 2; i++) {
@@ -36,7 +36,7 @@ static void hash_files(struct plant *plant)
             XXH3_64bits_update(state, bytes, count);
         mem_free(bytes);
     }
-    snprintf(plant->hash, sizeof(plant->hash), "%016llx", (unsigned long long)XXH3_64bits_digest(state));
+    snprintf(plant->files.hash, sizeof(plant->files.hash), "%016llx", (unsigned long long)XXH3_64bits_digest(state));
     XXH3_freeState(state);
 }
 
@@ -58,18 +58,18 @@ static struct plant *load(const char *path, bool keeps_orphans, bool without_mod
 {
     int errors = diag->errors;
     struct plant *plant = mem_new(sizeof(*plant));
-    plant->keeps_orphans = keeps_orphans;
-    plant->without_models = without_models;
-    plant->path = mem_strdup(path);
-    plant->folder = folder_of(path);
+    plant->files.keeps_orphans = keeps_orphans;
+    plant->files.without_models = without_models;
+    plant->files.path = mem_strdup(path);
+    plant->files.folder = folder_of(path);
     plant_file_read(plant, diag);
-    if (plant->tags_path)
+    if (plant->files.tags_path)
         tag_list_read(plant, diag);
-    if (plant->tags_path && diag->errors == errors) {
+    if (plant->files.tags_path && diag->errors == errors) {
         plant_tours_check(plant, diag);
         plant_walls_check(plant, diag);
     }
-    if (plant->tags_path && diag->errors == errors)
+    if (plant->files.tags_path && diag->errors == errors)
         plant_influence_check(plant, diag);
     hash_files(plant);
     if (diag->errors != errors)
@@ -175,15 +175,15 @@ void plant_destroy(struct plant **plant_ptr)
     free_groups(plant);
     free_sources(plant);
     free_tags(plant);
-    for (size_t i = 0; i < plant->colormap_count; i++)
-        mem_free(plant->colormaps[i].name);
-    for (size_t i = 0; i < plant->environment_count; i++) {
-        mem_free(plant->environments[i].name);
-        mem_free(plant->environments[i].path);
+    for (size_t i = 0; i < plant->display.colormap_count; i++)
+        mem_free(plant->display.colormaps[i].name);
+    for (size_t i = 0; i < plant->display.environment_count; i++) {
+        mem_free(plant->display.environments[i].name);
+        mem_free(plant->display.environments[i].path);
     }
-    for (size_t i = 0; i < plant->link_count; i++) {
-        mem_free(plant->links[i].name);
-        mem_free(plant->links[i].url);
+    for (size_t i = 0; i < plant->display.link_count; i++) {
+        mem_free(plant->display.links[i].name);
+        mem_free(plant->display.links[i].url);
     }
     plant_views_free(plant);
     plant_tours_free(plant);
@@ -199,9 +199,9 @@ void plant_destroy(struct plant **plant_ptr)
     mem_free(plant->conversions);
     mem_free(plant->history.folder);
     plant_postgres_finish(&plant->history.postgres);
-    mem_free(plant->path);
-    mem_free(plant->folder);
-    mem_free(plant->tags_path);
+    mem_free(plant->files.path);
+    mem_free(plant->files.folder);
+    mem_free(plant->files.tags_path);
     mem_free(plant->name);
     mem_free(plant->time_zone);
     mem_free(plant);
@@ -210,10 +210,10 @@ void plant_destroy(struct plant **plant_ptr)
 
 static char *beside(const struct plant *plant, const char *ending)
 {
-    const char *name = strrchr(plant->path, '/');
-    name = name ? name + 1 : plant->path;
+    const char *name = strrchr(plant->files.path, '/');
+    name = name ? name + 1 : plant->files.path;
     const char *end = strrchr(name, '.');
-    return mem_printf("%s/%.*s.%s", plant->folder, end && end > name ? (int)(end - name) : (int)strlen(name), name, ending);
+    return mem_printf("%s/%.*s.%s", plant->files.folder, end && end > name ? (int)(end - name) : (int)strlen(name), name, ending);
 }
 
 char *plant_prepared_folder(const struct plant *plant)

@@ -346,14 +346,15 @@ struct plant_conversion { /* a model that plantcast-prep makes by running anothe
     int line;
 };
 
-struct plant {
+struct plant_files {
     char *path, *folder; /* path of the plant file, and its folder without trailing slash */
     char *tags_path;
-    char hash[17];          /* hash, in hexadecimal, of plant file and tag list; identifies the configuration */
-    bool keeps_orphans;     /* set while loading: tags of assets that do not exist are accepted (plant_load_with_orphans()) */
-    bool without_models;    /* set while loading: missing model files are accepted (plant_load_without_models()) */
-    char *name, *time_zone; /* time_zone: IANA name; default UTC */
-    enum axis up;           /* upward axis of the plant frame */
+    char hash[17];       /* hash, in hexadecimal, of plant file and tag list; identifies the configuration */
+    bool keeps_orphans;  /* set while loading: tags of assets that do not exist are accepted (plant_load_with_orphans()) */
+    bool without_models; /* set while loading: missing model files are accepted (plant_load_without_models()) */
+};
+
+struct plant_display { /* initial display of a client, and the choices of its user */
     struct plant_view view;
     enum plant_show show;
     bool no_reprojection; /* clients get no depth grids of the picture */
@@ -361,15 +362,28 @@ struct plant {
     size_t environment_count;
     struct plant_link links[PLANT_LINKS];
     size_t link_count;
-    struct plant_conversion *conversions;
-    size_t conversion_count;
-    struct plant_history history;
-    enum alarm_mode alarms;
-    struct named_view *views; /* views, tours, other plants and walls: plant/walls/wall.h */
+    struct plant_colormap colormaps[PLANT_COLORMAPS];
+    size_t colormap_count;
+};
+
+struct plant_screens { /* views, tours, other plants and walls: plant/walls/wall.h */
+    struct named_view *views;
     struct tour *tours;
     struct other_plant *other_plants;
     struct wall *walls;
     size_t view_count, tour_count, other_plant_count, wall_count;
+};
+
+struct plant {
+    struct plant_files files;
+    char *name, *time_zone; /* time_zone: IANA name; default UTC */
+    enum axis up;           /* upward axis of the plant frame */
+    struct plant_display display;
+    struct plant_screens screens;
+    struct plant_conversion *conversions;
+    size_t conversion_count;
+    struct plant_history history;
+    enum alarm_mode alarms;
     struct plant_publish *publish; /* NULL: no publishing */
     struct plant_notify *notify;   /* recipients of alarms (plant/sections/notification.h); NULL: none */
     struct plant_asset *assets;
@@ -377,8 +391,6 @@ struct plant {
     struct plant_source *sources;
     struct plant_tag *tags;
     size_t asset_count, group_count, source_count, tag_count;
-    struct plant_colormap colormaps[PLANT_COLORMAPS];
-    size_t colormap_count;
     /* indices of assets sorted by id, and of tags sorted by name; assets_by_id is NULL until the whole file is read */
     int *assets_by_id, *tags_by_name;
     int *derived; /* indices of the derived tags, in an order in which each follows the tags in its expression */

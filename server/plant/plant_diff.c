@@ -229,9 +229,9 @@ const char *plant_needs_restart(const struct plant *before, const struct plant *
         return "another time zone needs a restart";
     if (before->history.off != after->history.off || !same_text(before->history.folder, after->history.folder))
         return "another folder of history, or none, needs a restart";
-    bool same = before->colormap_count == after->colormap_count;
-    for (size_t i = 0; same && i < before->colormap_count; i++)
-        same = same_text(before->colormaps[i].name, after->colormaps[i].name) &&
-               !memcmp(before->colormaps[i].rgb, after->colormaps[i].rgb, sizeof(before->colormaps[i].rgb));
+    bool same = before->display.colormap_count == after->display.colormap_count;
+    for (size_t i = 0; same && i < before->display.colormap_count; i++)
+        same = same_text(before->display.colormaps[i].name, after->display.colormaps[i].name) &&
+               !memcmp(before->display.colormaps[i].rgb, after->display.colormaps[i].rgb, sizeof(before->display.colormaps[i].rgb));
     return same ? NULL : "other colour maps need a restart";
 }

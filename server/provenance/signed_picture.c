@@ -77,7 +77,7 @@ static json_t *statement_of(const struct picture_origin *origin, const struct pa
     picture_hash_json(told, hash);
     json_t *statement =
         json_pack("{s:i,s:s,s:s,s:s,s:o,s:I,s:I,s:b,s:b,s:s,s:s,s:o,s:i,s:i,s:s,s:s}", "plantcast_statement", PICTURE_STATEMENT_VERSION,
-                  "server", origin->version, "plant", plant->name, "configuration", plant->hash, "assets", assets_of(origin->scene),
+                  "server", origin->version, "plant", plant->name, "configuration", plant->files.hash, "assets", assets_of(origin->scene),
                   "taken_ns", (json_int_t)frame->data_utc_ns, "at_us", (json_int_t)frame->view.at_us, "clock_unset", frame->clock_unset,
                   "bare", origin->bare, "overlay", origin->overlay, "tier", frame->view.tier == TIER_REFINED ? "refined" : "preview",
                   "query", args_of(origin), "width", frame->width_px, "height", frame->height_px, "pixels_sha256", pixels,

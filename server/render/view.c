@@ -58,12 +58,12 @@ void view_default(const struct scene *scene, int width_px, int height_px, struct
     view->tier = TIER_REFINED;
     if (plant->group_count > 0) {
         field_params_default(plant, 0, &view->field);
-        field_params_set_show(plant, &view->field, plant->show == PLANT_SHOW_OPERATOR ? SHOW_OPERATOR : SHOW_VALUE);
+        field_params_set_show(plant, &view->field, plant->display.show == PLANT_SHOW_OPERATOR ? SHOW_OPERATOR : SHOW_VALUE);
         view_default_scale(scene, view);
     }
     default_light(scene, view->light_dir);
     visibility_start(plant, &view->visibility);
-    view->environment = plant->environment_count > 0 ? 1 : 0;
+    view->environment = plant->display.environment_count > 0 ? 1 : 0;
 }
 
 bool view_is_operator(const struct view *view)

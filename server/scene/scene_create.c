@@ -42,14 +42,14 @@ static bool sensors_fit(struct log *log, const struct plant *plant, const struct
     const struct asset_view *view = &asset->file->view;
     if (view->header->sensor_count != count) {
         log_err(log, "asset %s: %s has %u sensors, the tag list has %zu; run plantcast-prep %s", asset->plant->id, asset->file->path,
-                view->header->sensor_count, count, plant->path);
+                view->header->sensor_count, count, plant->files.path);
         return false;
     }
     for (size_t i = 0; i < count; i++) {
         if (same_place(view->header, &view->sensors[i], &sensors[i]))
             continue;
         log_err(log, "asset %s: the place of sensor %s in %s differs from the tag list; run plantcast-prep %s", asset->plant->id,
-                plant->tags[sensors[i].tag].name, asset->file->path, plant->path);
+                plant->tags[sensors[i].tag].name, asset->file->path, plant->files.path);
         return false;
     }
     return true;
@@ -88,14 +88,15 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
         bool heat = placed > 0 && group->heat && !has_entry(log, asset, g, INFLUENCE_HEAT, placed);
         if (heat || (placed > 0 && group->directed && !has_entry(log, asset, g, INFLUENCE_TRANSPORT, placed))) {
             log_err(log, "asset %s: has no usable %s for group %s; run plantcast-prep %s", asset->plant->id,
-                    heat ? "distances by heat" : "directions", group->id, plant->path);
+                    heat ? "distances by heat" : "directions", group->id, plant->files.path);
             return false;
         }
         for (int i = INTERPOLATION_HARMONIC; placed > 0 && i < INTERPOLATIONS; i++) {
             if (!plant_prepares(group, (enum interpolation)i))
                 continue;
             if (!asset_open_influence(log, asset->file)) {
-                log_err(log, "asset %s: has no usable influence of its sensors; run plantcast-prep %s", asset->plant->id, plant->path);
+                log_err(log, "asset %s: has no usable influence of its sensors; run plantcast-prep %s", asset->plant->id,
+                        plant->files.path);
                 return false;
             }
             const struct influence_entry *entry = influence_find(&asset->file->influence, (uint32_t)g, (uint32_t)i);
@@ -105,7 +106,7 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
                 (!gp || (entry->deviations && is_as_stated(gp, entry))))
                 continue;
             log_err(log, "asset %s: the influence of group %s was prepared for another list, disc_m, gp or wall; run plantcast-prep %s",
-                    asset->plant->id, group->id, plant->path);
+                    asset->plant->id, group->id, plant->files.path);
             return false;
         }
     }
@@ -133,7 +134,7 @@ static bool recipe_fits(struct log *log, const struct plant *plant, uint64_t *ha
     if (plant_recipe(asset, hashes[index]) == entry->recipe)
         return true;
     log_err(log, "asset %s: %s, or its nodes, units, scale or up, changed since it was prepared; run plantcast-prep %s", asset->id,
-            asset->model, plant->path);
+            asset->model, plant->files.path);
     return false;
 }
 
@@ -190,7 +191,7 @@ static void place_sensor(const struct scene_asset *asset, int column, int tag, s
 static bool create_missing(struct log *log, const struct scene *scene, struct scene_asset *asset, const struct manifest_entry *entry)
 {
     log_warn(log, "asset %s is missing: %s; repair the model and run plantcast-prep %s", asset->plant->id, entry->missing,
-             scene->plant->path);
+             scene->plant->files.path);
     asset->missing = mem_strdup(entry->missing);
     asset->file = asset_stand_in();
     if (asset->file)
@@ -204,7 +205,7 @@ static bool create_asset(struct log *log, struct scene *scene, int index)
     struct scene_asset *asset = &scene->assets[index];
     struct plant_sensor *sensors = NULL;
     if (!asset->file) {
-        log_err(log, "asset %s: has no usable file; run plantcast-prep %s", asset->plant->id, scene->plant->path);
+        log_err(log, "asset %s: has no usable file; run plantcast-prep %s", asset->plant->id, scene->plant->files.path);
         return false;
     }
     size_t count = plant_sensors(scene->plant, index, &sensors);
@@ -279,7 +280,7 @@ static bool find_file(struct file_uses *uses, const struct manifest *manifest, u
     asset->plant = &scene->plant->assets[index];
     const struct manifest_entry *entry = manifest_find(manifest, asset->plant->id);
     if (!entry) {
-        log_err(log, "asset %s is not in %s; run plantcast-prep %s", asset->plant->id, manifest->path, scene->plant->path);
+        log_err(log, "asset %s is not in %s; run plantcast-prep %s", asset->plant->id, manifest->path, scene->plant->files.path);
         return false;
     }
     if (entry->missing)
@@ -342,7 +343,7 @@ struct scene *scene_create(struct log *log, const struct plant *plant, const cha
     bool good = create_assets(log, scene, &manifest);
     manifest_finish(&manifest);
     if (good && !bound_missing(scene)) {
-        log_err(log, "%s: every asset is missing; run plantcast-prep %s", prepared_folder, plant->path);
+        log_err(log, "%s: every asset is missing; run plantcast-prep %s", prepared_folder, plant->files.path);
         good = false;
     }
     if (good) {
@@ -376,7 +377,7 @@ void scene_destroy(struct scene **scene_ptr)
 
 void scene_home(const struct scene *scene, double aspect, struct camera *camera)
 {
-    const struct plant_view *view = &scene->plant->view;
+    const struct plant_view *view = &scene->plant->display.view;
     camera_fit_up(camera, scene->plant->up, scene->bounds_min_m, scene->bounds_max_m, aspect);
     if (!view->set && scene->extreme_count > 0) {
         double forward[3];

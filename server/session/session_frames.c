@@ -373,7 +373,7 @@ bool session_has_frame(const struct session *session)
 
 bool session_gets_depth(const struct session *session)
 {
-    return session->asks_depth && !session->context->plant->no_reprojection && !session_is_tile(session);
+    return session->asks_depth && !session->context->plant->display.no_reprojection && !session_is_tile(session);
 }
 
 void session_forget_depth(struct session *session)

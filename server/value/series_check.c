@@ -23,10 +23,10 @@ static void check_tag(const struct plant *plant, const struct plant_tag *tag, co
         return;
     const char *near = suggest_nearest(name, names->at, names->count, sizeof(*names->at));
     if (near)
-        diag_error(diag, plant->tags_path, tag->line, tag->column, "%s: %s has no series '%.80s'; did you mean '%.80s'?", tag->name, file,
-                   name, near);
+        diag_error(diag, plant->files.tags_path, tag->line, tag->column, "%s: %s has no series '%.80s'; did you mean '%.80s'?", tag->name,
+                   file, name, near);
     else
-        diag_error(diag, plant->tags_path, tag->line, tag->column, "%s: %s has no series '%.80s'", tag->name, file, name);
+        diag_error(diag, plant->files.tags_path, tag->line, tag->column, "%s: %s has no series '%.80s'", tag->name, file, name);
 }
 
 void series_check(const struct plant *plant, struct diag *diag)
@@ -37,7 +37,7 @@ void series_check(const struct plant *plant, struct diag *diag)
         if (!plant->sources[s].file)
             continue;
         if (!series_list(&names, plant->sources[s].file, why)) {
-            diag_error(diag, plant->path, plant->sources[s].line, 0, "source %s: %s", plant->sources[s].id, why);
+            diag_error(diag, plant->files.path, plant->sources[s].line, 0, "source %s: %s", plant->sources[s].id, why);
             continue;
         }
         for (size_t i = 0; i < plant->tag_count && names.whole; i++)

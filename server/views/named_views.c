@@ -15,9 +15,9 @@ struct named_views {
 
 static const struct named_view *find_fixed(const struct plant *plant, const char *id)
 {
-    for (size_t i = 0; i < plant->view_count; i++)
-        if (!strcmp(plant->views[i].id, id))
-            return &plant->views[i];
+    for (size_t i = 0; i < plant->screens.view_count; i++)
+        if (!strcmp(plant->screens.views[i].id, id))
+            return &plant->screens.views[i];
     return NULL;
 }
 
@@ -53,7 +53,7 @@ struct named_views *named_views_open(struct log *log, const struct plant *plant,
     struct named_views *views = mem_new(sizeof(*views));
     views->plant = plant;
     kept_list_open(&views->kept, log, folder, &VIEWS, writer);
-    views->kept.number = plant->view_count + json_array_size(views->kept.list) > 0;
+    views->kept.number = plant->screens.view_count + json_array_size(views->kept.list) > 0;
     return views;
 }
 
@@ -140,8 +140,8 @@ uint64_t named_views_number(const struct named_views *views)
 json_t *named_views_message(const struct named_views *views, const char *id)
 {
     json_t *list = json_array();
-    for (size_t i = 0; i < views->plant->view_count; i++) {
-        const struct named_view *view = &views->plant->views[i];
+    for (size_t i = 0; i < views->plant->screens.view_count; i++) {
+        const struct named_view *view = &views->plant->screens.views[i];
         json_array_append_new(list, json_pack("{s:s,s:s,s:s,s:b}", "id", view->id, "title", view->title ? view->title : view->id, "view",
                                               view->address, "fixed", true));
     }

@@ -339,11 +339,11 @@ struct other_plants *other_plants_start(struct log *log, const struct plant *pla
 {
     struct other_plants *others = mem_new(sizeof(*others));
     others->log = log;
-    others->count = plant->other_plant_count;
+    others->count = plant->screens.other_plant_count;
     others->at = mem_array(others->count, sizeof(*others->at));
     pthread_mutex_init(&others->lock, NULL);
     for (size_t i = 0; i < others->count; i++)
-        others->at[i].plant = &plant->other_plants[i];
+        others->at[i].plant = &plant->screens.other_plants[i];
     bool usable = curl_global_init(CURL_GLOBAL_DEFAULT) == CURLE_OK && (others->multi = curl_multi_init());
     others->started = usable && pthread_create(&others->thread, NULL, run, others) == 0;
     if (!others->started) {

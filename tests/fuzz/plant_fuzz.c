@@ -45,7 +45,7 @@ static void check_tag(const struct plant *plant, const struct plant_tag *tag)
 
 static void check_plant(const struct plant *plant)
 {
-    require(plant->name && plant->time_zone && plant->tags_path && plant->asset_count > 0 && plant->group_count > 0, "required keys");
+    require(plant->name && plant->time_zone && plant->files.tags_path && plant->asset_count > 0 && plant->group_count > 0, "required keys");
     for (size_t i = 0; i < plant->group_count; i++)
         require(plant->groups[i].min < plant->groups[i].max, "min < max");
     for (size_t i = 0; i < plant->tag_count; i++)

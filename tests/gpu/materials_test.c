@@ -93,8 +93,8 @@ static void scene_init(struct scene_of *scene, double (*radiance)(const double[3
     scene->folder = temp_folder_create();
     scene->path = mem_printf("%s/room.hdr", scene->folder);
     write_hdr(scene->path, radiance);
-    toy->plant.environments[0] = (struct plant_environment){ .name = (char *)"room", .path = scene->path };
-    toy->plant.environment_count = 1;
+    toy->plant.display.environments[0] = (struct plant_environment){ .name = (char *)"room", .path = scene->path };
+    toy->plant.display.environment_count = 1;
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < WIDTH * HEIGHT; i++) {
             double down = M_PI * (i / WIDTH + 0.5) / HEIGHT, turn = 2 * M_PI * (i % WIDTH + 0.5) / WIDTH;

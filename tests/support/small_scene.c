@@ -65,9 +65,9 @@ static struct plant_tag tags[] = {
 };
 static int tags_by_name[] = { 1, 0, 2 };
 static struct plant plant = {
-    .path = "plant.yaml",
-    .folder = ".",
-    .tags_path = "tags.csv",
+    .files.path = "plant.yaml",
+    .files.folder = ".",
+    .files.tags_path = "tags.csv",
     .name = "Unit 100",
     .time_zone = "Europe/Oslo",
     .up = AXIS_Z,

@@ -165,9 +165,9 @@ TEST(a_plant_may_begin_with_limits)
 {
     struct plant *ours = (struct plant *)plant();
     struct view view;
-    ours->show = PLANT_SHOW_OPERATOR;
+    ours->display.show = PLANT_SHOW_OPERATOR;
     view_default(small_scene(), 640, 360, &view);
-    ours->show = PLANT_SHOW_VALUE;
+    ours->display.show = PLANT_SHOW_VALUE;
     assert_true(view_is_operator(&view));
     struct view other = changed(view, "{\"type\":\"params\",\"seq\":1,\"group\":\"pressure\"}");
     assert_true(view_is_operator(&other));
@@ -400,9 +400,9 @@ TEST(halves_show_what_the_plants_own_view_does)
     struct message_error error = { 0 };
     struct view own, one, halves, given;
     assert_true(view_query_parse(&bare, ROLE_ENGINEER, NULL, 0, &one, NULL, &error));
-    plant->view = (struct plant_view){ .set = true, .fov_deg = one.camera.fov_deg };
-    memcpy(plant->view.eye_m, one.camera.eye_m, sizeof(one.camera.eye_m));
-    memcpy(plant->view.target_m, one.camera.target_m, sizeof(one.camera.target_m));
+    plant->display.view = (struct plant_view){ .set = true, .fov_deg = one.camera.fov_deg };
+    memcpy(plant->display.view.eye_m, one.camera.eye_m, sizeof(one.camera.eye_m));
+    memcpy(plant->display.view.target_m, one.camera.target_m, sizeof(one.camera.target_m));
     assert_true(query(NULL, 0, &own, &error));
     assert_memory_equal(own.camera.eye_m, one.camera.eye_m, sizeof(own.camera.eye_m)); /* an undivided view keeps the camera */
     assert_true(view_query_parse(&bare, ROLE_ENGINEER, args, 1, &halves, NULL, &error));
@@ -417,7 +417,7 @@ TEST(halves_show_what_the_plants_own_view_does)
     for (int i = 0; i < 3; i++)          /* and looks the same way */
         assert_float_equal(after[i] / sqrt(farther), before[i] / sqrt(nearer), 1e-6);
     assert_true(query(args, 2, &given, &error) && given.camera.eye_m[1] == -9); /* a camera stated by the client is not moved */
-    plant->view = (struct plant_view){ 0 };
+    plant->display.view = (struct plant_view){ 0 };
 }
 
 /* Views written as query strings, as signed frames state their content. */

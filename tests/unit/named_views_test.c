@@ -23,7 +23,7 @@ static int set_up(void **state)
     static struct named_view fixed = { .id = "all", .title = "All", .address = "group=t" };
     struct named_views_fixture *f = mem_new(sizeof(*f));
     f->log = log_create(LOG_ERROR);
-    f->plant = (struct plant){ .views = &fixed, .view_count = 1 };
+    f->plant = (struct plant){ .screens.views = &fixed, .screens.view_count = 1 };
     f->folder = temp_folder_create();
     f->history = mem_printf("%s/history", f->folder);
     f->views = named_views_open(f->log, &f->plant, f->history, NULL);
@@ -119,9 +119,9 @@ CASE(the_plant_file_has_its_own)
     assert_int_not_equal(save(f, "all", "Mine", -1), REFUSAL_NONE);
     assert_int_not_equal(named_views_remove(f->views, "all"), REFUSAL_NONE);
     assert_int_equal(save(f, "mine", "Mine", -1), REFUSAL_NONE);
-    f->plant.view_count = 0;
+    f->plant.screens.view_count = 0;
     assert_int_equal(save(f, "all", "Mine", -1), REFUSAL_NONE);
-    f->plant.view_count = 1; /* the plant file has the view again, and its version replaces the saved one */
+    f->plant.screens.view_count = 1; /* the plant file has the view again, and its version replaces the saved one */
     assert_order(f, "all mine");
 }
 

@@ -46,7 +46,7 @@ CASE(each_difference_is_said)
                                           "tag GONE removed",                 "tag NEW added",        "tag B changed: address",
                                           "tag A: H 90 > 95" };
     assert_diff(c, before, after, wanted, 7);
-    assert_string_not_equal(before->hash, after->hash);
+    assert_string_not_equal(before->files.hash, after->files.hash);
     assert_null(plant_needs_restart(before, after));
     assert_diff(c, before, before, NULL, 0);
     plant_destroy(&before);
@@ -69,9 +69,9 @@ CASE(the_same_files_have_the_same_hash)
 {
     struct plant *one = load(c, YAML(TEMP, ""), TAGS "A,40001,bar,90\n"), *two = load(c, YAML(TEMP, ""), TAGS "A,40001,bar,90\n");
     struct plant *moved = load(c, YAML(TEMP, "\n"), TAGS "A,40001,bar,90\n");
-    assert_string_equal(one->hash, two->hash);
-    assert_int_equal(strlen(one->hash), 16);
-    assert_string_not_equal(one->hash, moved->hash);
+    assert_string_equal(one->files.hash, two->files.hash);
+    assert_int_equal(strlen(one->files.hash), 16);
+    assert_string_not_equal(one->files.hash, moved->files.hash);
     plant_destroy(&one);
     plant_destroy(&two);
     plant_destroy(&moved);

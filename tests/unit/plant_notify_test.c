@@ -35,7 +35,7 @@ CASE(all_keys_are_read)
             "  mail: { server: \"smtps://m.example\", from: p@p.example, user: p, password_file: pw, ca_file: ca.pem }");
     plant_case_assert_loaded(c, 0);
     const struct plant_notify *notify = c->plant->notify;
-    char *password = mem_printf("%s/pw", c->plant->folder);
+    char *password = mem_printf("%s/pw", c->plant->files.folder);
     assert_string_equal(notify->mail.password_file, password);
     mem_free(password);
     assert_int_equal(notify->recipient_count, 4);

@@ -31,7 +31,7 @@ CASE(defaults_are_as_documented)
     const struct plant *p = f->plant;
     assert_string_equal(p->time_zone, "UTC");
     assert_int_equal(p->up, AXIS_Z);
-    assert_false(p->view.set);
+    assert_false(p->display.view.set);
     assert_string_equal(p->assets[0].tag, "E-1");
     assert_string_equal(p->assets[0].description, "");
     assert_null(p->assets[0].nodes);
@@ -91,9 +91,10 @@ CASE(everything_is_read)
     plant_case_assert_loaded(f, 1); /* the group has no unit, but its tag has mm: a warning */
     const struct plant *p = f->plant;
     assert_string_equal(p->name, "Werk Süd");
-    assert_true(p->up == AXIS_Y && p->view.set && p->view.eye_m[1] == 2.5 && p->view.target_m[2] == 10 && p->view.fov_deg == 60);
-    assert_int_equal(p->show, PLANT_SHOW_OPERATOR);
-    assert_true(p->no_reprojection);
+    assert_true(p->up == AXIS_Y && p->display.view.set && p->display.view.eye_m[1] == 2.5 && p->display.view.target_m[2] == 10 &&
+                p->display.view.fov_deg == 60);
+    assert_int_equal(p->display.show, PLANT_SHOW_OPERATOR);
+    assert_true(p->display.no_reprojection);
     const struct plant_asset *a = &p->assets[0];
     assert_string_equal(a->id, "101");
     assert_string_equal(a->nodes, "E*");
@@ -309,8 +310,8 @@ CASE(surroundings_are_read)
                     "sources: [{ id: plc, type: modbus, host: h }]\ntags: tags.csv\nenvironment: hall.hdr\n",
                     small_csv);
     plant_case_assert_loaded(f, 0);
-    assert_int_equal(f->plant->environment_count, 1);
-    assert_string_equal(f->plant->environments[0].name, "hall");
+    assert_int_equal(f->plant->display.environment_count, 1);
+    assert_string_equal(f->plant->display.environments[0].name, "hall");
     assert_int_equal(plant_find_environment(f->plant, "hall"), 1);
     assert_int_equal(plant_find_environment(f->plant, "sky"), 0);
     assert_int_equal(plant_find_environment(f->plant, "yard"), -1);
@@ -330,11 +331,11 @@ CASE(links_are_templates_of_addresses)
                   " { name: DCS, of: tag, url: 'http://dcs.example:81/{name}' }]",
                   small_csv);
     plant_case_assert_loaded(f, 0);
-    assert_int_equal(f->plant->link_count, 2);
-    assert_string_equal(f->plant->links[0].name, "Maintenance");
-    assert_false(f->plant->links[0].of_tags);
-    assert_true(f->plant->links[1].of_tags);
-    assert_string_equal(f->plant->links[1].url, "http://dcs.example:81/{name}");
+    assert_int_equal(f->plant->display.link_count, 2);
+    assert_string_equal(f->plant->display.links[0].name, "Maintenance");
+    assert_false(f->plant->display.links[0].of_tags);
+    assert_true(f->plant->display.links[1].of_tags);
+    assert_string_equal(f->plant->display.links[1].url, "http://dcs.example:81/{name}");
     load_with(f, 1,
               "plant: { name: P }\nlinks:\n- { name: A, url: 'javascript:alert(1)' }\n- { name: B, url: 'https://{id}.example/' }\n"
               "- { name: C, url: 'https://a.example/{name}' }\n- { name: D, url: 'https:// a/' }\n- { url: 'http://a/' }\n"
@@ -682,8 +683,8 @@ CASE(colour_maps_come_from_images)
     text_add(&yaml, "%scolormaps:\n  - { name: a, image: lying.ppm }\n  - { name: b, image: standing.ppm }\n", small_yaml);
     plant_case_load(f, yaml.at, small_csv);
     plant_case_assert_loaded(f, 0);
-    assert_int_equal(f->plant->colormap_count, 2);
-    const struct plant_colormap *a = &f->plant->colormaps[0], *b = &f->plant->colormaps[1];
+    assert_int_equal(f->plant->display.colormap_count, 2);
+    const struct plant_colormap *a = &f->plant->display.colormaps[0], *b = &f->plant->display.colormaps[1];
     assert_string_equal(a->name, "a");
     assert_true(a->rgb[0][0] == 0 && a->rgb[255][2] == 200 && abs(a->rgb[127][0] - 200) < 3 && abs(a->rgb[127][1] - 100) < 3);
     assert_true(abs(a->rgb[85][0] - 100) < 3); /* half-way between the first two */

@@ -33,9 +33,9 @@ CASE(all_keys_are_read)
             "views: [{ id: all, view: group=t }, { id: near, title: \"Near by\", view: \"group=t&camera=1,2,3\" }]\n"
             "tours: [{ id: round, stops: [{ view: near, dwell_s: 8, text: Look here }, { view: all }] }]");
     plant_case_assert_loaded(c, 0);
-    assert_int_equal(c->plant->view_count, 2);
-    assert_string_equal(c->plant->views[1].title, "Near by");
-    assert_int_equal(c->plant->wall_count, 1);
+    assert_int_equal(c->plant->screens.view_count, 2);
+    assert_string_equal(c->plant->screens.views[1].title, "Near by");
+    assert_int_equal(c->plant->screens.wall_count, 1);
     char *text = walls_text(c->plant, NULL);
     assert_string_equal(text,
                         "{\"walls\":[{\"id\":\"room\",\"inches\":65.0,\"distance_m\":4.5,\"displays\":[{\"grid\":[\"main main side\","
@@ -89,8 +89,8 @@ CASE(other_plants_are_read)
             "- { id: pier, url: \"http://localhost:8080\" }\n"
             "walls: [{ id: room, displays: [{ grid: [a b], panes: [{ area: a, snapshot: tanks }, { area: b, snapshot: [pier] }] }] }]");
     plant_case_assert_loaded(c, 0);
-    assert_int_equal(c->plant->other_plant_count, 2);
-    const struct other_plant *tanks = &c->plant->other_plants[0], *pier = &c->plant->other_plants[1];
+    assert_int_equal(c->plant->screens.other_plant_count, 2);
+    const struct other_plant *tanks = &c->plant->screens.other_plants[0], *pier = &c->plant->screens.other_plants[1];
     assert_string_equal(tanks->view, "all");
     assert_true(tanks->every_s == 10 && tanks->width_px == 1920 && tanks->height_px == 1080);
     assert_true(!pier->view && !pier->token_file && pier->every_s == 5 && pier->width_px == 1280 && pier->height_px == 720);

@@ -237,7 +237,7 @@ CASE(a_plant_may_give_no_depth_away)
 {
     struct frame_request request;
     struct plant closed = *f->context.plant;
-    closed.no_reprojection = true;
+    closed.display.no_reprojection = true;
     f->context.plant = &closed;
     say(f, DEPTH_HELLO);
     assert_false(session_gets_depth(f->session));

@@ -25,7 +25,7 @@ static int set_up(void **state)
     f->display.panes[1] = (struct wall_pane){ .area = "side", .kind = PANE_ALARMS };
     f->display.pane_count = 2;
     f->wall = (struct wall){ .id = "room", .displays = &f->display, .display_count = 1 };
-    f->plant = (struct plant){ .walls = &f->wall, .wall_count = 1 };
+    f->plant = (struct plant){ .screens.walls = &f->wall, .screens.wall_count = 1 };
     f->folder = temp_folder_create();
     f->remote = wall_remote_open(f->log, &f->plant, f->folder, NULL);
     *state = f;

@@ -96,8 +96,8 @@ static char *history_folder(const struct backup_job *job, const struct plant *pl
 /* Returns a path as the plant file would write it: relative if it is below the plant file's folder, else absolute. */
 static const char *as_written(const struct plant *plant, const char *path)
 {
-    size_t n = strlen(plant->folder);
-    return !strncmp(path, plant->folder, n) && path[n] == '/' ? path + n + 1 : path;
+    size_t n = strlen(plant->files.folder);
+    return !strncmp(path, plant->files.folder, n) && path[n] == '/' ? path + n + 1 : path;
 }
 
 /* Names of the files in the history folder whose content users made. */
@@ -188,7 +188,7 @@ static bool write_manifest(struct backup_job *job, const struct plant *plant)
     char now[TIMESTAMP_BYTES];
     timestamp_print(clock_utc_ns() / 1000, now);
     json_t *manifest = json_pack("{s:i,s:s,s:s,s:s?,s:s,s:O}", "version", MANIFEST_VERSION, "plantcast", PLANTCAST_VERSION, "made", now,
-                                 "history", history_name(plant), "tags", as_written(plant, plant->tags_path), "files", job->files);
+                                 "history", history_name(plant), "tags", as_written(plant, plant->files.tags_path), "files", job->files);
     char *path = mem_printf("%s/" MANIFEST, job->folder), *text = json_dumps(manifest, JSON_INDENT(2));
     int error = atomic_file_put(path, text, strlen(text));
     if (error)
@@ -226,19 +226,19 @@ static void leave_stamp(const char *history)
 /* Writes the backup into OUT.part and renames that once it is complete, so that a folder named OUT is always a complete backup. */
 static bool back_up(struct backup_job *job, const struct plant *plant, const char *out)
 {
-    const char *tags = text_base_name(plant->tags_path);
+    const char *tags = text_base_name(plant->files.tags_path);
     char *history = history_folder(job, plant), *part = mem_printf("%s.part", out);
     bool good = false;
     job->folder = part;
     if (is_ours(tags) || !strcmp(tags, PLANT_FILE) || !strcmp(tags, MANIFEST))
-        say(plant->tags_path, "the backup needs this name for another file");
+        say(plant->files.tags_path, "the backup needs this name for another file");
     else if (access(out, F_OK) == 0)
         say(out, "is there already");
     else if (mkdir(part, 0700) != 0)
         say(part, strerror(errno));
     else {
-        good = add(job, copy_file, plant->path, PLANT_FILE) && add(job, copy_file, plant->tags_path, tags) && add_history(job, history) &&
-               add_service(job) && write_manifest(job, plant);
+        good = add(job, copy_file, plant->files.path, PLANT_FILE) && add(job, copy_file, plant->files.tags_path, tags) &&
+               add_history(job, history) && add_service(job) && write_manifest(job, plant);
         if (good && rename(part, out) != 0)
             good = say(out, strerror(errno));
         if (!good)

@@ -32,9 +32,9 @@ static bool take_query(const json_t *statement, struct snapshot_options *options
 static bool same_configuration(const json_t *statement, const struct plant *plant)
 {
     const char *then = json_string_value(json_object_get(statement, "configuration"));
-    if (then && !strcmp(then, plant->hash))
+    if (then && !strcmp(then, plant->files.hash))
         return true;
-    printf("  DIFFERS: configuration: %s was %s, now %s\n", plant->path, then ? then : "?", plant->hash);
+    printf("  DIFFERS: configuration: %s was %s, now %s\n", plant->files.path, then ? then : "?", plant->files.hash);
     return false;
 }
 

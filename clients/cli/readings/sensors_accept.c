@@ -173,7 +173,7 @@ static bool read_filter(const struct accept_options *options, const struct plant
                                        .confidence = -1 };
     bool no_asset = options->asset && filter->asset < 0, no_group = options->group && filter->group < 0;
     if (no_asset || no_group)
-        fprintf(stderr, "plantcast: %s: no %s '%s'\n", plant->path, no_asset ? "asset" : "group",
+        fprintf(stderr, "plantcast: %s: no %s '%s'\n", plant->files.path, no_asset ? "asset" : "group",
                 no_asset ? options->asset : options->group);
     snprintf(filter->pattern, sizeof(filter->pattern), "%s", options->tags ? options->tags : "");
     return !no_asset && !no_group && number_of("--within", options->within, 1e6, &filter->within_m) &&
@@ -210,7 +210,7 @@ static int run_locked(const struct accept_options *options)
         return 1;
     struct log *log = log_create(LOG_WARN);
     char real[PATH_MAX]; /* if the list is a symlink, earlier versions are next to its target */
-    const char *path = realpath(plant->tags_path, real) ? real : plant->tags_path;
+    const char *path = realpath(plant->files.tags_path, real) ? real : plant->files.tags_path;
     int code = options->undo ? undo(options, plant, path) : accept_in(options, plant, log, path);
     log_destroy(&log);
     plant_destroy(&plant);

@@ -73,7 +73,7 @@ static void row_read(const struct plant *plant, const struct csv *csv, const str
     struct reading reading = { .received_utc_ns = snapshot->taken_utc_ns };
     char *end;
     if (tag < 0)
-        diag_error(csv->diag, csv->path, line, row->cells[0].column, "tag '%s' is not in %s", name, plant->tags_path);
+        diag_error(csv->diag, csv->path, line, row->cells[0].column, "tag '%s' is not in %s", name, plant->files.tags_path);
     if (!quality_parse(quality, &reading.quality))
         diag_error(csv->diag, csv->path, line, row->cells[columns->quality].column, "quality '%s': good, uncertain or bad expected",
                    quality);

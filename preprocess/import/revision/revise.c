@@ -63,13 +63,13 @@ static char *read_text(const char *path, int *status)
 static int find_tags(struct revising *r)
 {
     char folder[PATH_MAX], path[PATH_MAX];
-    if (!realpath(r->params->folder, folder) || !realpath(r->plant->tags_path, path))
-        return fail_at(r->plant->tags_path, strerror(errno));
+    if (!realpath(r->params->folder, folder) || !realpath(r->plant->files.tags_path, path))
+        return fail_at(r->plant->files.tags_path, strerror(errno));
     char *slash = strrchr(path, '/');
     *slash = 0;
     bool beside = !strcmp(folder, path);
     if (!beside && access(*path ? path : "/", W_OK | X_OK) != 0)
-        return fail_at(r->plant->tags_path, "the folder is not writable");
+        return fail_at(r->plant->files.tags_path, "the folder is not writable");
     *slash = '/';
     r->tags_name = mem_strdup(beside ? slash + 1 : path);
     return 0;
@@ -83,7 +83,7 @@ static int read_plant(struct revising *r)
     r->plant = plant_load_or_print(r->plant_path);
     if (r->plant) {
         r->plant_text = read_text(r->plant_path, &status);
-        r->tags_text = r->plant->tags_path ? read_text(r->plant->tags_path, &status) : NULL;
+        r->tags_text = r->plant->files.tags_path ? read_text(r->plant->files.tags_path, &status) : NULL;
         if (r->tags_text && status == 0)
             status = find_tags(r);
         r->matches_text = read_text(matches, &status);

@@ -306,7 +306,7 @@ static void plan_asset(struct planning *p, size_t index)
 static bool is_of(const struct plant_asset *asset, const struct plant *plant, const struct revision_model *model)
 {
     struct stat own, other;
-    char *expected = mem_printf("%s/%s", plant->folder, model->draft->file);
+    char *expected = mem_printf("%s/%s", plant->files.folder, model->draft->file);
     bool same = !strcmp(asset->model, expected) || (model->before && stat(asset->model, &own) == 0 && stat(model->before, &other) == 0 &&
                                                     own.st_dev == other.st_dev && own.st_ino == other.st_ino);
     mem_free(expected);
@@ -406,7 +406,7 @@ static bool compose(struct planning *p)
     char why[ASSET_EDIT_WHY_BYTES] = "";
     p->revision->plant_text = asset_edit_apply(input->plant_text, p->assets, input->plant->asset_count, p->added.at, why);
     if (!p->revision->plant_text) {
-        snprintf(p->why, MODEL_WHY_BYTES, "%s: %s", input->plant->path, why);
+        snprintf(p->why, MODEL_WHY_BYTES, "%s: %s", input->plant->files.path, why);
         return false;
     }
     if (p->tag_count > 0 && input->tags_text) {
@@ -415,7 +415,7 @@ static bool compose(struct planning *p)
         p->revision->tags_text = tag_edit(input->tags_text, p->tags, p->tag_count, &wrong);
         if (!p->revision->tags_text) {
             refusal_text(&wrong, text);
-            snprintf(p->why, MODEL_WHY_BYTES, "%s: %.300s", input->plant->tags_path, text);
+            snprintf(p->why, MODEL_WHY_BYTES, "%s: %.300s", input->plant->files.tags_path, text);
         }
         return p->revision->tags_text != NULL;
     }

@@ -104,11 +104,11 @@ static void check_places(struct plant_models_check *check, size_t asset_index, c
     char better[60];
     if (!check->header.partial && placed - within > placed / 2) {
         if (find_better(asset, box, sensors, count, within, better, sizeof(better)))
-            diag_warning(check->diag, check->plant->path, asset->line, 0,
+            diag_warning(check->diag, check->plant->files.path, asset->line, 0,
                          "asset %s: %zu of the %zu sensors with X, Y, Z are away from it; with %s they would be on it", asset->id,
                          placed - within, placed, better);
         else
-            diag_warning(check->diag, check->plant->path, asset->line, 0,
+            diag_warning(check->diag, check->plant->files.path, asset->line, 0,
                          "asset %s: %zu of the %zu sensors with X, Y, Z are away from it: are units, up, placement and sensor_frame right?",
                          asset->id, placed - within, placed);
     }
@@ -150,7 +150,7 @@ static void check_node(struct plant_models_check *check, const struct plant_asse
     char why[WHY_BYTES], numbers[120] = "";
     size_t count = nodes_find(tag->place.node, check->header.nodes, check->header.count, check->found, why, sizeof(why));
     if (count == 0) {
-        diag_error(check->diag, check->plant->tags_path, tag->line, tag->column, "tag %s: asset %s: %s", tag->name, asset->id, why);
+        diag_error(check->diag, check->plant->files.tags_path, tag->line, tag->column, "tag %s: asset %s: %s", tag->name, asset->id, why);
         return;
     }
     if (is_one_place(check, asset, &count))
@@ -158,7 +158,7 @@ static void check_node(struct plant_models_check *check, const struct plant_asse
     for (size_t i = 0, length = 0; i < count && i < SHOWN_NODES; i++)
         length += (size_t)snprintf(numbers + length, sizeof(numbers) - length, "%s#%u", i ? ", " : "",
                                    check->header.nodes[check->found[i]].number);
-    diag_error(check->diag, check->plant->tags_path, tag->line, tag->column,
+    diag_error(check->diag, check->plant->files.tags_path, tag->line, tag->column,
                "tag %s: asset %s: the model has %zu nodes '%.120s', in different places (%s%s): name one of them by its number or its path",
                tag->name, asset->id, count, tag->place.node, numbers, count > SHOWN_NODES ? ", ..." : "");
 }
@@ -173,7 +173,7 @@ static bool check_asset(struct plant_models_check *check, size_t index, double s
     struct model_box box = model_box_empty;
     char why[WHY_BYTES];
     if (!nodes_take(asset->nodes, check->header.nodes, check->header.count, check->taken, why, sizeof(why))) {
-        diag_error(check->diag, plant->path, asset->line, 0, "asset %s: nodes: %s", asset->id, why);
+        diag_error(check->diag, plant->files.path, asset->line, 0, "asset %s: nodes: %s", asset->id, why);
         return false;
     }
     for (size_t i = 0; i < check->header.count; i++)
@@ -188,7 +188,7 @@ static bool check_asset(struct plant_models_check *check, size_t index, double s
             check_node(check, asset, &plant->tags[i]);
     if (!(box.low[0] <= box.high[0])) {
         if (!check->header.partial)
-            diag_error(check->diag, plant->path, asset->line, 0, "asset %s: the selected nodes have no triangles", asset->id);
+            diag_error(check->diag, plant->files.path, asset->line, 0, "asset %s: the selected nodes have no triangles", asset->id);
         return false;
     }
     check_places(check, index, &box);
@@ -206,7 +206,8 @@ static void check_model(struct plant_models_check *check, size_t first, bool *do
     char why[WHY_BYTES];
     bool good = model_header_read(&check->header, path, why, sizeof(why));
     if (!good)
-        diag_error(check->diag, plant->path, plant->assets[first].line, 0, "asset %s: model '%s' %s", plant->assets[first].id, path, why);
+        diag_error(check->diag, plant->files.path, plant->assets[first].line, 0, "asset %s: model '%s' %s", plant->assets[first].id, path,
+                   why);
     check->taken = mem_array(check->header.count + 1, sizeof(*check->taken));
     check->counted = mem_array(check->header.count + 1, sizeof(*check->counted));
     check->found = mem_array(check->header.count + 1, sizeof(*check->found));
@@ -240,7 +241,7 @@ static void check_sizes(const struct plant_models_check *check, const double (*s
         if (out)
             fprintf(out, "asset %s: %s\n", plant->assets[i].id, asset_size_text(sizes_m[i], text));
         if (asset_size_doubtful(&plant->assets[i], sizes_m[i], median_m, why))
-            diag_warning(check->diag, plant->path, plant->assets[i].line, 0, "asset %s: %s", plant->assets[i].id, why);
+            diag_warning(check->diag, plant->files.path, plant->assets[i].line, 0, "asset %s: %s", plant->assets[i].id, why);
     }
     mem_free(longest_m);
 }
@@ -250,7 +251,7 @@ static bool check_memory(const struct plant_models_check *check, size_t machine)
     uint64_t most = machine > BASE_BYTES ? (machine - BASE_BYTES) / TRIANGLE_BYTES : 0;
     if (check->triangles <= most)
         return true;
-    diag_error(check->diag, check->plant->path, 0, 0,
+    diag_error(check->diag, check->plant->files.path, 0, 0,
                "%.2f million triangles are too many: %.2f GB of memory hold %.2f million. Leave parts of the plant "
                "out, or import it with a larger --chord",
                (double)check->triangles / 1e6, (double)machine / 1e9, (double)most / 1e6);

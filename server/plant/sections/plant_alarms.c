@@ -103,7 +103,7 @@ void plant_alarms_read_row(struct tag_columns *columns, struct plant *plant, str
 
 /* --- references between rows ------------------------------------------------------------------------------------------------ */
 
-#define reference_error(r, ...) diag_error(diag, plant->tags_path, (r)->line, (r)->at_column, __VA_ARGS__)
+#define reference_error(r, ...) diag_error(diag, plant->files.tags_path, (r)->line, (r)->at_column, __VA_ARGS__)
 
 static void resolve_suppression(struct plant *plant, struct diag *diag, const struct alarm_reference *reference)
 {

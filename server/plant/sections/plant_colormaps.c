@@ -16,15 +16,15 @@ static bool is_taken(const struct plant *plant, const char *name)
     char *file = mem_printf("maps/%s.csv", name);
     bool taken = embedded_find(file) != NULL;
     mem_free(file);
-    for (size_t i = 0; i + 1 < plant->colormap_count; i++)
-        taken = taken || !strcmp(plant->colormaps[i].name, name);
+    for (size_t i = 0; i + 1 < plant->display.colormap_count; i++)
+        taken = taken || !strcmp(plant->display.colormaps[i].name, name);
     return taken;
 }
 
 static void read_image(struct yaml_reader *reader, const struct plant *plant, struct plant_colormap *map, const char *image,
                        struct text_position place)
 {
-    char why[IMAGE_WHY_BYTES], *path = *image == '/' ? mem_strdup(image) : mem_printf("%s/%s", plant->folder, image);
+    char why[IMAGE_WHY_BYTES], *path = *image == '/' ? mem_strdup(image) : mem_printf("%s/%s", plant->files.folder, image);
     if (!image_ramp(path, map->rgb, why))
         yaml_error(reader, place, "image: '%s': %s", path, why);
     mem_free(path);
@@ -55,5 +55,5 @@ void plant_colormaps_read(struct yaml_reader *reader, yaml_node_t *node, void *r
     if (count > PLANT_COLORMAPS)
         yaml_error(reader, yaml_place(node), "colormaps: expected at most %d, found %d", PLANT_COLORMAPS, count);
     for (int i = 0; i < count && i < PLANT_COLORMAPS; i++)
-        read_colormap(reader, yaml_list_item(reader, node, i), plant, &plant->colormaps[plant->colormap_count++]);
+        read_colormap(reader, yaml_list_item(reader, node, i), plant, &plant->display.colormaps[plant->display.colormap_count++]);
 }

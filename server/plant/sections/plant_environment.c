@@ -14,7 +14,7 @@ static char *name_of(const char *path)
 
 static void read_one(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
 {
-    struct plant_environment *environment = &plant->environments[plant->environment_count];
+    struct plant_environment *environment = &plant->display.environments[plant->display.environment_count];
     struct image_float image;
     char why[IMAGE_WHY_BYTES];
     const char *text = yaml_text(node);
@@ -22,7 +22,7 @@ static void read_one(struct yaml_reader *reader, yaml_node_t *node, struct plant
         yaml_expected(reader, node, "environment", "the path of a picture");
         return;
     }
-    char *path = *text == '/' ? mem_strdup(text) : mem_printf("%s/%s", plant->folder, text), *name = name_of(path);
+    char *path = *text == '/' ? mem_strdup(text) : mem_printf("%s/%s", plant->files.folder, text), *name = name_of(path);
     if (!strcmp(name, "sky") || plant_find_environment(plant, name) >= 0)
         yaml_error(reader, yaml_place(node), "environment: the name '%s' is already used", name);
     else if (!image_load_float(&image, path, 16, why))
@@ -30,7 +30,7 @@ static void read_one(struct yaml_reader *reader, yaml_node_t *node, struct plant
     else {
         mem_free(image.rgba);
         *environment = (struct plant_environment){ .name = name, .path = path };
-        plant->environment_count++;
+        plant->display.environment_count++;
         return;
     }
     mem_free(path);
@@ -55,8 +55,8 @@ int plant_find_environment(const struct plant *plant, const char *name)
 {
     if (!strcmp(name, "sky"))
         return 0;
-    for (size_t i = 0; i < plant->environment_count; i++)
-        if (!strcmp(plant->environments[i].name, name))
+    for (size_t i = 0; i < plant->display.environment_count; i++)
+        if (!strcmp(plant->display.environments[i].name, name))
             return (int)i + 1;
     return -1;
 }

@@ -62,7 +62,7 @@ static void read_view(struct yaml_reader *reader, yaml_node_t *node, void *recor
         { "fov", KEY_NUMBER, false, offsetof(struct plant_view, fov_deg), 1, 120, NULL, NULL },
         { 0 }
     };
-    struct plant_view *view = &((struct plant *)record)->view;
+    struct plant_view *view = &((struct plant *)record)->display.view;
     struct yaml_map map;
     if (!yaml_map_read(reader, node, "view", keys, view, &map) || !yaml_map_good(&map, "eye") || !yaml_map_good(&map, "target"))
         return;
@@ -78,8 +78,8 @@ static void read_plant(struct yaml_reader *reader, yaml_node_t *node, void *reco
                                             { "time_zone", KEY_NAME, false, offsetof(struct plant, time_zone), 0, 0, NULL, NULL },
                                             { "up", KEY_CHOICE, false, offsetof(struct plant, up), 0, 0, up_choices, NULL },
                                             { "view", KEY_CUSTOM, false, 0, 0, 0, NULL, read_view },
-                                            { "show", KEY_CHOICE, false, offsetof(struct plant, show), 0, 0, show_choices, NULL },
-                                            { "reprojection", KEY_FLAG, false, offsetof(struct plant, no_reprojection), 0, 0,
+                                            { "show", KEY_CHOICE, false, offsetof(struct plant, display.show), 0, 0, show_choices, NULL },
+                                            { "reprojection", KEY_FLAG, false, offsetof(struct plant, display.no_reprojection), 0, 0,
                                               reprojection_choices, NULL },
                                             { 0 } };
     struct plant *plant = record;
@@ -190,7 +190,7 @@ static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct pla
     if (asset->start != PLANT_START_SHOWN && plant->asset_count > PLANT_STARTS)
         yaml_error(reader, yaml_map_place(&map, "start"), "start: only the first %d assets can be hidden or ghosts", PLANT_STARTS);
     plant_resolve_path(plant, &asset->model);
-    if (yaml_map_good(&map, "model") && !plant->without_models)
+    if (yaml_map_good(&map, "model") && !plant->files.without_models)
         check_model(reader, &map, plant, asset->model);
     if (!asset->tag && asset->id)
         asset->tag = mem_strdup(asset->id);
@@ -414,14 +414,14 @@ void plant_file_read(struct plant *plant, struct diag *diag)
                                             { "tours", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_tours_read },
                                             { "other_plants", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_other_plants_read },
                                             { "walls", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_walls_read },
-                                            { "tags", KEY_NAME, true, offsetof(struct plant, tags_path), 0, 0, NULL, NULL },
+                                            { "tags", KEY_NAME, true, offsetof(struct plant, files.tags_path), 0, 0, NULL, NULL },
                                             { 0 } };
     struct yaml_reader reader;
     struct yaml_map map;
     plant->up = AXIS_Z;
-    plant->view.fov_deg = 45;
+    plant->display.view.fov_deg = 45;
     plant->history = (struct plant_history){ .keep_days = 400, .keep_gb = 20, .deadband_percent = 0.2, .override_s = 600 };
-    if (!yaml_reader_open(&reader, plant->path, diag))
+    if (!yaml_reader_open(&reader, plant->files.path, diag))
         return;
     read_conversions(&reader, yaml_document_get_root_node(&reader.doc), plant);
     yaml_map_read(&reader, yaml_document_get_root_node(&reader.doc), "the plant file", keys, plant, &map);
@@ -432,11 +432,11 @@ void plant_file_read(struct plant *plant, struct diag *diag)
     if (!plant->time_zone)
         plant->time_zone = mem_strdup("UTC");
     stand_upright(plant);
-    plant_resolve_path(plant, &plant->tags_path);
-    if (plant->tags_path && access(plant->tags_path, R_OK) != 0) {
-        yaml_error(&reader, yaml_map_place(&map, "tags"), "tags: '%s' cannot be read: %s", plant->tags_path, strerror(errno));
-        mem_free(plant->tags_path);
-        plant->tags_path = NULL;
+    plant_resolve_path(plant, &plant->files.tags_path);
+    if (plant->files.tags_path && access(plant->files.tags_path, R_OK) != 0) {
+        yaml_error(&reader, yaml_map_place(&map, "tags"), "tags: '%s' cannot be read: %s", plant->files.tags_path, strerror(errno));
+        mem_free(plant->files.tags_path);
+        plant->files.tags_path = NULL;
     }
     yaml_reader_close(&reader);
 }

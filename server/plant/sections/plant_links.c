@@ -50,7 +50,7 @@ void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, void *recor
     if (count > PLANT_LINKS)
         yaml_error(reader, yaml_place(node), "links: expected at most %d, found %d", PLANT_LINKS, count);
     for (int i = 0; i < count && i < PLANT_LINKS; i++) {
-        struct plant_link *link = &plant->links[plant->link_count++];
+        struct plant_link *link = &plant->display.links[plant->display.link_count++];
         struct yaml_map map;
         yaml_map_read(reader, yaml_list_item(reader, node, i), "a link", keys, link, &map);
         const char *wrong = link->url ? wrong_with(link->url, link->of_tags) : NULL;

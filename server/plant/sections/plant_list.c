@@ -44,7 +44,7 @@ void plant_resolve_path(const struct plant *plant, char **path)
 {
     if (!*path || **path == '/')
         return;
-    char *whole = mem_printf("%s/%s", plant->folder, *path);
+    char *whole = mem_printf("%s/%s", plant->files.folder, *path);
     mem_free(*path);
     *path = whole;
 }

@@ -25,8 +25,8 @@ static bool parse(const struct tag_link *link, struct plant *plant, struct diag 
     size_t at;
     tag->expression = expression_parse(tag->signal.address + 1, find_tag, plant, why, &at);
     if (!tag->expression)
-        diag_error(diag, plant->tags_path, link->line, link->column, "Address: '%.60s': %s, at character %zu", tag->signal.address, why,
-                   at + 2);
+        diag_error(diag, plant->files.tags_path, link->line, link->column, "Address: '%.60s': %s, at character %zu", tag->signal.address,
+                   why, at + 2);
     return tag->expression != NULL;
 }
 
@@ -43,7 +43,7 @@ static void check_units(const struct tag_link *link, const struct plant *plant, 
         struct unit_change change;
         if (units_compare(one->scale.own_unit, other->scale.own_unit, &change) != UNITS_CONVERT)
             continue;
-        diag_warning(diag, plant->tags_path, link->line, link->column,
+        diag_warning(diag, plant->files.tags_path, link->line, link->column,
                      "Address: '%.60s' combines %.60s in %.20s with %.60s in %.20s; convert one of them in the expression",
                      tag->signal.address, one->name, one->scale.own_unit, other->name, other->scale.own_unit);
         return;
@@ -88,7 +88,7 @@ void tag_derived_resolve(const struct tag_links *derived, struct plant *plant, s
         const struct tag_link *link = &derived->at[i];
         if (visit(&walk, (int)link->tag))
             continue;
-        diag_error(diag, plant->tags_path, link->line, link->column, "Address: '%.60s' is computed from itself",
+        diag_error(diag, plant->files.tags_path, link->line, link->column, "Address: '%.60s' is computed from itself",
                    plant->tags[link->tag].name);
         break; /* reports the cycle for one tag only: otherwise each tag of the cycle would be reported */
     }

@@ -110,11 +110,12 @@ static void resolve_quality(const struct tag_link *link, struct plant *plant, st
     struct plant_tag *tag = &plant->tags[link->tag];
     tag->validity.quality.tag = plant_find_tag(plant, link->to);
     if (tag->validity.quality.tag < 0)
-        report_unknown(plant, diag, plant->tags_path, link->line, link->column, "Quality Tag", link->to);
+        report_unknown(plant, diag, plant->files.tags_path, link->line, link->column, "Quality Tag", link->to);
     else if (tag->validity.quality.tag == (int)link->tag)
-        diag_error(diag, plant->tags_path, link->line, link->column, "Quality Tag: expected another tag than '%.60s' itself", link->to);
+        diag_error(diag, plant->files.tags_path, link->line, link->column, "Quality Tag: expected another tag than '%.60s' itself",
+                   link->to);
     else if (plant->tags[tag->validity.quality.tag].validity.quality.mask != 0)
-        diag_error(diag, plant->tags_path, link->line, link->column, "Quality Tag: '%.60s' has a quality tag of its own", link->to);
+        diag_error(diag, plant->files.tags_path, link->line, link->column, "Quality Tag: '%.60s' has a quality tag of its own", link->to);
 }
 
 static void resolve_direction(const struct tag_link *link, struct plant *plant, struct diag *diag)
@@ -122,11 +123,11 @@ static void resolve_direction(const struct tag_link *link, struct plant *plant, 
     struct plant_tag *tag = &plant->tags[link->tag];
     int to = plant_find_tag(plant, link->to);
     if (to < 0)
-        report_unknown(plant, diag, plant->tags_path, link->line, link->column, "Direction", link->to);
+        report_unknown(plant, diag, plant->files.tags_path, link->line, link->column, "Direction", link->to);
     else if (to == (int)link->tag)
-        diag_error(diag, plant->tags_path, link->line, link->column, "Direction: expected other tags than '%.60s' itself", link->to);
+        diag_error(diag, plant->files.tags_path, link->line, link->column, "Direction: expected other tags than '%.60s' itself", link->to);
     else if (tag->group < 0 || tag->asset < 0 || tag->place.assumed)
-        diag_error(diag, plant->tags_path, link->line, link->column,
+        diag_error(diag, plant->files.tags_path, link->line, link->column,
                    "Direction: '%.60s' needs a group, an asset and its own place, where the direction starts", tag->name);
     else if (tag->direction.count < 3)
         tag->direction.tags[tag->direction.count++] = to;
@@ -138,9 +139,10 @@ static void resolve_heartbeat(struct plant_source *source, struct plant *plant, 
 {
     source->heartbeat_tag = plant_find_tag(plant, source->heartbeat);
     if (source->heartbeat_tag < 0)
-        report_unknown(plant, diag, plant->path, source->line, 1, "heartbeat", source->heartbeat);
+        report_unknown(plant, diag, plant->files.path, source->line, 1, "heartbeat", source->heartbeat);
     else if (plant->tags[source->heartbeat_tag].source != source - plant->sources)
-        diag_error(diag, plant->path, source->line, 1, "heartbeat: '%.60s' is not read from source %s", source->heartbeat, source->id);
+        diag_error(diag, plant->files.path, source->line, 1, "heartbeat: '%.60s' is not read from source %s", source->heartbeat,
+                   source->id);
 }
 
 void tag_links_resolve(struct tag_links *links, struct plant *plant, struct diag *diag)

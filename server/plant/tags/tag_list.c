@@ -55,7 +55,7 @@ static void read_group_and_asset(struct tag_list *list)
     tag->group = tag->asset = -1;
     if (plant->group_count > 0)
         tag->group = cell_reference(&list->columns, COL_GROUP, "group", plant->groups, plant->group_count, sizeof(*plant->groups));
-    if (plant->keeps_orphans && is_lost(list))
+    if (plant->files.keeps_orphans && is_lost(list))
         tag->place.lost_asset = mem_strdup(cell_text(&list->columns, COL_ASSET));
     else if (plant->asset_count > 0)
         tag->asset = cell_reference(&list->columns, COL_ASSET, "asset", plant->assets, plant->asset_count, sizeof(*plant->assets));
@@ -253,15 +253,15 @@ static void check_duplicates(const struct plant *plant, struct diag *diag)
         if (strcmp(one->name, two->name) != 0)
             first = i;
         else if (*two->name)
-            diag_error(diag, plant->tags_path, two->line, two->column, "Tag Name: '%.60s' is listed twice (first at line %d)", two->name,
-                       one->line);
+            diag_error(diag, plant->files.tags_path, two->line, two->column, "Tag Name: '%.60s' is listed twice (first at line %d)",
+                       two->name, one->line);
     }
 }
 
 void tag_list_read(struct plant *plant, struct diag *diag)
 {
     struct tag_list list = { .plant = plant };
-    if (!tag_columns_open(&list.columns, plant->tags_path, diag))
+    if (!tag_columns_open(&list.columns, plant->files.tags_path, diag))
         return;
     tag_columns_need(&list.columns, COL_NAME);
     if (plant->source_count > 0)

@@ -34,39 +34,39 @@ void plant_other_plants_read(struct yaml_reader *reader, yaml_node_t *node, void
                                             { "height", KEY_INT, false, offsetof(struct other_plant, height_px), 144, 2160, NULL, NULL },
                                             { 0 } };
     int count;
-    plant->other_plants = plant_list_make(reader, node, "other_plants", 0, sizeof(*plant->other_plants), &count);
+    plant->screens.other_plants = plant_list_make(reader, node, "other_plants", 0, sizeof(*plant->screens.other_plants), &count);
     if (count > OTHER_PLANTS)
         yaml_error(reader, yaml_place(node), "other_plants: expected at most %d, found %d", OTHER_PLANTS, count);
     for (int i = 0; i < count && i < OTHER_PLANTS; i++) {
-        struct other_plant *other = &plant->other_plants[plant->other_plant_count++];
+        struct other_plant *other = &plant->screens.other_plants[plant->screens.other_plant_count++];
         yaml_node_t *item = yaml_list_item(reader, node, i);
         struct yaml_map map;
         *other = (struct other_plant){ .every_s = 5, .width_px = 1280, .height_px = 720, .line = yaml_place(item).line };
         if (!yaml_map_read(reader, item, "another plant", keys, other, &map))
             continue;
         check(reader, &map, plant, other);
-        plant_list_check_id(reader, &map, "plant", plant->other_plants, plant->other_plant_count, sizeof(*other),
+        plant_list_check_id(reader, &map, "plant", plant->screens.other_plants, plant->screens.other_plant_count, sizeof(*other),
                             offsetof(struct other_plant, line));
     }
 }
 
 int other_plant_find(const struct plant *plant, const char *id)
 {
-    for (size_t i = 0; i < plant->other_plant_count; i++)
-        if (!strcmp(plant->other_plants[i].id, id))
+    for (size_t i = 0; i < plant->screens.other_plant_count; i++)
+        if (!strcmp(plant->screens.other_plants[i].id, id))
             return (int)i;
     return -1;
 }
 
 void plant_other_plants_free(struct plant *plant)
 {
-    for (size_t i = 0; i < plant->other_plant_count; i++) {
-        struct other_plant *other = &plant->other_plants[i];
+    for (size_t i = 0; i < plant->screens.other_plant_count; i++) {
+        struct other_plant *other = &plant->screens.other_plants[i];
         mem_free(other->id);
         mem_free(other->url);
         mem_free(other->token_file);
         mem_free(other->ca_file);
         mem_free(other->view);
     }
-    mem_free(plant->other_plants);
+    mem_free(plant->screens.other_plants);
 }

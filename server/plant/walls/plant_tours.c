@@ -41,51 +41,52 @@ void plant_tours_read(struct yaml_reader *reader, yaml_node_t *node, void *recor
                                             { "stops", KEY_CUSTOM, true, 0, 0, 0, NULL, read_stops },
                                             { 0 } };
     int count;
-    plant->tours = plant_list_make(reader, node, "tours", 0, sizeof(*plant->tours), &count);
+    plant->screens.tours = plant_list_make(reader, node, "tours", 0, sizeof(*plant->screens.tours), &count);
     if (count > TOURS)
         yaml_error(reader, yaml_place(node), "tours: expected at most %d, found %d", TOURS, count);
     for (int i = 0; i < count && i < TOURS; i++) {
-        struct tour *tour = &plant->tours[plant->tour_count++];
+        struct tour *tour = &plant->screens.tours[plant->screens.tour_count++];
         struct yaml_map map;
         tour->line = yaml_place(yaml_list_item(reader, node, i)).line;
         if (!yaml_map_read(reader, yaml_list_item(reader, node, i), "a tour", keys, tour, &map))
             continue;
         if (tour->id && !named_view_id_valid(tour->id))
             yaml_error(reader, yaml_map_place(&map, "id"), "id: expected letters, digits, '_', '-' and '.', found '%.60s'", tour->id);
-        plant_list_check_id(reader, &map, "tour", plant->tours, plant->tour_count, sizeof(*tour), offsetof(struct tour, line));
+        plant_list_check_id(reader, &map, "tour", plant->screens.tours, plant->screens.tour_count, sizeof(*tour),
+                            offsetof(struct tour, line));
     }
 }
 
 const struct tour *tour_find(const struct plant *plant, const char *id)
 {
     size_t i = 0;
-    while (i < plant->tour_count && (!plant->tours[i].id || strcmp(plant->tours[i].id, id) != 0))
+    while (i < plant->screens.tour_count && (!plant->screens.tours[i].id || strcmp(plant->screens.tours[i].id, id) != 0))
         i++;
-    return i < plant->tour_count ? &plant->tours[i] : NULL;
+    return i < plant->screens.tour_count ? &plant->screens.tours[i] : NULL;
 }
 
 void plant_tours_check(const struct plant *plant, struct diag *diag)
 {
-    for (size_t t = 0; t < plant->tour_count; t++)
-        for (size_t s = 0; s < plant->tours[t].stop_count; s++) {
-            const struct tour_stop *stop = &plant->tours[t].stops[s];
+    for (size_t t = 0; t < plant->screens.tour_count; t++)
+        for (size_t s = 0; s < plant->screens.tours[t].stop_count; s++) {
+            const struct tour_stop *stop = &plant->screens.tours[t].stops[s];
             if (!stop->view || named_view_find(plant, stop->view))
                 continue;
-            const char *near = suggest_nearest(stop->view, plant->views, plant->view_count, sizeof(*plant->views));
-            diag_error(diag, plant->path, stop->place.line, stop->place.column, "view: `views` has no '%.60s'%s%s%s", stop->view,
+            const char *near = suggest_nearest(stop->view, plant->screens.views, plant->screens.view_count, sizeof(*plant->screens.views));
+            diag_error(diag, plant->files.path, stop->place.line, stop->place.column, "view: `views` has no '%.60s'%s%s%s", stop->view,
                        near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
         }
 }
 
 void plant_tours_free(struct plant *plant)
 {
-    for (size_t t = 0; t < plant->tour_count; t++) {
-        for (size_t s = 0; s < plant->tours[t].stop_count; s++) {
-            mem_free(plant->tours[t].stops[s].view);
-            mem_free(plant->tours[t].stops[s].text);
+    for (size_t t = 0; t < plant->screens.tour_count; t++) {
+        for (size_t s = 0; s < plant->screens.tours[t].stop_count; s++) {
+            mem_free(plant->screens.tours[t].stops[s].view);
+            mem_free(plant->screens.tours[t].stops[s].text);
         }
-        mem_free(plant->tours[t].stops);
-        mem_free(plant->tours[t].id);
+        mem_free(plant->screens.tours[t].stops);
+        mem_free(plant->screens.tours[t].id);
     }
-    mem_free(plant->tours);
+    mem_free(plant->screens.tours);
 }

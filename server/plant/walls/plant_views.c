@@ -50,34 +50,35 @@ static void read_view(struct yaml_reader *reader, yaml_node_t *node, struct plan
         yaml_error(reader, yaml_map_place(&map, "title"), "title: '%.60s': %s", view->title, wrong);
     if (view->id && !named_view_id_valid(view->id))
         yaml_error(reader, yaml_map_place(&map, "id"), "id: expected letters, digits, '_', '-' and '.', found '%.60s'", view->id);
-    plant_list_check_id(reader, &map, "view", plant->views, plant->view_count, sizeof(*view), offsetof(struct named_view, line));
+    plant_list_check_id(reader, &map, "view", plant->screens.views, plant->screens.view_count, sizeof(*view),
+                        offsetof(struct named_view, line));
 }
 
 void plant_views_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     struct plant *plant = record;
     int count;
-    plant->views = plant_list_make(reader, node, "views", 0, sizeof(*plant->views), &count);
+    plant->screens.views = plant_list_make(reader, node, "views", 0, sizeof(*plant->screens.views), &count);
     if (count > NAMED_VIEWS)
         yaml_error(reader, yaml_place(node), "views: expected at most %d, found %d", NAMED_VIEWS, count);
     for (int i = 0; i < count && i < NAMED_VIEWS; i++)
-        read_view(reader, yaml_list_item(reader, node, i), plant, &plant->views[plant->view_count++]);
+        read_view(reader, yaml_list_item(reader, node, i), plant, &plant->screens.views[plant->screens.view_count++]);
 }
 
 const struct named_view *named_view_find(const struct plant *plant, const char *id)
 {
     size_t i = 0;
-    while (i < plant->view_count && (!plant->views[i].id || strcmp(plant->views[i].id, id) != 0))
+    while (i < plant->screens.view_count && (!plant->screens.views[i].id || strcmp(plant->screens.views[i].id, id) != 0))
         i++;
-    return i < plant->view_count ? &plant->views[i] : NULL;
+    return i < plant->screens.view_count ? &plant->screens.views[i] : NULL;
 }
 
 void plant_views_free(struct plant *plant)
 {
-    for (size_t i = 0; i < plant->view_count; i++) {
-        mem_free(plant->views[i].id);
-        mem_free(plant->views[i].title);
-        mem_free(plant->views[i].address);
+    for (size_t i = 0; i < plant->screens.view_count; i++) {
+        mem_free(plant->screens.views[i].id);
+        mem_free(plant->screens.views[i].title);
+        mem_free(plant->screens.views[i].address);
     }
-    mem_free(plant->views);
+    mem_free(plant->screens.views);
 }

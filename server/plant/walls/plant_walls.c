@@ -342,11 +342,11 @@ void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, void *recor
                                             { "displays", KEY_CUSTOM, false, 0, 0, 0, NULL, read_displays },
                                             { 0 } };
     int count;
-    plant->walls = plant_list_make(reader, node, "walls", 0, sizeof(*plant->walls), &count);
+    plant->screens.walls = plant_list_make(reader, node, "walls", 0, sizeof(*plant->screens.walls), &count);
     if (count > WALLS)
         yaml_error(reader, yaml_place(node), "walls: expected at most %d, found %d", WALLS, count);
     for (int i = 0; i < count && i < WALLS; i++) {
-        struct wall *wall = &plant->walls[plant->wall_count++];
+        struct wall *wall = &plant->screens.walls[plant->screens.wall_count++];
         struct yaml_map map;
         *wall = (struct wall){ .inches = 55, .metres = 3, .dim_percent = 50, .line = yaml_place(yaml_list_item(reader, node, i)).line };
         if (!yaml_map_read(reader, yaml_list_item(reader, node, i), "a wall", keys, wall, &map))
@@ -356,15 +356,16 @@ void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, void *recor
         if (!yaml_map_has(&map, "displays") && !yaml_map_has(&map, "tile"))
             yaml_error(reader, map.place, "a wall: expected displays, or a tile, or both");
         add_tiles(reader, &map, wall);
-        plant_list_check_id(reader, &map, "wall", plant->walls, plant->wall_count, sizeof(*wall), offsetof(struct wall, line));
+        plant_list_check_id(reader, &map, "wall", plant->screens.walls, plant->screens.wall_count, sizeof(*wall),
+                            offsetof(struct wall, line));
     }
 }
 
 const struct wall *wall_find(const struct plant *plant, const char *id)
 {
-    for (size_t i = 0; i < plant->wall_count; i++)
-        if (!strcmp(plant->walls[i].id, id))
-            return &plant->walls[i];
+    for (size_t i = 0; i < plant->screens.wall_count; i++)
+        if (!strcmp(plant->screens.walls[i].id, id))
+            return &plant->screens.walls[i];
     return NULL;
 }
 
@@ -378,22 +379,23 @@ static void check_items(const struct plant *plant, const struct wall_pane *pane,
             if (plant_find_tag(plant, name) >= 0)
                 continue;
             near = suggest_nearest(name, plant->tags, plant->tag_count, sizeof(*plant->tags));
-            diag_error(diag, plant->path, pane->item_lines[i], pane->item_columns[i], "%s: there is no tag '%.60s'%s%s%s",
+            diag_error(diag, plant->files.path, pane->item_lines[i], pane->item_columns[i], "%s: there is no tag '%.60s'%s%s%s",
                        pane_kind_names[pane->kind], name, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
         } else if (pane->kind == PANE_VIEWS) {
             if (named_view_find(plant, name))
                 continue;
-            near = suggest_nearest(name, plant->views, plant->view_count, sizeof(*plant->views));
-            diag_warning(diag, plant->path, pane->item_lines[i], pane->item_columns[i],
+            near = suggest_nearest(name, plant->screens.views, plant->screens.view_count, sizeof(*plant->screens.views));
+            diag_warning(diag, plant->files.path, pane->item_lines[i], pane->item_columns[i],
                          "views: `views` has no '%.60s' (a view saved in the page is also possible)%s%s%s", name,
                          near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
         } else if (pane->kind == PANE_SNAPSHOT && other_plant_find(plant, name) < 0) {
-            near = suggest_nearest(name, plant->other_plants, plant->other_plant_count, sizeof(*plant->other_plants));
-            diag_error(diag, plant->path, pane->item_lines[i], pane->item_columns[i], "snapshot: `other_plants` has no '%.60s'%s%s%s", name,
-                       near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+            near =
+                suggest_nearest(name, plant->screens.other_plants, plant->screens.other_plant_count, sizeof(*plant->screens.other_plants));
+            diag_error(diag, plant->files.path, pane->item_lines[i], pane->item_columns[i], "snapshot: `other_plants` has no '%.60s'%s%s%s",
+                       name, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
         } else if (pane->kind == PANE_TOUR && !tour_find(plant, name)) {
-            near = suggest_nearest(name, plant->tours, plant->tour_count, sizeof(*plant->tours));
-            diag_error(diag, plant->path, pane->item_lines[i], pane->item_columns[i], "tour: `tours` has no '%.60s'%s%s%s", name,
+            near = suggest_nearest(name, plant->screens.tours, plant->screens.tour_count, sizeof(*plant->screens.tours));
+            diag_error(diag, plant->files.path, pane->item_lines[i], pane->item_columns[i], "tour: `tours` has no '%.60s'%s%s%s", name,
                        near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
         }
     }
@@ -409,10 +411,10 @@ static size_t tiles_but_one(const struct wall *wall)
 
 void plant_walls_check(const struct plant *plant, struct diag *diag)
 {
-    for (size_t w = 0; w < plant->wall_count; w++)
-        for (size_t d = tiles_but_one(&plant->walls[w]); d < plant->walls[w].display_count; d++)
-            for (size_t p = 0; p < plant->walls[w].displays[d].pane_count; p++)
-                check_items(plant, &plant->walls[w].displays[d].panes[p], diag);
+    for (size_t w = 0; w < plant->screens.wall_count; w++)
+        for (size_t d = tiles_but_one(&plant->screens.walls[w]); d < plant->screens.walls[w].display_count; d++)
+            for (size_t p = 0; p < plant->screens.walls[w].displays[d].pane_count; p++)
+                check_items(plant, &plant->screens.walls[w].displays[d].panes[p], diag);
 }
 
 static void free_pane(struct wall_pane *pane)
@@ -433,23 +435,23 @@ static void free_display(struct wall_display *display)
 
 void plant_walls_free(struct plant *plant)
 {
-    for (size_t i = 0; i < plant->wall_count; i++) {
-        for (size_t d = 0; d < plant->walls[i].display_count; d++)
-            free_display(&plant->walls[i].displays[d]);
-        free_pane(&plant->walls[i].tile.pane);
-        mem_free(plant->walls[i].displays);
-        mem_free(plant->walls[i].id);
+    for (size_t i = 0; i < plant->screens.wall_count; i++) {
+        for (size_t d = 0; d < plant->screens.walls[i].display_count; d++)
+            free_display(&plant->screens.walls[i].displays[d]);
+        free_pane(&plant->screens.walls[i].tile.pane);
+        mem_free(plant->screens.walls[i].displays);
+        mem_free(plant->screens.walls[i].id);
     }
-    mem_free(plant->walls);
+    mem_free(plant->screens.walls);
 }
 
 /* --- what a display shows ------------------------------------------------------------------------------------------------------ */
 
 const struct wall_display *wall_display_find(const struct plant *plant, const char *wall, int number)
 {
-    for (size_t i = 0; i < plant->wall_count; i++)
-        if (!strcmp(plant->walls[i].id, wall) && number >= 1 && (size_t)number <= plant->walls[i].display_count)
-            return &plant->walls[i].displays[number - 1];
+    for (size_t i = 0; i < plant->screens.wall_count; i++)
+        if (!strcmp(plant->screens.walls[i].id, wall) && number >= 1 && (size_t)number <= plant->screens.walls[i].display_count)
+            return &plant->screens.walls[i].displays[number - 1];
     return NULL;
 }
 
@@ -476,9 +478,9 @@ bool wall_display_shows_view(const struct plant *plant, const struct wall_displa
 {
     if (wall_display_has(display, PANE_VIEWS, id))
         return true;
-    for (size_t t = 0; t < plant->tour_count; t++)
-        for (size_t s = 0; s < plant->tours[t].stop_count && wall_display_has(display, PANE_TOUR, plant->tours[t].id); s++)
-            if (!strcmp(plant->tours[t].stops[s].view, id))
+    for (size_t t = 0; t < plant->screens.tour_count; t++)
+        for (size_t s = 0; s < plant->screens.tours[t].stop_count && wall_display_has(display, PANE_TOUR, plant->screens.tours[t].id); s++)
+            if (!strcmp(plant->screens.tours[t].stops[s].view, id))
                 return true;
     return false;
 }

@@ -139,9 +139,9 @@ static const struct environment *built_in_sky(bool y_up, struct workers *workers
 bool environments_init(struct environments *environments, struct gl *gl, const struct plant *plant, struct workers *workers)
 {
     bool y_up = plant->up == AXIS_Y;
-    *environments = (struct environments){ .gl = gl, .count = 1 + (int)plant->environment_count };
+    *environments = (struct environments){ .gl = gl, .count = 1 + (int)plant->display.environment_count };
     for (int i = 1; i < environments->count; i++)
-        environments->slots[i].task = start_task(gl->log, workers, plant->environments[i - 1].path, y_up);
+        environments->slots[i].task = start_task(gl->log, workers, plant->display.environments[i - 1].path, y_up);
     environments->slots[0].of = *built_in_sky(y_up, workers);
     bool good = upload(environments, &environments->slots[0]);
     make_brdf(environments);

@@ -61,7 +61,7 @@ static void draw_header(struct pen *pen)
     char clock[CLOCK_BYTES], lines[2][160], age[AGE_BYTES];
     format_clock(pen->frame->data_utc_ns, clock);
     if (pen->frame->view.at_us)
-        pen_say(pen, WORD_CONFIGURATION, pen->scene->plant->hash, NULL, age, sizeof(age));
+        pen_say(pen, WORD_CONFIGURATION, pen->scene->plant->files.hash, NULL, age, sizeof(age));
     else if (pen->frame->oldest_age_ns != INT64_MAX)
         format_age(pen, pen->frame->oldest_age_ns, age);
     else

@@ -29,7 +29,7 @@ static json_t *box(const double min_m[3], const double max_m[3])
 static json_t *environments(const struct plant *plant)
 {
     json_t *array = json_array();
-    for (int i = 0; i <= (int)plant->environment_count; i++)
+    for (int i = 0; i <= (int)plant->display.environment_count; i++)
         json_array_append_new(array, string(reply_environment_name(plant, i)));
     return array;
 }
@@ -118,8 +118,8 @@ static json_t *assets(const struct scene *scene, bool open)
 static json_t *links(const struct plant *plant)
 {
     json_t *list = json_array();
-    for (size_t i = 0; i < plant->link_count; i++) {
-        const struct plant_link *link = &plant->links[i];
+    for (size_t i = 0; i < plant->display.link_count; i++) {
+        const struct plant_link *link = &plant->display.links[i];
         json_array_append_new(list, json_pack("{s:o,s:s,s:o}", "name", string(link->name), "of", link->of_tags ? "tag" : "asset", "url",
                                               string(link->url)));
     }
@@ -161,13 +161,13 @@ static json_t *plant_object(const struct session_context *context, const struct 
     const struct scene *scene = context->services->scene;
     json_t *object = json_pack("{s:o,s:o,s:o}", "name", string(context->plant->name), "time_zone", string(context->plant->time_zone),
                                "bounds", box(scene->bounds_min_m, scene->bounds_max_m));
-    json_object_set_new(object, "configuration", string(context->plant->hash));
+    json_object_set_new(object, "configuration", string(context->plant->files.hash));
     if (context->node)
         json_object_set_new(object, "node", string(context->node));
     json_object_set_new(object, "home",
                         json_pack("{s:o,s:o,s:o,s:o}", "eye", vector(home->eye_m), "target", vector(home->target_m), "up", vector(home->up),
                                   "fov", number(home->fov_deg)));
-    if (context->plant->view.set)
+    if (context->plant->display.view.set)
         json_object_set_new(json_object_get(object, "home"), "given", json_true());
     json_t *outline = json_array();
     for (size_t i = 0; i < scene->extreme_count; i++)

@@ -84,7 +84,7 @@ static void set_shown(json_t *object, const struct session_context *context, con
 
 const char *reply_environment_name(const struct plant *plant, int environment)
 {
-    return environment == 0 ? "sky" : plant->environments[environment - 1].name;
+    return environment == 0 ? "sky" : plant->display.environments[environment - 1].name;
 }
 
 static void set_params(json_t *object, const struct session_context *context, const struct view *view)

@@ -72,9 +72,9 @@ bool session_look(struct session *session, const char *id, struct view *view, st
 static const char *first_view(const struct session *session)
 {
     const struct plant *plant = session->context->plant;
-    for (size_t i = 0; i < plant->view_count; i++)
-        if (tokens_may_see(&session->identity.holder, plant->views[i].id))
-            return plant->views[i].id;
+    for (size_t i = 0; i < plant->screens.view_count; i++)
+        if (tokens_may_see(&session->identity.holder, plant->screens.views[i].id))
+            return plant->screens.views[i].id;
     return NULL;
 }
 
@@ -94,8 +94,8 @@ json_t *session_scope_views(const struct session *session)
 {
     const struct plant *plant = session->context->plant;
     json_t *list = json_array();
-    for (size_t i = 0; i < plant->view_count; i++) {
-        const struct named_view *view = &plant->views[i];
+    for (size_t i = 0; i < plant->screens.view_count; i++) {
+        const struct named_view *view = &plant->screens.views[i];
         if (!tokens_may_see(&session->identity.holder, view->id))
             continue;
         json_t *o = json_pack("{s:s,s:s}", "id", view->id, "title", view->title ? view->title : view->id);
