@@ -159,7 +159,6 @@ bool need_words(const json_t *o, const char *name, bool needed, char *out, size_
     if (good)
         snprintf(out, size, "%s", text ? text : "");
     else
-        message_fail(error, "bad_field", "%s: expected a text of %s%zu bytes without control characters", name,
-                     needed ? "1 to " : "at most ", size - 1);
+        message_refuse_with(error, "bad_field", name, REFUSAL_TEXT_EXPECTED, "least=%d\nbytes=%zu", needed, size - 1);
     return good;
 }

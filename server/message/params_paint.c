@@ -103,7 +103,8 @@ static bool take_breaks(const struct plant_group *group, const struct params_cha
         view->ramp_interval = 0;
     if (color_scale->break_count > 0 || !(change->breaks_of_group || change->breaks_of_limits))
         return true;
-    message_fail(error, "bad_field", "breaks: group '%s' has no %s", group->id, change->breaks_of_group ? "breaks" : "limits");
+    message_refuse_with(error, "bad_field", "breaks", REFUSAL_BREAKLESS, "key=%s\ngroup=%s", change->breaks_of_group ? "breaks" : "limits",
+                        group->id);
     return false;
 }
 

@@ -55,7 +55,7 @@ static bool parse_override(const struct plant *plant, const char *tag, const jso
     if (override.tag < 0)
         return false;
     if (out->field.override_count == FIELD_OVERRIDES) {
-        message_fail(error, "bad_field", "sensors: expected at most %d", FIELD_OVERRIDES);
+        message_refuse_with(error, "bad_field", "sensors", REFUSAL_OVERRIDES, "count=%d", FIELD_OVERRIDES);
         return false;
     }
     if (!json_is_object(value) && !json_is_null(value)) {
@@ -93,8 +93,7 @@ static bool take_name(const json_t *value, enum baseline_change what, struct par
         strcpy(out->baseline_name, name);
         return true;
     }
-    message_fail(error, "bad_field", "baseline: expected a name of 1 to %zu bytes, without control characters, other than 'now'",
-                 sizeof(out->baseline_name) - 1);
+    message_refuse_with(error, "bad_field", "baseline", REFUSAL_NAME_EXPECTED, "bytes=%zu", sizeof(out->baseline_name) - 1);
     return false;
 }
 
@@ -139,7 +138,7 @@ static bool apply_sensors(const struct params_change *change, struct field_param
     }
     for (size_t i = 0; i < change->field.override_count; i++)
         if (!field_params_override(field, change->field.overrides[i])) {
-            message_fail(error, "bad_field", "sensors: at most %d may be overridden at a time", FIELD_OVERRIDES);
+            message_refuse_with(error, "bad_field", "sensors", REFUSAL_OVERRIDES, "count=%d", FIELD_OVERRIDES);
             return false;
         }
     return true;

@@ -98,7 +98,7 @@ bool accept_places_parse(const struct plant *plant, const json_t *o, struct mess
     else if (!need_words(o, "pattern", false, filter->pattern, sizeof(filter->pattern), error))
         return false;
     else if (!is_simple(filter->pattern))
-        message_fail(error, "bad_field", "pattern: at most four *, and no [");
+        message_refuse(error, "bad_field", "pattern", REFUSAL_PATTERN);
     else
         return may_number(o, "within_m", 0, 1e6, &filter->within_m, NULL, error) &&
                may_number(o, "confidence", 0, 1, &filter->confidence, NULL, error) && save_tags_parse(plant, o, out, error);

@@ -42,17 +42,17 @@ bool role_may_send(enum role role, const struct message *message, struct message
     if (message->type == MESSAGE_PING)
         return true;
     if (role == ROLE_NOBODY) {
-        message_fail(error, "token_needed", "a token is required: send it in hello as `token`");
+        message_refuse(error, "token_needed", NULL, REFUSAL_TOKEN_NEEDED);
         return false;
     }
     if (role_is_node(role)) {
-        message_fail(error, "not_allowed", "this token is that of a %s, which opens /core and nothing else", name_of(names_role, role));
+        message_refuse(error, "not_allowed", NULL, REFUSAL_TOKEN_NODE);
         return false;
     }
     if (message->type == MESSAGE_ALARM)
         return alarm_allowed(role, message, error);
     if (message->type == MESSAGE_DISPLAY && role < ROLE_VIEWER) {
-        message_fail(error, "not_allowed", "a wall's display needs a token");
+        message_refuse(error, "not_allowed", NULL, REFUSAL_DISPLAY_TOKEN);
         return false;
     }
     if (message->type == MESSAGE_SHARE_VIEW && role < ROLE_VIEWER) {
@@ -60,7 +60,7 @@ bool role_may_send(enum role role, const struct message *message, struct message
         return false;
     }
     if (message->signed_frames && role < ROLE_VIEWER) {
-        message_fail(error, "not_allowed", "signed frames contain readings: they need a token");
+        message_refuse(error, "not_allowed", "signed", REFUSAL_SIGNED_TOKEN);
         return false;
     }
     bool saves = message->type == MESSAGE_SAVE_TAGS || message->type == MESSAGE_ACCEPT_PLACES || message->type == MESSAGE_RESTORE_TAGS;

@@ -81,7 +81,7 @@ static bool put_baseline(struct view_address *out, struct baselines *baselines, 
         return true;
     if (baselines && baselines_describe(baselines, id, &found) && found.name[0])
         return view_address_add(out, "baseline", found.name);
-    message_fail(error, "not_signed", "difference: the baseline has no name");
+    message_refuse(error, "not_signed", "difference", REFUSAL_UNSIGNED_BASELINE);
     return false;
 }
 
@@ -218,7 +218,7 @@ bool view_query_write(const struct params_context *context, const struct view *v
     struct view left;
     *out = (struct view_address){ .count = 0 };
     if (view->field.trial) {
-        message_fail(error, "not_signed", "sensors are tried out at other places");
+        message_refuse(error, "not_signed", NULL, REFUSAL_UNSIGNED_TRIAL);
         return false;
     }
     view_half(view, 0, &left);
@@ -226,6 +226,6 @@ bool view_query_write(const struct params_context *context, const struct view *v
                 put_half(out, context, &left, error) && put_split(out, context, view, error) &&
                 put_common(out, context->scene->plant, view);
     if (!good && !error->code)
-        message_fail(error, "not_signed", "the view has more arguments than fit");
+        message_refuse(error, "not_signed", NULL, REFUSAL_UNSIGNED_LONG);
     return good && is_said(context, view, out, error);
 }

@@ -32,7 +32,7 @@ bool tile_parse(const struct plant *plant, const json_t *o, struct message *out,
         return false;
     const struct wall *wall = wall_find(plant, place.wall.place.wall);
     if (place.wall.place.display > wall->tile.columns * wall->tile.rows) {
-        message_fail(error, "bad_field", "tile: display %d of wall %s is not one of its tiles", place.wall.place.display, wall->id);
+        message_refuse_with(error, "bad_field", "tile", REFUSAL_TILELESS, "display=%d\nwall=%s", place.wall.place.display, wall->id);
         return false;
     }
     out->hello.tile = place.wall.place;

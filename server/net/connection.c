@@ -14,17 +14,20 @@
 static const char LOCAL[] = "local";            /* name that journals show for a user on this machine who needs no token */
 static const char SIGNED_IN[] = " (signed in)"; /* suffix added to a signed-in user's name if a token has the same name */
 
-static const struct http_refusal NO_HOST = { 400, "HTTP/1.1 requires the header Host\n" };
-static const struct http_refusal WRONG_HOST = { 403,
-                                                "the header Host has a name that this server does not accept; --host NAME allows it\n" };
-static const struct http_refusal LOCAL_ONLY = { 403, "this server only accepts the hosts localhost, 127.0.0.1 and [::1]\n" };
-static const struct http_refusal PROXY = { 403, "the request came through a proxy; start the server with --behind-proxy to allow this\n" };
-static const struct http_refusal IN_QUERY = { 400, "do not put a token into a URL, where logs and histories keep it: send it as "
-                                                   "Authorization: Bearer, in the subprotocol list, or in hello\n" };
-static const struct http_refusal BAD_TOKEN = { 401, "this token is unknown or has expired\n" };
-static const struct http_refusal HELD = { 429, "too many wrong tokens came from this address; try again in 5 s\n" };
-static const struct http_refusal TOO_LONG = { 431, "a header is too long\n" };
-static const struct http_refusal TOO_MANY = { 503, "this address has reached its limit of connections; try again later\n" };
+static const struct http_refusal NO_HOST = { 400, "HTTP/1.1 requires the header Host\n", REFUSAL_NONE };
+static const struct http_refusal WRONG_HOST = { 403, "the header Host has a name that this server does not accept; --host NAME allows it\n",
+                                                REFUSAL_NONE };
+static const struct http_refusal LOCAL_ONLY = { 403, "this server only accepts the hosts localhost, 127.0.0.1 and [::1]\n", REFUSAL_NONE };
+static const struct http_refusal PROXY = { 403, "the request came through a proxy; start the server with --behind-proxy to allow this\n",
+                                           REFUSAL_NONE };
+static const struct http_refusal IN_QUERY = { 400,
+                                              "do not put a token into a URL, where logs and histories keep it: send it as "
+                                              "Authorization: Bearer, in the subprotocol list, or in hello\n",
+                                              REFUSAL_NONE };
+static const struct http_refusal BAD_TOKEN = { 401, .code = REFUSAL_TOKEN_UNKNOWN };
+static const struct http_refusal HELD = { 429, .code = REFUSAL_TOKEN_GUESSES };
+static const struct http_refusal TOO_LONG = { 431, "a header is too long\n", REFUSAL_NONE };
+static const struct http_refusal TOO_MANY = { 503, .code = REFUSAL_CONNECTIONS };
 
 /* --- connections ------------------------------------------------------------------------------------------------------ */
 

@@ -29,7 +29,8 @@ struct connection *connection_of(struct lws *wsi);
 
 struct http_refusal {
     int status;
-    const char *text; /* body of the answer, static text */
+    const char *text;       /* body of the answer, static text; NULL: the words of `code` */
+    enum refusal_code code; /* REFUSAL_NONE: only operators of the server or a proxy can cause this */
 };
 /* Reads the headers of a request and sets the connection's role, client and holder. Returns false if the request must be refused, with the
    answer in *refusal. */

@@ -335,7 +335,7 @@ void stream_on_signed(struct server_context *server, struct signing *signing)
 {
     struct stream *stream = stream_find(server, signing->encoded->client);
     struct message_error error = { 0 };
-    message_fail(&error, "not_signed", "the server could not sign a frame");
+    message_refuse(&error, "not_signed", NULL, REFUSAL_UNSIGNED);
     if (signing->good)
         stream->session->codec.unsigned_said = false;
     else

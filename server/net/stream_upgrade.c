@@ -46,13 +46,13 @@ int stream_check_upgrade(struct server_context *server, struct lws *wsi)
     if (!core && (!there || strcmp(path, "/stream") != 0))
         return refuse(server, wsi, HTTP_STATUS_NOT_FOUND, "the stream is at /stream\n");
     if (!connection_identify(server, wsi, &refusal))
-        return refuse(server, wsi, refusal.status, refusal.text);
+        return refuse(server, wsi, refusal.status, refusal.text ? refusal.text : refusal_words(refusal.code));
     if (!origin_allowed(server, wsi))
         return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, "this origin is not allowed\n");
     if (core && (why = renderers_refusal(server, wsi)))
         return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, why);
     if (!core && role_is_node(connection_of(wsi)->role))
-        return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, "a token of a daemon cannot open a stream\n");
+        return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, refusal_words(REFUSAL_TOKEN_NODE));
     if (!connection_header(wsi, WSI_TOKEN_PROTOCOL, list, sizeof(list)))
         return refuse(server, wsi, 431, "a header is too long\n");
     if ((core || list[0]) && !access_list_has(list, spoken))

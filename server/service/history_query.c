@@ -91,7 +91,7 @@ bool history_query_parse(const struct plant *plant, const char *const *args, siz
     if (query->tag_count == 0)
         message_fail(error, "bad_field", "tags: expected names of tags, separated by commas");
     else if (query->from_us >= query->to_us)
-        message_fail(error, "bad_field", "from: expected an earlier instant than to");
+        message_refuse(error, "bad_field", "from", REFUSAL_INSTANTS);
     else
         return true;
     return false;
@@ -114,7 +114,7 @@ bool history_query_parse_gaps(const char *const *args, size_t count, int64_t now
         query->from_us = query->to_us - INT64_C(3600000000);
     if (query->from_us < query->to_us)
         return true;
-    message_fail(error, "bad_field", "from: expected an earlier instant than to");
+    message_refuse(error, "bad_field", "from", REFUSAL_INSTANTS);
     return false;
 }
 

@@ -109,14 +109,13 @@ bool session_left_alone(const struct session *session, int64_t now_ns, struct me
     int64_t lock_ns = session->context->lock_ns, since_ns = identity->active_ns ? identity->active_ns : session->opened_ns;
     if (!lock_ns || identity->holder.signed_in || identity->holder.unattended || now_ns - since_ns <= lock_ns)
         return false;
-    message_fail(error, "locked", "no input at this page for %.3g min", (double)lock_ns / 60e9);
+    message_refuse_with(error, "locked", NULL, REFUSAL_LOCKED, "minutes=%.3g", (double)lock_ns / 60e9);
     return true;
 }
 
 void session_check_token(struct session *session, int64_t now_ns, int64_t now_utc_ns)
 {
     bool person = session->identity.holder.signed_in;
-    const char *why = person ? "you are signed out" : "this token has expired or was revoked";
     if (session->identity.holder.role == ROLE_NOBODY)
         return;
     struct message_error alone = { 0 };
@@ -130,9 +129,10 @@ void session_check_token(struct session *session, int64_t now_ns, int64_t now_ut
         session->identity.role = session->identity.holder.role = role;
     } else if (!session->close.code) {
         struct message_error error = { 0 };
-        message_fail(&error, person ? "token_needed" : "bad_token", "%s", why);
+        enum refusal_code why = person ? REFUSAL_SIGNED_OUT : REFUSAL_TOKEN_ENDED;
+        message_refuse(&error, person ? "token_needed" : "bad_token", NULL, why);
         session_reply_error(session, &error);
-        session_close(session, 1008, why);
+        session_close(session, 1008, refusal_words(why));
     }
 }
 
@@ -295,7 +295,7 @@ bool session_may_be(struct session *session, const struct wall_place *place, str
     const struct token_holder *holder = &session->identity.holder;
     if (!holder->display || (holder->display == place->display && !strcmp(holder->wall, place->wall)))
         return true;
-    message_fail(error, "not_allowed", "this token belongs to display %d of wall %s", holder->display, holder->wall);
+    message_refuse_with(error, "not_allowed", NULL, REFUSAL_TOKEN_DISPLAY, "display=%d\nwall=%s", holder->display, holder->wall);
     session_close(session, 1008, "this token belongs to another display");
     return false;
 }
@@ -317,7 +317,7 @@ static bool on_pair(struct session *session, const struct message *message, int6
     bool pairs = message->type == MESSAGE_PAIR;
     char id[TOKEN_NAME_BYTES] = "";
     if (!context->tokens) {
-        message_fail(error, "not_allowed", "displays need no token here");
+        message_refuse(error, "not_allowed", NULL, REFUSAL_UNPAIRED);
         return false;
     }
     if (!pairs)

@@ -261,11 +261,11 @@ bool session_choose_signed(struct session *session, enum signed_frames frames, s
 {
     const struct token_holder *holder = &session->identity.holder;
     if (frames && (holder->views[0] || holder->display || session_is_tile(session))) {
-        message_fail(error, "not_allowed", "signed: frames of displays, and of tokens for some views, are not signed");
+        message_refuse(error, "not_allowed", "signed", REFUSAL_SIGNED_DISPLAY);
         return false;
     }
     if (frames && !session->context->signing_key) {
-        message_fail(error, "bad_field", "signed: this server has no key to sign with (plantcastd --signing-key)");
+        message_refuse(error, "bad_field", "signed", REFUSAL_SIGNED_KEY);
         return false;
     }
     if (frames && !decodes(session, WIRE_CODEC_PNG)) {

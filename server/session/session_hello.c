@@ -7,6 +7,15 @@
 #include "session/view/resume.h"
 #include "session/view/view_token.h"
 
+/* Refuses a client for which there is no capacity now, and closes its connection. Returns false with *error. */
+static bool refuse_full(struct session *session, enum refusal_code why, int retry_after_s, struct message_error *error)
+{
+    message_refuse(error, "full", NULL, why);
+    error->retry_after_s = retry_after_s;
+    session_close(session, 1013, refusal_words(why));
+    return false;
+}
+
 static bool judge_token(struct session *session, const char *token, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
 {
     const struct session_context *context = session->context;
@@ -16,16 +25,12 @@ static bool judge_token(struct session *session, const char *token, int64_t now_
                                                                              good ? holder.hash : NULL, now_ns)
                               : good                  ? LOGIN_GOOD
                                                       : LOGIN_WRONG;
-    if (session->identity.login == LOGIN_HELD) {
-        message_fail(error, "full", "too many wrong tokens came from this address");
-        error->retry_after_s = LOGIN_WAIT_S;
-        session_close(session, 1013, "full: too many wrong tokens came from this address; try again later");
-        return false;
-    }
+    if (session->identity.login == LOGIN_HELD)
+        return refuse_full(session, REFUSAL_TOKEN_GUESSES, LOGIN_WAIT_S, error);
     session->identity.holder = holder;
     if (!good) {
-        message_fail(error, "bad_token", "this token is unknown or has expired");
-        session_close(session, 1008, "this token is unknown or has expired");
+        message_refuse(error, "bad_token", NULL, REFUSAL_TOKEN_UNKNOWN);
+        session_close(session, 1008, refusal_words(REFUSAL_TOKEN_UNKNOWN));
         return false;
     }
     session->identity.role = tokens_role_of(&holder);
@@ -43,9 +48,9 @@ static bool identify(struct session *session, const struct message *message, int
     if (role_may_send(session->identity.role, message, error))
         return true;
     if (session->identity.role == ROLE_NOBODY)
-        session_close(session, 1008, "a token is needed");
+        session_close(session, 1008, refusal_words(REFUSAL_TOKEN_NEEDED));
     else if (role_is_node(session->identity.role))
-        session_close(session, 1008, "a token of a daemon cannot open a stream");
+        session_close(session, 1008, refusal_words(REFUSAL_TOKEN_NODE));
     return false;
 }
 
@@ -56,13 +61,10 @@ static bool admit(struct session *session, const struct message *message, const 
     const struct session_context *context = session->context;
     bool is_tile = message->hello.tile.display > 0;
     int width_px = is_tile ? message->width_px : view->width_px, height_px = is_tile ? message->height_px : view->height_px;
-    const char *why = admission_refuses(context->admission, session->room.share, (int64_t)width_px * height_px);
+    enum refusal_code why = admission_refuses(context->admission, session->room.share, (int64_t)width_px * height_px);
     if (!why)
         return session_reserve_pixels(session, width_px, height_px, error);
-    message_fail(error, "full", "%s", why);
-    error->retry_after_s = ADMISSION_RETRY_S;
-    session_close(session, 1013, why);
-    return false;
+    return refuse_full(session, why, ADMISSION_RETRY_S, error);
 }
 
 /* Starts the session as a tile (one display's part of a wall's picture). A tile may lead its wall and can delay it, so this requires the
@@ -72,14 +74,13 @@ static bool begin_tile(struct session *session, const struct message *message, s
 {
     const struct wall_place *place = &message->hello.tile;
     if (session->identity.role < ROLE_ENGINEER && !session->identity.holder.display) {
-        message_fail(error, "not_allowed", "tile: needs the token of display %d of wall %s, or the role engineer", place->display,
-                     place->wall);
+        message_refuse_with(error, "not_allowed", "tile", REFUSAL_TILE_TOKEN, "display=%d\nwall=%s", place->display, place->wall);
         return false;
     }
     if (!session_may_be(session, place, error))
         return false;
     if (!session_tile_fit(session, place, message->width_px, message->height_px, view, &session->tile.layout)) {
-        message_fail(error, "bad_field", "tile: the wall has no such tile");
+        message_refuse_with(error, "bad_field", "tile", REFUSAL_TILELESS, "display=%d\nwall=%s", place->display, place->wall);
         return false;
     }
     session->tile.place = *place;

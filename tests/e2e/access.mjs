@@ -129,7 +129,7 @@ walls:
         const size = 'width=320&height=200';
         for (const query of [`view=left&${size}`, 'height=200&view=flat&width=320', `view=left&${size}&language=ko`])
             await said(query, lobby, 200, /PNG/);
-        await said('view=rest', lobby, 403, /view=rest: this token is for the views left,flat,page,gone/);
+        await said('view=rest', lobby, 403, /view: “rest” is not allowed: this token is for the views left,flat,page,gone/);
         for (const query of ['', 'group=pressure', 'width=320&height=200', 'view=', 'view=lef', 'view=left,flat', 'VIEW=left'])
             await said(query, lobby, 403, /this token is for the views/);
         for (const query of ['view=left&group=pressure', 'view=left&hidden=', 'view=left&view=rest&camera=1,1,1,0,0,0', 'view=left&at=-1h'])
@@ -146,7 +146,7 @@ walls:
         const all = JSON.parse((await ask('/api/v1/walls', { bearer: whole })).body).walls[0].displays;
         assert.deepEqual(all.map(({ panes }) => panes.length), [6, 1]);
         await streamsOnlyItsViews(lobby, whole);
-        assert.match(readFileSync(path('views.log'), 'utf8'), /"who":"lobby"[^\n]*view=rest: this token is for the views/);
+        assert.match(readFileSync(path('views.log'), 'utf8'), /"who":"lobby"[^\n]*view: “rest” is not allowed: this token/);
         // A named view shows the same as the same query, but without readings, for every role.
         const query = 'group=temperature&hidden=P-101A&camera=0,-4,2,0,0,0,40&width=320&height=200';
         const [named, asked] = [await picture('view=left&width=320&height=200', whole), await picture(query, whole)];

@@ -157,7 +157,7 @@ test('a plant that is brought in: each file and each order, by whom, and what be
         await idle();
     }
     await post('/run', engineer, undefined, { Origin: 'http://elsewhere.example' });
-    await found('the last', (line) => line.result === 'refused' && line.why === 'refused: the request comes from a page of another site');
+    await found('the last', (line) => line.result === 'refused' && line.why === 'the request comes from a page of another site');
     const want = ['access refused operator-1 /api/v1/import/run: this needs the role engineer',
         'import failed engineer-1 /api/v1/import/upload: this file name is not allowed.*',
         'import done engineer-1 /api/v1/import/upload x.glb',
@@ -170,7 +170,7 @@ test('a plant that is brought in: each file and each order, by whom, and what be
         'import failed engineer-1 a source was set: plantcast match: .*: the source was edited by hand.*',
         'reload done engineer-1 configuration .* is active', 'import done engineer-1 the plant was created again from its exports',
         'import failed engineer-1 /api/v1/import/run: units and mesh_units are .*', 'import done engineer-1 /api/v1/import/cancel',
-        'import refused engineer-1 /api/v1/import/run: refused: the request comes from a page of another site'];
+        'import refused engineer-1 /api/v1/import/run: the request comes from a page of another site'];
     const is = told();
     is.forEach((line, i) => assert.match(line, new RegExp(`^${want[i] ?? 'nothing more'}$`)));
     assert.equal(is.length, want.length);

@@ -220,8 +220,9 @@ test('where drawing is too busy, one more is refused, told why and when to come 
         await ended;
         assert.ok(refused, 'everybody was let in');
         assert.equal(refused.closed.code, 1013);
-        assert.match(refused.closed.text, /^full: /);
         const error = refused.texts.find((m) => m.type === 'error');
+        assert.equal(refused.closed.text, error.text);
+        assert.ok(['pixels', 'pixels_address', 'movers', 'late'].includes(error.refusal.code), error.refusal.code);
         assert.deepEqual([error.code, error.retry_after_s], ['full', 10]);
     } finally {
         await busy.stop();

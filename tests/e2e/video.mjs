@@ -292,7 +292,7 @@ test('a token for one view shows that view, and no other; losing it ends the pic
         if (shown)
             await reader.until(({ card }) => !card);
         else
-            await program.line(/rejects this token: .*view=second: this token is for the views first/);
+            await program.line(/rejects this token: .*“second” is not allowed: this token is for the views first/);
         assert.equal(reader.frames.some(({ card }) => !card), shown);
         if (shown) {
             const refused = readFileSync(join(folder, 'audit'), 'utf8').split('/api/v1/views').length - 1;

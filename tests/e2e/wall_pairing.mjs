@@ -77,7 +77,7 @@ test('a tile takes the token of its display: who only looks on can neither lead 
     for (const role of ['viewer', 'operator']) {
         const [error] = (await hello(tokens[role], 1)).texts;
         assert.deepEqual([error.type, error.code], ['error', 'not_allowed'], role);
-        assert.match(error.text, /tile: needs the token of display 1 of wall tiled, or the role engineer/);
+        assert.match(error.text, /tile: this needs the token of display 1 of wall tiled, or the role engineer/);
     }
     assert.match((await hello(tokens.tile, 1)).texts[0].text, /this token belongs to display 2 of wall tiled/);
     const tile = await hello(tokens.tile, 2);

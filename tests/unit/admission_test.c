@@ -118,8 +118,8 @@ static void seconds(struct admission *admission, struct address_share *share, in
         a_second(admission, share, moving, fps, cost_ms, data_wait_ms);
 }
 
-/* Asks to admit one more session from an address that has `moving` moving sessions. Returns the reason for refusal, or NULL. */
-static const char *refuses(const struct admission *admission, struct address_share *share, int64_t pixels, int moving)
+/* Asks to admit one more session from an address that has `moving` moving sessions. Returns the reason for refusal, or REFUSAL_NONE. */
+static enum refusal_code refuses(const struct admission *admission, struct address_share *share, int64_t pixels, int moving)
 {
     share->moving = moving;
     return admission_refuses(admission, share, pixels);
@@ -130,14 +130,14 @@ TEST_WITH(who_would_slow_the_others_down_too_far_is_refused, set_up, NULL)
     struct admission admission = { .quotas = &quotas };
     struct address_share share = { 0 };
     admission_join(&admission, &share);
-    assert_null(refuses(&admission, &share, 1000, 0));
+    assert_int_equal(0, refuses(&admission, &share, 1000, 0));
     seconds(&admission, &share, 4, 6, 40, 0); /* 4 sessions at 6 frames/s each: a fifth session would leave 4.8 */
     assert_int_equal(admission_busy_percent(&admission), 96);
-    assert_non_null(refuses(&admission, &share, 1000, 4));
+    assert_true(refuses(&admission, &share, 1000, 4));
     seconds(&admission, &share, 4, 7, 34, 0); /* 5.6 */
-    assert_null(refuses(&admission, &share, 1000, 4));
+    assert_int_equal(0, refuses(&admission, &share, 1000, 4));
     a_second(&admission, &share, 4, 1, 40, 0); /* a quiet second */
-    assert_null(refuses(&admission, &share, 1000, 4));
+    assert_int_equal(0, refuses(&admission, &share, 1000, 4));
 }
 
 TEST_WITH(a_busy_second_is_no_reason, set_up, NULL)
@@ -147,9 +147,9 @@ TEST_WITH(a_busy_second_is_no_reason, set_up, NULL)
     admission_join(&admission, &share);
     for (int i = 0; i < ADMISSION_WINDOWS - 1; i++)
         a_second(&admission, &share, 2, 1, 490, 2000);
-    assert_null(refuses(&admission, &share, 1000, 2));
+    assert_int_equal(0, refuses(&admission, &share, 1000, 2));
     a_second(&admission, &share, 2, 1, 490, 2000);
-    assert_non_null(refuses(&admission, &share, 1000, 2));
+    assert_true(refuses(&admission, &share, 1000, 2));
 }
 
 /* Simulates one second: every address draws `of_each` frames per moving session, and each frame takes cost_ms. */
@@ -177,19 +177,20 @@ TEST_WITH(one_address_keeps_no_other_out, set_up, NULL)
     admission_join(&admission, &shares[0]);
     for (int i = 0; i < ADMISSION_WINDOWS; i++)
         a_second_of(&admission, shares, 1, 1, 30); /* one address has 30 sessions with one frame per second each */
-    assert_non_null(admission_refuses(&admission, &shares[0], 1000));
-    assert_null(admission_refuses(&admission, &shares[1], 1000));
+    assert_true(admission_refuses(&admission, &shares[0], 1000));
+    assert_int_equal(0, admission_refuses(&admission, &shares[1], 1000));
     admission_join(&admission, &shares[1]);
     shares[1].moving = 1;
     for (int i = 0; i < ADMISSION_WINDOWS; i++)
         a_second_of(&admission, shares, 2, 1, 30);
-    assert_null(admission_refuses(&admission, &shares[1], 1000)); /* the render thread's 31 frames per second are shared by two addresses */
+    assert_int_equal(0, admission_refuses(&admission, &shares[1],
+                                          1000)); /* the render thread's 31 frames per second are shared by two addresses */
     shares[1].moving = 3;
-    assert_non_null(admission_refuses(&admission, &shares[1], 1000)); /* but not for four */
+    assert_true(admission_refuses(&admission, &shares[1], 1000)); /* but not for four */
     struct address_share third = { 0 };
-    assert_null(admission_refuses(&admission, &third, 1000)); /* 31 frames per second shared by three addresses are 10 each */
+    assert_int_equal(0, admission_refuses(&admission, &third, 1000)); /* 31 frames per second shared by three addresses are 10 each */
     quotas_parse(&quotas, "least-fps=11");
-    assert_non_null(admission_refuses(&admission, &third, 1000));
+    assert_true(admission_refuses(&admission, &third, 1000));
 }
 
 TEST_WITH(many_addresses_of_one_session_each_are_as_many_sessions, set_up, NULL)
@@ -200,10 +201,10 @@ TEST_WITH(many_addresses_of_one_session_each_are_as_many_sessions, set_up, NULL)
         admission_join(&admission, &shares[i]);
     for (int i = 0; i < ADMISSION_WINDOWS; i++)
         a_second_of(&admission, shares, 4, 6, 40);
-    assert_non_null(admission_refuses(&admission, &shares[4], 1000)); /* a fifth would leave 4.8 */
+    assert_true(admission_refuses(&admission, &shares[4], 1000)); /* a fifth would leave 4.8 */
     for (int i = 0; i < ADMISSION_WINDOWS; i++)
         a_second_of(&admission, shares, 4, 7, 34);
-    assert_null(admission_refuses(&admission, &shares[4], 1000));
+    assert_int_equal(0, admission_refuses(&admission, &shares[4], 1000));
 }
 
 TEST_WITH(readings_that_are_drawn_too_late_are_a_reason, set_up, NULL)
@@ -212,9 +213,9 @@ TEST_WITH(readings_that_are_drawn_too_late_are_a_reason, set_up, NULL)
     struct address_share share = { 0 };
     admission_join(&admission, &share);
     seconds(&admission, &share, 1, 30, 30, 900);
-    assert_null(refuses(&admission, &share, 1000, 1));
+    assert_int_equal(0, refuses(&admission, &share, 1000, 1));
     seconds(&admission, &share, 1, 30, 30, 1100);
-    assert_non_null(refuses(&admission, &share, 1000, 1));
+    assert_true(refuses(&admission, &share, 1000, 1));
 }
 
 TEST_WITH(pixels_of_all_views_have_a_limit, set_up, NULL)
@@ -224,6 +225,6 @@ TEST_WITH(pixels_of_all_views_have_a_limit, set_up, NULL)
     admission_join(&admission, &share);
     quotas_parse(&quotas, "pixels=1000000");
     admission.pixels = 900000;
-    assert_null(refuses(&admission, &share, 100000, 0));
-    assert_non_null(refuses(&admission, &share, 100001, 0));
+    assert_int_equal(0, refuses(&admission, &share, 100000, 0));
+    assert_true(refuses(&admission, &share, 100001, 0));
 }

@@ -68,6 +68,57 @@ linkless: dieser kurze Link ist unbekannt oder nicht mehr gespeichert: einen neu
 coreless: die Aufzeichnung ist nicht verfügbar: der Kern ist nicht erreichbar; bitte erneut versuchen
 unrecorded: es wird nichts aufgezeichnet (history: record: no)
 unreadable: die Aufzeichnung ist nicht lesbar; den Grund nennt das Protokoll des Servers
+token_needed: ein Token ist nötig: melden Sie sich an, oder senden Sie Authorization: Bearer TOKEN
+token_unknown: dieses Token ist unbekannt oder abgelaufen
+token_ended: dieses Token ist abgelaufen oder wurde widerrufen
+signed_out: Sie sind abgemeldet
+token_guesses: von dieser Adresse kamen zu viele falsche Tokens; in 5 s erneut versuchen
+token_node: mit dem Token eines Dienstes lässt sich kein Bildstrom öffnen
+token_views: „{name}“ ist nicht erlaubt: dieses Token gilt für die Ansichten {views}
+token_display: dieses Token gehört zu Bildschirm {display} der Wand {wall}
+views_only: dieses Token gilt nur für Bilder einiger Ansichten
+display_only: das Token dieses Geräts gilt nur für seinen Bildschirm einer Wand
+pictures_only: Betrachter dürfen nur Bilder abrufen
+foreign: die Anfrage kommt von einer Seite einer anderen Website
+connections: diese Adresse hat ihre Höchstzahl an Verbindungen erreicht; später erneut versuchen
+locked: seit {minutes} min keine Eingabe auf dieser Seite
+pixels: alle Ansichten zusammen haben die Pixelgrenze dieses Servers erreicht; später oder mit kleinerem Bild versuchen
+pixels_address: die Ansichten dieser Adresse haben ihre Pixelgrenze erreicht; mit kleinerem Bild versuchen
+pixels_view: dieser Server zeichnet höchstens {count} Pixel für eine Ansicht
+movers: eine weitere bewegte Ansicht würde alle zu langsam machen; später versuchen
+late: Messwerte werden schon verspätet gezeichnet; später versuchen
+tile_token: dafür ist das Token von Bildschirm {display} der Wand {wall} oder die Rolle Engineer nötig
+tileless: Bildschirm {display} der Wand {wall} ist keine ihrer Kacheln
+display_token: ein Bildschirm einer Wand braucht ein Token
+unpaired: Bildschirme brauchen hier kein Token
+signed_token: signierte Bilder enthalten Messwerte: dafür ist ein Token nötig
+signed_display: Bilder von Bildschirmen und von Tokens für einige Ansichten werden nicht signiert
+signed_key: dieser Server hat keinen Schlüssel zum Signieren (plantcastd --signing-key)
+unsigned: der Server konnte ein Bild nicht signieren
+unsigned_trial: Sensoren werden gerade an anderen Orten erprobt
+unsigned_baseline: der Vergleichsstand hat keinen Namen
+unsigned_long: die Ansicht hat mehr Argumente, als Platz haben
+overrides: höchstens {count} Sensoren lassen sich zugleich übersteuern
+breakless: die Anlagendatei nennt für {group} kein „{key}“
+name_expected: erwartet wird ein Name von 1 bis {bytes} Bytes ohne Steuerzeichen, nicht „now“
+text_expected: erwartet wird ein Text von {least} bis {bytes} Bytes ohne Steuerzeichen
+pattern: höchstens vier * sind erlaubt, und kein [
+instants: der erste Zeitpunkt muss vor dem zweiten liegen
+importing: ein anderer Import läuft; warten Sie auf sein Ende, oder brechen Sie ihn ab
+import_values: units und mesh_units sind m, mm, cm, in oder ft; up ist y oder z; encoding ist ein Name wie GB18030; what ist
+  tags, anew oder fehlt
+import_device: host ist ein Name oder eine IPv4-Adresse, port 1 bis 65535, unit 0 bis 255, order ABCD, CDAB, BADC oder DCBA,
+  base 0 oder 1
+fileless: keine hochgeladene Datei heißt so
+file_name: dieser Dateiname ist nicht erlaubt: höchstens 200 Bytes, kein Schrägstrich, kein Steuerzeichen, kein Punkt am Anfang
+file_empty: die Datei ist leer
+file_length: die Kopfzeile Content-Length fehlt
+file_large: die Datei ist größer als 2 GB
+files: höchstens 64 Dateien können hochgeladen sein; entfernen Sie einige
+files_large: alle Dateien zusammen wären größer als 8 GB
+uploads: vier Uploads laufen; warten Sie, bis einer fertig ist
+upload_slow: der Upload ist zu langsam: weniger als 10 kB/s
+upload_cut: der Upload endete, bevor die Datei vollständig war
 
 [class]
 too_fast: zu viele Anfragen: Ihre wird verzögert

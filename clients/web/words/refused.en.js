@@ -67,6 +67,56 @@ linkless: this short link is unknown or no longer stored: ask for a new one
 coreless: history is unavailable: the core cannot be reached; try again
 unrecorded: no history is recorded (history: record: no)
 unreadable: history cannot be read; the server’s log says why
+token_needed: a token is needed: sign in, or send Authorization: Bearer TOKEN
+token_unknown: this token is unknown or has expired
+token_ended: this token has expired or was revoked
+signed_out: you are signed out
+token_guesses: too many wrong tokens came from this address; try again in 5 s
+token_node: a token of a daemon cannot open a stream
+token_views: “{name}” is not allowed: this token is for the views {views}
+token_display: this token belongs to display {display} of wall {wall}
+views_only: this token is valid only for pictures of some views
+display_only: this device’s token is valid only for its display of a wall
+pictures_only: viewers may only get pictures
+foreign: the request comes from a page of another site
+connections: this address has reached its limit of connections; try again later
+locked: no input at this page for {minutes} min
+pixels: all views together have reached this server’s limit of pixels; try later, or a smaller picture
+pixels_address: the views of this address have reached its limit of pixels; try a smaller picture
+pixels_view: this server draws at most {count} pixels for one view
+movers: one more moving view would make all of them too slow; try later
+late: readings are already drawn late; try later
+tile_token: this needs the token of display {display} of wall {wall}, or the role engineer
+tileless: display {display} of wall {wall} is not one of its tiles
+display_token: a wall’s display needs a token
+unpaired: displays need no token here
+signed_token: signed frames contain readings: they need a token
+signed_display: frames of displays, and of tokens for some views, are not signed
+signed_key: this server has no key to sign with (plantcastd --signing-key)
+unsigned: the server could not sign a frame
+unsigned_trial: sensors are tried out at other places
+unsigned_baseline: the baseline has no name
+unsigned_long: the view has more arguments than fit
+overrides: at most {count} sensors may be overridden at a time
+breakless: the plant file has no “{key}” for {group}
+name_expected: a name of 1 to {bytes} bytes is expected, without control characters, other than “now”
+text_expected: a text of {least} to {bytes} bytes is expected, without control characters
+pattern: at most four * are allowed, and no [
+instants: the first instant must be before the second
+importing: another import is running; wait for its end, or cancel it
+import_values: units and mesh_units are m, mm, cm, in or ft; up is y or z; encoding is a name such as GB18030; what is tags,
+  anew or absent
+import_device: host is a name or an IPv4 address, port 1 to 65535, unit 0 to 255, order ABCD, CDAB, BADC or DCBA, base 0 or 1
+fileless: no uploaded file has this name
+file_name: this file name is not allowed: use at most 200 bytes, no slash, no control character and no dot in front
+file_empty: the file is empty
+file_length: the header Content-Length is missing
+file_large: the file is larger than 2 GB
+files: at most 64 files can be uploaded; remove some
+files_large: all files together would be larger than 8 GB
+uploads: four uploads are running; wait until one is complete
+upload_slow: the upload is too slow: less than 10 kB/s
+upload_cut: the upload ended before the file was complete
 
 [class]
 too_fast: too many requests: yours is delayed

@@ -68,6 +68,58 @@ linkless: 이 짧은 링크는 알 수 없거나 더 이상 저장되어 있지 
 coreless: 이력을 쓸 수 없음: 코어에 연결할 수 없습니다. 다시 시도하십시오
 unrecorded: 이력을 기록하지 않습니다 (history: record: no)
 unreadable: 기록을 읽을 수 없습니다. 이유는 서버 로그에 있습니다
+token_needed: 토큰이 필요합니다. 로그인하거나 Authorization: Bearer TOKEN을 보내세요
+token_unknown: 알 수 없거나 만료된 토큰입니다
+token_ended: 토큰이 만료되었거나 취소되었습니다
+signed_out: 로그아웃되었습니다
+token_guesses: 이 주소에서 틀린 토큰이 너무 많이 왔습니다. 5초 뒤에 다시 시도하세요
+token_node: 데몬의 토큰으로는 스트림을 열 수 없습니다
+token_views: “{name}”은(는) 허용되지 않습니다. 이 토큰은 뷰 {views}에만 쓸 수 있습니다
+token_display: 이 토큰은 월 {wall}의 디스플레이 {display}에만 쓸 수 있습니다
+views_only: 이 토큰은 일부 뷰의 그림에만 쓸 수 있습니다
+display_only: 이 장치의 토큰은 해당 월 디스플레이에만 쓸 수 있습니다
+pictures_only: 조회 권한으로는 그림만 받을 수 있습니다
+foreign: 다른 사이트의 페이지에서 온 요청입니다
+connections: 이 주소의 연결 수가 한도에 도달했습니다. 나중에 다시 시도하세요
+locked: 이 페이지에 {minutes}분 동안 입력이 없었습니다
+pixels: 모든 뷰의 픽셀 합이 서버 한도에 도달했습니다. 나중에 또는 더 작은 그림으로 시도하세요
+pixels_address: 이 주소의 뷰가 픽셀 한도에 도달했습니다. 더 작은 그림으로 시도하세요
+pixels_view: 이 서버는 뷰 하나에 최대 {count}픽셀을 그립니다
+movers: 움직이는 뷰가 하나 더 있으면 모두 너무 느려집니다. 나중에 시도하세요
+late: 측정값이 이미 늦게 그려지고 있습니다. 나중에 시도하세요
+tile_token: 월 {wall}의 디스플레이 {display} 토큰 또는 엔지니어 권한이 필요합니다
+tileless: 월 {wall}에 디스플레이 {display} 타일이 없습니다
+display_token: 월 디스플레이에는 토큰이 필요합니다
+unpaired: 여기서는 디스플레이에 토큰이 필요하지 않습니다
+signed_token: 서명된 그림에는 측정값이 들어 있어 토큰이 필요합니다
+signed_display: 디스플레이의 그림과 일부 뷰용 토큰의 그림은 서명되지 않습니다
+signed_key: 이 서버에는 서명 키가 없습니다 (plantcastd --signing-key)
+unsigned: 서버가 그림에 서명하지 못했습니다
+unsigned_trial: 센서를 다른 위치에 시험 배치한 상태입니다
+unsigned_baseline: 비교 기준에 이름이 없습니다
+unsigned_long: 뷰의 인수가 너무 많습니다
+overrides: 센서는 한 번에 최대 {count}개까지 바꿀 수 있습니다
+breakless: 플랜트 파일에 {group}의 “{key}”이(가) 없습니다
+name_expected: 제어 문자가 없는 1~{bytes}바이트의 이름이 필요합니다(“now” 제외)
+text_expected: 제어 문자가 없는 {least}~{bytes}바이트의 글이 필요합니다
+pattern: *는 최대 네 개까지이며 [는 쓸 수 없습니다
+instants: 첫 시각은 둘째 시각보다 앞서야 합니다
+importing: 다른 가져오기가 실행 중입니다. 끝나기를 기다리거나 취소하세요
+import_values: units와 mesh_units는 m, mm, cm, in 또는 ft, up은 y 또는 z, encoding은 GB18030 같은 이름, what은
+  tags나 anew이거나 없어야 합니다
+import_device: host는 이름 또는 IPv4 주소, port는 1~65535, unit은 0~255, order는 ABCD, CDAB, BADC 또는 DCBA, base는
+  0 또는 1입니다
+fileless: 이 이름으로 올린 파일이 없습니다
+file_name: 허용되지 않는 파일 이름입니다. 최대 200바이트이고, 빗금과 제어 문자가 없어야 하며,
+  점으로 시작할 수 없습니다
+file_empty: 파일이 비어 있습니다
+file_length: Content-Length 헤더가 없습니다
+file_large: 파일이 2 GB보다 큽니다
+files: 파일은 최대 64개까지 올릴 수 있습니다. 일부를 제거하세요
+files_large: 모든 파일의 합이 8 GB를 넘게 됩니다
+uploads: 올리기 네 개가 진행 중입니다. 하나가 끝날 때까지 기다리세요
+upload_slow: 올리기가 너무 느립니다(10 kB/s 미만)
+upload_cut: 파일이 다 오기 전에 올리기가 끝났습니다
 
 [class]
 too_fast: 요청이 너무 많아 처리가 지연됩니다

@@ -160,7 +160,9 @@ static int refuse(struct http_exchange *request, const struct http_refusal *refu
 {
     bool whose = refusal->status == HTTP_STATUS_UNAUTHORIZED, held = refusal->status == 429 || refusal->status == 503;
     request->close |= refusal->status == HTTP_STATUS_SERVICE_UNAVAILABLE;
-    return request_answer(request, refusal->status, HTTP_TEXT, mem_strdup(refusal->text), strlen(refusal->text),
+    request->refusal = (struct refusal){ .code = refusal->code };
+    char *text = refusal->text ? mem_strdup(refusal->text) : mem_printf("%s\n", refusal_words(refusal->code));
+    return request_answer(request, refusal->status, HTTP_TEXT, text, strlen(text),
                           whose  ? "www-authenticate:"
                           : held ? "retry-after:"
                                  : NULL,
@@ -174,12 +176,11 @@ static bool is_foreign_page(struct lws *wsi)
     return lws_hdr_custom_copy(wsi, site, sizeof(site), "sec-fetch-site:", 15) > 0 && !strcmp(site, "cross-site");
 }
 
-static const struct http_refusal NEED_TOKEN = { HTTP_STATUS_UNAUTHORIZED, "a token is needed: Authorization: Bearer TOKEN\n" };
-static const struct http_refusal NOT_FOR_YOU = { HTTP_STATUS_FORBIDDEN, "viewers may only get pictures\n" };
-static const struct http_refusal NOT_IN_VIEWS = { HTTP_STATUS_FORBIDDEN, "this token is valid only for pictures of some views\n" };
-static const struct http_refusal NOT_ON_DISPLAY = { HTTP_STATUS_FORBIDDEN,
-                                                    "this device's token is valid only for its display of a wall\n" };
-static const struct http_refusal FOREIGN = { HTTP_STATUS_FORBIDDEN, "refused: the request comes from a page of another site\n" };
+static const struct http_refusal NEED_TOKEN = { HTTP_STATUS_UNAUTHORIZED, .code = REFUSAL_TOKEN_NEEDED };
+static const struct http_refusal NOT_FOR_YOU = { HTTP_STATUS_FORBIDDEN, .code = REFUSAL_PICTURES_ONLY };
+static const struct http_refusal NOT_IN_VIEWS = { HTTP_STATUS_FORBIDDEN, .code = REFUSAL_VIEWS_ONLY };
+static const struct http_refusal NOT_ON_DISPLAY = { HTTP_STATUS_FORBIDDEN, .code = REFUSAL_DISPLAY_ONLY };
+static const struct http_refusal FOREIGN = { HTTP_STATUS_FORBIDDEN, .code = REFUSAL_FOREIGN };
 
 /* Answers a user who lacks the role engineer: 401 without a token, 403 with one. Returns the result for the libwebsockets callback. */
 static int refuse_others(struct http_exchange *request, enum role role)

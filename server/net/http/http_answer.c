@@ -147,12 +147,19 @@ int request_answer_later(struct http_exchange *request, const char *why)
     return request_answer(request, HTTP_STATUS_SERVICE_UNAVAILABLE, HTTP_TEXT, mem_strdup(why), strlen(why), "retry-after:", "2");
 }
 
+int request_refuse_for(struct http_exchange *request, int status, const struct refusal *refusal)
+{
+    char words[REFUSAL_TEXT_BYTES], *text;
+    bool later = status == HTTP_STATUS_SERVICE_UNAVAILABLE;
+    refusal_text(refusal, words);
+    text = mem_printf("%s\n", words);
+    request->refusal = *refusal;
+    return request_answer(request, status, HTTP_TEXT, text, strlen(text), later ? "retry-after:" : NULL, later ? "2" : NULL);
+}
+
 int request_refuse(struct http_exchange *request, int status, enum refusal_code code)
 {
-    char *text = mem_printf("%s\n", refusal_words(code));
-    bool later = status == HTTP_STATUS_SERVICE_UNAVAILABLE;
-    request->refusal = (struct refusal){ .code = code };
-    return request_answer(request, status, HTTP_TEXT, text, strlen(text), later ? "retry-after:" : NULL, later ? "2" : NULL);
+    return request_refuse_for(request, status, &(struct refusal){ .code = code });
 }
 
 int request_answer_unreadable(const struct server_context *server, struct http_exchange *request)

@@ -73,6 +73,7 @@ int chunked_write(struct server_context *server, struct http_exchange *request);
 int request_answer_later(struct http_exchange *request, const char *why);
 /* Answers with a refusal that has no arguments; status 503 also gets Retry-After. */
 int request_refuse(struct http_exchange *request, int status, enum refusal_code code);
+int request_refuse_for(struct http_exchange *request, int status, const struct refusal *refusal);
 /* Answers that history cannot be read: with 500; on a renderer, which reads history from its core, with 503 and Retry-After. */
 int request_answer_unreadable(const struct server_context *server, struct http_exchange *request);
 /* Answers with JSON; takes ownership of text (mem_free). */

@@ -17,7 +17,6 @@
 
 static const int64_t most_bytes = (int64_t)2 << 30, most_in_all = (int64_t)8 << 30, most_decisions = 16 << 20;
 enum { MAX_FILES = 64, MATCHES_BYTES = 32 << 20, MAX_UPLOADS = 4, SLOW_S = 20, SLOWEST_BPS = 10000 };
-static const char BUSY[] = "another import is running; wait for its end, or cancel it\n";
 
 struct upload_body {
     struct export_upload *upload;
@@ -43,19 +42,25 @@ static void record(struct http_exchange *request, const char *result, const char
     record_file(request, "", result, why);
 }
 
-static int refuse_with(struct http_exchange *request, int status, const char *text)
+static int refuse_for(struct http_exchange *request, int status, const struct refusal *refusal)
 {
+    char text[REFUSAL_TEXT_BYTES];
+    refusal_text(refusal, text);
     record(request, status == HTTP_STATUS_FORBIDDEN ? "refused" : "failed", text);
     request->close = true;
-    return request_answer_text(request, status, text);
+    return request_refuse_for(request, status, refusal);
+}
+
+static int refuse_with(struct http_exchange *request, int status, enum refusal_code code)
+{
+    return refuse_for(request, status, &(struct refusal){ .code = code });
 }
 
 static int fail_with(struct http_exchange *request, const char *what, int error)
 {
-    char *text = mem_printf("%s: %s\n", what, strerror(-error));
-    int result = refuse_with(request, error == -ENOSPC ? 507 : HTTP_STATUS_INTERNAL_SERVER_ERROR, text);
-    mem_free(text);
-    return result;
+    struct refusal refusal;
+    refusal_set(&refusal, REFUSAL_UNWRITTEN, "file=%s\nerror=%s", what, strerror(-error));
+    return refuse_for(request, error == -ENOSPC ? 507 : HTTP_STATUS_INTERNAL_SERVER_ERROR, &refusal);
 }
 
 static int answer_empty(struct http_exchange *request)
@@ -132,7 +137,7 @@ int api_import_report(struct server_context *server, struct http_exchange *reque
 static int order(struct server_context *server, struct http_exchange *request, const struct import_order *order)
 {
     if (!plant_import_order(server->params.import, order))
-        return refuse_with(request, HTTP_STATUS_CONFLICT, BUSY);
+        return refuse_with(request, HTTP_STATUS_CONFLICT, REFUSAL_IMPORTING);
     server->params.import_ordered(server->params.reload_arg, connection_who(connection_of(request->wsi)));
     return answer_empty(request);
 }
@@ -159,14 +164,13 @@ static int order_all(struct server_context *server, struct http_exchange *reques
     struct import_order wanted = { 0 };
     char what[8];
     if (!take_argument(args, "what", what, sizeof(what)) || (*what && strcmp(what, "tags") != 0 && strcmp(what, "anew") != 0))
-        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "argument `what` must be tags, anew or absent\n");
+        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, REFUSAL_IMPORT_VALUES);
     wanted.anew = !strcmp(what, "anew");
     wanted.models = wanted.anew || !*what;
     if (!take_argument(args, "units", wanted.units, sizeof(wanted.units)) || !take_argument(args, "up", wanted.up, sizeof(wanted.up)) ||
         !take_argument(args, "mesh_units", wanted.mesh_units, sizeof(wanted.mesh_units)) ||
         !take_argument(args, "encoding", wanted.encoding, sizeof(wanted.encoding)) || !import_order_good(&wanted))
-        return refuse_with(request, HTTP_STATUS_BAD_REQUEST,
-                           "units and mesh_units are m, mm, cm, in or ft; up is y or z; encoding is a name such as GB18030\n");
+        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, REFUSAL_IMPORT_VALUES);
     return order(server, request, &wanted);
 }
 
@@ -180,9 +184,7 @@ static int order_source(struct server_context *server, struct http_exchange *req
         !take_argument(args, "unit", source->unit, sizeof(source->unit)) ||
         !take_argument(args, "order", source->order, sizeof(source->order)) ||
         !take_argument(args, "base", source->base, sizeof(source->base)) || !*source->host || !import_order_good(&wanted))
-        return refuse_with(request, HTTP_STATUS_BAD_REQUEST,
-                           "host is a name or an IPv4 address, port 1 to 65535, unit 0 to 255, order ABCD, CDAB, BADC or DCBA, "
-                           "base 0 or 1\n");
+        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, REFUSAL_IMPORT_DEVICE);
     return order(server, request, &wanted);
 }
 
@@ -197,15 +199,15 @@ static int remove_file(struct server_context *server, struct http_exchange *requ
 {
     char name[256];
     if (!take_argument(args, "name", name, sizeof(name)) || !export_name_good(name))
-        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "no uploaded file has this name\n");
+        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, REFUSAL_FILELESS);
     int error = export_folder_remove(plant_import_exports(server->params.import), name);
     return error == 0 || error == -ENOENT ? answer_done(request, name) : fail_with(request, name, error);
 }
 
 /* --- uploads ---------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether `bytes` more may be uploaded; if not, *text says why. */
-static bool has_room(const struct server_context *server, const char *folder, const char *name, int64_t bytes, const char **text)
+/* Returns whether `bytes` more may be uploaded; if not, *why is the reason. */
+static bool has_room(const struct server_context *server, const char *folder, const char *name, int64_t bytes, enum refusal_code *why)
 {
     struct export_list list = { 0 };
     int64_t all = bytes + server->http.upload_bytes;
@@ -217,22 +219,23 @@ static bool has_room(const struct server_context *server, const char *folder, co
             others++;
         }
     export_list_finish(&list);
-    *text = others >= MAX_FILES ? "at most 64 files can be uploaded; remove some\n" : "all files together would be larger than 8 GB\n";
+    *why = others >= MAX_FILES ? REFUSAL_FILES : REFUSAL_FILES_LARGE;
     return others < MAX_FILES && all <= most_in_all;
 }
 
 static int begin_body(struct server_context *server, struct http_exchange *request, const char *name, bool decides)
 {
     char length[32];
-    const char *folder = plant_import_exports(server->params.import), *why;
+    const char *folder = plant_import_exports(server->params.import);
+    enum refusal_code why;
     int error;
     if (!connection_header(request->wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH, length, sizeof(length)) || !*length)
-        return refuse_with(request, 411, "the header Content-Length is missing\n");
+        return refuse_with(request, 411, REFUSAL_FILE_LENGTH);
     int64_t bytes = strtoll(length, NULL, 10);
     if (bytes <= 0 || bytes > (decides ? most_decisions : most_bytes))
-        return refuse_with(request, 413, bytes <= 0 ? "the file is empty\n" : "the file is larger than 2 GB\n");
+        return refuse_with(request, 413, bytes <= 0 ? REFUSAL_FILE_EMPTY : REFUSAL_FILE_LARGE);
     if (server->http.uploads >= MAX_UPLOADS)
-        return refuse_with(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "four uploads are running; wait until one is complete\n");
+        return refuse_with(request, HTTP_STATUS_SERVICE_UNAVAILABLE, REFUSAL_UPLOADS);
     if (!decides && !has_room(server, folder, name, bytes, &why))
         return refuse_with(request, 413, why);
     struct export_upload *upload = export_upload_begin(folder, name, &error);
@@ -251,8 +254,7 @@ static int begin_upload(struct server_context *server, struct http_exchange *req
 {
     char name[256];
     if (!take_argument(args, "name", name, sizeof(name)) || !export_name_good(name))
-        return refuse_with(request, HTTP_STATUS_BAD_REQUEST,
-                           "this file name is not allowed: use at most 200 bytes, no slash, no control character and no dot in front\n");
+        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, REFUSAL_FILE_NAME);
     return begin_body(server, request, name, false);
 }
 
@@ -285,7 +287,7 @@ int import_take_body(struct server_context *server, struct http_exchange *reques
     strcpy(name, body->name);
     import_abandon_body(request);
     if (slow)
-        return refuse_with(request, 408, "the upload is too slow: less than 10 kB/s\n");
+        return refuse_with(request, 408, REFUSAL_UPLOAD_SLOW);
     return fail_with(request, name, error);
 }
 
@@ -301,9 +303,9 @@ int import_end_body(struct server_context *server, struct http_exchange *request
     int error = whole && !busy ? export_upload_end(&body->upload) : 0;
     import_abandon_body(request);
     if (busy)
-        return refuse_with(request, HTTP_STATUS_CONFLICT, BUSY);
+        return refuse_with(request, HTTP_STATUS_CONFLICT, REFUSAL_IMPORTING);
     if (!whole)
-        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "the upload ended before the file was complete\n");
+        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, REFUSAL_UPLOAD_CUT);
     if (error)
         return fail_with(request, name, error);
     if (decides)
@@ -358,12 +360,12 @@ int import_post(struct server_context *server, struct http_exchange *request, co
     size_t i = find_post(path);
     request->step = posts[i].path;
     if (!request_may_change(server, request))
-        return refuse_with(request, HTTP_STATUS_FORBIDDEN, "refused: the request comes from a page of another site\n");
+        return refuse_with(request, HTTP_STATUS_FORBIDDEN, REFUSAL_FOREIGN);
     if (!request_args(request->wsi, &args, &error)) {
         record(request, "failed", error.text);
         return request_answer_error(request, &error);
     }
     if (!posts[i].always && plant_import_busy(server->params.import))
-        return refuse_with(request, HTTP_STATUS_CONFLICT, BUSY);
+        return refuse_with(request, HTTP_STATUS_CONFLICT, REFUSAL_IMPORTING);
     return posts[i].take(server, request, &args);
 }

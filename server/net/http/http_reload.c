@@ -18,7 +18,7 @@ int ask_reload(struct server_context *server, struct http_exchange *request)
 {
     request->close = true; /* closes the connection after the answer, because the client may send a body that nobody will read */
     if (!request_may_change(server, request))
-        return request_answer_text(request, HTTP_STATUS_FORBIDDEN, "refused: the request comes from a page of another site\n");
+        return request_refuse(request, HTTP_STATUS_FORBIDDEN, REFUSAL_FOREIGN);
     if (!server->params.reload)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this plant cannot be reloaded\n");
     request->reloads = true;

@@ -30,7 +30,7 @@ static const struct named_view *find_view(const struct server_context *server, c
                                           struct message_error *error)
 {
     if (!tokens_may_see(holder, id)) {
-        message_fail(error, "not_allowed", "view=%.48s: this token is for the views %.150s", id, holder->views);
+        message_refuse_with(error, "not_allowed", "view", REFUSAL_TOKEN_VIEWS, "name=%.48s\nviews=%.150s", id, holder->views);
         return NULL;
     }
     const struct named_view *named = named_view_find(server->params.plant.scene->plant, id);

@@ -80,14 +80,15 @@ int admission_busy_percent(const struct admission *admission)
     return (int)(least_ns * 100 / WINDOW_NS);
 }
 
-const char *admission_refuses_pixels(const struct admission *admission, const struct address_share *share, int64_t before, int64_t pixels)
+enum refusal_code admission_refuses_pixels(const struct admission *admission, const struct address_share *share, int64_t before,
+                                           int64_t pixels)
 {
     const int64_t *most = admission->quotas->at;
     if (admission->pixels - before + pixels > most[QUOTA_PIXELS])
-        return "full: all views together have reached this server's limit of pixels; try later, or a smaller picture";
+        return REFUSAL_PIXELS;
     if (share && !share->exempt_pixels && share->pixels - before + pixels > most[QUOTA_ADDRESS_PIXELS])
-        return "full: the views of this address have reached its limit of pixels; try a smaller picture";
-    return NULL;
+        return REFUSAL_PIXELS_ADDRESS;
+    return REFUSAL_NONE;
 }
 
 /* --- whether the render thread can serve one more moving camera ------------------------------------------------------------ */
@@ -169,14 +170,14 @@ static bool reads_too_late(const struct admission *admission, const struct addre
     return (has_any || others > 1) && usual(admission, data_wait_of) > LONGEST_DATA_WAIT_NS;
 }
 
-const char *admission_refuses(const struct admission *admission, const struct address_share *share, int64_t pixels)
+enum refusal_code admission_refuses(const struct admission *admission, const struct address_share *share, int64_t pixels)
 {
-    const char *why = admission_refuses_pixels(admission, share, 0, pixels);
+    enum refusal_code why = admission_refuses_pixels(admission, share, 0, pixels);
     if (why || admission_busy_percent(admission) < BUSY_PERCENT)
         return why;
     if (slows_too_far(admission, share))
-        return "full: one more moving view would make all of them too slow; try later";
+        return REFUSAL_MOVERS;
     if (reads_too_late(admission, share))
-        return "full: readings are already drawn late; try later";
-    return NULL;
+        return REFUSAL_LATE;
+    return REFUSAL_NONE;
 }

@@ -51,11 +51,12 @@ void admission_on_tick(struct admission *admission, int64_t now_ns);
 /* Returns the percentage of the render thread's time that was spent on frames that clients wait for, in the least busy of the last
    ADMISSION_WINDOWS seconds. */
 int admission_busy_percent(const struct admission *admission);
-/* Returns NULL if a view may grow from `before` to `pixels` pixels; otherwise the reason (static text). share: figures of the client's
+/* Returns REFUSAL_NONE if a view may grow from `before` to `pixels` pixels; otherwise the reason. share: figures of the client's
    address; NULL: only the limit for all addresses together applies. */
-const char *admission_refuses_pixels(const struct admission *admission, const struct address_share *share, int64_t before, int64_t pixels);
-/* Returns NULL if a session with a view of `pixels` pixels can be added; otherwise the reason (static text). share: figures of the client's
+enum refusal_code admission_refuses_pixels(const struct admission *admission, const struct address_share *share, int64_t before,
+                                           int64_t pixels);
+/* Returns REFUSAL_NONE if a session with a view of `pixels` pixels can be added; otherwise the reason. share: figures of the client's
    address. */
-const char *admission_refuses(const struct admission *admission, const struct address_share *share, int64_t pixels);
+enum refusal_code admission_refuses(const struct admission *admission, const struct address_share *share, int64_t pixels);
 
 #endif

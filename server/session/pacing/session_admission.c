@@ -31,15 +31,15 @@ bool session_reserve_pixels(struct session *session, int width_px, int height_px
 {
     const struct session_context *context = session->context;
     int64_t pixels = (int64_t)width_px * height_px, most = context->quotas->at[QUOTA_SESSION_PIXELS];
-    const char *why = NULL;
+    enum refusal_code why = REFUSAL_NONE;
     if (pixels > most) {
-        message_fail(error, "limit", "width, height: this server draws at most %lld pixels for one view", (long long)most);
+        message_refuse_with(error, "limit", "width, height", REFUSAL_PIXELS_VIEW, "count=%lld", (long long)most);
         return false;
     }
     if (session->hello && pixels > session->room.pixels)
         why = admission_refuses_pixels(context->admission, session->room.share, session->room.pixels, pixels);
     if (why) {
-        message_fail(error, "limit", "width, height: %s", why + strlen("full: "));
+        message_refuse(error, "limit", "width, height", why);
         return false;
     }
     hold(session, pixels);
@@ -56,7 +56,7 @@ bool session_has_pixels(const struct session *session)
     return session->room.pixels > 0;
 }
 
-static bool take_again(struct session *session, const char **why)
+static bool take_again(struct session *session, enum refusal_code *why)
 {
     int64_t pixels = pixels_of(session);
     *why = admission_refuses(session->context->admission, session->room.share, pixels);
@@ -69,7 +69,7 @@ static bool take_again(struct session *session, const char **why)
 void session_on_visible(struct session *session, bool visible, int64_t now_ns)
 {
     struct message_error error = { 0 };
-    const char *why;
+    enum refusal_code why;
     session->demand.any |= visible && session->hidden;
     if (session->hidden && visible && session->room.shown_ns && now_ns - session->room.shown_ns < HIDDEN_NS)
         hold(session, 0);
@@ -78,13 +78,13 @@ void session_on_visible(struct session *session, bool visible, int64_t now_ns)
     session->hidden = !visible;
     if (session->hidden || session_has_pixels(session) || take_again(session, &why))
         return;
-    message_fail(&error, "limit", "visible: %s", why + strlen("full: "));
+    message_refuse(&error, "limit", "visible", why);
     session_reply_error(session, &error);
 }
 
 void session_keep_pixels(struct session *session, int64_t now_ns)
 {
-    const char *why;
+    enum refusal_code why;
     if (!session->hello || session->close.code)
         return;
     if (session->hidden && session_has_pixels(session) && now_ns - session->room.hidden_ns >= HIDDEN_NS)

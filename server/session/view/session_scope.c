@@ -22,7 +22,7 @@ static const struct named_view *find_view(const struct session *session, const c
     const struct token_holder *holder = &session->identity.holder;
     char name[48];
     if (!tokens_may_see(holder, id)) {
-        message_fail(error, "not_allowed", "named: '%s': this token is for the views %.150s", quoted(id, name), holder->views);
+        message_refuse_with(error, "not_allowed", "named", REFUSAL_TOKEN_VIEWS, "name=%s\nviews=%.150s", quoted(id, name), holder->views);
         return NULL;
     }
     const struct named_view *named = named_view_find(session->context->plant, id);
