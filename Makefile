@@ -201,7 +201,8 @@ $(out)/lib/%.a:
 # Headers that are made.
 made_headers := $(gen)/glad/include/glad/gl.h $(patsubst %,$(gen)/words_%.h,refused overlay video)
 # Loops that choose between two numbers become wide only if no comparison can trap.
-$(call objects,server/surface/surface_field.c preprocess/subdivision/interp_weights.c): CFLAGS += -fno-trapping-math
+$(call objects,$(addsuffix .c,server/surface/surface_field preprocess/subdivision/interp_weights protocol/distance_pack)): \
+    CFLAGS += -fno-trapping-math
 $(out)/obj/%.o: %.c Makefile $(out)/codecs | $(made_headers)
 	@mkdir -p $(@D); echo "  CC   $<"
 	@$(CC) $(cflags) -c -o $@ $<

@@ -130,6 +130,8 @@ static void *lay_out(const struct asset_parts *parts, size_t *out_bytes)
             need = parts->texel_bytes;
         else if (i == ASSET_NAMES)
             need = parts->names ? parts->name_bytes : 1;
+        else if (i == ASSET_GEODESIC && parts->packed_bytes)
+            need = parts->packed_bytes;
         h.sections[i].offset = align_up(end);
         h.sections[i].bytes = from[i] || (i == ASSET_GEODESIC && parts->write_geodesic) ? need : 0;
         end = h.sections[i].offset + h.sections[i].bytes;

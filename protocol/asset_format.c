@@ -5,9 +5,12 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "protocol/asset_format_impl.h"
+#include "protocol/distance_code.h"
+#include "protocol/distance_pack.h"
 
 #define WHY_BYTES 200
 #define TEXTURE_MAX_PX 16384u
@@ -79,6 +82,27 @@ static bool counts_good(struct format_check *c)
     return true;
 }
 
+/* Returns the number of blocks of vertices whose distances are stored together. */
+static size_t block_count(const struct asset_header *h)
+{
+    return (h->vertex_count + ASSET_DISTANCE_BLOCK - 1) / ASSET_DISTANCE_BLOCK;
+}
+
+/* Returns whether a section contains packed distances (distance_pack.h) that can be unpacked. */
+static bool packed_good(const struct format_check *c, const struct asset_section_entry *s)
+{
+    const struct asset_header *h = c->view.header;
+    const size_t blocks = block_count(h), table = (blocks + 1) * sizeof(uint64_t);
+    const uint64_t *offsets = (const uint64_t *)(const void *)(c->bytes + s->offset);
+    if (h->sensor_count < DISTANCE_PACK_MIN_SENSORS || s->bytes < table || offsets[0] < table || offsets[blocks] != s->bytes)
+        return false;
+    for (size_t b = 0; b < blocks; b++)
+        if (offsets[b] > offsets[b + 1] || offsets[b + 1] > s->bytes ||
+            !distance_pack_good((const uint8_t *)offsets + offsets[b], offsets[b + 1] - offsets[b], h->sensor_count))
+            return false;
+    return true;
+}
+
 static bool sections_good(struct format_check *c)
 {
     const struct asset_header *h = c->view.header;
@@ -90,6 +114,8 @@ static bool sections_good(struct format_check *c)
         if (s->offset % ASSET_ALIGN != 0 || s->offset < end || s->offset > c->size || s->bytes > c->size - s->offset)
             return wrong(c, "section %s: bytes %llu..%llu+%llu lie outside the file or over another section", section_names[i],
                          (unsigned long long)s->offset, (unsigned long long)s->offset, (unsigned long long)s->bytes);
+        if (i == ASSET_GEODESIC && s->bytes != need && packed_good(c, s))
+            need = s->bytes;
         if (need != UINT64_MAX && s->bytes != need && !(optional && s->bytes == 0))
             return wrong(c, "section %s: %llu bytes, expected %llu", section_names[i], (unsigned long long)s->bytes,
                          (unsigned long long)need);
@@ -120,7 +146,9 @@ static void view_point(struct format_check *c)
     v->textures = section(c, ASSET_TEXTURES);
     v->texels = section(c, ASSET_TEXELS);
     v->sensors = section(c, ASSET_SENSORS);
-    v->geodesic = section(c, ASSET_GEODESIC);
+    bool optional, plain = v->header->sections[ASSET_GEODESIC].bytes == asset_section_bytes(v->header, ASSET_GEODESIC, &optional);
+    v->geodesic = plain ? section(c, ASSET_GEODESIC) : NULL;
+    v->packed = plain ? NULL : section(c, ASSET_GEODESIC);
     v->names = section(c, ASSET_NAMES);
 }
 
@@ -347,4 +375,17 @@ bool asset_view_init(struct asset_view *view, const void *bytes, size_t size, ch
 bool asset_view_fresh(struct asset_view *view, const void *bytes, size_t size, char why[200])
 {
     return check_all(view, bytes, size, true, why);
+}
+
+bool asset_view_unpack(struct asset_view *view, uint16_t **codes)
+{
+    const size_t sensors = view->header->sensor_count, blocks = block_count(view->header);
+    *codes = NULL;
+    if (!view->packed)
+        return true;
+    *codes = malloc(asset_distance_count(sensors, view->header->vertex_count) * sizeof(**codes));
+    for (size_t b = 0; *codes && b < blocks; b++)
+        distance_unpack((const uint8_t *)view->packed + view->packed[b], sensors, *codes + b * sensors * ASSET_DISTANCE_BLOCK);
+    view->geodesic = *codes;
+    return *codes != NULL;
 }

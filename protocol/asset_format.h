@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #define ASSET_MAGIC "PLCASSET"
-#define ASSET_VERSION 5u
+#define ASSET_VERSION 6u
 #define ASSET_ALIGN 64u
 #define ASSET_NO_TEXTURE UINT32_MAX
 #define ASSET_SECOND_MASK 0x1eu /* mask of the bits that may be set in asset_material.second: bits 1 to 4, for textures 1 to 4 */
@@ -113,7 +113,8 @@ struct asset_view {
     const struct asset_texture *textures;
     const uint8_t *texels;
     const struct asset_sensor *sensors;
-    const uint16_t *geodesic; /* codes: see asset_distance.h */
+    const uint16_t *geodesic; /* codes (distance_code.h); NULL: none, or packed and not yet unpacked */
+    const uint64_t *packed;   /* section of packed codes (distance_pack.h), which begins with its table of blocks; NULL: codes are plain */
     const char *names;
 };
 
@@ -122,6 +123,9 @@ struct asset_view {
 bool asset_view_init(struct asset_view *view, const void *bytes, size_t size, char why[200]);
 /* Like asset_view_init(), but does not check the checksum: for bytes that asset_build() has just made. */
 bool asset_view_fresh(struct asset_view *view, const void *bytes, size_t size, char why[200]);
+/* Makes view->geodesic usable: unpacks packed distances into memory. *codes: receives this memory, which must outlive the view and which
+ * the caller frees with free(); NULL if the distances are plain. Takes 3 ns for each vertex and sensor. Returns false if out of memory. */
+bool asset_view_unpack(struct asset_view *view, uint16_t **codes);
 
 /* Computes the bounding box and the normal cone of a cluster from its triangles. */
 void asset_cluster_measure(struct asset_cluster *cluster, const float (*positions_m)[3], const uint32_t *indices);
@@ -148,6 +152,7 @@ struct asset_parts {
     const float *geodesic_m;                            /* [sensor * vertex_count + vertex] */
     void (*write_geodesic)(void *arg, uint16_t *codes); /* instead of geodesic_m: callback that writes the codes of the distances
                                                            directly into the file's section */
+    size_t packed_bytes;                                /* bytes that write_geodesic writes if it writes packed codes; else 0 */
     void *write_arg;
     void *(*make_room)(void *arg, size_t bytes); /* callback that allocates the file's bytes, aligned to ASSET_ALIGN. NULL:
                                                     aligned_alloc() */

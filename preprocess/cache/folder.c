@@ -113,8 +113,14 @@ done:
     return result;
 }
 
+bool folder_unpack(struct folder_file *file)
+{
+    return file->codes || asset_view_unpack(&file->view, &file->codes);
+}
+
 void folder_close(struct folder_file *file)
 {
+    free(file->codes); /* allocated with malloc() by asset_view_unpack() */
     if (file->bytes)
         munmap(file->bytes, file->size);
     *file = (struct folder_file){ 0 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sorts vertices by level, coarsest first. */
+/* Sorts vertices by level, coarsest first, and by their use in triangles. */
 #include "preprocess/levels/vertex_order.h"
 
 #include <string.h>
@@ -21,13 +21,17 @@ static void find_bins(const struct levels *levels, uint32_t vertex_count, uint32
         }
 }
 
-/* Assigns new numbers to the vertices in order of their bins. Returns the number of vertices kept. */
+/* Assigns new numbers to the vertices in order of their bins. Within a bin, vertices are in the order in which triangles use them, so that
+ * vertices with neighbouring numbers are close together: their distances then take fewer bits (protocol/distance_pack.h). Returns the
+ * number of vertices kept. */
 static uint32_t number_vertices(const struct levels *levels, uint32_t vertex_count, const uint8_t *bins, struct asset_level *out,
                                 uint32_t *new_of)
 {
     uint32_t next[BINS + 2] = { 0 }, kept;
-    for (uint32_t v = 0; v < vertex_count; v++)
+    for (uint32_t v = 0; v < vertex_count; v++) {
         next[bins[v] + 1]++;
+        new_of[v] = TRIMESH_NONE;
+    }
     for (size_t l = 0; l < levels->count; l++)
         out[l].added_count = next[2 * (levels->count - 1 - l) + 2];
     for (int b = 1; b <= BINS; b++)
@@ -35,8 +39,15 @@ static uint32_t number_vertices(const struct levels *levels, uint32_t vertex_cou
     kept = next[BINS];
     for (size_t l = 0; l < levels->count; l++)
         out[l].vertex_count = next[2 * (levels->count - l)];
+    for (size_t l = 0; l < levels->count; l++)
+        for (uint32_t i = 0; i < levels->at[l].index_count; i++) {
+            uint32_t v = levels->at[l].indices[i];
+            if (new_of[v] == TRIMESH_NONE)
+                new_of[v] = next[bins[v]]++;
+        }
     for (uint32_t v = 0; v < vertex_count; v++)
-        new_of[v] = bins[v] == BINS ? TRIMESH_NONE : next[bins[v]]++;
+        if (new_of[v] == TRIMESH_NONE && bins[v] != BINS)
+            new_of[v] = next[bins[v]]++;
     return kept;
 }
 

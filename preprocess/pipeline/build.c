@@ -441,6 +441,8 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
     const struct build_input *input = build->input;
     const struct geometry *g = &build->geometry;
     struct build_output *output = build->output;
+    if (!distance_rows_pack(&build->distances, build->workers))
+        return wrong(build->why, "out of memory for the distances of %zu sensors", input->sensor_count);
     struct asset_parts parts = {
         .key = input->key,
         .positions_m = (const float(*)[3])g->positions_m,
@@ -459,6 +461,7 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
         .texels = g->texels,
         .sensors = build->measured.sensors,
         .write_geodesic = write_distances,
+        .packed_bytes = build->distances.packed_bytes,
         .write_arg = build,
         .make_room = make_file,
         .room_arg = build,

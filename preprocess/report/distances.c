@@ -55,6 +55,11 @@ bool distances_print(const struct prepare *prepare, const char *folder, int asse
         diag_error(diag, prepare->plant->files.path, asset->plant->line, 0, "asset %s: its file in %s: %s", asset->plant->id, folder, why);
         return false;
     }
+    if (!folder_unpack(&file)) {
+        diag_error(diag, prepare->plant->files.path, asset->plant->line, 0, "asset %s: out of memory for its distances", asset->plant->id);
+        folder_close(&file);
+        return false;
+    }
     const struct asset_view *view = &file.view;
     uint32_t vertices = view->header->vertex_count;
     double source[3];

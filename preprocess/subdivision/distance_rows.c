@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts distances from one row of sensors per position into the asset file's blocks of vertices. */
+/* Converts distances from one row of sensors per position into the asset file's blocks of vertices, and packs these. */
 #include "preprocess/subdivision/distance_rows.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdatomic.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "preprocess/cache/file_io.h"
 #include "protocol/asset_distance.h"
+#include "protocol/distance_pack.h"
 #include "surface/mesh/trimesh.h"
 
 /* offset in numbers between the output lines of consecutive sensors, chosen so that the lines do not evict each other from the CPU cache */
@@ -15,8 +18,17 @@
 #define AHEAD 8  /* prefetch distance in vertices: the next vertex's row is probably not in the CPU cache */
 #define LINE 32u /* sensors processed at a time, so that their output lines fit the first-level cache */
 
+static size_t blocks_of(const struct distance_rows *rows)
+{
+    return (rows->vertex_count + ASSET_DISTANCE_BLOCK - 1) / ASSET_DISTANCE_BLOCK;
+}
+
 void distance_rows_finish(struct distance_rows *rows)
 {
+    for (size_t b = 0; rows->packed && b < blocks_of(rows); b++)
+        mem_free(rows->packed[b]);
+    mem_free(rows->packed);
+    mem_free(rows->offsets);
     mem_free(rows->distances_m);
     mem_free(rows->place_of);
     *rows = (struct distance_rows){ 0 };
@@ -87,13 +99,130 @@ static void turn_blocks(void *arg, size_t begin, size_t end)
     mem_free(codes);
 }
 
+#define SAMPLES 40u /* vertices at which the distances from two sensors are compared */
+
+/* --- packing ---------------------------------------------------------------------------------------------------------------- */
+
+struct packing {
+    struct distance_rows *rows;
+    uint16_t (*near)[DISTANCE_PACK_NEAR];
+    atomic_bool failed;
+};
+
+static void insert_near(uint16_t near[DISTANCE_PACK_NEAR], float apart_m[DISTANCE_PACK_NEAR], uint16_t sensor, float m)
+{
+    size_t at = DISTANCE_PACK_NEAR;
+    for (; at > 0 && m < apart_m[at - 1]; at--)
+        if (at < DISTANCE_PACK_NEAR) {
+            near[at] = near[at - 1];
+            apart_m[at] = apart_m[at - 1];
+        }
+    if (at < DISTANCE_PACK_NEAR) {
+        near[at] = sensor;
+        apart_m[at] = m;
+    }
+}
+
+/* Lists for each sensor the earlier ones whose distances are the most similar, at some vertices all over the asset. */
+static void find_near(void *arg, size_t begin, size_t end)
+{
+    const struct packing *packing = arg;
+    const struct distance_rows *rows = packing->rows;
+    const float *sample[SAMPLES];
+    for (size_t i = 0; i < SAMPLES; i++)
+        sample[i] = rows->distances_m + rows->place_of[i * rows->vertex_count / SAMPLES] * rows->sensor_count;
+    for (size_t s = begin; s < end; s++) {
+        float apart_m[DISTANCE_PACK_NEAR];
+        for (size_t k = 0; k < DISTANCE_PACK_NEAR; k++) {
+            packing->near[s][k] = (uint16_t)s;
+            apart_m[k] = INFINITY;
+        }
+        for (size_t other = 0; other < s; other++) {
+            float sum = 0;
+            for (size_t i = 0; i < SAMPLES; i++)
+                sum += fabsf(fminf(sample[i][s], ASSET_DISTANCE_MOST_M) - fminf(sample[i][other], ASSET_DISTANCE_MOST_M));
+            insert_near(packing->near[s], apart_m, (uint16_t)other, sum);
+        }
+    }
+}
+
+/* Replaces the padding of the last block by copies of the last vertex, which take fewer bits. */
+static void pad_block(uint16_t *codes, size_t sensor_count, size_t count)
+{
+    for (size_t s = 0; s < sensor_count; s++)
+        for (size_t v = count; v < ASSET_DISTANCE_BLOCK; v++)
+            codes[s * ASSET_DISTANCE_BLOCK + v] = codes[s * ASSET_DISTANCE_BLOCK + count - 1];
+}
+
+static void pack_blocks(void *arg, size_t begin, size_t end)
+{
+    struct packing *packing = arg;
+    struct distance_rows *rows = packing->rows;
+    uint16_t *codes = mem_try_array(rows->sensor_count, ASSET_DISTANCE_BLOCK * sizeof(*codes));
+    uint8_t *room = mem_try_array(distance_pack_bound(rows->sensor_count), 1);
+    for (size_t b = begin; codes && room && b < end && !packing->failed; b++) {
+        size_t first = b * ASSET_DISTANCE_BLOCK, left = rows->vertex_count - first;
+        size_t count = left < ASSET_DISTANCE_BLOCK ? left : ASSET_DISTANCE_BLOCK;
+        turn_block(rows, first, count, codes);
+        pad_block(codes, rows->sensor_count, count);
+        size_t bytes = distance_pack(codes, rows->sensor_count, (const uint16_t(*)[DISTANCE_PACK_NEAR])packing->near, room);
+        rows->packed[b] = bytes ? mem_try_array(bytes, 1) : NULL;
+        if (rows->packed[b])
+            memcpy(rows->packed[b], room, bytes);
+        rows->offsets[b + 1] = bytes;
+        packing->failed = packing->failed || !rows->packed[b];
+    }
+    packing->failed = packing->failed || !codes || !room;
+    mem_free(codes);
+    mem_free(room);
+}
+
+static void run(struct workers *workers, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg)
+{
+    if (workers)
+        workers_for(workers, count, grain, body, arg);
+    else
+        body(arg, 0, count);
+}
+
+bool distance_rows_pack(struct distance_rows *rows, struct workers *workers)
+{
+    const size_t blocks = blocks_of(rows);
+    if (rows->sensor_count < DISTANCE_PACK_MIN_SENSORS || rows->sensor_count > UINT16_MAX / 2 || rows->vertex_count == 0)
+        return true;
+    struct packing packing = { .rows = rows, .near = mem_try_array(rows->sensor_count, sizeof(*packing.near)) };
+    rows->packed = mem_try_array(blocks, sizeof(*rows->packed));
+    rows->offsets = mem_try_array(blocks + 1, sizeof(*rows->offsets));
+    packing.failed = !packing.near || !rows->packed || !rows->offsets;
+    if (!packing.failed) {
+        run(workers, rows->sensor_count, 16, find_near, &packing);
+        run(workers, blocks, 16, pack_blocks, &packing);
+    }
+    if (!packing.failed) {
+        rows->offsets[0] = ((blocks + 1) * sizeof(*rows->offsets) + 15) / 16 * 16;
+        for (size_t b = 0; b < blocks; b++)
+            rows->offsets[b + 1] += rows->offsets[b];
+        rows->packed_bytes = rows->offsets[blocks];
+        mem_free(rows->distances_m);
+        rows->distances_m = NULL;
+    }
+    mem_free(packing.near);
+    return !packing.failed;
+}
+
+static int write_packed(const struct distance_rows *rows, int fd, off_t at)
+{
+    bool good = file_write(fd, rows->offsets, (blocks_of(rows) + 1) * sizeof(*rows->offsets), at);
+    for (size_t b = 0; good && b < blocks_of(rows); b++)
+        good = file_write(fd, rows->packed[b], rows->offsets[b + 1] - rows->offsets[b], at + (off_t)rows->offsets[b]);
+    return good ? 0 : errno;
+}
+
 int distance_rows_write(const struct distance_rows *rows, struct workers *workers, int fd, off_t at)
 {
     struct rows_block turn = { .rows = rows, .fd = fd, .at = at };
-    size_t blocks = (rows->vertex_count + ASSET_DISTANCE_BLOCK - 1) / ASSET_DISTANCE_BLOCK;
-    if (workers)
-        workers_for(workers, blocks, 16, turn_blocks, &turn);
-    else
-        turn_blocks(&turn, 0, blocks);
+    if (rows->packed_bytes)
+        return write_packed(rows, fd, at);
+    run(workers, blocks_of(rows), 16, turn_blocks, &turn);
     return turn.error;
 }

@@ -3,6 +3,7 @@
  * format: blocks of vertices, sensor by sensor. */
 #ifndef PREPROCESS_SUBDIVISION_DISTANCE_ROWS_H
 #define PREPROCESS_SUBDIVISION_DISTANCE_ROWS_H
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <sys/types.h>
@@ -14,6 +15,10 @@ struct distance_rows {
     uint32_t *place_of; /* position index of each vertex */
     size_t sensor_count;
     uint32_t vertex_count;
+    /* set by distance_rows_pack(): packed blocks of vertices, and where in the asset file's section each begins */
+    uint8_t **packed;
+    uint64_t *offsets;
+    size_t packed_bytes; /* length of the packed section; 0: not packed */
 };
 
 /* Frees the arrays of an initialised or zeroed struct. */
@@ -21,8 +26,11 @@ void distance_rows_finish(struct distance_rows *rows);
 /* Renumbers the vertices: new_of[old index] is the new index, or TRIMESH_NONE for a dropped vertex. `kept`: number of vertices
  * afterwards. */
 void distance_rows_renumber(struct distance_rows *rows, const uint32_t *new_of, uint32_t kept);
-/* Writes the distances as 16-bit codes (protocol/asset_distance.h) to fd, from offset `at` on. Uses write() and not a mapping, whose page
- * faults would double the cost. workers may be NULL. Returns 0 or an errno value. */
+/* Packs the distances of many sensors (protocol/distance_pack.h) and frees distances_m; does nothing for few sensors. workers may be NULL.
+ * Returns false if out of memory. */
+bool distance_rows_pack(struct distance_rows *rows, struct workers *workers);
+/* Writes the distances to fd, from offset `at` on: packed, or as plain 16-bit codes (protocol/asset_distance.h). Uses write() and not a
+ * mapping, whose page faults would double the cost. workers may be NULL. Returns 0 or an errno value. */
 int distance_rows_write(const struct distance_rows *rows, struct workers *workers, int fd, off_t at);
 
 #endif

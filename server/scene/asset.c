@@ -51,6 +51,11 @@ struct asset *asset_open(struct log *log, const char *path)
         asset_unref(&asset);
         return NULL;
     }
+    if (!asset_view_unpack(&asset->view, &asset->distances)) {
+        log_err(log, "asset file %s: out of memory for the distances of %u sensors", path, asset->view.header->sensor_count);
+        asset_unref(&asset);
+        return NULL;
+    }
     asset->closed = mem_array(asset->view.header->level_count, sizeof(*asset->closed));
     return asset;
 }
@@ -124,6 +129,7 @@ void asset_unref(struct asset **asset_ptr)
     if (asset->map)
         munmap(asset->map, asset->bytes);
     free(asset->made); /* allocated with malloc() by asset_build() */
+    free(asset->distances);
     cache_file_close(&asset->influence_file);
     mem_free(asset->path);
     mem_free(asset);

@@ -13,6 +13,7 @@ struct asset {
     struct asset_view view;
     void *map; /* mapped file; NULL: the asset was built in memory, see `made` */
     void *made;
+    uint16_t *distances; /* unpacked distances; NULL: those of the file are plain */
     size_t bytes;
     struct cache_file influence_file; /* mapped file KEY.influence (influence of sensors) next to the asset's file; zero: not opened */
     struct influence_view influence;

@@ -72,9 +72,12 @@ static void try_bytes(const void *bytes, size_t count)
 {
     struct asset_view view;
     char why[200] = "";
-    if (asset_view_init(&view, bytes, count, why))
+    uint16_t *codes;
+    if (asset_view_init(&view, bytes, count, why)) {
+        require(asset_view_unpack(&view, &codes), "memory");
         check_view(&view);
-    else
+        free(codes);
+    } else
         require(why[0], "a reason");
 }
 

@@ -2,6 +2,7 @@
 /* Asset files: what the writer builds is read back, and every kind of damage is refused with its reason. */
 #include "protocol/asset_distance.h"
 #include "protocol/asset_format.h"
+#include "protocol/distance_pack.h"
 
 #include "tests/support/test.h"
 #include <math.h>
@@ -187,7 +188,7 @@ TEST(the_layout_is_pinned)
     assert_int_equal(sizeof(struct asset_sensor), 40);
     assert_int_equal(ASSET_SECTION_COUNT, 15);
     struct asset_bytes f = build(&good);
-    assert_memory_equal(f.bytes, "PLCASSET\5\0\0\0\x68\1\0\0", 16);
+    assert_memory_equal(f.bytes, "PLCASSET\6\0\0\0\x68\1\0\0", 16);
     /* this value changes only with the version of the format */
     assert_int_equal(XXH3_64bits(f.bytes + 360, f.size - 360), 0x111241323613397full);
     free(f.bytes);
@@ -213,8 +214,8 @@ TEST(truncated_or_foreign_files_are_refused)
     memcpy(f.bytes, "glTF", 4);
     refused_sealed(&f, "magic");
     f = build(&good);
-    f.header->version = 6;
-    refused_sealed(&f, "version 6, this program reads version 5");
+    f.header->version = 5;
+    refused_sealed(&f, "version 5, this program reads version 6");
     f = build(&good);
     f.header->header_bytes = 320;
     refused_sealed(&f, "header of 320 bytes");
@@ -561,4 +562,128 @@ TEST(distances_lie_in_blocks)
             assert_float_equal(asset_distance_m(&v, s, i), along_m[s * VERTICES + i], along_m[s * VERTICES + i] * 0x1p-12f);
     assert_int_equal(asset_distance_codes(&v, 2, 599)[599 % ASSET_DISTANCE_BLOCK + 1], ASSET_DISTANCE_NONE);
     free(f.bytes);
+}
+
+/* --- packed distances --------------------------------------------------------------------------------------------------------- */
+
+enum { MANY = 70, FAR = 600, BLOCKS = 3 }; /* sensors; vertices; blocks of vertices */
+
+struct packed_file {
+    uint16_t codes[BLOCKS][MANY][ASSET_DISTANCE_BLOCK];
+    uint8_t blocks[BLOCKS][MANY * 600];
+    uint64_t offsets[BLOCKS + 1];
+};
+
+/* Makes distances that grow along a line, with an even error, and jumps unless error_m is 0. Some vertices have no path to sensors 3, 9. */
+static void make_codes(struct packed_file *packed, double error_m)
+{
+    for (size_t s = 0; s < MANY; s++)
+        for (size_t v = 0; v < BLOCKS * (size_t)ASSET_DISTANCE_BLOCK; v++) {
+            double x_m = 0.01 * (double)(v < FAR ? v : FAR - 1) + (error_m > 0 && v % 50 > 40 ? 3 : 0),
+                   noise = (double)(v * 7919 % 101 * (s + 3) % 101);
+            double m = hypot(x_m - 0.1 * (double)s, s == 5 ? 0 : 1) + error_m * noise / 101;
+            bool lost = (s == 3 && v > 300) || (s == 9 && v % 256 == 7);
+            packed->codes[v / 256][s][v % 256] = lost ? ASSET_DISTANCE_NONE : asset_distance_code((float)m);
+        }
+}
+
+static void pack_codes(struct packed_file *packed)
+{
+    static uint16_t near[MANY][DISTANCE_PACK_NEAR];
+    for (size_t s = 0; s < MANY; s++)
+        for (size_t k = 0; k < DISTANCE_PACK_NEAR; k++)
+            near[s][k] = (uint16_t)(k < s ? s - 1 - k : s);
+    packed->offsets[0] = 64;
+    assert_true(distance_pack_bound(MANY) <= sizeof(packed->blocks[0]));
+    for (size_t b = 0; b < BLOCKS; b++) {
+        size_t bytes = distance_pack(packed->codes[b][0], MANY, (const uint16_t(*)[DISTANCE_PACK_NEAR])near, packed->blocks[b]);
+        assert_true(bytes > 0 && bytes % 16 == 0 && distance_pack_good(packed->blocks[b], bytes, MANY));
+        packed->offsets[b + 1] = packed->offsets[b] + bytes;
+    }
+}
+
+static void write_packed(void *arg, uint16_t *codes)
+{
+    const struct packed_file *packed = arg;
+    uint8_t *to = (uint8_t *)codes;
+    memset(to, 0, packed->offsets[0]);
+    memcpy(to, packed->offsets, sizeof(packed->offsets));
+    for (size_t b = 0; b < BLOCKS; b++)
+        memcpy(to + packed->offsets[b], packed->blocks[b], packed->offsets[b + 1] - packed->offsets[b]);
+}
+
+static struct asset_bytes build_packed(struct packed_file *packed)
+{
+    static float at[FAR][3], up[FAR][3];
+    static struct asset_sensor on[MANY];
+    struct asset_parts parts = good;
+    struct asset_material plain = materials[0];
+    for (size_t i = 0; i < FAR; i++) {
+        up[i][2] = 1;
+        at[i][0] = (float)i;
+    }
+    plain.base_color_texture = plain.occlusion_texture = ASSET_NO_TEXTURE;
+    plain.second = 0;
+    parts.positions_m = (const float(*)[3])at;
+    parts.normals = (const float(*)[3])up;
+    parts.texcoords = parts.second_texcoords = NULL;
+    parts.colors = NULL;
+    parts.levels = NULL;
+    parts.clusters = NULL;
+    parts.materials = &plain;
+    parts.sensors = on;
+    parts.geodesic_m = NULL;
+    parts.write_geodesic = write_packed;
+    parts.write_arg = packed;
+    parts.packed_bytes = packed->offsets[BLOCKS];
+    parts.vertex_count = FAR;
+    parts.sensor_count = MANY;
+    return build(&parts);
+}
+
+TEST(packed_distances_are_read_back_exactly)
+{
+    static struct packed_file packed;
+    const double errors_m[] = { 0, 1e-4, 0.01, 1000 };
+    for (size_t e = 0; e < sizeof(errors_m) / sizeof(*errors_m); e++) {
+        struct asset_view v;
+        uint16_t *codes;
+        char why[200] = "";
+        make_codes(&packed, errors_m[e]);
+        pack_codes(&packed);
+        struct asset_bytes f = build_packed(&packed);
+        if (!asset_view_init(&v, f.bytes, f.size, why))
+            fail_msg("%s", why);
+        assert_true(v.packed && !v.geodesic);
+        assert_true(asset_view_unpack(&v, &codes) && v.geodesic == codes);
+        assert_memory_equal(codes, packed.codes, sizeof(packed.codes));
+        if (e == 0)
+            assert_true(packed.offsets[BLOCKS] < sizeof(packed.codes) / 2);
+        free(codes);
+        free(f.bytes);
+    }
+}
+
+static void packed_refused(struct packed_file *packed, size_t offset, uint8_t byte)
+{
+    struct asset_bytes f = build_packed(packed);
+    ((uint8_t *)part(&f, ASSET_GEODESIC))[offset] = byte;
+    refused_sealed(&f, "section geodesic: ");
+}
+
+TEST(damaged_packed_distances_are_refused)
+{
+    static struct packed_file packed;
+    make_codes(&packed, 0.01);
+    pack_codes(&packed);
+    const size_t block = packed.offsets[1];
+    packed_refused(&packed, 0, 8);                         /* block 0 begins inside the table */
+    packed_refused(&packed, sizeof(uint64_t) + 7, 0x80);   /* block 1 begins beyond the section */
+    packed_refused(&packed, BLOCKS * sizeof(uint64_t), 0); /* the last block ends before the section */
+    packed_refused(&packed, block + 4 * 5, 5);             /* sensor 5 is its own parent */
+    packed_refused(&packed, block + 4 * 5 + 2, 17);        /* 17 bits */
+    packed_refused(&packed, block + 4 * 5 + 3, 16);        /* more bits than the block has */
+    struct asset_bytes f = build_packed(&packed);
+    f.header->sections[ASSET_GEODESIC].bytes -= 16;
+    refused_sealed(&f, "section geodesic: ");
 }

@@ -166,6 +166,7 @@ static struct named prepare(const struct awkward *a, struct folder_file *file)
     json_decref(report);
     mem_free(prep_case_file(a->files, ".asset", &key));
     assert_int_equal(folder_open(file, folder, key, why), 1);
+    assert_true(folder_unpack(file));
     mem_free(folder);
     return named;
 }

@@ -463,6 +463,7 @@ static void open_prepared(struct prepared *at, const struct prep_case *c, const 
     char why[200], *folder = temp_path(c->folder, into);
     *at = (struct prepared){ 0 };
     assert_int_equal(folder_open(&at->file, folder, strtoull(json_string_value(json_object_get(asset, "file")), NULL, 16), why), 1);
+    assert_true(folder_unpack(&at->file));
     const struct asset_view *view = &at->file.view;
     at->values = mem_array(view->header->vertex_count, sizeof(*at->values));
     for (uint32_t v = 0; v < view->header->vertex_count; v++) {
