@@ -56,7 +56,7 @@ bool role_may_send(enum role role, const struct message *message, struct message
         return false;
     }
     if (message->type == MESSAGE_SHARE_VIEW && role < ROLE_VIEWER) {
-        message_fail(error, "not_allowed", "to share views by short links needs a token");
+        message_refuse(error, "not_allowed", NULL, REFUSAL_TOKEN_NEEDED);
         return false;
     }
     if (message->signed_frames && role < ROLE_VIEWER) {

@@ -3,6 +3,7 @@
 #include "views/short_links.h"
 
 #include <openssl/evp.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
@@ -12,8 +13,14 @@
 enum { FEWEST_ID_CHARS = 8 /* 40 bits: an id cannot be found by trying */ };
 static const int64_t USED_US = INT64_C(86400000000); /* a link is marked as used at most once a day, because each change writes the file */
 
+/* At most BURST_LINKS new links may be made at once, and one per LINK_US on average, so that one user can neither replace all links nor
+   keep the disk busy. */
+enum { BURST_LINKS = 20 };
+static const int64_t LINK_US = 2000000;
+
 struct short_links {
     struct kept_list kept; /* { id, view, time_us }; time_us: when the link was last marked as used, UTC */
+    int64_t whole_us;      /* UTC: when BURST_LINKS links may be made at once again */
 };
 
 static bool good_list(const json_t *list)
@@ -70,14 +77,28 @@ static size_t find_view(const json_t *list, const char *view, char id[SHORT_LINK
     return at;
 }
 
+/* Returns whether a new link may be made, and counts it. */
+static bool may_add(struct short_links *links, int64_t now_us)
+{
+    if (links->whole_us < now_us || links->whole_us > now_us + BURST_LINKS * LINK_US) /* the latter: the clock was set back */
+        links->whole_us = now_us;
+    if (links->whole_us > now_us + (BURST_LINKS - 1) * LINK_US)
+        return false;
+    links->whole_us += LINK_US;
+    return true;
+}
+
 enum refusal_code short_links_share(struct short_links *links, const char *view, int64_t now_us, char id[SHORT_LINK_ID_BYTES])
 {
     json_t *newest = kept_list_newest(&links->kept);
     size_t at = find_view(newest, view, id);
     const json_t *old = json_array_get(newest, at);
     enum refusal_code why = kept_list_refusal(&links->kept);
-    if (why || (old && now_us - json_integer_value(json_object_get(old, "time_us")) < USED_US))
+    const bool stored = kept_list_find(links->kept.list, id) < json_array_size(links->kept.list); /* and not only queued for the disk */
+    if (why || (stored && llabs(now_us - json_integer_value(json_object_get(old, "time_us"))) < USED_US))
         return why;
+    if (!stored && !may_add(links, now_us))
+        return REFUSAL_LINKS_OFTEN;
     json_t *list = json_copy(newest);
     json_array_remove(list, at);
     while (json_array_size(list) >= SHORT_LINKS)

@@ -210,13 +210,28 @@ CASE(a_further_short_link_replaces_the_one_unused_for_longest)
     assert_int_equal(short_links_share(links, "asset=second", NOON_US, second), REFUSAL_NONE);
     for (int i = 2; i < SHORT_LINKS; i++) {
         snprintf(view, sizeof(view), "asset=%d", i);
-        assert_int_equal(short_links_share(links, view, NOON_US, id), REFUSAL_NONE);
+        assert_int_equal(short_links_share(links, view, NOON_US + i * 2000000LL, id), REFUSAL_NONE);
     }
     assert_int_equal(short_links_share(links, "asset=first", NOON_US + DAY_US, id), REFUSAL_NONE); /* used a day later */
     assert_int_equal(short_links_share(links, "asset=another", NOON_US + DAY_US, id), REFUSAL_NONE);
     assert_int_equal(json_array_size(short_links_list(links)), SHORT_LINKS);
     assert_string_equal(short_links_find(links, first), "asset=first");
     assert_null(short_links_find(links, second));
+    short_links_close(&links);
+}
+
+CASE(too_many_new_short_links_within_a_short_time_are_refused)
+{
+    char id[SHORT_LINK_ID_BYTES], view[40];
+    struct short_links *links = short_links_open(f->log, f->history, NULL);
+    for (int i = 0; i < 30; i++) {
+        snprintf(view, sizeof(view), "asset=%d", i);
+        assert_int_equal(short_links_share(links, view, NOON_US, id), i < 20 ? REFUSAL_NONE : REFUSAL_LINKS_OFTEN);
+    }
+    assert_int_equal(short_links_share(links, "asset=0", NOON_US, id), REFUSAL_NONE); /* is stored already */
+    assert_int_equal(short_links_share(links, "asset=20", NOON_US + 2000000, id), REFUSAL_NONE);
+    assert_int_equal(short_links_share(links, "asset=21", NOON_US + 2000000, id), REFUSAL_LINKS_OFTEN);
+    assert_int_equal(short_links_share(links, "asset=21", NOON_US - DAY_US, id), REFUSAL_NONE); /* the clock was set back */
     short_links_close(&links);
 }
 

@@ -65,6 +65,7 @@ narrow: das Bild ist zu schmal zum Teilen
 memory: dem Server fehlt Speicher; das letzte Bild bleibt
 gone: dieser Benutzer ist nicht mehr verbunden
 linkless: dieser kurze Link ist unbekannt oder nicht mehr gespeichert: einen neuen erbitten
+links_often: in kurzer Zeit wurden zu viele Kurzlinks erstellt; bitte in einer Minute erneut versuchen
 coreless: die Aufzeichnung ist nicht verfügbar: der Kern ist nicht erreichbar; bitte erneut versuchen
 unrecorded: es wird nichts aufgezeichnet (history: record: no)
 unreadable: die Aufzeichnung ist nicht lesbar; den Grund nennt das Protokoll des Servers
