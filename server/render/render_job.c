@@ -37,6 +37,8 @@ static bool copy_field(const struct render_job *job, const struct fields_entry *
     *copy = *from;
     copy->shown = NULL;
     copy->sensors = 0;
+    copy->pixels = (struct pixel_field){ 0 };
+    pixel_field_copy(&copy->pixels, &from->pixels);
     copy->slice = on_gpu ? pool_ref(from->slice) : NULL;
     if (on_gpu)
         return !from->sensors || (copy->sensors = copy_buffer(log, from->sensors));
@@ -71,6 +73,7 @@ void render_job_finish(struct render_job *job)
         pool_unref(&job->copies[i].slice);
         glDeleteBuffers(1, &job->copies[i].sensors);
         mem_free(job->copies[i].shown);
+        pixel_field_finish(&job->copies[i].pixels);
     }
     light_release(job->light);
     if (job->frame)
