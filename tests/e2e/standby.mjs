@@ -290,6 +290,7 @@ function manager(path) {
     told.child = spawn('python3', ['-c', `import socket
 s = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
 s.bind("${path}")
+print("bound", flush=True)
 while True:
     print(s.recv(4096).decode(), flush=True)`]);
     told.child.stdout.on('data', (text) => { told.said += text; });
@@ -317,6 +318,7 @@ test('maintenance of the standby: the leader polls on without the database, and 
     await server.restart();
     const told = manager(join(two.plant.folder, 'notify'));
     t.after(() => told.child.kill());
+    await until('the socket of the manager', () => told.said.includes('bound'));
     other.before = ['env', `NOTIFY_SOCKET=${join(two.plant.folder, 'notify')}`];
     await two.start(other.name);
     delete other.before;
