@@ -416,9 +416,11 @@ test('without a connection the strip says as of when, and offers nothing', optio
     assert.ok(await page.locator('#alarm-strip:not(.stale)').isVisible());
 });
 
-test('on a tablet in both orientations', options, async () => {
+test('on tablets', options, async () => {
     await plant.ask(`set ${HOT} ${limitOf(HOT).HH + 1}`);
-    for (const [name, screen] of [['landscape', TABLET], ['portrait', { ...TABLET, viewport: { width: 768, height: 1024 } }]]) {
+    const sizes = { landscape: [1024, 768], portrait: [768, 1024], large: [1280, 800] };
+    for (const [name, [width, height]] of Object.entries(sizes)) {
+        const screen = { ...TABLET, viewport: { width, height } };
         const tablet = await openPage(plant.url, screen);
         try {
             await waitForPicture(tablet.page);
@@ -428,6 +430,8 @@ test('on a tablet in both orientations', options, async () => {
             const small = await tablet.page.evaluate(() => [...document.querySelectorAll('#alarms button, #alarm-strip')]
                 .filter((e) => e.getClientRects().length > 0 && e.getBoundingClientRect().height < 37.5).map((e) => e.id || e.textContent));
             assert.deepEqual(small, []);
+            if (name === 'large')
+                assert.equal(await tablet.page.locator('#alarms-list td[data-col=since]').first().isVisible(), true, 'how old it is');
             await shoot(tablet.page, `alarms-tablet-${name}`);
             assert.deepEqual(tablet.errors, []);
         } finally {
