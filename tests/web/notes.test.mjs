@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { inForce, isOfPlant, placeOf, whereOf } from '../../clients/web/core/notes.js';
+import { wrapped } from '../../clients/web/app/picture/snapshot_notes.js';
 import { makeSession, vector } from './fixtures.mjs';
 
 const { connection, session, sockets } = makeSession();
@@ -35,6 +36,15 @@ test('a picture of the past has the notes of its instant', () => {
         { id: 'removed', time_us: 10, until_us: 0, ended_us: 50 }];
     const then = (atUs) => inForce(notes, 100, atUs).map(({ id }) => id);
     assert.deepEqual([9, 10, 39, 40, 50, 60].map(then), [[], ['over', 'removed'], ['over', 'removed'], ['removed'], [], ['later']]);
+});
+
+test('a saved picture cuts nothing off a note: lines break at blanks, and within a word that is longer than a line', () => {
+    const pen = { measureText: (text) => ({ width: [...text].length }) };
+    const cases = [['permit 4711 open', ['permit', '4711 open']], ['', ['']],
+        ['see abcdefghijklmnopqrstu now', ['see', 'abcdefghij', 'klmnopqrst', 'u now']],
+        ['배관누설주의작업허가서확인', ['배관누설주의작업허가', '서확인']]];
+    for (const [text, lines] of cases)
+        assert.deepEqual(wrapped(pen, text, 10), lines);
 });
 
 test('notes, what was sent to walls and pointers are heard, and go with the plant', () => {

@@ -206,6 +206,10 @@ test('a saved picture has the page\'s theme, and below it the notes in force', o
     assert.ok(Math.max(...at(dark, dark.width - 3, dark.height - 3)) < 80, 'a dark list');
     assert.ok(Math.max(...at(dark, 12, 12)) < 110, 'a dark card'); // of the header
     await turn('#f4f5f6');
+    await post({ type: 'note', text: `https://permits.example/${'valve-4711-'.repeat(30)}end` });
+    await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 3);
+    const long = await save('saved-notes-long');
+    assert.ok(long.height > light.height + 60, `a word longer than a line: ${light.height} and ${long.height} px high`);
     for (const id of await noteIds())
         await post({ type: 'remove_note', id });
     await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 0);

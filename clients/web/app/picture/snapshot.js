@@ -66,16 +66,12 @@ export class Snapshot {
         const { session } = this, { camera, size, time } = session;
         if (session.params.show === 'difference' && !session.params.baseline?.name)
             throw new Error(say('snapshot.unnamed'));
-        const query = { ...snapshotQuery({ carried: session.carried(), camera, size, time }), language };
-        const answer = await ask('snapshot.png', query, session.token);
-        const us = time.atUs ?? session.clockUs();
-        return { blob: await this.withNotes(await answer.blob(), { camera, half: halves(session.params, size.width)[0] }), us };
-    }
-
-    // Returns a promise of the picture with its notes. A signed file stays as the server sent it.
-    async withNotes(blob, place) {
-        const { session } = this, { model, signs } = session, notes = inForce(session.notes, session.clockUs(), session.time.atUs);
-        return signs || notes.length === 0 ? blob : (await import('./snapshot_notes.js')).addNotes(blob, notes, { model, ...place });
+        // all taken before the answer, because the user may go on to another instant or view meanwhile
+        const query = { ...snapshotQuery({ carried: session.carried(), camera, size, time }), language }, now = session.clockUs();
+        const us = time.atUs ?? now, notes = session.signs ? [] : inForce(session.notes, now, time.atUs); // a signed file stays as it is
+        const place = { model: session.model, camera, half: halves(session.params, size.width)[0] };
+        const blob = await (await ask('snapshot.png', query, session.token)).blob();
+        return { blob: notes.length === 0 ? blob : await (await import('./snapshot_notes.js')).addNotes(blob, notes, place), us };
     }
 
     // Requests that the next refined frame be signed; once it is on the screen, returns its PNG file.

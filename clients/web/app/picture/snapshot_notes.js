@@ -7,17 +7,28 @@ import { aboutText, placeOf } from '../../core/notes.js';
 const FONT_PX = 13, LINE = 1.45, DISC_PX = 9; // at 1280x720
 const AWAY_PX = 20, RING_PX = 9; // distances of disc and line from the place, whose marker and alarm ring stay free
 
-// Splits a text into lines that fit the width.
-function wrapped(pen, text, width) {
-    const lines = [''];
+// Splits a text into lines that fit the width: at blanks, and within a word that is longer than a line.
+export function wrapped(pen, text, width) {
+    const lines = [], fits = (line) => pen.measureText(line).width <= width;
+    let line = '';
     for (const word of text.split(' ')) {
-        const longer = `${lines.at(-1)} ${word}`.trim();
-        if (lines.at(-1) && pen.measureText(longer).width > width)
-            lines.push(word);
-        else
-            lines[lines.length - 1] = longer;
+        const longer = `${line} ${word}`.trim();
+        if (fits(longer)) {
+            line = longer;
+            continue;
+        }
+        if (line)
+            lines.push(line);
+        line = '';
+        for (const character of word) {
+            if (line && !fits(line + character)) {
+                lines.push(line);
+                line = '';
+            }
+            line += character;
+        }
     }
-    return lines;
+    return [...lines, line];
 }
 
 function drawDisc(pen, number, [x, y], unit) {
