@@ -48,18 +48,17 @@ export class NamedViews {
     look(text, fly = true) {
         const { session, modules } = this, { camera, params, tag } = viewOf(session, text), found = session.model.tag(tag);
         session.setParams(params);
-        if (!fly)
+        if (!fly) {
+            modules.there('cameraController')?.land(); // ends a running flight
             session.setCamera(camera);
+        }
         modules.use('commands', (commands) => {
             commands.selectTag(found);
             if (fly)
                 modules.use('cameraController', (controller) => controller.flyTo(camera));
             else if (modules.awaited.has('cameraController'))
-                // ends a flight that runs, or that waits for this module, and that would go on to its own destination
-                modules.use('cameraController', (controller) => {
-                    controller.land();
-                    session.setCamera(camera);
-                });
+                // ends a flight that waited for these modules; sets no camera, which the user may have moved since
+                modules.use('cameraController', (controller) => controller.land());
         });
     }
 
