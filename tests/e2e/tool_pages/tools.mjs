@@ -209,7 +209,7 @@ test('a saved picture has the page\'s theme, and below it the notes in force', o
     await post({ type: 'note', text: `https://permits.example/${'valve-4711-'.repeat(30)}end` });
     await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 3);
     const long = await save('saved-notes-long');
-    assert.ok(long.height > light.height + 60, `a word longer than a line: ${light.height} and ${long.height} px high`);
+    assert.ok(long.height > light.height + 48, `a word longer than a line: ${light.height} and ${long.height} px high`);
     for (const id of await noteIds())
         await post({ type: 'remove_note', id });
     await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 0);
