@@ -42,6 +42,8 @@ test('what was recorded comes back elsewhere, point by point', { skip }, async (
     assert.equal((await engineer.text('proved')).kept, true);
     engineer.say({ type: 'note', seq: 2, tag: 'TI-1', text: 'permit 4711' });
     await engineer.text('notes');
+    engineer.say({ type: 'share_view', seq: 3, view: 'asset=shared' });
+    assert.equal((await engineer.text('view_shared')).kept, true);
     engineer.close();
     const to = String(Math.floor(Date.now() / 1000) - 1);
     for (const name of ['one', 'two', 'three']) {
@@ -69,6 +71,7 @@ test('what was recorded comes back elsewhere, point by point', { skip }, async (
     assert.equal(readFileSync(proofs, 'utf8'), readFileSync(join(folder('three'), 'proofs.csv'), 'utf8'));
     assert.match(readFileSync(proofs, 'utf8'), /TI-1/);
     assert.match(readFileSync(proofs.replace('proofs.csv', 'notes.json'), 'utf8'), /permit 4711/);
+    assert.match(readFileSync(proofs.replace('proofs.csv', 'links.json'), 'utf8'), /asset=shared/);
     const was = exported(plant.file, to), is = exported(other, to);
     assert.ok(was.length > 3000, `${was.length} points`);
     assert.deepEqual(is.slice(0, was.length - 20), was.slice(0, was.length - 20));

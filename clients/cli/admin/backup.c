@@ -27,6 +27,7 @@
 #include "access/pairings.h"
 #include "views/named_views.h"
 #include "views/notes.h"
+#include "views/short_links.h"
 #include "views/wall_remote.h"
 
 #define MANIFEST "backup.json"
@@ -101,7 +102,7 @@ static const char *as_written(const struct plant *plant, const char *path)
 }
 
 /* Names of the files in the history folder whose content users made. */
-static const char *const lists[] = { NAMED_VIEWS_FILE, NOTES_FILE, WALL_REMOTE_FILE, PAIRINGS_FILE };
+static const char *const lists[] = { NAMED_VIEWS_FILE, SHORT_LINKS_FILE, NOTES_FILE, WALL_REMOTE_FILE, PAIRINGS_FILE };
 enum { LISTS = sizeof(lists) / sizeof(lists[0]) };
 
 static bool is_list(const char *name)
