@@ -136,6 +136,35 @@ TEST(test_thin_poles_have_no_beads)
     stand = others;
 }
 
+/* A frame drawn in steps shows the readings of its beginning, also where the field is evaluated at each pixel, whatever other frames show
+   in between. */
+TEST(test_readings_change_between_steps)
+{
+    struct view view = soft_view(&stand, TIER_REFINED, 160, 90), moving;
+    bool done = false;
+    view.field.distance = DISTANCE_EUCLIDEAN;
+    moving = view;
+    moving.tier = TIER_PREVIEW;
+    struct frame *expected = soft_draw_anew(&stand, &view);
+    for (int steps = 0; !done; steps++) {
+        struct render_job *job = planned_begin(stand.renderer, &view, stand.snapshot);
+        assert_non_null(job);
+        for (int i = 0; i < steps && !done; i++)
+            done = renderer_step(stand.renderer, job, 0);
+        for (int way = 0; way < 2; way++) {
+            toy_fill(stand.snapshot, way ? -30 : 20);
+            struct frame *between = stand_draw(&stand, &moving);
+            frame_unref(&between);
+        }
+        struct frame *frame = renderer_end(stand.renderer, &job);
+        assert_non_null(frame);
+        assert_memory_equal(frame->bgrx, expected->bgrx, (size_t)frame->height_px * (size_t)frame->stride_bytes);
+        frame_unref(&frame);
+        toy_fill(stand.snapshot, 0);
+    }
+    frame_unref(&expected);
+}
+
 /* --- once more ------------------------------------------------------------------------------------------------------------------- */
 
 static bool is_quick(const struct view *view)
