@@ -101,12 +101,16 @@ bool field_at(struct field *field, int asset, const struct field_params *params,
               const struct field_place *place, struct field_point *out)
 {
     struct field_params room;
-    const struct scalars *scalars = field_scalars(field, asset, params, snapshot);
+    /* 0 if pictures evaluate the field at each pixel: they need no values at vertices, and neither does this point */
+    const size_t count = field_vertices(field, asset, params, field->scene->assets[asset].file->view.header->vertex_count);
+    const struct scalars *scalars = field_scalars_of(field, asset, params, snapshot, count);
     if (!scalars)
         return false;
     params = field_params_of(field, asset, params, &room);
     const struct field_state *state = field_state(field, asset, params);
-    point_drawn(scalars, place, out);
+    *out = (struct field_point){ .no_data = true };
+    if (count > 0)
+        point_drawn(scalars, place, out);
     struct single_point point;
     single_point_init(&point, state->layout, place);
     if (params->show == SHOW_DISTANCE) {

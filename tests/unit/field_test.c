@@ -1208,6 +1208,30 @@ TEST(test_a_prefix_costs_less)
     rig_finish(&rig);
 }
 
+/* Pictures evaluate such a field at each pixel, so neither pictures nor picks compute its values at vertices. */
+TEST(test_a_pick_of_an_exact_field_computes_no_vertex)
+{
+    struct field_rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 20));
+    const struct field_place place = { .corners = { 5, 6, 7 }, .parts = { 1, 0, 0 } };
+    rig.params.distance = DISTANCE_EUCLIDEAN;
+    for (int paper = 0; paper < 2; paper++) {
+        rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
+        struct field *whole = field_create(workers, &rig.plant->scene);
+        for (int round = 0; round < 3; round++) {
+            struct field_point point;
+            set(&rig, 2, 10 + round, round == 2 ? QUALITY_BAD_SENSOR_FAILURE : QUALITY_GOOD);
+            assert_true(field_at(rig.field, 0, &rig.params, rig.plant->snapshot, &place, &point));
+            const struct scalars *drawn = field_scalars_of(rig.field, 0, &rig.params, rig.plant->snapshot, 0);
+            assert_int_equal(drawn->ready, 0);
+            const struct scalar *want = &field_scalars(whole, 0, &rig.params, rig.plant->snapshot)->at[5];
+            assert_true(fabs(point.value - (double)want->value) < 1e-3 && point.no_data == (want->no_data > 0));
+            assert_true(point.uncertain == (want->uncertain > 127));
+        }
+        field_destroy(&whole);
+    }
+    rig_finish(&rig);
+}
+
 TEST(test_in_pieces_it_is_the_same)
 {
     uint64_t random = sweep_seed();
