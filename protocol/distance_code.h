@@ -9,7 +9,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#define ASSET_DISTANCE_BLOCK 256u       /* number of vertices per block; the last block is padded with ASSET_DISTANCE_NONE */
+#define ASSET_DISTANCE_BLOCK 256u       /* number of vertices per block; the last block is padded (ASSET.md) */
 #define ASSET_DISTANCE_NONE 0xffffu     /* infinity: not reachable */
 #define ASSET_DISTANCE_MOST_M 130000.0f /* metres; longer distances are stored as this distance */
 

@@ -203,6 +203,10 @@ bool distance_rows_pack(struct distance_rows *rows, struct workers *workers)
         for (size_t b = 0; b < blocks; b++)
             rows->offsets[b + 1] += rows->offsets[b];
         rows->packed_bytes = rows->offsets[blocks];
+        if (rows->packed_bytes >= asset_distance_count(rows->sensor_count, rows->vertex_count) * sizeof(uint16_t))
+            rows->packed_bytes = 0;
+    }
+    if (rows->packed_bytes) {
         mem_free(rows->distances_m);
         rows->distances_m = NULL;
     }

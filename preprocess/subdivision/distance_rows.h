@@ -26,8 +26,8 @@ void distance_rows_finish(struct distance_rows *rows);
 /* Renumbers the vertices: new_of[old index] is the new index, or TRIMESH_NONE for a dropped vertex. `kept`: number of vertices
  * afterwards. */
 void distance_rows_renumber(struct distance_rows *rows, const uint32_t *new_of, uint32_t kept);
-/* Packs the distances of many sensors (protocol/distance_pack.h) and frees distances_m; does nothing for few sensors. workers may be NULL.
- * Returns false if out of memory. */
+/* Packs the distances of many sensors (protocol/distance_pack.h) and frees distances_m. Leaves the distances as they are for few sensors,
+ * or if packing saves no bytes: readers recognise a packed section by its length. workers may be NULL. Returns false if out of memory. */
 bool distance_rows_pack(struct distance_rows *rows, struct workers *workers);
 /* Writes the distances to fd, from offset `at` on: packed, or as plain 16-bit codes (protocol/asset_distance.h). Uses write() and not a
  * mapping, whose page faults would double the cost. workers may be NULL. Returns 0 or an errno value. */

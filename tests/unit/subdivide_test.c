@@ -944,3 +944,32 @@ TEST(levels_of_many_sensors_have_half_of_the_triangles)
     linear_error_finish(&linear);
     finish(&body);
 }
+
+/* A packed section of the length of a plain one would be read as plain. Distances without any order do not pack. */
+TEST(distances_that_do_not_pack_stay_plain)
+{
+    enum { MANY = 64, FEW_VERTICES = 256 };
+    uint32_t seed = 5;
+    for (int random = 0; random < 2; random++) {
+        struct distance_rows rows = { .sensor_count = MANY, .vertex_count = FEW_VERTICES };
+        rows.distances_m = mem_array(MANY * FEW_VERTICES, sizeof(*rows.distances_m));
+        rows.place_of = mem_array(FEW_VERTICES, sizeof(*rows.place_of));
+        for (uint32_t i = 0; i < MANY * FEW_VERTICES; i++)
+            rows.distances_m[i] = (float)(random ? exp2(30 * random_unit(&seed) - 14) : 0.1 * (i / MANY));
+        for (uint32_t v = 0; v < FEW_VERTICES; v++)
+            rows.place_of[v] = v;
+        assert_true(distance_rows_pack(&rows, NULL));
+        assert_true((rows.packed_bytes == 0) == random);
+        if (random) {
+            float *columns = mem_array(MANY * FEW_VERTICES, sizeof(*columns));
+            take_columns(&rows, columns);
+            for (size_t s = 0; s < MANY; s++)
+                for (size_t v = 0; v < FEW_VERTICES; v++) {
+                    double m = (double)rows.distances_m[v * MANY + s];
+                    assert_true(fabs((double)columns[s * FEW_VERTICES + v] - m) <= m * 0x1p-12 + 15e-9);
+                }
+            mem_free(columns);
+        }
+        distance_rows_finish(&rows);
+    }
+}
