@@ -71,7 +71,7 @@ static bool is_per_fragment(const struct frame_context *context, const struct fi
     return context->reference && field && field->sensors;
 }
 
-/* Returns whether shaders compute the field at each pixel from its few sensors (field/pixel_field.h) instead of interpolating between
+/* Returns whether shaders compute the field at each pixel from its sensors (field/pixel_field.h) instead of interpolating between
    vertices. */
 static bool has_pixel_field(const struct frame_context *context, const struct fields_entry *field)
 {
