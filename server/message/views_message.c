@@ -2,6 +2,7 @@
 /* Reads and carries out messages about saved views, and describes the content of control-room displays. */
 #include "message/views_message.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "base/text/json_text.h"
@@ -63,10 +64,12 @@ char *view_edit_do(struct named_views *views, const struct message *message, con
     return json_text(answer, 0);
 }
 
-char *share_view_do(struct short_links *links, const struct message *message, int64_t time_us)
+char *share_view_do(struct short_links *links, const struct message *message, int64_t time_us, char added[SHORT_LINK_ID_BYTES])
 {
     char id[SHORT_LINK_ID_BYTES];
-    enum refusal_code why = short_links_share(links, message->view_edit.address, time_us, id);
+    bool is_new;
+    enum refusal_code why = short_links_share(links, message->view_edit.address, time_us, id, &is_new);
+    snprintf(added, SHORT_LINK_ID_BYTES, "%s", is_new ? id : "");
     json_t *answer = json_pack("{s:s,s:I,s:s,s:b}", "type", "view_shared", "seq", (json_int_t)message->seq, "id", id, "kept", !why);
     refusal_add(answer, why);
     return json_text(answer, 0);

@@ -12,8 +12,9 @@ bool remove_view_parse(const struct plant *plant, const json_t *o, struct messag
 bool share_view_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 /* Saves or removes the view. who: the user's name; time_us: UTC. Returns the answer; free with mem_free(). */
 char *view_edit_do(struct named_views *views, const struct message *message, const char *who, int64_t time_us);
-/* Shares a view by a short link. time_us: UTC. Returns the answer; free with mem_free(). */
-char *share_view_do(struct short_links *links, const struct message *message, int64_t time_us);
+/* Shares a view by a short link. time_us: UTC. added: set to the id of the link if it is new, else to "". Returns the answer; free with
+   mem_free(). */
+char *share_view_do(struct short_links *links, const struct message *message, int64_t time_us, char added[SHORT_LINK_ID_BYTES]);
 /* The part of the walls that a client's token allows the client to see. */
 struct walls_reader {
     const char *wall; /* wall and display of a paired device, which may see nothing else; NULL: all walls */

@@ -48,6 +48,7 @@ static void take_lists(struct server_context *server, const json_t *lists)
         !pairings_mirror(plant->pairings, json_object_get(lists, "pairings"), clock_mono_ns()) ||
         (json_object_get(lists, "links") && !short_links_mirror(plant->short_links, json_object_get(lists, "links"))))
         log_err(server->params.log, "core: malformed lists");
+    server->core.listed = true;
     streams_on_alarms(server);
 }
 

@@ -92,6 +92,7 @@ bool net_take_plant(struct net *net, const struct plant_services *plant)
 {
     struct server_context *server = &net->server;
     server->params.plant = *plant;
+    server->core.listed = false;
     server->texts.alarms_number = 0;
     net_bind_plant(net);
     bool good = net_open_history(net);

@@ -271,8 +271,11 @@ static void on_view_edit(struct session *session, const struct message *message,
 static void on_share_view(struct session *session, const struct message *message, int64_t now_utc_ns)
 {
     const struct kept_action action = session_kept_begin(session);
-    char *answer = share_view_do(session->context->services->short_links, message, now_utc_ns / 1000);
-    session_kept_reply(session, &action, "view", session_view_what(message), answer);
+    char added[SHORT_LINK_ID_BYTES], *answer = share_view_do(session->context->services->short_links, message, now_utc_ns / 1000, added);
+    if (added[0])
+        session_kept_reply(session, &action, "view", mem_printf("share %s", added), answer);
+    else
+        session_reply(session, answer);
 }
 
 static void on_note(struct session *session, const struct message *message, int64_t now_utc_ns)
@@ -398,16 +401,16 @@ static bool in_order(const struct session *session, const struct message *messag
            (role_may_send(session->identity.role, message, error) && session_scope_allows(session, message, error));
 }
 
-/* On a renderer: forwards messages that the core must act on. Returns whether the message was dealt with. */
-static bool hand_on(struct session *session, const struct message *message, const char *text)
+/* On a renderer: forwards messages that the core must act on. Returns whether the message was dealt with. error: names the message's
+   type. */
+static bool hand_on(struct session *session, const struct message *message, const char *text, struct message_error *error)
 {
     const struct session_context *context = session->context;
-    struct message_error error = { 0 };
     if (!context->hand_on || !message_is_handed_on(message))
         return false;
     if (!context->hand_on(context->hand_on_arg, session, text)) {
-        message_fail(&error, "core_lost", "not done: the core cannot be reached");
-        session_reply_error(session, &error);
+        message_fail(error, "core_lost", "not done: the core cannot be reached");
+        session_reply_error(session, error);
     }
     return true;
 }
@@ -470,7 +473,7 @@ void session_on_message(struct session *session, const char *text, size_t count,
     bool good = parse(session, text, count, &message, &error);
     if (good)
         clear_claimed_name(session, &message);
-    if (good && session->context->hand_on && in_order(session, &message, &error) && hand_on(session, &message, text))
+    if (good && session->context->hand_on && in_order(session, &message, &error) && hand_on(session, &message, text, &error))
         return;
     if (!good || !in_order(session, &message, &error) || !act(session, &message, now_ns, now_utc_ns, &error)) {
         session_record_refusal(session, &error);

@@ -75,8 +75,6 @@ char *session_loop_check_what(const struct session *session, const struct messag
 
 char *session_view_what(const struct message *message)
 {
-    if (message->type == MESSAGE_SHARE_VIEW)
-        return mem_printf("share %s", message->view_edit.address);
     return mem_printf("%s %s", message->type == MESSAGE_SAVE_VIEW ? "save" : "remove", message->view_edit.id);
 }
 

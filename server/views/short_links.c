@@ -19,7 +19,7 @@ enum { BURST_LINKS = 20 };
 static const int64_t LINK_US = 2000000;
 
 struct short_links {
-    struct kept_list kept; /* { id, view, time_us }; time_us: when the link was last marked as used, UTC */
+    struct kept_list kept; /* { id, view, time_us, used }; time_us: when the link was made or last marked as used, UTC */
     int64_t whole_us;      /* UTC: when BURST_LINKS links may be made at once again */
 };
 
@@ -88,23 +88,46 @@ static bool may_add(struct short_links *links, int64_t now_us)
     return true;
 }
 
-enum refusal_code short_links_share(struct short_links *links, const char *view, int64_t now_us, char id[SHORT_LINK_ID_BYTES])
+static bool is_used(const json_t *link)
+{
+    return json_is_true(json_object_get(link, "used"));
+}
+
+/* Returns the index of the link that a further link replaces. */
+static size_t replaced(const json_t *list)
+{
+    size_t first = 0, never_used = 0;
+    for (size_t i = json_array_size(list); i-- > 0;)
+        if (!is_used(json_array_get(list, i))) {
+            first = i;
+            never_used++;
+        }
+    return never_used > SHORT_LINKS / 2 ? first : 0;
+}
+
+enum refusal_code short_links_share(struct short_links *links, const char *view, int64_t now_us, char id[SHORT_LINK_ID_BYTES], bool *added)
 {
     json_t *newest = kept_list_newest(&links->kept);
     size_t at = find_view(newest, view, id);
     const json_t *old = json_array_get(newest, at);
     enum refusal_code why = kept_list_refusal(&links->kept);
     const bool stored = kept_list_find(links->kept.list, id) < json_array_size(links->kept.list); /* and not only queued for the disk */
-    if (why || (stored && llabs(now_us - json_integer_value(json_object_get(old, "time_us"))) < USED_US))
+    if (added)
+        *added = false;
+    if (why || (stored && is_used(old) && llabs(now_us - json_integer_value(json_object_get(old, "time_us"))) < USED_US))
         return why;
     if (!stored && !may_add(links, now_us))
         return REFUSAL_LINKS_OFTEN;
     json_t *list = json_copy(newest);
     json_array_remove(list, at);
     while (json_array_size(list) >= SHORT_LINKS)
-        json_array_remove(list, 0);
-    json_array_append_new(list, json_pack("{s:s,s:s,s:I}", "id", id, "view", view, "time_us", (json_int_t)now_us));
-    return kept_list_put(&links->kept, list);
+        json_array_remove(list, replaced(list));
+    json_array_append_new(list,
+                          json_pack("{s:s,s:s,s:I,s:b}", "id", id, "view", view, "time_us", (json_int_t)now_us, "used", (int)stored));
+    why = kept_list_put(&links->kept, list);
+    if (added)
+        *added = !stored && !why;
+    return stored ? REFUSAL_NONE : why; /* a stored link is on disk, even if it cannot be marked as used */
 }
 
 const char *short_links_find(const struct short_links *links, const char *id)

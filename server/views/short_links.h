@@ -19,9 +19,10 @@ struct short_links;
 struct short_links *short_links_open(struct log *log, const char *folder, struct file_writer *writer);
 void short_links_close(struct short_links **links); /* Frees the links and sets *links to NULL. *links may be NULL. */
 /* Returns REFUSAL_NONE with the id of a view, or why it failed. The id depends only on the view, so that sharing a view again returns the
-   same id. Sharing also marks the link as used: of SHORT_LINKS links, a further one replaces the one that was unused for longest.
-   Fails with REFUSAL_LINKS_OFTEN if many new links were made within a short time. view: the part after # of the page's address. */
-enum refusal_code short_links_share(struct short_links *links, const char *view, int64_t now_us, char id[SHORT_LINK_ID_BYTES]);
+   same id. Sharing it again also marks the link as used. A link beyond SHORT_LINKS replaces the one that was unused for longest;
+   while more than half of the links were never used, only one of those. Fails with REFUSAL_LINKS_OFTEN if many new links were made within
+   a short time. view: the part after # of the page's address. added: set to whether the link is new; may be NULL. */
+enum refusal_code short_links_share(struct short_links *links, const char *view, int64_t now_us, char id[SHORT_LINK_ID_BYTES], bool *added);
 /* Returns the view of a link, owned by `links`; NULL: there is no such link. */
 const char *short_links_find(const struct short_links *links, const char *id);
 /* Returns a counter that increases with each change of the links; 0: there has been no link. */

@@ -102,7 +102,15 @@ test('a core that is killed: within 3 s everything is Bad, and said; acts are re
     promise(t, 'until all is Bad, and said', performance.now() - began, 3000);
     client.say(ack(7));
     assert.equal((await client.text('error')).code, 'core_lost');
+    client.say({ type: 'share_view', seq: 8, view: 'asset=P-101A' });
+    const { code, about } = await client.text('error');
+    assert.deepEqual([code, about], ['core_lost', 'share_view']);
+    const link = async (node, id) => (await node.fetch(`/api/v1/link?id=${id}`)).status;
+    const late = await nodes.renderer('late', { url: `ws://127.0.0.1:${port}` });
+    assert.deepEqual([await link(a, 'vyj5ny9g'), await link(a, 'unknown1'), await link(late, 'vyj5ny9g')], [200, 503, 503]);
     core = await nodes.core(port);
+    await until('the links', async () => await link(late, 'vyj5ny9g') === 200 && await link(late, 'unknown1') === 404);
+    await late.stop();
     await all(async (node) => (await node.tags())['TI-1'].quality_name === 'Good');
     const standing = async (node) => (await (await node.fetch('/api/v1/alarms')).json()).alarms
         .map(({ tag, kind, state, who }) => `${tag} ${kind} ${state} ${who}`).sort().join('; ');

@@ -161,7 +161,7 @@ test('without its core a renderer says that it has no history, once in its log; 
     for (const one of [path, path, path, picture, `/api/v1/history/gaps?${range}`, '/api/v1/alarms/journal']) {
         const answer = await renderer.fetch(one);
         assert.deepEqual([answer.status, Number(answer.headers.get('retry-after')) > 0], [503, true], one);
-        assert.match(await answer.text(), /^history is unavailable: the core cannot be reached; try again\n$/, one);
+        assert.match(await answer.text(), /^unavailable: the core cannot be reached; try again\n$/, one);
     }
     assert.ok(renderer.program.said.match(/history: the core: \/api\/v1\/history: not connected to the core/g).length <= 2);
     core = await nodes.core(port);

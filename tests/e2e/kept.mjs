@@ -22,7 +22,7 @@ const SECRET = `pc_${'7'.repeat(64)}`;
 const WALL = `views: [{ id: whole, title: Whole unit, view: "group=temperature" }]
 walls: [{ id: room, displays: [{ grid: [main], panes: [{ area: main, views: whole }] }] }]
 `;
-let plant, port, engineer, mounted;
+let plant, port, engineer, mounted, shared = 0;
 
 const path = (name) => join(plant.folder, name);
 
@@ -117,8 +117,8 @@ const ACTIONS = [
         async () => (await listed('/api/v1/views')).includes('The pump')],
     ['remove a view', { type: 'remove_view', id: 'pump' }, 'view_saved', 'view',
         async () => !(await listed('/api/v1/views')).includes('The pump')],
-    ['share a view', { type: 'share_view', view: 'asset=P-101A' }, 'view_shared', 'view',
-        async () => (await listed('/api/v1/link?id=vyj5ny9g')).includes('asset=P-101A')],
+    ['share a view', () => ({ type: 'share_view', view: `asset=P-101A&range=0,${++shared}` }), 'view_shared', 'view',
+        async ({ id }) => (await listed(`/api/v1/link?id=${id}`)).includes('asset=P-101A')],
     ['send to a wall', { type: 'send_to_wall', wall: 'room', display: 1, area: 'main', view: 'group=pressure', title: 'Look here' },
         'sent_to_wall', 'wall', async () => (await told('walls')).includes('Look here')],
     ['check a loop', { type: 'prove', tag: 'TI-2', expected: 20, tolerance: 1, remark: 'by hand' }, 'proved', 'proof',
@@ -198,7 +198,7 @@ test('what is answered as done is there after a kill -9 in that moment, and in t
         await killed();
         assert.ok(isDone(answer), `${name}: ${JSON.stringify(answer)}`);
         assert.equal(answer.unaudited, undefined, name);
-        assert.ok(await there(), `${name} was answered ${JSON.stringify(answer)}, and is gone`);
+        assert.ok(await there(answer), `${name} was answered ${JSON.stringify(answer)}, and is gone`);
         const line = trail().slice(lines).find((one) => one.event === event && one.result === 'done');
         assert.ok(line, `${name} is not in the trail`);
     }
@@ -208,6 +208,20 @@ test('what is answered as done is there after a kill -9 in that moment, and in t
     assert.deepEqual((await fetched('/api/v1/import')).files.map(({ name, bytes }) => [name, bytes]), [['part.obj', 8]]);
     console.log(`# ${ACTIONS.length + 1} kinds of action are there after a kill -9: ${
         ACTIONS.map(([name]) => name).join(', ')}, upload an export`);
+});
+
+test('a short link is in the trail by its id when it is new, and not when it is used', options, async () => {
+    const begun = trail().length, share = { type: 'share_view', view: 'group=pressure' };
+    for (const seq of [1, 2]) {
+        const { answer, client } = await act(share, 'view_shared', seq);
+        client.close();
+        assert.equal(answer.kept, true, JSON.stringify(answer));
+    }
+    const { client } = await act({ type: 'note', text: 'recorded after them', asset: 'E-101' }, 'noted', 3);
+    client.close();
+    const { id } = JSON.parse(readFileSync(path('history/links.json'), 'utf8')).links.find(({ view }) => view === share.view);
+    assert.deepEqual(trail().slice(begun).filter(({ event }) => event === 'view').map(({ result, what }) => [result, what]),
+        [['done', `share ${id}`]]);
 });
 
 // A frozen file system accepts no writes and reports no errors, like a hanging disk or network share.

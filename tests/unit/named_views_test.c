@@ -175,12 +175,13 @@ CASE(a_short_link_depends_on_its_view_and_survives_a_restart)
 {
     char id[SHORT_LINK_ID_BYTES], again[SHORT_LINK_ID_BYTES], other[SHORT_LINK_ID_BYTES];
     struct short_links *links = short_links_open(f->log, f->history, NULL);
-    assert_int_equal(short_links_share(links, "asset=P-101A", NOON_US, id), REFUSAL_NONE);
+    assert_int_equal(short_links_share(links, "asset=P-101A", NOON_US, id, NULL), REFUSAL_NONE);
     assert_string_equal(id, "vyj5ny9g");
-    assert_int_equal(short_links_share(links, "asset=P-101A", NOON_US + 1, again), REFUSAL_NONE);
+    assert_int_equal(short_links_share(links, "asset=P-101A", NOON_US + 1, again, NULL), REFUSAL_NONE);
     assert_string_equal(again, id);
-    assert_int_equal(short_links_number(links), 1); /* the file was not written again */
-    assert_int_equal(short_links_share(links, "asset=P-101B", NOON_US, other), REFUSAL_NONE);
+    assert_int_equal(short_links_share(links, "asset=P-101A", NOON_US + 2, again, NULL), REFUSAL_NONE);
+    assert_int_equal(short_links_number(links), 2); /* the file was written once more, when the link was first used */
+    assert_int_equal(short_links_share(links, "asset=P-101B", NOON_US, other, NULL), REFUSAL_NONE);
     assert_string_not_equal(other, id);
     short_links_close(&links);
     links = short_links_open(f->log, f->history, NULL);
@@ -194,7 +195,7 @@ CASE(an_id_that_another_view_has_gets_longer)
     char id[SHORT_LINK_ID_BYTES], *path = temp_write_text(f->folder, "history/" SHORT_LINKS_FILE,
                                                           "{\"links\":[{\"id\":\"vyj5ny9g\",\"view\":\"group=t\",\"time_us\":1}]}");
     struct short_links *links = short_links_open(f->log, f->history, NULL);
-    assert_int_equal(short_links_share(links, "asset=P-101A", NOON_US, id), REFUSAL_NONE);
+    assert_int_equal(short_links_share(links, "asset=P-101A", NOON_US, id, NULL), REFUSAL_NONE);
     assert_int_equal(strlen(id), 9);
     assert_string_equal(short_links_find(links, id), "asset=P-101A");
     assert_string_equal(short_links_find(links, "vyj5ny9g"), "group=t");
@@ -202,21 +203,47 @@ CASE(an_id_that_another_view_has_gets_longer)
     mem_free(path);
 }
 
+/* Shares that many views, which nobody shares again. */
+static void share_many(struct short_links *links, int first, int count)
+{
+    char id[SHORT_LINK_ID_BYTES], view[40];
+    for (int i = first; i < first + count; i++) {
+        snprintf(view, sizeof(view), "asset=%d", i);
+        assert_int_equal(short_links_share(links, view, NOON_US + i * 2000000LL, id, NULL), REFUSAL_NONE);
+    }
+}
+
 CASE(a_further_short_link_replaces_the_one_unused_for_longest)
 {
-    char first[SHORT_LINK_ID_BYTES], second[SHORT_LINK_ID_BYTES], id[SHORT_LINK_ID_BYTES], view[40];
+    char first[SHORT_LINK_ID_BYTES], second[SHORT_LINK_ID_BYTES], id[SHORT_LINK_ID_BYTES];
     struct short_links *links = short_links_open(f->log, f->history, NULL);
-    assert_int_equal(short_links_share(links, "asset=first", NOON_US, first), REFUSAL_NONE);
-    assert_int_equal(short_links_share(links, "asset=second", NOON_US, second), REFUSAL_NONE);
-    for (int i = 2; i < SHORT_LINKS; i++) {
-        snprintf(view, sizeof(view), "asset=%d", i);
-        assert_int_equal(short_links_share(links, view, NOON_US + i * 2000000LL, id), REFUSAL_NONE);
-    }
-    assert_int_equal(short_links_share(links, "asset=first", NOON_US + DAY_US, id), REFUSAL_NONE); /* used a day later */
-    assert_int_equal(short_links_share(links, "asset=another", NOON_US + DAY_US, id), REFUSAL_NONE);
+    assert_int_equal(short_links_share(links, "asset=first", NOON_US, first, NULL), REFUSAL_NONE);
+    assert_int_equal(short_links_share(links, "asset=second", NOON_US, second, NULL), REFUSAL_NONE);
+    share_many(links, 2, SHORT_LINKS - 2);
+    assert_int_equal(short_links_share(links, "asset=first", NOON_US + DAY_US, id, NULL), REFUSAL_NONE); /* used a day later */
+    assert_int_equal(short_links_share(links, "asset=another", NOON_US + DAY_US, id, NULL), REFUSAL_NONE);
     assert_int_equal(json_array_size(short_links_list(links)), SHORT_LINKS);
     assert_string_equal(short_links_find(links, first), "asset=first");
     assert_null(short_links_find(links, second));
+    short_links_close(&links);
+}
+
+CASE(links_that_nobody_opens_do_not_replace_one_that_was_used)
+{
+    char used[SHORT_LINK_ID_BYTES], id[SHORT_LINK_ID_BYTES];
+    bool added;
+    struct short_links *links = short_links_open(f->log, f->history, NULL);
+    assert_int_equal(short_links_share(links, "asset=used", NOON_US, used, &added), REFUSAL_NONE);
+    assert_true(added);
+    assert_int_equal(short_links_share(links, "asset=used", NOON_US, used, &added), REFUSAL_NONE);
+    assert_false(added);
+    share_many(links, 1, 2 * SHORT_LINKS);
+    short_links_close(&links);
+    links = short_links_open(f->log, f->history, NULL);
+    assert_int_equal(json_array_size(short_links_list(links)), SHORT_LINKS);
+    assert_string_equal(short_links_find(links, used), "asset=used");
+    short_links_share(links, "asset=1", NOON_US + DAY_US, id, &added);
+    assert_true(added); /* it was replaced */
     short_links_close(&links);
 }
 
@@ -226,12 +253,12 @@ CASE(too_many_new_short_links_within_a_short_time_are_refused)
     struct short_links *links = short_links_open(f->log, f->history, NULL);
     for (int i = 0; i < 30; i++) {
         snprintf(view, sizeof(view), "asset=%d", i);
-        assert_int_equal(short_links_share(links, view, NOON_US, id), i < 20 ? REFUSAL_NONE : REFUSAL_LINKS_OFTEN);
+        assert_int_equal(short_links_share(links, view, NOON_US, id, NULL), i < 20 ? REFUSAL_NONE : REFUSAL_LINKS_OFTEN);
     }
-    assert_int_equal(short_links_share(links, "asset=0", NOON_US, id), REFUSAL_NONE); /* is stored already */
-    assert_int_equal(short_links_share(links, "asset=20", NOON_US + 2000000, id), REFUSAL_NONE);
-    assert_int_equal(short_links_share(links, "asset=21", NOON_US + 2000000, id), REFUSAL_LINKS_OFTEN);
-    assert_int_equal(short_links_share(links, "asset=21", NOON_US - DAY_US, id), REFUSAL_NONE); /* the clock was set back */
+    assert_int_equal(short_links_share(links, "asset=0", NOON_US, id, NULL), REFUSAL_NONE); /* is stored already */
+    assert_int_equal(short_links_share(links, "asset=20", NOON_US + 2000000, id, NULL), REFUSAL_NONE);
+    assert_int_equal(short_links_share(links, "asset=21", NOON_US + 2000000, id, NULL), REFUSAL_LINKS_OFTEN);
+    assert_int_equal(short_links_share(links, "asset=21", NOON_US - DAY_US, id, NULL), REFUSAL_NONE); /* the clock was set back */
     short_links_close(&links);
 }
 
@@ -239,7 +266,7 @@ CASE(a_mirror_takes_only_valid_short_links)
 {
     char id[SHORT_LINK_ID_BYTES];
     struct short_links *links = short_links_open(f->log, NULL, NULL);
-    assert_int_equal(short_links_share(links, "asset=first", NOON_US, id), REFUSAL_UNRECORDED);
+    assert_int_equal(short_links_share(links, "asset=first", NOON_US, id, NULL), REFUSAL_UNRECORDED);
     json_t *good = json_loads("[{\"id\":\"abcdefgh\",\"view\":\"group=t\",\"time_us\":1}]", 0, NULL);
     json_t *bad = json_loads("[{\"id\":\"abcdefgh\",\"view\":\"a blank\",\"time_us\":1}]", 0, NULL);
     assert_true(short_links_mirror(links, good));

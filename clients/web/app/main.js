@@ -196,8 +196,8 @@ function arrive() {
 let toastTimer;
 session.on('error', async ({ text, about, code, refusal }) => {
     console.warn(`error about ${about}: ${text}`);
-    if (about === 'ack')
-        return; // not caused by the user
+    if (['ack', 'share_view'].includes(about))
+        return; // not caused by the user; without a short link, the page shows the long one
     const { put, refusalText } = await import('../core/refusals.js');
     tell(put('page.refused', { text: refusalText(text, refusal, code) }));
 });

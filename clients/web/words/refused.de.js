@@ -66,7 +66,7 @@ memory: dem Server fehlt Speicher; das letzte Bild bleibt
 gone: dieser Benutzer ist nicht mehr verbunden
 linkless: dieser kurze Link ist unbekannt oder nicht mehr gespeichert: einen neuen erbitten
 links_often: in kurzer Zeit wurden zu viele Kurzlinks erstellt; bitte in einer Minute erneut versuchen
-coreless: die Aufzeichnung ist nicht verfügbar: der Kern ist nicht erreichbar; bitte erneut versuchen
+coreless: nicht verfügbar: der Kern ist nicht erreichbar; bitte erneut versuchen
 unrecorded: es wird nichts aufgezeichnet (history: record: no)
 unreadable: die Aufzeichnung ist nicht lesbar; den Grund nennt das Protokoll des Servers
 token_needed: ein Token ist nötig: melden Sie sich an, oder senden Sie Authorization: Bearer TOKEN

@@ -65,7 +65,7 @@ memory: the server is short of memory; the last picture stays
 gone: this user is no longer connected
 linkless: this short link is unknown or no longer stored: ask for a new one
 links_often: too many short links were made within a short time; try again in a minute
-coreless: history is unavailable: the core cannot be reached; try again
+coreless: unavailable: the core cannot be reached; try again
 unrecorded: no history is recorded (history: record: no)
 unreadable: history cannot be read; the server’s log says why
 token_needed: a token is needed: sign in, or send Authorization: Bearer TOKEN

@@ -66,7 +66,7 @@ memory: 서버 메모리가 부족하여 마지막 그림이 유지됩니다
 gone: 이 사용자는 더 이상 연결되어 있지 않습니다
 linkless: 이 짧은 링크는 알 수 없거나 더 이상 저장되어 있지 않습니다: 새 링크를 요청하세요
 links_often: 짧은 시간에 너무 많은 짧은 링크가 만들어졌습니다. 1분 뒤에 다시 시도하십시오
-coreless: 이력을 쓸 수 없음: 코어에 연결할 수 없습니다. 다시 시도하십시오
+coreless: 사용할 수 없음: 코어에 연결할 수 없습니다. 다시 시도하십시오
 unrecorded: 이력을 기록하지 않습니다 (history: record: no)
 unreadable: 기록을 읽을 수 없습니다. 이유는 서버 로그에 있습니다
 token_needed: 토큰이 필요합니다. 로그인하거나 Authorization: Bearer TOKEN을 보내세요

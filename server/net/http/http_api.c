@@ -234,7 +234,7 @@ int api_views(struct server_context *server, struct http_exchange *request)
     return request_answer_json(request, reply_views_text(&server->session_context, args.count ? args.list[0] + 3 : NULL));
 }
 
-/* Returns the view of a short link. */
+/* Returns the view of a short link. A renderer that has not heard from the core cannot say that a link does not exist. */
 int api_link(struct server_context *server, struct http_exchange *request)
 {
     struct message_error error = { 0 };
@@ -242,6 +242,8 @@ int api_link(struct server_context *server, struct http_exchange *request)
     if (!request_args(request->wsi, &args, &error) || args.count != 1 || !arg_of(&args, "id"))
         return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected id=ID\n");
     const char *view = short_links_find(server->params.plant.short_links, arg_of(&args, "id"));
+    if (!view && server->params.plant.core_link && !(server->session_context.core_up && server->core.listed))
+        return request_refuse(request, HTTP_STATUS_SERVICE_UNAVAILABLE, REFUSAL_CORELESS);
     if (!view)
         return request_refuse(request, HTTP_STATUS_NOT_FOUND, REFUSAL_LINKLESS);
     return request_answer_json(request, json_text(json_pack("{s:s}", "view", view), 0));

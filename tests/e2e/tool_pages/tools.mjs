@@ -281,8 +281,10 @@ test('links to the view, the tag and the equipment, each with a code that a came
     await page.evaluate(() => globalThis.plantcast.showTag(globalThis.plantcast.session.model.tag('TI-1')));
     await page.locator('#share-open').click();
     await page.locator('#share-code svg').waitFor();
-    const links = {};
-    for (const kind of ['This view', 'This equipment', 'This tag']) {
+    const links = {}, sent = () => page.evaluate(() => globalThis.plantcast.session.toldSeq), sentBefore = await sent();
+    for (const kind of ['This tag', 'This view', 'This equipment']) {
+        if (kind === 'This view')
+            assert.equal(await sent(), sentBefore, 'a link that nobody sees is not stored');
         await page.locator('#share-kind label', { hasText: kind }).click();
         if (kind === 'This view') // the server's short link takes the place of the long one
             await page.waitForFunction(() => /\/v\/\w{8}$/.test(document.getElementById('share-link').value));
@@ -312,6 +314,13 @@ test('links to the view, the tag and the equipment, each with a code that a came
     await other.page.locator('#toast', { hasText: 'this short link is unknown or no longer stored' }).waitFor();
     await shoot(other.page, 'short-link-unknown');
     await other.close();
+    let requests = 0; // a server that answers the first request for the link never: the page starts without it, and opens it later
+    const late = await openPage(links['This view'], SCREEN, null, (on) => on.route('**/api/v1/link?*', (route) =>
+        requests++ > 0 && route.continue()));
+    await late.page.waitForURL(/#group=.*colormap=cividis/);
+    await waitForPicture(late.page);
+    assert.deepEqual([requests, late.errors], [2, []]);
+    await late.close();
 });
 
 test('a code at the equipment opens there, on a phone', options, async () => {

@@ -14,7 +14,7 @@ let library; // QR code library, loaded on first use
 
 export class Share {
     constructor({ session, selection }) {
-        Object.assign(this, { session, selection, kind: 'view' });
+        Object.assign(this, { session, selection, kind: 'view', asked: null });
         this.build();
         for (const name of ['followers', 'welcome'])
             session.on(name, () => this.count());
@@ -53,15 +53,17 @@ export class Share {
         this.kind = this.selection.tag ? 'tag' : 'view';
         this.dialog.showModal();
         const { view } = shareLinks({ location, session: this.session, tag: this.selection.tag });
+        this.asked = null;
         this.showView(view);
-        this.shorten(view);
     }
 
-    // Asks the server for a short link to a view. Until the answer comes, or without one, the long link is shown.
-    shorten(link) {
+    // Asks the server for a short link to the view, once each time the dialog is open. Until the answer comes, or without one, the long
+    // link is shown.
+    shorten() {
+        if (this.asked !== null || !SHARERS.includes(this.session.role))
+            return;
         this.asked = ++this.session.toldSeq;
-        if (SHARERS.includes(this.session.role))
-            this.session.post({ type: 'share_view', seq: this.asked, view: new URL(link).hash.slice(1) });
+        this.session.post({ type: 'share_view', seq: this.asked, view: new URL(this.view).hash.slice(1) });
     }
 
     // Shows a link to the view that was shown when the dialog was opened.
@@ -81,6 +83,8 @@ export class Share {
         });
         markSegment(this.kinds, this.kind);
         this.showLink(links[this.kind]);
+        if (this.kind === 'view')
+            this.shorten();
         this.showPeople();
     }
 

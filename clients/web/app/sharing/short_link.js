@@ -3,9 +3,11 @@
 import { ask } from '../../core/history.js';
 import { stored } from '../common/storage.js';
 
+const ANSWER_MS = 3000; // the page starts without the view if the server does not answer in time
+
 // Replaces the short link in the page's address by the view that the server stored. Returns a promise of the view.
-export async function expand(id, token) {
-    const { view } = await (await ask('api/v1/link', { id }, token)).json();
+export async function expand(id, token, fetcher) {
+    const { view } = await (await ask('api/v1/link', { id }, token, fetcher)).json();
     history.replaceState(null, '', `${location.pathname}${location.search}#${view}`);
     return view;
 }
@@ -13,6 +15,7 @@ export async function expand(id, token) {
 // Opens the short link of the page's address. Returns a promise of { short (its id), expanded (its view; null: it could not be opened) }.
 // arrival.js tries again when the user has signed in, and says why it fails.
 export async function openShort() {
-    const short = location.hash.slice('#v='.length);
-    return { short, expanded: await expand(short, stored('token')).catch(() => null) };
+    const short = location.hash.slice('#v='.length), signal = AbortSignal.timeout(ANSWER_MS);
+    const fetcher = (path, init) => fetch(path, { ...init, signal });
+    return { short, expanded: await expand(short, stored('token'), fetcher).catch(() => null) };
 }
