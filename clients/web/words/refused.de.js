@@ -79,7 +79,7 @@ token_views: „{name}“ ist nicht erlaubt: dieses Token gilt für die Ansichte
 token_display: dieses Token gehört zu Bildschirm {display} der Wand {wall}
 views_only: dieses Token gilt nur für Bilder einiger Ansichten
 display_only: das Token dieses Geräts gilt nur für seinen Bildschirm einer Wand
-pictures_only: Betrachter dürfen nur Bilder abrufen
+pictures_only: ohne das Token eines Benutzers sind nur Bilder verfügbar
 foreign: die Anfrage kommt von einer Seite einer anderen Website
 connections: diese Adresse hat ihre Höchstzahl an Verbindungen erreicht; später erneut versuchen
 locked: seit {minutes} min keine Eingabe auf dieser Seite

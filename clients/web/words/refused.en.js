@@ -78,7 +78,7 @@ token_views: “{name}” is not allowed: this token is for the views {views}
 token_display: this token belongs to display {display} of wall {wall}
 views_only: this token is valid only for pictures of some views
 display_only: this device’s token is valid only for its display of a wall
-pictures_only: viewers may only get pictures
+pictures_only: without a user’s token, only pictures are available
 foreign: the request comes from a page of another site
 connections: this address has reached its limit of connections; try again later
 locked: no input at this page for {minutes} min

@@ -79,7 +79,7 @@ token_views: “{name}”은(는) 허용되지 않습니다. 이 토큰은 뷰 {
 token_display: 이 토큰은 월 {wall}의 디스플레이 {display}에만 쓸 수 있습니다
 views_only: 이 토큰은 일부 뷰의 그림에만 쓸 수 있습니다
 display_only: 이 장치의 토큰은 해당 월 디스플레이에만 쓸 수 있습니다
-pictures_only: 조회 권한으로는 그림만 받을 수 있습니다
+pictures_only: 사용자 토큰이 없으면 그림만 받을 수 있습니다
 foreign: 다른 사이트의 페이지에서 온 요청입니다
 connections: 이 주소의 연결 수가 한도에 도달했습니다. 나중에 다시 시도하세요
 locked: 이 페이지에 {minutes}분 동안 입력이 없었습니다
