@@ -391,25 +391,13 @@ const char *alarm_service_mirror(struct alarm_service *service, const struct ala
     return why;
 }
 
-int64_t alarm_service_journal_utc_ns(const struct alarm_service *service)
-{
-    return service->journal ? journal_last_utc_ns(service->journal) : 0;
-}
-
-uint64_t alarm_service_rows(struct alarm_service *service, uint64_t since, int64_t after_utc_ns,
-                            void (*each)(void *arg, const struct journal_entry *row), void *arg)
+uint64_t alarm_service_rows(struct alarm_service *service, uint64_t since, void (*each)(void *arg, const struct journal_entry *row),
+                            void *arg)
 {
     pthread_mutex_lock(&service->thread.lock);
     uint64_t last = service->row_count, first = last > MAX_ROWS && since < last - MAX_ROWS ? last - MAX_ROWS : since;
-    /* compares microseconds, because the journal stores these */
-    for (uint64_t i = last; i > first && after_utc_ns > INT64_MIN; i--)
-        if (service->rows[i % MAX_ROWS].utc_ns / 1000 == after_utc_ns / 1000) {
-            first = i;
-            after_utc_ns = INT64_MIN;
-        }
     for (uint64_t i = first + 1; i <= last; i++)
-        if (after_utc_ns == INT64_MIN || service->rows[i % MAX_ROWS].utc_ns / 1000 > after_utc_ns / 1000)
-            each(arg, &service->rows[i % MAX_ROWS]);
+        each(arg, &service->rows[i % MAX_ROWS]);
     pthread_mutex_unlock(&service->thread.lock);
     return last;
 }

@@ -54,15 +54,12 @@ int alarm_service_settled(struct alarm_service *service, const struct settling_t
 /* For a service that mirrors: sets alarms, found by name and kind, to the core's states, in the order of `list`. whole: all alarms that
    are not in `list` become normal. Returns NULL; or an error message (static text), and then nothing changed. */
 const char *alarm_service_mirror(struct alarm_service *service, const struct alarm *list, size_t count, bool whole);
-/* On a standby: returns the UTC time of the last change in its journal; 0: none. Thread: that of alarm_service_mirror_row(). */
-int64_t alarm_service_journal_utc_ns(const struct alarm_service *service);
-/* Calls each() under the lock, oldest first, for the journal rows with a row number greater than `since` that follow the row of that time.
-   Without such a row, calls it for rows that are newer than that time; INT64_MIN: for all. The times of later rows may be earlier, where a
-   clock was set. The service keeps only the newest MAX_ROWS rows in memory. Returns the number of the newest row. */
-uint64_t alarm_service_rows(struct alarm_service *service, uint64_t since, int64_t after_utc_ns,
-                            void (*each)(void *arg, const struct journal_entry *row), void *arg);
-/* Writes a row for a change that the core made to this standby's journal. Call it before alarm_service_mirror() takes the resulting
-   states. */
+/* Calls each() under the lock, oldest first, for the journal rows with a row number greater than `since`. The service keeps only the
+   newest MAX_ROWS rows in memory. Returns the number of the newest row. */
+uint64_t alarm_service_rows(struct alarm_service *service, uint64_t since, void (*each)(void *arg, const struct journal_entry *row),
+                            void *arg);
+/* Writes a row for a change that the core made to this standby's journal, unless the journal has the row. Call it before
+   alarm_service_mirror() takes the resulting states. */
 void alarm_service_mirror_row(struct alarm_service *service, const struct journal_entry *row);
 /* Ends mirroring, when this daemon becomes the leader: from now on the service evaluates samples, and continues with the mirrored
    states. */

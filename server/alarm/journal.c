@@ -24,7 +24,6 @@ struct journal {
     struct log *log;
     char *folder;
     double keep_days;
-    int64_t last_utc_ns; /* UTC time of the last row, of the file at opening or of journal_add_entry() */
     struct {
         counter *rows, *lost, *waiting, *good;
     } counters;
@@ -191,11 +190,6 @@ int journal_settled(struct journal *journal, const struct settling_ticket *ticke
     return state;
 }
 
-int64_t journal_last_utc_ns(const struct journal *journal)
-{
-    return journal->last_utc_ns;
-}
-
 struct journal_entry journal_entry_of(const struct alarm_change *change, const char *tag)
 {
     struct journal_entry entry = {
@@ -215,7 +209,6 @@ struct journal_entry journal_entry_of(const struct alarm_change *change, const c
 
 void journal_add_entry(struct journal *journal, const struct journal_entry *entry)
 {
-    journal->last_utc_ns = entry->utc_ns;
     put(journal, entry);
 }
 
@@ -264,8 +257,6 @@ static void restore_all(struct journal *journal, struct alarms *alarms, struct i
     struct journal_file *file = journal_file_read(journal->log, journal->folder, &error);
     if (file)
         journal_file_states(file, restore, &restoring);
-    if (file)
-        journal->last_utc_ns = journal_file_last_us(file) * 1000;
     journal_file_close(&file);
 }
 

@@ -23,9 +23,6 @@ struct journal *journal_start(const struct journal_params *params, struct alarms
 bool journal_stop(struct journal **journal);
 /* Queues a change to be written. Does not wait; names are copied. */
 void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag);
-/* Returns the UTC time of the last row, whether it was there at opening or added by journal_add_entry(); 0: no row. Thread: that of
-   journal_add_entry(). */
-int64_t journal_last_utc_ns(const struct journal *journal);
 /* Together with the next two functions tells whether the rows queued between journal_begin() and journal_end() are on disk
    (base/files/settling.h). journal_end() makes the thread write them immediately, even after a failed attempt. None of the three
    functions waits for the disk. */

@@ -28,17 +28,18 @@ static const char *const schemas[JOURNAL_VERSION] = { schema_1 };
 /* an index supplies this order, so that reading a page costs only the page's own rows, wherever the page is */
 #define IN_TIME "SELECT " ROW " FROM event WHERE t BETWEEN ?1 AND ?2 AND (t < ?3 OR id < ?4)"
 #define NEWEST " ORDER BY t DESC, id DESC LIMIT ?5"
-enum { SQL_EVENT, SQL_STATE, SQL_NORMAL, SQL_FORGET, SQL_STATES, SQL_TIME_OF, SQL_LAST, SQL_ROWS, SQL_ROWS_OF, SQL_AT, SQL_COUNT };
+enum { SQL_EVENT, SQL_STATE, SQL_NORMAL, SQL_FORGET, SQL_STATES, SQL_TIME_OF, SQL_ROWS, SQL_ROWS_OF, SQL_AT, SQL_COUNT };
 static const char *const sql[SQL_COUNT] = {
+    /* skips a row that the file has: a leader sends rows to a standby again whenever the standby connects */
     [SQL_EVENT] = "INSERT INTO event(t, tag, kind, event, before, after, priority, lim, value, who, reason)"
-                  " VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                  " SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11 WHERE NOT EXISTS (SELECT 1 FROM event WHERE tag = ?2 AND kind = ?3"
+                  " AND t = ?1 AND event = ?4 AND before = ?5 AND after = ?6 AND value IS ?9)",
     [SQL_STATE] = "INSERT OR REPLACE INTO state(tag, kind, active, unacknowledged, latched, aside, value, raised, changed, until, who,"
                   " reason) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
     [SQL_NORMAL] = "DELETE FROM state WHERE tag = ? AND kind = ?",
     [SQL_FORGET] = "DELETE FROM event WHERE t < ?",
     [SQL_STATES] = "SELECT tag, kind, active, unacknowledged, latched, aside, value, raised, changed, until, who, reason FROM state",
     [SQL_TIME_OF] = "SELECT t FROM event WHERE id = ?",
-    [SQL_LAST] = "SELECT t FROM event ORDER BY id DESC LIMIT 1",
     [SQL_ROWS] = IN_TIME NEWEST,
     [SQL_ROWS_OF] = IN_TIME " AND tag = ?6" NEWEST,
     /* walks through the index from one alarm to the next and takes each alarm's newest row up to the time: a few steps per alarm,
@@ -211,14 +212,6 @@ static int64_t time_of(struct journal_file *file, int64_t id)
     sqlite3_stmt *s = database_statement(&file->db, SQL_TIME_OF);
     sqlite3_bind_int64(s, 1, id);
     int64_t t_us = database_step(&file->db, s) == SQLITE_ROW ? sqlite3_column_int64(s, 0) : INT64_MIN;
-    sqlite3_reset(s);
-    return t_us;
-}
-
-int64_t journal_file_last_us(struct journal_file *file)
-{
-    sqlite3_stmt *s = database_statement(&file->db, SQL_LAST);
-    int64_t t_us = database_step(&file->db, s) == SQLITE_ROW ? sqlite3_column_int64(s, 0) : 0;
     sqlite3_reset(s);
     return t_us;
 }

@@ -38,13 +38,11 @@ struct journal_file *journal_file_open(struct log *log, const char *folder, bool
 /* Opens the file for reading. Returns NULL with *error on failure; *error 0: the file does not exist. */
 struct journal_file *journal_file_read(struct log *log, const char *folder, int *error);
 void journal_file_close(struct journal_file **file); /* &NULL is allowed; sets *file to NULL */
-/* Writes all entries in one transaction. Returns -EBADMSG if the file is damaged. */
+/* Writes all entries in one transaction, without the changes that the file already has. Returns -EBADMSG if the file is damaged. */
 int journal_file_write(struct journal_file *file, const struct journal_entry *entries, size_t count);
 int journal_file_forget(struct journal_file *file, int64_t before_us); /* deletes rows older than before_us */
 /* Calls each() for the stored state of every alarm, as of the last write to the journal. */
 int journal_file_states(struct journal_file *file, void (*each)(void *arg, const char *tag, const struct alarm *alarm), void *arg);
-/* Returns the time of the row that was written last; 0: none. Its time may be earlier than those of other rows, where a clock was set. */
-int64_t journal_file_last_us(struct journal_file *file);
 int journal_file_rows(struct journal_file *file, const struct journal_query *query, void (*each)(void *arg, const struct journal_row *row),
                       void *arg);
 int journal_file_at(struct journal_file *file, int64_t t_us, void (*each)(void *arg, const struct journal_row *row), void *arg);

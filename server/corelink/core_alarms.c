@@ -42,10 +42,10 @@ static void add_row(void *arg, const struct journal_entry *row)
     json_array_append_new(arg, one);
 }
 
-void core_alarms_add_rows(json_t *message, struct alarm_service *service, uint64_t *row, int64_t after_utc_ns)
+void core_alarms_add_rows(json_t *message, struct alarm_service *service, uint64_t *row)
 {
     json_t *rows = json_array();
-    *row = alarm_service_rows(service, *row, after_utc_ns, add_row, rows);
+    *row = alarm_service_rows(service, *row, add_row, rows);
     json_object_set_new(message, "rows", rows);
 }
 

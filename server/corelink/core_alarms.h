@@ -9,9 +9,9 @@
 /* Returns a message with the alarms whose change number is greater than `since`, the oldest change first; since 0: all alarms that are
    not normal. *number receives the change number of the newest change in the message. The caller owns the message. */
 json_t *core_alarms_message(struct alarm_service *service, uint64_t since, int64_t now_utc_ns, uint64_t *number);
-/* For the journal of a standby core: adds to the message the journal rows with a row number greater than *row that are also newer than a
-   time. Sets *row to the number of the last row added. Call it after core_alarms_message(). */
-void core_alarms_add_rows(json_t *message, struct alarm_service *service, uint64_t *row, int64_t after_utc_ns);
+/* For the journal of a standby core: adds to the message the journal rows with a row number greater than *row. Sets *row to the number of
+   the last row added. Call it after core_alarms_message(). */
+void core_alarms_add_rows(json_t *message, struct alarm_service *service, uint64_t *row);
 /* Applies the message of core_alarms_message() to an alarm service that mirrors a core. Returns NULL; or what is wrong with the message
    (static), and then nothing changed. */
 const char *core_alarms_take(struct alarm_service *service, const json_t *message);

@@ -434,7 +434,6 @@ static void introduce(struct core_link *link, struct lws *wsi)
     if (link->params.keeper) {
         json_object_set_new(message, "standby", json_true());
         json_object_set_new(message, "id", json_string(lease_keeper_id(link->params.keeper)));
-        json_object_set_new(message, "journal", json_integer(alarm_service_journal_utc_ns(link->params.alarm_service)));
     }
     pthread_mutex_lock(&link->thread.lock);
     queue(link, json_text(message, 0));

@@ -52,7 +52,6 @@ struct renderer_peer {
     bool samples_sent;
     bool asks;                    /* true: the peer must be asked for its promise not to lead (corelink/lease.h) */
     struct core_samples *samples; /* samples for the peer's history, to be sent; NULL: none */
-    int64_t journal_utc_ns;       /* standby: UTC time of the last change in its own alarm journal; INT64_MIN: rows were sent */
     uint64_t told;                /* standby: sequence number of the newest notifier state that was sent to it */
     uint64_t rows;                /* standby: sequence number of the last journal row that was sent to it */
     uint64_t alarms;              /* sequence number of the last change of alarms that was sent */
@@ -333,8 +332,7 @@ static bool send_alarms(const struct server_context *server, struct renderer_pee
     renderer->alarms_sent = true;
     json_t *message = core_alarms_message(server->params.plant.alarm_service, since, clock_utc_ns(), &renderer->alarms);
     if (renderer->stands_by)
-        core_alarms_add_rows(message, server->params.plant.alarm_service, &renderer->rows, renderer->journal_utc_ns);
-    renderer->journal_utc_ns = INT64_MIN; /* from now on the peer lacks all later rows, whatever their times */
+        core_alarms_add_rows(message, server->params.plant.alarm_service, &renderer->rows);
     return send_message(renderer, message);
 }
 
@@ -558,7 +556,6 @@ static void introduce(struct server_context *server, struct renderer_peer *rende
     json_object_set_new(renderer->hello, "key", json_string(server->core.key));
     if (renderer->stands_by && server->params.plant.historian)
         historian_on_standby(server->params.plant.historian);
-    renderer->journal_utc_ns = json_integer_value(json_object_get(message, "journal"));
     if (renderer->stands_by)
         renderer->samples = core_samples_listen(server->params.plant.store);
     log_info(server->params.log, renderer->stands_by ? "standby %s: follows" : "renderer %s: connected", renderer->name);
