@@ -676,10 +676,12 @@ static int on_writeable(struct server_context *server, struct renderer_peer *ren
 {
     if (!renderer->close_text)
         return send_next(server, renderer) ? 0 : -1;
-    /* the connection stays open until these actions are answered; settle() then asks libwebsockets for the next callback */
+    /* the connection stays open until these actions are answered; settle() and on_beat() ask libwebsockets for the next callback */
     if (renderer->deeds)
         return 0;
     if (json_array_size(renderer->answers) > 0 && !server->life.goes_down) {
+        if (!may_answer(server, renderer))
+            return 0;
         lws_callback_on_writable(renderer->wsi);
         return send_answer(renderer) ? 0 : -1;
     }
