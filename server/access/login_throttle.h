@@ -27,8 +27,9 @@ void login_throttle_destroy(struct login_throttle **throttle); /* &NULL is allow
 /* Judges and counts a token from an address (as in struct address_usage): wrong, valid, or not checked because the address is slowed.
    hash: hash of the token if it is valid; NULL: the token is wrong. */
 enum login login_throttle_judge(struct login_throttle *throttle, const uint8_t address[16], const uint8_t *hash, int64_t now_ns);
-/* For attempts that are verified elsewhere and later, such as sign-ins: returns LOGIN_HELD if the attempt must be refused, otherwise
-   LOGIN_NONE. When such an attempt fails, login_throttle_fail() counts the failure and returns LOGIN_WRONG or LOGIN_WRONG_SLOWS. */
+/* Login throttle for attempts whose result comes later, such as sign-ins at an identity provider. Returns LOGIN_HELD if the attempt must be
+   refused, otherwise LOGIN_NONE. When such an attempt fails, login_throttle_fail() counts the failure and returns LOGIN_WRONG or
+   LOGIN_WRONG_SLOWS. */
 enum login login_throttle_begin(struct login_throttle *throttle, const uint8_t address[16], int64_t now_ns);
 enum login login_throttle_fail(struct login_throttle *throttle, const uint8_t address[16], int64_t now_ns);
 /* Returns the number of failures of the address within the last minute, 10 at most. */

@@ -249,7 +249,8 @@ static void tell_digits(const struct pending_pairing *waiting, int64_t now_ns, c
     *left_s = (int)((waiting->begun_ns + PAIRING_S * NS_PER_S - now_ns) / NS_PER_S);
 }
 
-/* Answers a device's request; uses only the hash of the device's secret, not the secret in the request. */
+/* Answers the request of a device that asks for its digits or its approval. Identifies the device by `hash`, not by the secret in the
+   request, because a renderer's request has no secret. */
 static enum pairing ask(struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct pairing_request *request,
                         int64_t now_ns, char digits[PAIRING_DIGITS + 1], int *left_s)
 {
@@ -258,7 +259,8 @@ static enum pairing ask(struct pairings *pairings, const uint8_t hash[TOKEN_HASH
         return paired;
     digits[0] = 0;
     *left_s = 0;
-    if (find_device(kept_list_newest(&pairings->kept), hash)) /* accepted, and not on disk yet: its digits are used up */
+    /* the device was approved, but is not on disk yet: its digits are no longer valid */
+    if (find_device(kept_list_newest(&pairings->kept), hash))
         return PAIRING_WAITS;
     forget_old(pairings, now_ns);
     size_t at = find_waiting(pairings, hash, &request->place);

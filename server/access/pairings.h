@@ -26,7 +26,7 @@ enum pairing { PAIRING_WAITS, PAIRING_DONE, PAIRING_FULL, PAIRING_OTHER };
 
 struct pairing_request {
     const char *secret;      /* secret of the device; must pass pairings_secret_valid() */
-    struct wall_place place; /* display that the device shows; its area is not used */
+    struct wall_place place; /* wall and display that the device shows; the member `area` is ignored */
     const uint8_t *address;  /* address of the device, as in struct address_usage */
     const char *from;        /* the same address as text */
 };
@@ -38,7 +38,7 @@ struct pairings *pairings_open(struct log *log, const char *folder, struct file_
 void pairings_close(struct pairings **pairings); /* &NULL is allowed; sets *pairings to NULL */
 /* Returns true if the secret has the form of a token (tokens_make) with 256 bits. */
 bool pairings_secret_valid(const char *secret);
-/* Returns the reason why no device can be paired with this daemon, or REFUSAL_NONE. */
+/* Returns the reason why this daemon cannot pair devices, or REFUSAL_NONE. */
 enum refusal_code pairings_refusal(const struct pairings *pairings);
 /* Returns the state of a device. PAIRING_DONE: it is paired. PAIRING_WAITS: it waits; the digits and their remaining seconds are
    returned. PAIRING_FULL: too many devices wait. PAIRING_OTHER: it is paired with another display, and a secret works for one display

@@ -99,7 +99,7 @@ bool tokens_may_see(const struct token_holder *holder, const char *view)
     size_t length = strlen(view);
     for (const char *at = holder->views; *at; at += at[strcspn(at, ",")] ? strcspn(at, ",") + 1 : strlen(at))
         if (!strncmp(at, view, length) && (at[length] == ',' || !at[length]))
-            return named_view_id_valid(view); /* the view is a single id: a list is refused */
+            return named_view_id_valid(view); /* accepts only a single id: a comma-separated list could match a part of holder->views */
     return !holder->views[0];
 }
 

@@ -145,8 +145,8 @@ enum id_token_fault id_token_verify(const char *token, const struct id_token_exp
 
 static const json_t *at_path(const json_t *claims, const char *path)
 {
-    const json_t *whole = json_object_get(claims, path); /* tries the whole path as one claim first: a claim's name may be a URL, which
-                                                            contains dots */
+    /* tries the whole path as the name of one claim first, because such a name may be a URL, which contains dots */
+    const json_t *whole = json_object_get(claims, path);
     char *copy = mem_strdup(path), *rest = copy;
     const json_t *found = claims;
     for (char *part; !whole && (part = strsep(&rest, "."));)

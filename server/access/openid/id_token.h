@@ -12,8 +12,8 @@ enum { ID_TOKEN_BYTES = 64 * 1024, ID_TOKEN_SKEW_S = 60 };
 struct id_token_expected {
     const struct openid_config *config;
     const json_t *jwks; /* the provider's public keys */
-    const char *nonce;  /* expected nonce; NULL: not checked, because a refreshed token need not have one */
-    const char *sub;    /* expected subject; NULL: not known yet */
+    const char *nonce;  /* nonce that the token must have; NULL: not checked, because a refreshed token need not have one */
+    const char *sub;    /* subject (user id at the provider) that the token must have; NULL: not known yet */
     int64_t now_s;      /* UTC */
     int64_t patience_s; /* seconds for which a token is accepted after its `exp` */
 };

@@ -76,9 +76,9 @@ static bool has_room(const struct openid *openid, const uint8_t address[16])
     return openid->codes.count < OPENID_CODES && of_address < OPENID_CODES_OF_ADDRESS;
 }
 
-/* Decides how to treat an error that a browser brought from the provider (a refused sign-in, or the provider's own failure): such an
-   error is no guess at a secret. Anyone can send any number of errors, so only one in ERROR_EVERY_NS is recorded. The caller holds the
-   lock. */
+/* Returns the result of a log-in that the provider ended with an error: the user was refused, or the provider failed. Such an error is not
+   counted as a guess at a secret. Since anyone can send such errors, only one per ERROR_EVERY_NS is recorded (OPENID_REFUSED); the others
+   give OPENID_AWAY. The caller holds the lock. */
 static enum openid_result judge_error(struct openid *openid, int64_t now_ns)
 {
     if (openid->error_ns && now_ns - openid->error_ns < ERROR_EVERY_NS)

@@ -47,7 +47,7 @@ enum openid_finish openid_finish(struct openid *openid, const struct openid_retu
 enum openid_result {
     OPENID_LET_IN,
     OPENID_REFUSED, /* recorded: the user logged in at the provider but may not use this server */
-    OPENID_GUESSED, /* recorded, and counted like a wrong token: the code was invalid */
+    OPENID_GUESSED, /* recorded, and counted like a wrong token: the authorization code was invalid */
     /* the log-in failed without a guess at a secret, for example because the provider does not answer or refuses this server; recorded only
        at intervals */
     OPENID_AWAY,

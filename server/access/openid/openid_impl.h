@@ -9,13 +9,13 @@
 #include "access/openid/id_token.h"
 #include "access/openid/openid.h"
 
-/* maximum numbers of codes that wait to be exchanged for tokens: in total, and of one address */
+/* maximum numbers of authorization codes that wait to be exchanged for tokens: in total, and of one address */
 enum { OPENID_CODES = 64, OPENID_CODES_OF_ADDRESS = 16 };
 
-struct openid_job { /* a code that a browser brought back, or a token to revoke */
+struct openid_job { /* one queued request to the provider: to exchange the code that a browser brought back, or to revoke a token */
     uint64_t request;
     struct sign_in sign_in;
-    char *code, *from, *revoke; /* revoke: the refresh token to revoke; NULL: the job is to redeem `code` */
+    char *code, *from, *revoke; /* revoke: the refresh token to revoke; NULL: the job exchanges `code` for tokens */
     struct openid_job *next;
 };
 
@@ -24,13 +24,13 @@ struct openid_jobs {
     int count;
 };
 
-/* Kinds of tasks; each task runs in a short-lived thread of its own. */
+/* Kinds of requests to the identity provider; each request runs in a short-lived thread of its own. */
 enum openid_task { OPENID_TASK_CODE, OPENID_TASK_CHECK, OPENID_TASK_REVOKE, OPENID_TASK_DISCOVER, OPENID_TASKS };
 
 struct openid {
     struct openid_params params;
     struct openid_config *config;
-    pthread_t thread; /* starts tasks that are due */
+    pthread_t thread; /* starts the requests that are due */
     bool started;
     counter *good, *people, *refused, *foreign;
     /* changed: a user's rights changed since the last openid_take_changed(); failing: the log already has a line that the provider fails */
@@ -53,8 +53,8 @@ struct openid {
 
 /* --- openid_work.c --- */
 
-/* Main function of the thread that starts tasks; its argument is the struct openid. Returns once openid->stopping is set and no task
-   runs. */
+/* Main function of the thread that starts requests to the identity provider; its argument is the struct openid. Returns once
+   openid->stopping is set and no request runs. */
 void *openid_run(void *arg);
 /* Queues an answer; takes ownership of the text `why`. The caller holds the lock. */
 void openid_add_answer(struct openid *openid, const struct openid_job *job, enum openid_result result, const char *cookie, char *why);

@@ -185,7 +185,7 @@ static enum openid_rights refresh(struct openid *openid, struct person *person, 
     return rights;
 }
 
-/* Checks a person's rights with the access token, while that is valid, for want of a refresh token. */
+/* For a person without a refresh token: checks the rights with the access token, until that expires. */
 static enum openid_rights ask_again(struct openid *openid, struct person *person, const char **why)
 {
     char *url = openid_endpoint(openid, "userinfo_endpoint");

@@ -17,7 +17,7 @@ static const int at_once[OPENID_TASKS] = {
 struct task {
     struct openid *openid;
     enum openid_task kind;
-    struct openid_job *job; /* job of a code or a revocation; NULL for the other kinds of tasks */
+    struct openid_job *job; /* for tasks that exchange a code or revoke a token: the queued job; NULL for other tasks */
     struct person person;   /* for a check of rights: a copy of the person, with its own texts */
     int64_t began_ns;
 };

@@ -15,7 +15,7 @@ struct sign_in { /* a log-in whose browser was redirected to the provider */
 };
 
 struct person {                 /* a signed-in person; the struct owns its texts */
-    struct token_holder holder; /* holder of a session as of a token; the hash is that of the session cookie */
+    struct token_holder holder; /* the person's name, role and rights; `hash` is that of the session cookie */
     char *sub, *refresh_token, *access_token;
     char *id_token;         /* the newest ID token */
     int64_t access_until_s; /* expiry of the access token, in seconds since 1970 UTC; 0: not known */
