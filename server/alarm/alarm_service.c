@@ -131,7 +131,7 @@ static void keep_all(struct alarm_service *service)
     }
 }
 
-/* Writes to the journal the present state of every alarm whose change number is greater than `number`. */
+/* Writes to the journal the present state of every alarm that has changed since the plant's change number was `number`. */
 static void keep_since(struct alarm_service *service, uint64_t number)
 {
     for (int i = service->journal ? alarms_newest(service->alarms) : -1; i >= 0; i = alarms_at(service->alarms, i)->older) {
@@ -142,7 +142,7 @@ static void keep_since(struct alarm_service *service, uint64_t number)
     }
 }
 
-/* Calls the listeners if any alarm has a change number greater than `number`. */
+/* Calls the listeners if any alarm has changed since the plant's change number was `number`. */
 static void tell(struct alarm_service *service, uint64_t number)
 {
     if (atomic_exchange(&service->number, number) == number)
@@ -360,8 +360,8 @@ void alarm_service_end(struct alarm_service *service, struct settling_ticket *ti
     pthread_mutex_lock(&service->thread.lock);
     if (service->journal)
         journal_end(service->journal, ticket);
-    /* without a journal, the service was halted after alarm_service_begin(): whether the ticket's rows were written is unknown, so they
-       must not count as saved */
+    /* The service was halted after alarm_service_begin() and its journal is closed. Whether the ticket's rows were written is unknown, so
+       they must not count as saved. */
     else if (service->ending || service->lost)
         ticket->last = UINT64_MAX;
     pthread_mutex_unlock(&service->thread.lock);

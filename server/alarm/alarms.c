@@ -144,8 +144,8 @@ static enum alarm_kind kind_of(const struct plant_mirror *mirror)
     return mirror->limit == LIMIT_COUNT ? ALARM_ON : (enum alarm_kind)(1 + mirror->limit);
 }
 
-/* Adds an alarm of this tag for each bit tag that mirrors an alarm of another system, in the order of `mirrors`. A bit whose own quality
-   is bad raises an alarm as well. */
+/* `mirrors` holds the bit tags that report alarms of another system. Adds one alarm per bit tag, in this order, to the tag whose alarm
+   the bit reports. A bit whose own quality is bad raises an alarm as well. */
 static void add_mirrored(struct alarms *alarms, const int *mirrors, size_t count)
 {
     const struct plant *plant = alarms->plant;
@@ -379,7 +379,8 @@ static void follow_acknowledgement(struct alarms *alarms, int index, struct inst
     step(alarms, index, &change, at.mono_ns);
 }
 
-/* Returns the device whose LINK alarm covers this BAD alarm, which is so while the tag's device is lost as a whole. NULL: none. */
+/* A LINK alarm reports that a device does not answer. Returns the device whose LINK alarm covers this BAD alarm, while the whole device is
+   lost. NULL: none. */
 static const struct alarm_device *carrier_of(const struct alarms *alarms, const struct alarm *alarm)
 {
     int of = alarm->kind == ALARM_BAD ? alarms->devices->of_tag[alarm->tag] : -1;

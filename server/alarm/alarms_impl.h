@@ -6,7 +6,7 @@
 #include "alarm/devices.h"
 
 enum feed_role { FEED_VALUE, FEED_BIT, FEED_BADNESS, FEED_ACKNOWLEDGED, FEED_SUPPRESSES };
-struct feed { /* a tag on whose samples an alarm depends, and what these samples mean for the alarm */
+struct feed { /* says that an alarm depends on the samples of a tag, and how */
     int tag, alarm;
     enum feed_role role;
 };
@@ -16,7 +16,7 @@ struct last_sample { /* newest sample of a tag */
     bool sampled, bad;
 };
 
-struct gravest { /* kind and state of the alarm that a tag shows */
+struct gravest { /* kind and state of the most urgent alarm of a tag */
     uint8_t kind, status;
 };
 

@@ -62,7 +62,7 @@ static int write_taken(struct journal *journal, int64_t mono_ns)
         journal->forgot_ns = mono_ns;
         error = journal_file_forget(journal->file, clock_utc_ns() / 1000 - (int64_t)(journal->keep_days * (double)US_PER_DAY));
     }
-    if (error) /* the file will be reopened, which detects damage */
+    if (error) /* closes the file, because reopening it before the next write detects damage */
         journal_file_close(&journal->file);
     return error;
 }

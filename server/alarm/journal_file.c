@@ -25,12 +25,12 @@ static const char schema_1[] =
 static const char *const schemas[JOURNAL_VERSION] = { schema_1 };
 
 #define ROW "id, t, tag, kind, event, before, after, priority, lim, value, who, reason"
-/* an index supplies this order, so that reading a page costs only the page's own rows, wherever the page is */
+/* Reads rows in the order of an index, so that reading one page takes equally long for old and for new pages. */
 #define IN_TIME "SELECT " ROW " FROM event WHERE t BETWEEN ?1 AND ?2 AND (t < ?3 OR id < ?4)"
 #define NEWEST " ORDER BY t DESC, id DESC LIMIT ?5"
 enum { SQL_EVENT, SQL_STATE, SQL_NORMAL, SQL_FORGET, SQL_STATES, SQL_TIME_OF, SQL_ROWS, SQL_ROWS_OF, SQL_AT, SQL_COUNT };
 static const char *const sql[SQL_COUNT] = {
-    /* skips a row that the file has: a leader sends rows to a standby again whenever the standby connects */
+    /* skips a row that the file already has, because a leader sends rows again whenever a standby connects */
     [SQL_EVENT] = "INSERT INTO event(t, tag, kind, event, before, after, priority, lim, value, who, reason)"
                   " SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11 WHERE NOT EXISTS (SELECT 1 FROM event WHERE tag = ?2 AND kind = ?3"
                   " AND t = ?1 AND event = ?4 AND before = ?5 AND after = ?6 AND value IS ?9)",
