@@ -19,7 +19,7 @@ static const int64_t RETRY_NS = NS_PER_S;
 struct queued_entry {
     struct audit_entry entry; /* the texts of the entry are stored in the same allocation, directly after the struct */
     int64_t utc_us;
-    bool said; /* true: the entry is already in the log, which happens while the file cannot be written */
+    bool said; /* true: the log already has this entry, because the file could not be written */
     struct queued_entry *next;
 };
 

@@ -12,7 +12,7 @@ struct audit;
 struct audit *audit_start(const struct audit_params *params);
 /* Writes the queued entries, if possible, and ends the thread. &NULL is allowed; sets *audit to NULL. */
 void audit_stop(struct audit **audit);
-/* Together with the next two functions tells whether the entries recorded between audit_begin() and audit_end() are on disk
+/* Together with the next two functions tells whether the entries queued between audit_begin() and audit_end() are on disk
    (base/files/settling.h). None of the three functions blocks. audit NULL: the entries count as on disk. */
 struct settling_ticket audit_begin(struct audit *audit);
 void audit_end(struct audit *audit, struct settling_ticket *ticket);

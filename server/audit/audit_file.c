@@ -165,7 +165,7 @@ int audit_file_append(struct audit_file *file, const struct audit_entry *entry, 
     }
     file->chain = chain;
     file->bytes += count;
-    /* ignores errors: the next write updates PATH.head, and a PATH.head that names an earlier line loses nothing */
+    /* An error is ignored: the next append writes PATH.head again. Until then PATH.head names an earlier line, which loses nothing. */
     audit_head_write(file->head_path, &chain);
     return 0;
 }

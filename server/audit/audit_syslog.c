@@ -161,7 +161,7 @@ static void *run(void *arg)
             pthread_cond_wait(&syslog->wake, &syslog->lock);
         if (syslog->stop_ns && (!syslog->first || clock_mono_ns() >= syslog->stop_ns))
             break;
-        struct framed *first = syslog->first; /* `first` stays valid without the lock, because only this thread removes lines */
+        struct framed *first = syslog->first; /* the entry stays valid without the lock, because only this thread removes entries */
         pthread_mutex_unlock(&syslog->lock);
         bool sent = deliver(syslog, &first->text);
         pthread_mutex_lock(&syslog->lock);

@@ -14,7 +14,7 @@
 struct audit_walk {
     struct audit_report *report;
     const struct audit_chain *known;
-    struct audit_chain head; /* content of PATH.head; seq 0: there is none */
+    struct audit_chain head; /* sequence number and hash from PATH.head; seq 0: the file does not exist */
 };
 
 static void set_fault(struct audit_report *report, char *text)
