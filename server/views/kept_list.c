@@ -63,11 +63,11 @@ enum refusal_code kept_list_refusal(const struct kept_list *kept)
 /* --- changes ---------------------------------------------------------------------------------------------------------------- */
 
 struct list_job {
-    struct file_job job; /* first member; its owner is `kept` */
+    struct file_job job; /* first member, so that a file_job pointer can be cast to a list_job pointer; owner: `kept` */
     struct kept_list *kept;
     json_t *list;
     char *folder, *path, *text;
-    bool mirrored; /* the list is that of another daemon: it is in force whether the disk takes it or not */
+    bool mirrored; /* true: the list is a copy of another daemon's list; it replaces `kept->list` even if it cannot be written to disk */
 };
 
 static void put_in_force(struct kept_list *kept, json_t *list)
@@ -93,7 +93,8 @@ static void finish_list(struct file_job *job, int error)
         log_err(kept->log, "%s: %s", kept->path, strerror(-error));
     if (kept && (!error || own->mirrored))
         put_in_force(kept, own->list);
-    if (kept && job->number && (error || kept->next == own->list)) { /* after an error all changes that were queued behind it fail, too */
+    /* after an error, all changes that were queued behind the failed one fail, too */
+    if (kept && job->number && (error || kept->next == own->list)) {
         json_decref(kept->next);
         kept->next = NULL;
     }

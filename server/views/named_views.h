@@ -35,8 +35,8 @@ uint64_t named_views_number(const struct named_views *views);
 /* Returns the JSON message `views` with all views. Only the view `id` includes its earlier versions, as `before` (id NULL: none does). The
  * caller releases it. */
 json_t *named_views_message(const struct named_views *views, const char *id);
-/* For the connection between a core and its renderers: the first returns the list of saved views, owned by `views`. The second replaces the
- * list by that of the other daemon, and returns false, with nothing changed, if it is invalid. */
+/* For the connection between a core and its renderers. named_views_list() returns the list of saved views, owned by `views`.
+   named_views_mirror() replaces the list by that of the other daemon; it returns false, with nothing changed, if that list is invalid. */
 json_t *named_views_list(const struct named_views *views);
 bool named_views_mirror(struct named_views *views, json_t *list);
 

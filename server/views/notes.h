@@ -40,8 +40,8 @@ char *notes_text(const struct notes *notes, int64_t now_us);
 char *notes_text_between(const struct notes *notes, int64_t from_us, int64_t to_us);
 /* Returns whether the notes valid at one instant are others than those valid at another instant. */
 bool notes_differ(const struct notes *notes, int64_t one_us, int64_t other_us);
-/* For the connection between a core and its renderers: the first returns the list of notes, owned by `notes`. The second replaces the list
- * by that of the other daemon, and returns false, with nothing changed, if it is invalid. */
+/* For the connection between a core and its renderers. notes_list() returns the list of notes, owned by `notes`. notes_mirror() replaces
+   the list by that of the other daemon; it returns false, with nothing changed, if that list is invalid. */
 json_t *notes_list(const struct notes *notes);
 bool notes_mirror(struct notes *notes, json_t *list);
 

@@ -47,8 +47,8 @@ struct other {
     size_t bytes;
     /* time of the request that returned the last picture; asked_us also serves as the picture's id; 0: no picture has arrived */
     int64_t asked_ns, asked_us;
-    /* time of the request that returned the last good picture; if there is none, the time since which there is none; by this plant's
-     * clock */
+    /* time, by this plant's clock, of the request that returned the last good picture; if there is none, the time since which displays have
+       wanted this plant's picture */
     int64_t since_us;
     enum why why; /* WHY_NONE: there is a picture */
 };

@@ -20,7 +20,7 @@ static const int64_t LINK_US = 2000000;
 
 struct short_links {
     struct kept_list kept; /* { id, view, time_us, used }; time_us: when the link was made or last marked as used, UTC */
-    int64_t whole_us;      /* UTC: when BURST_LINKS links may be made at once again */
+    int64_t whole_us;      /* UTC: time from which BURST_LINKS links may be made at once again */
 };
 
 static bool good_list(const json_t *list)
@@ -80,7 +80,8 @@ static size_t find_view(const json_t *list, const char *view, char id[SHORT_LINK
 /* Returns whether a new link may be made, and counts it. */
 static bool may_add(struct short_links *links, int64_t now_us)
 {
-    if (links->whole_us < now_us || links->whole_us > now_us + BURST_LINKS * LINK_US) /* the latter: the clock was set back */
+    /* whole_us is further ahead only if the clock was set back */
+    if (links->whole_us < now_us || links->whole_us > now_us + BURST_LINKS * LINK_US)
         links->whole_us = now_us;
     if (links->whole_us > now_us + (BURST_LINKS - 1) * LINK_US)
         return false;
@@ -93,7 +94,7 @@ static bool is_used(const json_t *link)
     return json_is_true(json_object_get(link, "used"));
 }
 
-/* Returns the index of the link that a further link replaces. */
+/* Returns the index of the link that a new link replaces when the list is full. */
 static size_t replaced(const json_t *list)
 {
     size_t first = 0, never_used = 0;
@@ -111,7 +112,8 @@ enum refusal_code short_links_share(struct short_links *links, const char *view,
     size_t at = find_view(newest, view, id);
     const json_t *old = json_array_get(newest, at);
     enum refusal_code why = kept_list_refusal(&links->kept);
-    const bool stored = kept_list_find(links->kept.list, id) < json_array_size(links->kept.list); /* and not only queued for the disk */
+    /* true: the link is in the file already, not only queued for it */
+    const bool stored = kept_list_find(links->kept.list, id) < json_array_size(links->kept.list);
     if (added)
         *added = false;
     if (why || (stored && is_used(old) && llabs(now_us - json_integer_value(json_object_get(old, "time_us"))) < USED_US))

@@ -127,7 +127,8 @@ static bool same_place(const struct wall_place *a, const struct wall_place *b)
 
 static void set_pointer(struct wall_remote *remote, const struct wall_place *place, const double *position_m, const char *by)
 {
-    struct pointer *pointer = &remote->pointers[0]; /* take the pane's own pointer; if it has none, the one that was moved least recently */
+    /* use the pointer that already points into this pane; if there is none, the pointer that was moved least recently */
+    struct pointer *pointer = &remote->pointers[0];
     for (int i = 0; i < WALL_POINTERS; i++) {
         if (same_place(&remote->pointers[i].place, place)) {
             pointer = &remote->pointers[i];

@@ -51,8 +51,8 @@ uint64_t wall_remote_pointer_number(const struct wall_remote *remote);
  * (mem_free()). */
 char *wall_remote_text(const struct wall_remote *remote);
 char *wall_remote_pointers_text(const struct wall_remote *remote, uint64_t after);
-/* For the connection between a core and its renderers: the first returns the list of orders, owned by `remote`. The second replaces the
- * list by that of the other daemon, and returns false, with nothing changed, if it is invalid. */
+/* For the connection between a core and its renderers. wall_remote_list() returns the list of orders, owned by `remote`.
+   wall_remote_mirror() replaces the list by that of the other daemon; it returns false, with nothing changed, if that list is invalid. */
 json_t *wall_remote_list(const struct wall_remote *remote);
 bool wall_remote_mirror(struct wall_remote *remote, json_t *list);
 
