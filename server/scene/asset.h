@@ -15,13 +15,14 @@ struct asset {
     void *made;
     uint16_t *distances; /* unpacked distances; NULL: those of the file are plain */
     size_t bytes;
-    struct cache_file influence_file; /* mapped file KEY.influence (influence of sensors) next to the asset's file; zero: not opened */
+    /* mapped file KEY.influence (influence of sensors), which lies in the folder of the asset's file; all zero: not opened */
+    struct cache_file influence_file;
     struct influence_view influence;
     /* bit l set: preparation subdivided the triangles of level l until they show the field without visible error (field/drawn_error.h) */
     uint64_t resolved_levels;
     _Atomic int refs;
-    /* by level of detail: which triangles bound closed bodies, whose cut sections are drawn solid (closed_bodies.h); NULL: not computed yet
-       */
+    /* by level of detail: the triangles that bound closed bodies, whose cut sections are drawn solid (closed_bodies.h); NULL: not
+       computed */
     struct closed_bodies *_Atomic *closed;
 };
 

@@ -79,9 +79,9 @@ static void safe_box(const double min_m[3], const double max_m[3], double safe_m
 }
 
 /* Fits a box along one axis of the picture. from, to: range of the picture to fill, as tangents of its two bounding planes; in an
-   orthographic view, as positions in units of half a picture. low, high: maxima over the box's corners of -x + z from and of x - z to,
-   where x is a corner's coordinate along this axis and z that along the view, both relative to the box's centre. The planes then touch the
-   box, with the eye between them. */
+   orthographic view, as positions in units of half a picture. low: maximum over the box's corners of `z * from - x`; high: the same of
+   `x - z * to`. There, x is a corner's coordinate along this axis, and z that along the view, both relative to the box's centre. The planes
+   then touch the box, with the eye between them. */
 struct clip_side {
     double from, to, low, high;
 };

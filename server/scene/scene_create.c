@@ -304,7 +304,7 @@ static bool bound_missing(struct scene *scene)
     return scene->bounds_min_m[0] <= scene->bounds_max_m[0];
 }
 
-/* Creates all assets. Returns false if any does not fit; all are checked and logged. */
+/* Creates all assets. Checks and logs every asset, and returns false if one does not match its prepared file. */
 static bool create_assets(struct log *log, struct scene *scene, const struct manifest *manifest)
 {
     struct file_uses uses = { .log = log, .scene = scene, .at = mem_array(scene->asset_count, sizeof(*uses.at)) };

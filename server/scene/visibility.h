@@ -40,7 +40,7 @@ struct visibility {
 enum asset_look {
     ASSET_SHOWN,
     ASSET_GHOST, /* transparent, without a field */
-    ASSET_HIDDEN /* the user has hidden it, or has isolated others and not ghosted it */
+    ASSET_HIDDEN /* the user has hidden the asset, or has isolated other assets without ghosting this one */
 };
 enum asset_look visibility_of(const struct visibility *visibility, int asset);
 struct plant;
