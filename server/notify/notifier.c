@@ -39,7 +39,9 @@ struct notifier {
     bool *failing;   /* by index of the recipient; true: the last delivery failed */
     uint64_t number; /* change number of the newest alarm change that was processed */
     bool looked, unsaved;
-    int64_t lost_before; /* number of alarms that were lost by the outboxes of the time before a reload */
+    /* value of outbox_counts.lost up to which lost notifications were counted already; an outbox restored after a reload may start above
+       0 */
+    int64_t lost_before;
 };
 
 static int64_t now_us(void)

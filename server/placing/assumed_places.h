@@ -21,7 +21,7 @@ struct assumed_filter {
 enum assumed_outcome {
     ASSUMED_NOT_MEANT, /* the filter does not select the tag: its position is not assumed, or its asset, group or name does not match */
     ASSUMED_ACCEPTED,
-    ASSUMED_NOWHERE, /* the tag's row has neither a node nor X, Y, Z */
+    ASSUMED_NOWHERE, /* the tag's row in the tag list has neither a node nor X, Y, Z */
     ASSUMED_MISSING, /* its asset has no model */
     ASSUMED_FAR,     /* too far from the surface */
     ASSUMED_UNSURE,  /* confidence too low or unknown */

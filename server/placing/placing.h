@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sensors that users place on the model. Each user has a set of moves, which becomes a trial (field/trials.h): first with straight-line
- * distances, and another trial once geodesic distances have been computed. Thread: the loop, except functions that workers call. */
+/* Sensors that users place on the model. Each user has a set of moves. The set becomes a trial (a changed sensor layout, field/trials.h):
+   first with straight-line distances, and later a second trial with geodesic distances. Thread: the loop, except functions that workers
+   call. */
 #ifndef PLACING_PLACING_H
 #define PLACING_PLACING_H
 #include "base/log/log.h"
@@ -74,8 +75,8 @@ struct sensor_coverage_answer {
     } * assets; /* coverage of each asset that has sensors of the group */
     struct sensor_coverage_answer *next;
 };
-/* Computes on a worker the sensor coverage of a group on all its assets, with the moves of `set` (NULL: none). far_m: as in struct
-   sensor_coverage_query. placing_collect() returns the answer. */
+/* Computes on a worker the sensor coverage of a group on all its assets, with the moves of `set` (NULL: none). far_m: distance in metres
+   from which a point counts as far from its sensors; 0: chosen for the asset. placing_collect() returns the answer. */
 void placing_request_coverage(struct placing *placing, const struct place_set *set, int group, double far_m,
                               const struct snapshot *snapshot, uint64_t client, uint32_t seq);
 /* Passes newly computed distances to the sets that asked for them. Returns a linked list of the coverage answers that are ready, oldest

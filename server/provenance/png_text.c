@@ -138,7 +138,7 @@ static bool is_plain_header(const struct png_chunk *chunk, char why[PNG_PLAIN_WH
            FAIL("chunk IHDR has another format than 8 bits of red, green and blue");
 }
 
-/* Returns the chunk's index in `plain`; PLAIN_CHUNKS: not in it. */
+/* Returns the index of the chunk's type in `plain`, the table of allowed chunk types; PLAIN_CHUNKS: the type is not in the table. */
 static int plain_row(const struct png_chunk *chunk)
 {
     int row = 0;

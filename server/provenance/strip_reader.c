@@ -70,7 +70,7 @@ static int find_in_row(const struct strip_picture *picture, int y, struct finder
 }
 
 struct strip_row {
-    double left_px, cell_px; /* cell_px 0: no strip in this row */
+    double left_px, cell_px; /* left edge of the strip, and width of one of its cells; cell_px 0: the row contains no strip */
 };
 
 /* Finds two finder patterns whose distance agrees with their own cell sizes. */

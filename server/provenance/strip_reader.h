@@ -27,7 +27,7 @@ struct strip_value {
     enum strip_state state; /* STRIP_NO_COLOR: not a colour of the legend: background, a label, no data */
     /* only for STRIP_VALUE: the pixel's value, and bounds: values within them have colours that cannot be told from the pixel's */
     double value, low, high;
-    double off; /* CIELAB distance from the nearest colour of the legend */
+    double off; /* CIELAB distance of the pixel's colour from the nearest colour of the legend */
 };
 
 /* Finds the strip. Returns false, with the reason in *why (static text), if the picture has no readable strip. */

@@ -224,7 +224,8 @@ static struct encode_stream *choose(struct encode_streams *streams, const struct
     if (stream && !shows(stream, frame, tickets))
         other = showing(streams, frame, tickets, true);
     if (other)
-        return other; /* `other` has just made a key frame of this content, so these clients can join it without another key frame */
+        /* the stream `other` has just made a key frame of this content, so these clients can join that stream without another key frame */
+        return other;
     if (!stream)
         stream = showing(streams, frame, tickets, false);
     else if (stream->content != frame->content && belongs_to_others(streams, stream, frame))
@@ -298,7 +299,7 @@ void encode_stream_keep(struct encode_stream *stream, struct packet *packet, uin
     while (stream->kept_count > 0 && stream->oldest < needed &&
            (key || stream->kept_count == ENCODE_STREAM_KEPT || stream->kept_bytes > most_bytes(stream)))
         drop_oldest(stream);
-    /* still full: the list holds more packets than a client may have in flight, so no client can need the oldest one */
+    /* the list is still full: it holds more packets than a client may have in flight, so no client can need the oldest one */
     if (stream->kept_count == ENCODE_STREAM_KEPT)
         drop_oldest(stream);
     stream->kept[stream->kept_count++] = packet ? packet_ref(packet) : NULL;

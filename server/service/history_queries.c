@@ -18,7 +18,8 @@
 
 enum { THREADS = 2 };                         /* each address uses one thread at a time, so that its queries do not block another address */
 static const size_t PIECE_BYTES = 256 * 1024; /* a piece of an answer ends after the tag with which it reaches this many bytes */
-static const int64_t PIECE_NS = 100 * NS_PER_MS; /* or the tag with which it has taken this time */
+/* a piece of an answer also ends after the tag with which making the piece has taken this long */
+static const int64_t PIECE_NS = 100 * NS_PER_MS;
 
 struct pending_query {
     struct history_query query;

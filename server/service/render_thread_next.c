@@ -180,7 +180,7 @@ bool render_thread_next(struct render_thread *thread, const struct scheduler *sc
             pthread_mutex_unlock(&service->lock);
             answer_pick(thread);
             pthread_mutex_lock(&service->lock);
-            if (service->state != RUNNING) /* stopped while the lock was released: nothing would wake this thread again */
+            if (service->state != RUNNING) /* the service was stopped while the lock was released: nothing would wake this thread again */
                 break;
         }
         turn = next_turn(thread, scheduler);

@@ -30,16 +30,17 @@ void time_accounts_asked(const struct time_accounts *accounts, struct time_accou
 /* Call it when a request of the account is drawn next. The account's charge becomes the least charge with which other accounts enter the
    queue. */
 void time_accounts_served(struct time_accounts *accounts, const struct time_account *account, int share);
-/* Charges drawing time to the account with that id, also if it has no clients any more: that of a frame that was given up. */
+/* Charges drawing time to the account with that id. The account may have no clients any more, for example after its last client gave up a
+   frame. */
 void time_accounts_charge(struct time_accounts *accounts, uint64_t id, int share, int64_t ns);
 
 struct time_claim { /* one client's request, compared with those of others */
     const struct time_account *account;
     int64_t spent_ns, asked_ns; /* drawing time charged to the client itself; when it made the request */
 };
-/* Returns whether a is served before b: its address was charged less; or, within one address, the client was; or a is older. Every frame
-   is charged, and a waiting request is never charged, so each other address and each other client of its own address can go before a
-   request only until it was charged as much. */
+/* Returns whether `a` is served before `b`: first the request whose address was charged less; within one address, the one whose client was
+   charged less; else the older one. Drawing is charged, waiting is not. So each other address, and each other client of the same address,
+   can go before a request only until it was charged as much. */
 bool time_claim_before(const struct time_claim *a, const struct time_claim *b, int share);
 /* Frees all accounts; they must have no clients. */
 void time_accounts_finish(struct time_accounts *accounts);
