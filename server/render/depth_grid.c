@@ -14,11 +14,13 @@
 enum { MASK_SIDE = DEPTH_CELL_PX / 2, MASK_BYTES = MASK_SIDE * MASK_SIDE / 8, MOST_LEVELS = 4095 };
 enum { ESCAPE = 255, MOST_SYMBOL_BYTES = 3 };
 enum { PART_DIVIDED, PART_BACK, PART_NEAR, PART_MASKS, PARTS }; /* of the payload */
-enum { MOST_BLOCK_BYTES = 100 };                                /* that ends of blocks add to a payload */
-/* Movement of the camera, relative to the distance of the surfaces, for which depth must be right to a fraction of a pixel: an orbit by
-   six degrees. */
+/* maximum number of bytes that the ends of deflate blocks add to a payload */
+enum { MOST_BLOCK_BYTES = 100 };
+/* Movement of the camera, as a part of the distance to the surfaces, up to which a client's pictures must be right to a fraction of a
+   pixel. It corresponds to an orbit by six degrees. */
 static const double MOVEMENT = 0.1;
-/* smallest shift, in pixels, by which such a movement separates the sides of a step; and of depths that differ by one code */
+/* Shifts in pixels that a camera movement by MOVEMENT causes. STEP_SHIFT_PX: smallest shift between two depths that makes a step between
+   them. UNIT_SHIFT_PX: shift between two depths whose codes differ by 1. */
 static const double STEP_SHIFT_PX = 2, UNIT_SHIFT_PX = 1.5;
 static const double LEAST_INVERSE = 1e-5; /* ground farther away than 100 km counts as background; 1/m */
 
@@ -30,7 +32,8 @@ static void aim_at_ground(struct depth_lens *lens, const double clip_from_plant[
 {
     double clip[16], h[3][3], depth[3], determinant = 0, inverse[3][3];
     matrix_multiply(clip_from_plant, plant_from_ground, clip);
-    for (int c = 0; c < 3; c++) { /* h: maps (u, v, 1) on the ground to (x w, y w, w), with x and y in pixels; depth: to depth w */
+    /* h: matrix that maps (u, v, 1) on the ground to (x w, y w, w), with x and y in pixels; depth: row vector that maps it to (depth w) */
+    for (int c = 0; c < 3; c++) {
         const double *column = &clip[c == 2 ? 12 : 4 * c];
         h[0][c] = 0.5 * width_px * (column[3] + column[0]);
         h[1][c] = 0.5 * height_px * (column[3] - column[1]);
@@ -99,7 +102,7 @@ struct coder {
     uint16_t *near, *far, *masks; /* masks: of divided cells */
     uint8_t *data;
     size_t data_bytes;
-    float low, unit; /* depth of the code 1, and difference between two codes */
+    float low, unit; /* low: depth that has the code 1; unit: difference in depth between one code and the next */
     int levels;
 };
 
@@ -131,7 +134,8 @@ static double middle(int cell, int px)
     return 0.5 * (begin + (end < px ? end : px));
 }
 
-/* Puts the ground behind surfaces, and finds the range of depths. */
+/* Adds the ground to cells that show background: behind their surface, or as their only depth. Then finds the range of depths of all
+   cells. */
 static void find_depths(struct coder *coder)
 {
     float low = INFINITY, high = -INFINITY;
@@ -221,7 +225,8 @@ static uint8_t *put_back(const struct coder *coder, uint8_t *out)
     return out;
 }
 
-/* Writes the code before the step of each divided cell. Predicts the first of the neighbours' near codes that is before the step. */
+/* Writes the near code of each divided cell, predicted by the near code of the left, upper or upper left neighbour: the first of these that
+   is nearer than the cell's far code. */
 static uint8_t *put_near(const struct coder *coder, uint8_t *out)
 {
     size_t i = 0, columns = (size_t)coder->columns;
@@ -237,11 +242,11 @@ static uint8_t *put_near(const struct coder *coder, uint8_t *out)
     return out;
 }
 
-/* Returns a cell's mask in MASK_SIDE x MASK_SIDE bits: 1 where a pixel is near. Pixels of the far side that move with the near side are
-   seen less than a second image of a handrail. */
+/* Reduces a cell's mask to MASK_SIDE x MASK_SIDE bits: 1 where at least one of the 2 x 2 pixels is near. So some pixels of the far side
+   move with the near side, which is less visible than the opposite: a thin near object, such as a handrail, would appear twice. */
 static unsigned coarse_mask(uint64_t mask)
 {
-    mask |= mask >> 1; /* bits 0, 2, 4 and 6 of every second row: whether a pixel of their square is near */
+    mask |= mask >> 1; /* afterwards bits 0, 2, 4 and 6 of every second row say whether one of the 2 x 2 pixels there is near */
     mask |= mask >> DEPTH_CELL_PX;
     mask &= 0x0055005500550055;
     mask = (mask | mask >> 1) & 0x0033003300330033;
@@ -250,7 +255,8 @@ static unsigned coarse_mask(uint64_t mask)
     return (unsigned)((mask | mask >> 24) & 0xffff);
 }
 
-/* Returns the mask of a neighbour of cell `i`: that of an undivided neighbour says to which side its surface belongs. */
+/* Returns the mask of a neighbour of cell `i`. For a neighbour without a step, returns all ones if its depth is more like the near side of
+   cell `i`, and 0 if it is more like the far side. */
 static unsigned mask_beside(const struct coder *coder, size_t neighbour, size_t i)
 {
     int back = coder->far[neighbour];
@@ -259,8 +265,8 @@ static unsigned mask_beside(const struct coder *coder, size_t neighbour, size_t 
     return abs(back - coder->near[i]) < abs(back - coder->far[i]) ? 0xffff : 0;
 }
 
-/* Writes where masks differ from their prediction. The prediction of a bit is that of the bits to the left and above it if they are equal,
-   otherwise the opposite of the bit between the two: an edge continues. */
+/* Writes where masks differ from their prediction. A bit is predicted from the bits to its left and above it. If these are equal, the
+   prediction is their value; otherwise it is the opposite of the upper left bit, so that an edge continues straight. */
 static uint8_t *put_masks(const struct coder *coder, uint8_t *out)
 {
     size_t i = 0, columns = (size_t)coder->columns;
@@ -280,7 +286,7 @@ static uint8_t *put_masks(const struct coder *coder, uint8_t *out)
     return out;
 }
 
-/* Deflates the parts of the payload, each into blocks with Huffman codes of their own. Symbols before steps and masks have few runs. */
+/* Deflates the parts of the payload one by one, so that each part gets blocks with Huffman codes of its own. */
 static uint8_t *deflated(const uint8_t *data, uint8_t *const ends[PARTS], size_t *bytes)
 {
     enum { RAW = -15, MEMORY = 8, LEVEL = 1 };

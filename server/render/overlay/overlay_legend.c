@@ -269,7 +269,7 @@ static void fill_box(struct pen *pen, const struct label_box *box, const uint8_t
     cairo_rectangle(pen->cairo, box->x, box->y, box->width, box->height);
     pen_rgb(pen, rgb);
     cairo_fill_preserve(pen->cairo);
-    if (pen->frame->view.dark) { /* some colours are as dark as the card */
+    if (pen->frame->view.dark) { /* before a dark backdrop a swatch gets an outline, because some colours are as dark as the card */
         pen_ink(pen, 0.5);
         cairo_set_line_width(pen->cairo, fmax(1, pen->unit));
         cairo_stroke(pen->cairo);

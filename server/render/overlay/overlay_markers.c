@@ -67,7 +67,7 @@ void overlay_ring(struct pen *pen, double x, double y, double radius, int priori
     double wide = word == ALARM_ACKNOWLEDGED ? 0.22 : 0.42;
     cairo_new_path(pen->cairo);
     cairo_arc(pen->cairo, x, y, radius, 0, 2 * M_PI);
-    cairo_set_source_rgb(pen->cairo, 1, 1, 1); /* light rim, outside the dark one */
+    cairo_set_source_rgb(pen->cairo, 1, 1, 1); /* light rim outside the dark one */
     cairo_set_line_width(pen->cairo, fmax(4.6, (wide + 0.4) * radius));
     cairo_stroke_preserve(pen->cairo);
     pen_dark(pen, 1);
@@ -161,7 +161,7 @@ static void draw_leader(struct pen *pen, const struct label_item *item, const st
         return;
     cairo_move_to(pen->cairo, item->x + (x - item->x) * rim, item->y + (y - item->y) * rim);
     cairo_line_to(pen->cairo, x, y);
-    cairo_set_source_rgba(pen->cairo, 1, 1, 1, 0.85); /* light case, seen on dark ground */
+    cairo_set_source_rgba(pen->cairo, 1, 1, 1, 0.85); /* light outline of the line, visible on dark ground */
     cairo_set_line_width(pen->cairo, fmax(2.5, 2.5 * pen->unit));
     cairo_stroke_preserve(pen->cairo);
     cairo_set_line_width(pen->cairo, fmax(1, pen->unit));

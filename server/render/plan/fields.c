@@ -205,7 +205,8 @@ static struct fields_entry *look(struct fields *fields, const struct fields_ask 
         return &fields->lost;
     struct pixel_field pixels;
     field_pixels(fields->field, asset, params, &pixels);
-    if (pixels.count == 0 && count < all) { /* one sensor is left, or none */
+    /* the field is not evaluated at pixels, because at most one sensor is left: all vertices need values */
+    if (pixels.count == 0 && count < all) {
         count = all;
         scalars = field_scalars_of(fields->field, asset, params, ask->snapshot, count);
         if (!scalars)

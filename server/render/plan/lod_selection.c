@@ -2,11 +2,11 @@
 /* Chooses levels of detail with the error bound under which a frame has few enough triangles. */
 #include "render/plan/lod_selection.h"
 
-/* Upper limit of the error bound in pixels, per tier: silhouettes may be displaced by so much. */
+/* Upper limit of the error bound in pixels, per tier: silhouettes may be displaced by this much. */
 static const double MAX_ERROR_PX[] = { [TIER_PREVIEW] = 1.0, [TIER_REFINED] = 0.7 };
-/* Triangle budget per tier: the error is reduced as long as the frame stays within it. Refined frames are generous because people read
-   values from them: 2.5 million triangles take 0.45 s of CPU time, 0.3 s with levels. A preview that draws more than a few assets in their
-   finest level would take too long. */
+/* Triangle budget per tier: the largest number of triangles for which the error bound is lowered below MAX_ERROR_PX. The budget of refined
+   frames is generous, because people read values from them. A preview that draws more than a few assets in their finest level would take
+   too long. */
 static const int TRIANGLE_BUDGET[] = { [TIER_PREVIEW] = 300000, [TIER_REFINED] = 3000000 };
 
 static bool has_room(const struct lod_params *params, double error_px)

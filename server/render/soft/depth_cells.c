@@ -6,7 +6,8 @@
 
 #include "render/soft/lanes.h"
 
-/* A cell is divided if its depths leave a gap of this part of their range in its middle. On a plane, depths lie closer. */
+/* A cell is divided only if the gap between the depths before and behind its middle depth is at least this part of the range of its depths.
+   Depths of a plane are closer together. */
 static const float LEAST_GAP = 0.25f;
 
 SOFT_INLINE float least_of_all(lanes x)
@@ -26,8 +27,8 @@ SOFT_INLINE lanes row_at(const float *depth, size_t pitch_px, int row)
     return *(const lanes *)(depth + (size_t)row * pitch_px);
 }
 
-/* Divides a cell between depths on both sides of `border`. low: least depth behind it, 0 for the background alone. Returns false if the
-   depths leave no gap there. */
+/* Divides a cell into pixels nearer than the depth `border` and pixels behind. low: least depth of the pixels behind; 0: only background is
+   behind. high: largest depth of the cell. Returns false if the gap between both sides is too small (LEAST_GAP). */
 SOFT_INLINE bool divide(const float *depth, size_t pitch_px, float low, float border, float high, struct depth_cell *cell)
 {
     lanes zero = { 0 }, nearest_behind = zero, farthest_before = zero + high;
@@ -70,7 +71,8 @@ SOFT_INLINE void find_cell(const struct depth_lens *lens, const float *depth, si
     *cell = (struct depth_cell){ middle, middle, 0 };
     if (high <= 0)
         return;
-    /* The background has no features that would seem to move, so a step between surfaces matters more than one to the background. */
+    /* A step between two surfaces is preferred to a step to the background, because the background has no features that would seem to
+       move. */
     float surface = low > 0 ? low : farthest_surface(depth, pitch_px, high), border = 0.5f * (surface + high);
     bool divided = high - surface > lens->step * border + lens->least_step && divide(depth, pitch_px, surface, border, high, cell);
     if (low <= 0 && !divided)

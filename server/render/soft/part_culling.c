@@ -39,7 +39,7 @@ SOFT_INLINE bool project(const struct raster *raster, const struct soft_mesh *me
         nearest = depth[i] > nearest ? depth[i] : nearest;
     }
     const float slack = SLACK_PX + raster->reach_px;
-    left += 0.5f - slack; /* from here on, limits of the pixels whose centres lie within */
+    left += 0.5f - slack; /* from here on, left, last, top and bottom bound the pixels whose centres lie within the box */
     top += 0.5f - slack;
     last += 0.5f + slack;
     bottom += 0.5f + slack;

@@ -9,8 +9,8 @@
 
 #include "base/mem.h"
 
-enum { DEPTH = 4, SHORT_LIST = 8 }; /* DEPTH: levels of squares, 128 to 16 pixels; SHORT_LIST: lists of at most so many sensors
-                                          are not shortened */
+/* DEPTH: levels of squares, 128 to 16 pixels; SHORT_LIST: lists of at most this many sensors are not shortened */
+enum { DEPTH = 4, SHORT_LIST = 8 };
 static const float FAR_M = 1e15f, MOST_SHARE = 0.0625f, LOG2_E = 1.44269504f;
 
 enum node_column { PLACE_X, PLACE_Y, PLACE_Z, VALUE, STRENGTH, DECAY, STATE, INDEX, COLUMNS };
@@ -19,18 +19,19 @@ struct node {
     float *columns[COLUMNS]; /* sensors that are not far yet, padded to LANES. STATE and INDEX (index in field->sensors) are
                                  stored as integers */
     int count;
-    struct pixel_list far; /* polynomials of the far sensors; its sensors are not set */
+    struct pixel_list far; /* polynomials of the far sensors; far.sensors is not set */
     float least;           /* lower bound of the far sensors' sum of weights */
     float left;            /* share of the sum of all weights by which the sum may still err */
 };
 
 struct building {
     const struct pixel_field *field;
-    /* Readings, for shepard: an error of a sensor's weight changes a value by no more than that error times (1/2 + away * |reading -
-       middle|) times the spread of the readings. paper: away is 0 */
+    /* For shepard: an error of a sensor's weight changes a value by no more than that error times (1/2 + away * |reading - middle|) times
+       the spread of the readings. For paper: away is 0 */
     float middle, away;
-    float *errors;               /* this change if the sensor becomes far, in spreads, by index in the parent's list; INFINITY: must stay
-                                    near; -1: has no weight */
+    /* by index in the parent's list: largest change of a value if this sensor becomes far, as a multiple of the readings' spread; INFINITY:
+       the sensor must stay near; -1: it has no weight */
+    float *errors;
     struct node nodes[DEPTH + 1]; /* by level; [0]: all sensors */
 };
 
@@ -48,7 +49,8 @@ float pixel_lists_step(const float *scale)
 
 struct eight_sensors {
     lanes at[3], value, strength, decay;
-    lanes_int used, lost, no_limits, uncertain, counts; /* masks by state; counts: 0 beyond the list's end */
+    /* masks of the sensors in each state; counts: mask of the lanes that hold a sensor, 0 beyond the list's end */
+    lanes_int used, lost, no_limits, uncertain, counts;
 };
 
 SOFT_INLINE void load(const struct node *node, int first, struct eight_sensors *out)
@@ -129,8 +131,8 @@ SOFT_INLINE void add_pole(struct logarithm *to, lanes times, lanes left)
 }
 
 /* Bounds the derivatives of a weight's logarithm in the box. near_m, far_m: smallest and largest distance from the sensor there; factors
-   with a pole at the sensor are evaluated at near_m, those with a pole at the reach or radius at far_m. sign: of the latter's second
-   derivative. */
+   with a pole at the sensor are evaluated at near_m, those with a pole at the reach or radius at far_m. sign: sign with which the second
+   derivative of the factors evaluated at far_m is added. */
 SOFT_INLINE struct logarithm logarithm_of(const struct pixel_field *field, const struct eight_sensors *of, lanes near_m, lanes far_m,
                                           bool term, float sign)
 {

@@ -10,7 +10,7 @@
 #include "field/pixel_field.h"
 #include "render/soft/lanes.h"
 
-/* PIXEL_FEW: with that many sensors, all are summed at each pixel. */
+/* PIXEL_FEW: largest number of sensors of a field that are all summed at each pixel, without lists. */
 enum { PIXEL_FEW = 8, CELL_SHIFT = 4, CELL_PX = 1 << CELL_SHIFT, SQUARE_CELLS = 8, PIXEL_TERMS = 10 };
 
 struct pixel_cell { /* pixels of one mesh in a cell, a square of CELL_PX pixels */
@@ -30,7 +30,7 @@ struct pixel_list {
        `unit` is 2^top. Coefficients of 1, x, y, z, xx, xy, xz, yy, yz, zz, with x, y, z from the centre in metres. */
     float top, unit, centre[3], total[PIXEL_TERMS], values[PIXEL_TERMS], marked[PIXEL_TERMS];
     uint32_t mesh, column, row; /* mesh and position of the list's cell, copied from struct pixel_cell */
-    uint32_t next;              /* set and read by the caller only */
+    uint32_t next;              /* index for the caller's own use, such as a linked list; the functions below ignore it */
 };
 
 struct pixel_lists {
@@ -52,7 +52,8 @@ float pixel_lists_step(const float *scale);
 void pixel_lists_add(struct pixel_lists *lists, const struct pixel_field *field, float step, const struct pixel_cell *cells, size_t count);
 /* Sets the pointer `sensors` of all lists. Call it after the last pixel_lists_add(), which may move the array. */
 void pixel_lists_settle(struct pixel_lists *lists);
-void pixel_lists_finish(struct pixel_lists *lists); /* a zeroed struct is fine; it can be used again */
+/* Frees the memory of the lists. Accepts a zeroed struct; the struct can be used again. */
+void pixel_lists_finish(struct pixel_lists *lists);
 
 /* Returns whether a sensor's weight is its strength / distance^2. */
 static inline bool pixel_is_inverse_square(const struct pixel_field *field)
