@@ -8,8 +8,10 @@ import { createServer } from 'node:tls';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { http, PlainClient } from './support/plain_client.mjs';
+import { promise } from './support/promise.mjs';
 import { sweep } from './support/sweep.mjs';
 import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { until } from './support/until.mjs';
 
 const skip = notBuilt();
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -22,12 +24,7 @@ const bearer = (token) => `Authorization: Bearer ${token}\r\n`;
 const ask = (url, token, { method = 'GET', localAddress } = {}) =>
     http(plant.port, `${method} ${url} HTTP/1.1\r\nHost: localhost\r\n${token ? bearer(token) : ''}\r\n`, { localAddress });
 async function found(what, where) {
-    for (let i = 0; i < 100; i++, await sleep(50)) {
-        const line = lines().find(where);
-        if (line)
-            return line;
-    }
-    throw new Error(`${what} is not in the trail:\n${readFileSync(trail, 'utf8')}`);
+    return await until(`${what} in the trail`, () => lines().find(where), 90, () => readFileSync(trail, 'utf8'));
 }
 
 // A server that parses RFC 5425: messages preceded by their length.
@@ -62,12 +59,7 @@ class SyslogServer {
     }
 
     async until(what, where) {
-        for (let i = 0; i < 200; i++, await sleep(50)) {
-            const message = this.messages.find(where);
-            if (message)
-                return message;
-        }
-        throw new Error(`${what} did not come:\n${this.messages.join('\n')}`);
+        return await until(what, () => this.messages.find(where), 90, () => this.messages.join('\n'));
     }
 }
 
@@ -199,7 +191,7 @@ test('thousands of wrong tokens: few lines, and others come in meanwhile', { ski
     const took = (performance.now() - began) / 1000;
     t.diagnostic(`${refused} refused in ${took.toFixed(1)} s; the slowest answer to another took ${slowest.toFixed(0)} ms`);
     assert.equal(refused, TRYING * EACH_TRIES);
-    assert.ok(slowest < 5000, `${slowest} ms`);
+    promise(t, 'the slowest answer to another client', slowest, 5000);
     await found('the slowing', (line) => /delayed/.test(line.why ?? ''));
     const held = await found('unchecked ones', (line) => /tokens from rate-limited addresses were refused unchecked/.test(line.what ?? ''));
     assert.equal(held.result, 'refused');
@@ -256,7 +248,7 @@ test('a disk that is full is said, in the log and the metrics, and nothing is lo
     assert.equal(verify().code, 0);
 });
 
-test('a small disk that is full is alarmed, no line on it is torn, and a read-only one is refused', { skip, timeout: 60000 }, async (t) => {
+test('a small disk that is full is alarmed, no line on it is torn, and a read-only one is refused', { skip, timeout: 200000 }, async (t) => {
     const small = path('small'), full = join(small, 'full'), usual = trail;
     mkdirSync(small);
     if (spawnSync('mount', ['-t', 'tmpfs', '-o', 'size=64k', 'tmpfs', small]).status !== 0)

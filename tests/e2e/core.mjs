@@ -228,14 +228,14 @@ test('an act that the core could not read ends no link; nor does a revoked token
     await all(async (node) => (await node.tags())['TI-1'].quality_name === 'Good');
 });
 
-test('`plantcast drain` sends the sessions of a daemon elsewhere; no other program gets its signal', options, async () => {
+test('`plantcast drain` sends the sessions of a daemon elsewhere; no other program gets its signal', options, async (t) => {
     const c = await nodes.renderer('c', core), client = await c.client({}, { token: nodes.tokens.operator });
     const stranger = runProgram('plantcast', ['drain', String(process.pid)]);
     assert.deepEqual([stranger.code, stranger.err], [1, `plantcast: ${process.pid}: no plantcastd\n`]);
     assert.equal(runProgram('plantcast', ['drain', 'c']).code, 2);
     const pid = String(c.program.child.pid), began = performance.now();
     assert.equal(runProgram('plantcast', ['drain', pid, '--wait', '0']).code, 0);
-    assert.ok(performance.now() - began < 5000);
+    promise(t, 'until `plantcast drain` returns', performance.now() - began, 5000);
     await client.until('its end', ({ closed }) => closed);
     assert.match(c.program.said, /drained: moving 1 sessions to other nodes/);
     await c.stop();

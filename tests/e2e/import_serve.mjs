@@ -111,10 +111,10 @@ const inForce = (page) => page.waitForFunction(() => {
     return !panel.classList.contains('new') && !panel.classList.contains('busy') && panel.querySelectorAll('.row').length > 0;
 }, null, { timeout: 200000 });
 const saved = (page) => page.waitForFunction(() => !document.querySelector('#import .row.decided') &&
-    !document.querySelector('#import.busy'), null, { timeout: 60000 });
+    !document.querySelector('#import.busy'));
 const assetsOf = (page) => page.evaluate(() => globalThis.plantcast.session.model.assets.map(({ id }) => id));
 const wrong = (page, pattern) => page.waitForFunction((what) => new RegExp(what).test(document.querySelector('#import .wrong').textContent),
-    pattern, { timeout: 60000 });
+    pattern);
 
 // --- requests over HTTP
 
@@ -412,8 +412,7 @@ test('what was decided stays when the models are read again in other units', opt
     assert.match(await size(), /^2\.74 × 0\.30 × 0\.30 m$/, 'what it would be');
     await page.locator('#import .measures select').last().selectOption('z');
     await page.getByRole('button', { name: 'Apply' }).click();
-    await page.waitForFunction(() => Math.abs(globalThis.plantcast.session.model.plant.bounds.max[0] - 9 * 0.3048) < 0.01, null,
-        { timeout: 60000 });
+    await page.waitForFunction(() => Math.abs(globalThis.plantcast.session.model.plant.bounds.max[0] - 9 * 0.3048) < 0.01);
     await page.waitForFunction(() => !document.querySelector('#import.busy'));
     assert.match(await size(), /^2\.74 × 0\.30 × 0\.30 m$/);
     assert.match(served.read('plant.yaml'), /units: ft, up: z/);
@@ -534,8 +533,7 @@ test('a source: stated, values seen to arrive, corrected, kept when the plant is
     const own = await Served.start(), seen = await openPage(`${own.url}?lang=en`, DESK), { page: desk } = seen;
     const list = ['Tag Name,Address,Data Type,Scaled Low,Scaled High,Eng Units,Description', 'E-101.TT-01,400001,Float,0,150,degC,Shell',
         'P-201A.TT-01,400003,Float,0,120,degC,Bearing', 'P-201B.PT-01,400005,Float,0,16,bar,Outlet', ''].join('\n');
-    const live = (text) => desk.waitForFunction((what) => document.querySelector('#import .live').textContent === what, text,
-        { timeout: 60000 });
+    const live = (text) => desk.waitForFunction((what) => document.querySelector('#import .live').textContent === what, text);
     const source = async () => (await (await own.api('')).json()).source, fold = desk.locator('#import .source');
     const connect = async (port) => {
         await fold.getByLabel('Modbus TCP device').fill('127.0.0.1');
@@ -543,7 +541,7 @@ test('a source: stated, values seen to arrive, corrected, kept when the plant is
         await fold.getByLabel('Byte order').selectOption('CDAB');
         await fold.getByRole('button', { name: 'Connect' }).click();
         await desk.waitForFunction((text) => document.querySelector('#import .source summary b').textContent === text &&
-            !document.querySelector('#import.busy'), `127.0.0.1:${port}`, { timeout: 60000 });
+            !document.querySelector('#import.busy'), `127.0.0.1:${port}`);
     };
     let sim;
     try {
@@ -577,15 +575,14 @@ test('a source: stated, values seen to arrive, corrected, kept when the plant is
         await desk.locator('#import .measures summary').click();
         await desk.locator('#import .measures select').first().selectOption('ft');
         await desk.getByRole('button', { name: 'Apply' }).click();
-        await desk.waitForFunction(() => Math.abs(globalThis.plantcast.session.model.plant.bounds.max[0] - 9 * 0.3048) < 0.01, null,
-            { timeout: 60000 });
+        await desk.waitForFunction(() => Math.abs(globalThis.plantcast.session.model.plant.bounds.max[0] - 9 * 0.3048) < 0.01);
         await desk.waitForFunction(() => !document.querySelector('#import.busy'));
         assert.equal((await source()).port, String(port));
         await live('3 of 3 tags have values');
         await desk.reload();
         await waitForPicture(desk);
         await desk.locator('#import-toggle').click();
-        await desk.waitForFunction(() => document.querySelector('#import .measures select')?.value === 'ft', null, { timeout: 30000 });
+        await desk.waitForFunction(() => document.querySelector('#import .measures select')?.value === 'ft');
         for (const query of ['host=a%20b', 'host=--x', 'port=1', 'host=a&port=70000', 'host=a&order=XYZ', 'host=a&unit=256'])
             assert.equal((await own.post(`/source?${query}`)).status, 400, query);
         // An import without a tag list is refused, because the plant's source would be lost.
@@ -642,7 +639,7 @@ test('millimetres taken for metres: seen beside a person, and corrected', option
         await seen.page.locator('#import .measures select').first().selectOption('mm');
         assert.match(await size(), /^9\.00 × 1\.00 × 1\.00 m$/);
         await seen.page.getByRole('button', { name: 'Apply' }).click();
-        await seen.page.waitForFunction(() => globalThis.plantcast.session.model.plant.bounds.max[0] < 10, null, { timeout: 60000 });
+        await seen.page.waitForFunction(() => globalThis.plantcast.session.model.plant.bounds.max[0] < 10);
         await seen.page.waitForFunction(() => !document.querySelector('#import.busy'));
         await arrive(seen.page);
         await shoot(seen.page, 'import-10-corrected');
@@ -671,7 +668,7 @@ test('letters: what a list is read as is shown, and another encoding is chosen',
         await readAs('^tags.csv: read as Windows-1251$');
         assert.doesNotMatch(own.read('tags.csv'), /泵/);
         await sheet.reload();
-        await sheet.waitForFunction(() => document.querySelector('#import select')?.value === 'Windows-1251', null, { timeout: 60000 });
+        await sheet.waitForFunction(() => document.querySelector('#import select')?.value === 'Windows-1251');
     } finally {
         await view.close();
         await own.destroy();

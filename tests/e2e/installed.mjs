@@ -82,7 +82,7 @@ test('a display of a wall, too: without a network it says which one it is, and s
     await page.context().setOffline(true);
     await display.reload();
     await display.locator('#lost', { hasText: /^No connection to the plant.*Display 2 of room, waiting since \d\d:\d\d:\d\d$/s })
-        .waitFor({ timeout: 30000 });
+        .waitFor();
     await shoot(display, 'wall-offline');
     await page.context().setOffline(false);
     await display.close();

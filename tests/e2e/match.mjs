@@ -11,6 +11,7 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 import { formats, makeTagList } from './support/tag_lists.mjs';
 import { openPage, waitForPicture } from './support/browser.mjs';
+import { promise } from './support/promise.mjs';
 import { BIN, missing, Program, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -98,7 +99,7 @@ for (const { plant, format, bring } of [
         good(run('plantcastd', '--check', join(out, 'plant.yaml')));
     }));
 
-test('2,000 assets and 5,000 tags take no more than 2 minutes', { skip: notBuilt }, () => inFolder((folder) => {
+test('2,000 assets and 5,000 tags take no more than 2 minutes', { skip: notBuilt }, (t) => inFolder((folder) => {
     const names = Array.from({ length: 2000 }, (_, i) => `${'PEVKC'[i % 5]}-${10 + i % 40}${100 + Math.floor(i / 5)}`);
     boxPlant(folder, names);
     const list = join(folder, 'export'), { rows, truth } = makeTagList(names, { seed, foreign: 0.05 });
@@ -107,7 +108,7 @@ test('2,000 assets and 5,000 tags take no more than 2 minutes', { skip: notBuilt
     const { precision, recall } = count(folder, truth);
     console.log(`# ${ms} ms; precision ${(100 * precision).toFixed(2)} %, recall ${(100 * recall).toFixed(2)} %`);
     assert.match(said.stdout, /2000 assets chosen/);
-    assert.ok(ms < 120000);
+    promise(t, 'matching', ms, 120000);
 }));
 
 test('a list in a bad way: repeated rows, Korean, slashes, blanks, control characters', { skip: notBuilt }, () => inFolder((folder) => {

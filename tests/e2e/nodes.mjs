@@ -6,6 +6,7 @@ import { existsSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from 'nod
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { promise } from './support/promise.mjs';
 import { BIN, notBuilt } from './support/tiny_plant.mjs';
 
 const DATA = join(import.meta.dirname, '../../../shared/data');
@@ -75,7 +76,7 @@ test('millimetres taken for metres are doubted', { skip }, () => {
     assert.doesNotMatch(nodes(ours).stdout, /units right/, 'import knows');
 });
 
-test('100,000 nodes take seconds', { skip }, () => {
+test('100,000 nodes take seconds', { skip }, (t) => {
     const list = [{ name: 'top', children: Array.from({ length: 300 }, (_, i) => i + 1) }];
     for (let i = 0; i < 300; i++)
         list.push({ name: `area ${i}`, children: Array.from({ length: 333 }, (_, k) => 301 + i * 333 + k) });
@@ -85,8 +86,7 @@ test('100,000 nodes take seconds', { skip }, () => {
     const seconds = Number(process.hrtime.bigint() - from) / 1e9;
     assert.equal(status, 0);
     assert.equal(stdout.trimEnd().split('\n').length, 100203, stdout.slice(0, 400));
-    console.log(`# ${seconds.toFixed(2)} s`);
-    assert.ok(seconds < 20, `${seconds} s`);
+    promise(t, 'listing the nodes', 1000 * seconds, 20000);
 });
 
 test('what is no model is one line', { skip }, () => {

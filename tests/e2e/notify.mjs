@@ -7,6 +7,7 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 import { Client } from './conformance/client.mjs';
 import { freePort } from './support/ports.mjs';
+import { promise } from './support/promise.mjs';
 import { HookServer, MailServer, makeCertificate } from './support/receivers.mjs';
 import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
@@ -114,7 +115,7 @@ test('a certificate that nobody trusts gets no mail, and no password', options, 
     }
 });
 
-test('500 alarms in one second are one message, while a mail server hangs and a hook is refused', options, async () => {
+test('500 alarms in one second are one message, while a mail server hangs and a hook is refused', options, async (t) => {
     const hook = new HookServer(), EXTRA = 500;
     await hook.listen();
     const port = await freePort();
@@ -157,10 +158,10 @@ notify:
             await fetch(`http://127.0.0.1:${plant.port}/api/v1/alarms?limit=1`);
             took_ms.push(performance.now() - asked);
         }
-        assert.ok(Math.min(...took_ms) < 1000, `nothing else waits for it: ${took_ms} ms`);
+        promise(t, 'a question beside the slow recipient', Math.min(...took_ms), 1000);
         const stopping = performance.now(), { code } = await plant.daemon.stop();
         assert.equal(code, 0);
-        assert.ok(performance.now() - stopping < 10000, 'nor does the end');
+        promise(t, 'until the daemon has ended', performance.now() - stopping, 10000);
         mail.mode = 'take';
         await plant.startDaemon();
         const [{ subject, body }] = await until('after the outage', () => mail.mails.length > 0 && mail.mails);

@@ -72,7 +72,7 @@ test('a long answer comes whole, in pieces', options, async () => {
     assert.equal(JSON.parse(old.slice(old.indexOf('\r\n\r\n'))).series.length, TAGS);
 });
 
-test('readers who do not read cost little memory, and others have their answers', options, async () => {
+test('readers who do not read cost little memory, and others have their answers', options, async (t) => {
     const alone = await othersSeconds(), before = residentMB();
     const readers = Array.from({ length: READERS }, () => {
         const socket = connect({ port: plant.port, host: '127.0.0.1', ...GREEDY }, () => socket.write(head(all)));
@@ -90,7 +90,7 @@ test('readers who do not read cost little memory, and others have their answers'
     console.log(`# ${(most - before).toFixed(0)} MB more for ${READERS} who do not read; ` +
         `another's answer took ${alone.toFixed(2)} s alone, ${slowest.toFixed(2)} s at most`);
     assert.ok(most - before < 256, `${(most - before).toFixed(0)} MB`);
-    assert.ok(slowest < Math.max(1, 20 * alone), `${slowest.toFixed(1)} s`);
+    promise(t, "the slowest answer to another client", 1000 * slowest, 1000 * Math.max(1, 20 * alone));
 });
 
 test('who asks for all, all the time, leaves others their answers', options, async (t) => {

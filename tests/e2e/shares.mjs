@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { connect } from 'node:net';
 import { after, before, test } from 'node:test';
 import { get, PlainClient } from './support/plain_client.mjs';
+import { promise } from './support/promise.mjs';
 import { long } from './support/promise.mjs';
 import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 
@@ -97,7 +98,7 @@ async function othersPart() {
     return part;
 }
 
-test('who has all drawn that may be leaves another address its frames and its pictures', crowded, async () => {
+test('who has all drawn that may be leaves another address its frames and its pictures', crowded, async (t) => {
     const alone = await othersPart(), greedy = await crowd(30, GREEDY, { width: 1280, height: 720 });
     assert.ok(greedy.admitted.length > 10);
     let going = true, turn = 0;
@@ -123,7 +124,7 @@ test('who has all drawn that may be leaves another address its frames and its pi
     // On a busy machine everything takes longer.
     assert.ok(beside.rate >= Math.min(5, alone.rate / 8), `${beside.rate.toFixed(1)} frames/s`);
     assert.equal(beside.status, 200);
-    assert.ok(beside.seconds <= Math.max(3, 12 * alone.seconds), `${beside.seconds.toFixed(1)} s`);
+    promise(t, 'a small picture beside the greedy client', 1000 * beside.seconds, 1000 * Math.max(3, 12 * alone.seconds));
     assert.ok(answers.includes(200) && answers.includes(503), 'the greedy one had some, and not all');
 });
 

@@ -126,7 +126,7 @@ test('what the page says is clicked, and what it shows comes', { skip: skip || l
             .catch(async () => assert.fail(`not said: ${text}; but: ${await panel.innerText()}`));
         const filter = (name) => panel.locator('.segments label', { hasText: new RegExp(`^\\d+${name}$`) });
         const idle = () => room.waitForFunction(() => !document.querySelector('#import.busy') &&
-            !document.querySelector('#import .row.decided'), null, { timeout: 60000 });
+            !document.querySelector('#import .row.decided'));
         await waitForPicture(room);
         await settle(room);
         await shoot(room, 'page-1-empty');
@@ -184,8 +184,7 @@ test('what the page says is clicked, and what it shows comes', { skip: skip || l
         await settle(room);
         await shoot(room, 'page-4b-save');
         await button(named('Save and apply')).click();
-        await room.waitForFunction(() => globalThis.plantcast.session.model.tag('ART1105BA_TT01').place === undefined, null,
-            { timeout: 60000 });
+        await room.waitForFunction(() => globalThis.plantcast.session.model.tag('ART1105BA_TT01').place === undefined);
         await arrive(room);
         await shoot(room, 'page-4c-saved');
 

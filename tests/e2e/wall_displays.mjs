@@ -62,17 +62,17 @@ const paneTitle = (area) => page.locator(`.pane.${area} h2`);
 const inner = () => document.querySelector('.pane.views iframe').contentWindow.plantcast?.session.picture;
 test('each pane shows what it is for', options, async () => {
     await page.waitForURL(/wall\.html\?wall=room/);
-    await page.locator('.tile .value', { hasText: '°C' }).first().waitFor({ timeout: 60000 });
-    await page.waitForFunction(inner, null, { timeout: 90000 });
+    await page.locator('.tile .value', { hasText: '°C' }).first().waitFor();
+    await page.waitForFunction(inner);
     await page.waitForFunction(() => {
         const { clientWidth, clientHeight } = document.querySelector('.pane.views iframe').contentDocument.getElementById('viewport');
         return clientWidth > 400 && clientHeight > 300;
-    }, null, { timeout: 30000 });
+    });
     await page.waitForFunction(() => { // waits for a picture from the home camera with the pane's final shape
         const { session } = document.querySelector('.pane.views iframe').contentWindow.plantcast, { width, height } = session.size;
         const { eye } = session.homeIn(width, height);
         return session.picture?.camera.eye.every((m, i) => Math.abs(m - eye[i]) < 0.01);
-    }, null, { timeout: 30000 });
+    });
     await page.locator('.clock b').filter({ hasText: /^\d\d:\d\d:\d\d$/ }).waitFor();
     assert.match(await paneTitle('alarms').textContent(), /Alarms/);
     const letters = await page.locator('.tile .name, .pane.alarms').evaluateAll((all) => all.map((e) => getComputedStyle(e).fontSize));
@@ -81,16 +81,16 @@ test('each pane shows what it is for', options, async () => {
 });
 
 test('views follow each other without a flight', options, async () => {
-    await page.locator('.pane.views h2', { hasText: 'From above' }).waitFor({ timeout: 60000 });
+    await page.locator('.pane.views h2', { hasText: 'From above' }).waitFor();
     await page.waitForFunction(() => {
         const { picture } = document.querySelector('.pane.views iframe').contentWindow.plantcast.session;
         return Math.abs(picture.camera.eye[2] - 30) < 0.01;
-    }, null, { timeout: 60000, polling: 100 });
-    await page.locator('.pane.views h2', { hasText: 'Whole unit' }).waitFor({ timeout: 60000 });
+    }, null, { polling: 100 });
+    await page.locator('.pane.views h2', { hasText: 'Whole unit' }).waitFor();
     await page.waitForFunction(() => {
         const { picture } = document.querySelector('.pane.views iframe').contentWindow.plantcast.session;
         return Math.abs(picture.camera.eye[2] - 30) > 1; // the camera is at home
-    }, null, { timeout: 60000, polling: 100 });
+    }, null, { polling: 100 });
 });
 
 test('an alarm comes to the pane that is for it, and leaves once it is acknowledged', options, async () => {
@@ -106,12 +106,12 @@ test('an alarm comes to the pane that is for it, and leaves once it is acknowled
         look();
     });
     await plant.ask('set PI-1 95');
-    await page.locator('.pane.views.called h2', { hasText: 'PI-1' }).waitFor({ timeout: 60000 });
+    await page.locator('.pane.views.called h2', { hasText: 'PI-1' }).waitFor();
     await page.locator('.pane.alarms li.waiting', { hasText: 'PI-1' }).waitFor();
     assert.ok(await page.locator('.tile[data-alarm]:not([data-alarm=""])').count() > 0);
     await page.waitForFunction(() => [...document.querySelectorAll('.pane.views')].some((pane) => !pane.classList.contains('coming') &&
         /PI-1/.test(pane.querySelector('h2').textContent) &&
-        pane.querySelector('iframe').contentWindow.plantcast?.session.shown.group === 'pressure'), null, { timeout: 60000 });
+        pane.querySelector('iframe').contentWindow.plantcast?.session.shown.group === 'pressure'));
     assert.equal(await page.evaluate(() => globalThis.mixed), 0, 'its name stands over no picture of another quantity');
     await shoot(page, 'wall-display-alarm');
     await page.evaluate(() => {
@@ -119,17 +119,17 @@ test('an alarm comes to the pane that is for it, and leaves once it is acknowled
         const alarms = all.filter(({ state }) => state === 'unacknowledged').map(({ tag, kind }) => [tag.name, kind]);
         session.post({ type: 'alarm', seq: 1, action: 'acknowledge', alarms, name: 'kim' });
     });
-    await page.waitForFunction(() => !document.querySelector('.pane.views.called'), null, { timeout: 60000 });
+    await page.waitForFunction(() => !document.querySelector('.pane.views.called'));
 });
 
 test('another display has its own panes', options, async () => {
     const other = await openPage(`${plant.url}?wall=room&display=2`, { viewport: { width: 960, height: 540 } });
-    await other.page.locator('.pane.text p', { hasText: 'Clean F-101' }).waitFor({ timeout: 60000 });
+    await other.page.locator('.pane.text p', { hasText: 'Clean F-101' }).waitFor();
     await other.page.waitForFunction(() => {
         const { contentDocument: inner, contentWindow: { innerHeight } } = document.querySelector('.pane.trend iframe');
         const chart = inner?.querySelector('#trend-chart canvas')?.getBoundingClientRect();
         return chart?.height > 0.5 * innerHeight && chart.bottom < innerHeight;
-    }, null, { timeout: 90000 });
+    });
     await shoot(other.page, 'wall-display-2');
     await other.close();
     const gone = await openPage(`${plant.url}wall.html?wall=nowhere`, { viewport: { width: 800, height: 600 } });
@@ -152,19 +152,19 @@ test('a view that names what the plant does not have is not shown, and said', op
     assert.doesNotMatch(stdout, /view (whole|above|since):/);
     const other = await openPage(`${plant.url}?wall=room&display=4`, { viewport: { width: 1280, height: 720 } });
     const left = other.page.locator('.pane.views').first(), right = other.page.locator('.pane.views').nth(1);
-    await left.locator('.why', { hasText: 'cannot be shown: this plant has no quantity “presure”' }).waitFor({ timeout: 60000 });
+    await left.locator('.why', { hasText: 'cannot be shown: this plant has no quantity “presure”' }).waitFor();
     assert.equal(await left.locator('h2 .said').textContent(), 'Pressures');
     assert.equal(await left.locator('iframe').isVisible(), false);
-    await right.locator('h2 .about', { hasText: 'Temperature' }).waitFor({ timeout: 60000 });
+    await right.locator('h2 .about', { hasText: 'Temperature' }).waitFor();
     assert.equal(await right.locator('.why').isVisible(), false);
     await shoot(other.page, 'wall-display-wrong-view');
     await plant.ask('set TI-2 95'); // an alarm can still be shown in the pane
-    await other.page.waitForFunction(() => document.querySelector('.pane.views.called:not(.unshown, .coming)'), null, { timeout: 60000 });
+    await other.page.waitForFunction(() => document.querySelector('.pane.views.called:not(.unshown, .coming)'));
     assert.equal(await left.locator('iframe').isVisible(), true);
     await plant.ask('set TI-2 20');
     await other.page.goto(plant.url);
     await other.page.click('#views-toggle');
-    await other.page.locator('#named-list em').first().waitFor({ timeout: 60000 });
+    await other.page.locator('#named-list em').first().waitFor();
     const said = await other.page.locator('#named-list em').allTextContents();
     assert.equal(said.length, 2, 'the two that are wrong say so in the list');
     await other.close();
@@ -217,7 +217,7 @@ test('a lost server is said in large letters, and ends by itself', options, asyn
     assert.ok(px >= 50, `${px} pixels`);
     await shoot(page, 'wall-display-lost');
     await plant.startDaemon();
-    await page.locator('#lost').waitFor({ state: 'hidden', timeout: 60000 });
-    await page.locator('.tile .value', { hasText: '°C' }).first().waitFor({ timeout: 60000 });
-    await page.waitForFunction(inner, null, { timeout: 60000 });
+    await page.locator('#lost').waitFor({ state: 'hidden' });
+    await page.locator('.tile .value', { hasText: '°C' }).first().waitFor();
+    await page.waitForFunction(inner);
 });

@@ -5,6 +5,7 @@ import { appendFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { openPage } from './support/browser.mjs';
 import { PlainClient } from './support/plain_client.mjs';
+import { promise } from './support/promise.mjs';
 import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
@@ -41,14 +42,14 @@ async function leading() {
     return leader;
 }
 
-test('the page of a tile whose clock is 5 s ahead shows each picture at the server\'s time', options, async () => {
+test('the page of a tile whose clock is 5 s ahead shows each picture at the server\'s time', options, async (t) => {
     const leader = await leading();
     const { page, close } = await openPage(`${url()}wall.html?wall=wide&display=2`, { viewport: { width: WIDTH, height: HEIGHT } }, () => {
         const { now } = Date, { timeOrigin } = performance;
         Date.now = () => now.call(Date) + 5000;
         Object.defineProperty(performance, 'timeOrigin', { value: timeOrigin + 5000 });
     });
-    await page.waitForFunction(() => globalThis.wall?.panes[0]?.session?.picture, null, { timeout: 60000 });
+    await page.waitForFunction(() => globalThis.wall?.panes[0]?.session?.picture);
     await page.evaluate(() => {
         globalThis.shown = [];
         globalThis.wall.panes[0].session.on('presented', ({ number }) => globalThis.shown.push({ number, at: Date.now() - 5000 }));
@@ -61,7 +62,7 @@ test('the page of a tile whose clock is 5 s ahead shows each picture at the serv
             .map(({ at_us: us }) => at - us / 1000));
     }
     assert.ok(late.length >= 3 && late.every((ms) => ms > -200), `${late}: none is shown before its time`);
-    assert.ok(Math.min(...late) < NEAR_MS, `${late}`);
+    promise(t, 'a picture after its time', Math.min(...late), NEAR_MS);
     await close();
     leader.close();
 });

@@ -30,11 +30,11 @@ const folder = folderOfTests();
 let plant, wall, desk, id;
 
 const digitsOf = async (page) => {
-    await page.locator('#denied .digits', { hasText: /^\d{3}.\d{3}$/ }).waitFor({ timeout: 60000 });
+    await page.locator('#denied .digits', { hasText: /^\d{3}.\d{3}$/ }).waitFor();
     return (await page.locator('#denied .digits').textContent()).replace(/\D/g, '');
 };
 const letIn = async (page, token) => {
-    await page.locator('#token[open]').waitFor({ timeout: 60000 });
+    await page.locator('#token[open]').waitFor();
     await page.locator('#token-text').fill(token);
     await page.locator('#token-form button').click();
     await waitForPicture(page);
@@ -57,7 +57,7 @@ before(async () => {
     desk = await openPage(plant.url, { viewport: { width: 1280, height: 720 } });
     await letIn(desk.page, tokens.engineer);
     await desk.page.click('#views-toggle');
-    await desk.page.locator('#devices').waitFor({ timeout: 60000 });
+    await desk.page.locator('#devices').waitFor();
 });
 after(async () => {
     await wall?.close();
@@ -100,7 +100,7 @@ test('digits that no display shows, other secrets and other people change nothin
     await desk.page.fill('#devices-digits', '000 000');
     await desk.page.click('#devices button[type=submit]');
     await desk.page.locator('#toast, [role=status], [role=alert]').filter({ hasText: 'no display shows this code' }).first()
-        .waitFor({ timeout: 20000 });
+        .waitFor();
     assert.equal((await get('api/v1/pair?wall=room&display=1', 'Pairing pc_1')).status, 400);
     assert.equal((await get('api/v1/pair?wall=nowhere&display=1', `Pairing pc_${'0'.repeat(64)}`)).status, 400);
     assert.equal((await get('api/v1/devices', `Bearer ${tokens.operator}`)).status, 403);
@@ -115,12 +115,11 @@ test('an engineer lets it in, and who did it is in the audit trail', options, as
     await desk.page.fill('#devices-digits', await digitsOf(wall.page));
     await desk.page.click('#devices button[type=submit]');
     const row = desk.page.locator('#devices-list li');
-    await row.waitFor({ timeout: 30000 });
+    await row.waitFor();
     assert.match(await row.textContent(), /Display 1 of room, from 127\.0\.0\.1, paired by engineer-1/);
     id = await row.getAttribute('data-id');
-    await wall.page.locator('.pane.alarms').waitFor({ timeout: 60000 });
-    await wall.page.waitForFunction(() => document.querySelector('.pane.views iframe').contentWindow.plantcast?.session.picture, null,
-        { timeout: 90000 });
+    await wall.page.locator('.pane.alarms').waitFor();
+    await wall.page.waitForFunction(() => document.querySelector('.pane.views iframe').contentWindow.plantcast?.session.picture);
     await shoot(desk.page, 'devices');
     assert.match(audit(), /engineer-1.*pair room\.1\.1/);
 });
@@ -129,7 +128,7 @@ test('it is that display only, as a viewer, also after a restart of the daemon',
     await plant.stopDaemon('SIGKILL');
     await plant.startDaemon();
     await wall.page.reload();
-    await wall.page.locator('.pane.alarms').waitFor({ timeout: 60000 });
+    await wall.page.locator('.pane.alarms').waitFor();
     const secret = await wall.page.evaluate(() => localStorage.getItem('plantcast.wall.room.1'));
     assert.equal((await get('api/v1/devices', `Bearer ${secret}`)).status, 403);
     assert.deepEqual(await (await get('api/v1/pair?wall=room&display=1', `Pairing ${secret}`)).json(), { paired: true });
@@ -140,7 +139,7 @@ test('it is that display only, as a viewer, also after a restart of the daemon',
         await new Promise((done) => setTimeout(done, 200));
     assert.match(audit(), /refused.*this token belongs to display 1 of wall room/);
     await wall.page.reload();
-    await wall.page.locator('.pane.alarms').waitFor({ timeout: 60000 });
+    await wall.page.locator('.pane.alarms').waitFor();
 });
 
 // Opens a client of that display; pairs: the desk approves its digits first.
@@ -150,7 +149,7 @@ async function displayClient(display, secret, pairs) {
         await desk.page.waitForFunction(() => {
             const { welcomed, connection } = globalThis.plantcast.session;
             return welcomed && connection.state === 'open';
-        }, null, { timeout: 60000 });
+        });
         await desk.page.evaluate((six) => globalThis.plantcast.session.post({ type: 'pair', seq: 9, digits: six }), digits);
         const end = Date.now() + 90000;
         while (!(await (await get(`api/v1/pair?wall=room&display=${display}`, `Pairing ${secret}`)).json()).paired && Date.now() < end)
@@ -231,9 +230,9 @@ async function wallPage(display, key, token) {
 
 test('the pages of a display that is let in, and of a token of some views, show what they may', options, async () => {
     const tiles = await wallPage(2, 'plantcast.wall.room.2', `pc_${'1'.repeat(64)}`);
-    await tiles.page.waitForFunction(() => /\d/.test(document.querySelector('.tile .value')?.textContent ?? ''), null, { timeout: 60000 });
+    await tiles.page.waitForFunction(() => /\d/.test(document.querySelector('.tile .value')?.textContent ?? ''));
     const trend = tiles.page.frameLocator('.pane.trend iframe');
-    await trend.locator('.uplot').first().waitFor({ timeout: 60000 });
+    await trend.locator('.uplot').first().waitFor();
     await shoot(tiles.page, 'wall-device');
     assert.deepEqual(tiles.errors, []);
     await tiles.close();
@@ -243,9 +242,8 @@ test('the pages of a display that is let in, and of a token of some views, show 
     const lobby = made.out.trim();
     await plant.logged(/tokens .*: 5$/m);
     const seen = await wallPage(1, 'plantcast.wall', lobby);
-    await seen.page.locator('.pane.views .said', { hasText: 'Whole unit' }).waitFor({ timeout: 60000 });
-    await seen.page.waitForFunction(() => document.querySelector('.pane.views iframe').contentWindow.plantcast?.session.picture, null,
-        { timeout: 90000 });
+    await seen.page.locator('.pane.views .said', { hasText: 'Whole unit' }).waitFor();
+    await seen.page.waitForFunction(() => document.querySelector('.pane.views iframe').contentWindow.plantcast?.session.picture);
     await shoot(seen.page, 'wall-views-token');
     assert.equal(await seen.page.locator('.pane').count(), 1);
     assert.doesNotMatch(audit(), /refused.*lobby|lobby.*refused/);
@@ -268,7 +266,7 @@ test('a viewer notes, sends and points at nothing; who may stands in the audit t
     for (const what of ['to note something', 'to send something to a wall'])
         assert.match(audit(), new RegExp(`refused.*room\\.1\\.1.*${what}: this needs the role operator`));
     assert.equal(audit().split('to send something to a wall: this needs').length - 1, 2); // sending, and pointing
-    await desk.page.waitForFunction(() => globalThis.plantcast.session.connection.state === 'open', null, { timeout: 60000 });
+    await desk.page.waitForFunction(() => globalThis.plantcast.session.connection.state === 'open');
     await post(desk.page, 'page');
     assert.match(audit(), /engineer-1.*at E-101: Manhole open/);
     assert.match(audit(), /engineer-1.*hold room, display 1, main/);
@@ -278,8 +276,8 @@ test('it is dark within 3 s of being revoked', options, async (t) => {
     await desk.page.waitForFunction(() => {
         const { welcomed, connection } = globalThis.plantcast.session;
         return welcomed && connection.state === 'open';
-    }, null, { timeout: 60000 });
-    await desk.page.locator(`#devices-list li[data-id="${id}"] button`).click({ timeout: 60000 });
+    });
+    await desk.page.locator(`#devices-list li[data-id="${id}"] button`).click();
     const clicked = Date.now();
     await wall.page.locator('#denied').waitFor();
     promise(t, 'until it is dark', Date.now() - clicked, 3000);

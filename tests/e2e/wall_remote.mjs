@@ -31,7 +31,7 @@ before(async () => {
     desk = await openPage(plant.url, { viewport: { width: 1280, height: 720 } });
     await waitForPicture(desk.page);
     await desk.page.click('#views-toggle');
-    await desk.page.locator('#remote-pane option').first().waitFor({ state: 'attached', timeout: 60000 });
+    await desk.page.locator('#remote-pane option').first().waitFor({ state: 'attached' });
 });
 after(async () => {
     await wall?.close();
@@ -43,7 +43,7 @@ const title = () => wall.page.locator('.pane.views h2');
 const eyeOfPane = (z) => wall.page.waitForFunction((wanted) => {
     const { picture } = document.querySelector('.pane.views iframe').contentWindow.plantcast?.session ?? {};
     return picture && Math.abs(picture.camera.eye[2] - wanted) < 0.01;
-}, z, { timeout: 60000, polling: 100 });
+}, z, { polling: 100 });
 const inPane = () => wall.page.frameLocator('.pane.views iframe');
 
 test('a note is seen by all, and on the wall, until it is removed', options, async () => {
@@ -56,7 +56,7 @@ test('a note is seen by all, and on the wall, until it is removed', options, asy
     await desk.page.locator('#notes-list li', { hasText: 'Manhole open' }).waitFor();
     assert.match(await desk.page.locator('#notes-list small').textContent(), /E-101 · local, .*until/);
     await desk.page.locator('.note-pin', { hasText: 'Manhole' }).waitFor();
-    await inPane().locator('.note-pin', { hasText: 'Manhole' }).waitFor({ timeout: 90000 });
+    await inPane().locator('.note-pin', { hasText: 'Manhole' }).waitFor();
     await settle(desk.page);
     await shoot(desk.page, 'notes');
     const { list } = await (await fetch(`${plant.url}api/v1/notes`)).json();
@@ -67,20 +67,18 @@ test('a note is seen by all, and on the wall, until it is removed', options, asy
 test('notes outlive the daemon', options, async () => {
     await plant.stopDaemon('SIGKILL');
     await plant.startDaemon();
-    await wall.page.locator('#lost').waitFor({ state: 'hidden', timeout: 60000 });
-    await desk.page.waitForFunction(() => globalThis.plantcast.session.welcomed && globalThis.plantcast.session.notes.length === 1, null,
-        { timeout: 60000 });
-    await inPane().locator('.note-pin', { hasText: 'Manhole' }).waitFor({ timeout: 60000 });
+    await wall.page.locator('#lost').waitFor({ state: 'hidden' });
+    await desk.page.waitForFunction(() => globalThis.plantcast.session.welcomed && globalThis.plantcast.session.notes.length === 1);
+    await inPane().locator('.note-pin', { hasText: 'Manhole' }).waitFor();
 });
 
 test('a view is sent to a pane, and who sent it is said there', options, async () => {
     await desk.page.fill('#remote-desk', 'Desk 2');
-    await desk.page.locator('#remote-said', { hasText: 'connected' }).waitFor({ timeout: 60000 });
+    await desk.page.locator('#remote-said', { hasText: 'connected' }).waitFor();
     await desk.page.locator('.named-open', { hasText: 'From above' }).click();
-    await desk.page.waitForFunction(() => Math.abs(globalThis.plantcast.session.picture.camera.eye[2] - 30) < 0.01, null,
-        { timeout: 60000 });
+    await desk.page.waitForFunction(() => Math.abs(globalThis.plantcast.session.picture.camera.eye[2] - 30) < 0.01);
     await desk.page.click('#remote-send');
-    await title().filter({ hasText: 'sent by Desk 2, local' }).waitFor({ timeout: 60000 });
+    await title().filter({ hasText: 'sent by Desk 2, local' }).waitFor();
     assert.match(await title().textContent(), /From above/);
     assert.match(await title().locator('.about').textContent(), /Temperature · data .* old/);
     await eyeOfPane(30);
@@ -100,7 +98,7 @@ test('a place is pointed at in the pane', options, async () => {
     await inPane().locator('.note-pin.pointer', { hasText: 'Desk 2, local' }).waitFor();
     await shoot(wall.page, 'wall-remote');
     await desk.page.uncheck('#remote-points');
-    await inPane().locator('.note-pin.pointer').waitFor({ state: 'detached', timeout: 15000 });
+    await inPane().locator('.note-pin.pointer').waitFor({ state: 'detached' });
 });
 
 test('a click while pointing is answered', options, async () => {
@@ -125,39 +123,39 @@ test('a click while pointing is answered', options, async () => {
 test('desk and wall find each other again after reloads', options, async () => {
     await wall.page.reload();
     await desk.page.reload();
-    await title().filter({ hasText: 'sent by Desk 2' }).waitFor({ timeout: 90000 });
+    await title().filter({ hasText: 'sent by Desk 2' }).waitFor();
     await eyeOfPane(30);
     await waitForPicture(desk.page);
     await desk.page.click('#views-toggle');
-    await desk.page.locator('#remote-said', { hasText: 'sent by Desk 2, local' }).waitFor({ timeout: 60000 });
+    await desk.page.locator('#remote-said', { hasText: 'sent by Desk 2, local' }).waitFor();
     assert.equal(await desk.page.inputValue('#remote-desk'), 'Desk 2');
 });
 
 test('an alarm comes before what was sent, which then comes back', options, async () => {
     const usual = await plant.ask('get TI-1');
     await plant.ask('set TI-1 95');
-    await wall.page.locator('.pane.views.called h2', { hasText: 'TI-1' }).waitFor({ timeout: 60000 });
+    await wall.page.locator('.pane.views.called h2', { hasText: 'TI-1' }).waitFor();
     await plant.ask(`set TI-1 ${usual}`);
-    await wall.page.locator('.pane.views.called h2 .priority.hollow').waitFor({ timeout: 60000 }); // returned, not acknowledged
+    await wall.page.locator('.pane.views.called h2 .priority.hollow').waitFor(); // returned, not acknowledged
     await wall.page.evaluate(() => {
         const { session } = globalThis.wall, alarms = [...session.model.alarms.rows.values()].filter(({ state }) => ['unacknowledged',
             'returned'].includes(state))
             .map(({ tag, kind }) => [tag.name, kind]);
         session.post({ type: 'alarm', seq: 1, action: 'acknowledge', alarms, name: 'kim' });
     });
-    await title().filter({ hasText: 'sent by Desk 2' }).waitFor({ timeout: 60000 });
+    await title().filter({ hasText: 'sent by Desk 2' }).waitFor();
     await eyeOfPane(30);
 });
 
 test('it is held, and given back', options, async () => {
     await desk.page.click('#remote-hold');
-    await title().filter({ hasText: 'held by Desk 2' }).waitFor({ timeout: 60000 });
+    await title().filter({ hasText: 'held by Desk 2' }).waitFor();
     await desk.page.click('#remote-back');
-    await title().filter({ hasText: 'Whole unit' }).waitFor({ timeout: 60000 });
+    await title().filter({ hasText: 'Whole unit' }).waitFor();
     assert.doesNotMatch(await title().textContent(), /Desk 2/);
     await desk.page.locator('#notes-list li .end').click();
     await desk.page.locator('.note-pin').waitFor({ state: 'detached' });
-    await inPane().locator('.note-pin').waitFor({ state: 'detached', timeout: 60000 });
+    await inPane().locator('.note-pin').waitFor({ state: 'detached' });
 });
 
 test('how old its picture is stands in the metrics, and grows once it has gone', options, async () => {

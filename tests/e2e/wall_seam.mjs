@@ -90,7 +90,7 @@ test('pages: no line between them', options, async () => {
     const url = (display) => `http://127.0.0.1:${plant.port}/wall.html?wall=wide&display=${display}`;
     const pages = [await openPage(url(1), SCREEN), await openPage(url(2), SCREEN)];
     for (const { page } of pages)
-        await page.waitForFunction(() => globalThis.wall?.panes[0]?.session?.picture, null, { timeout: 60000 });
+        await page.waitForFunction(() => globalThis.wall?.panes[0]?.session?.picture);
     await expectOnePicture(() => Promise.all(pages.map(async ({ page }) => pictureOf(pixelsOf(await page.screenshot())))), 'page');
     for (const [i, { page }] of pages.entries())
         await shoot(page, `wall-seam-${i + 1}`);

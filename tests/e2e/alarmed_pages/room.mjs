@@ -192,7 +192,7 @@ test('what says that the picture is old lies over no legend', options, async () 
             await page.waitForFunction(() => {
                 const [a, b] = ['banner', 'legend'].map((id) => document.getElementById(id).getBoundingClientRect());
                 return b.width === 0 || a.bottom <= b.top || a.right <= b.left;
-            }, null, { timeout: 20000 }).catch(() => assert.fail(name));
+            }).catch(() => assert.fail(name));
             if (name !== 'phone across') // the phone's screen has no room for both texts, so one is cut off
                 assert.deepEqual(await amiss(page), [], name);
             await shoot(page, `old-${name.replace(' ', '-')}`);

@@ -82,7 +82,7 @@ test('a decoder that passes the trial and then breaks is left for JPEG, for good
         return decode.call(this, chunk);
     };
 }, async (page) => {
-    await page.waitForFunction(() => globalThis.plantcast?.session.picture?.codec === 'jpeg', null, { timeout: 60000 });
+    await page.waitForFunction(() => globalThis.plantcast?.session.picture?.codec === 'jpeg');
     await settle(page, QUIET_MS);
     assert.match(await page.evaluate(() => localStorage.getItem('plantcast.h264')), /"none"/);
     await page.reload();

@@ -28,12 +28,12 @@ after(async () => {
 
 // Waits until the camera satisfies `is` and no camera flight is under way.
 const arrive = async (is, what) => {
-    await page.waitForFunction(is, what, { timeout: 60000 });
+    await page.waitForFunction(is, what);
     await page.waitForFunction(() => !globalThis.plantcast.cameraController.fly);
     await settle(page);
 };
 // Waits until f holds in the page.
-const waitFor = (f, what) => page.waitForFunction(f, what, { timeout: 60000 });
+const waitFor = (f, what) => page.waitForFunction(f, what);
 
 // Returns a position on the page that shows equipment with a field, and no marker.
 const middleOf = async (id) => drawnAt(page, await page.evaluate((asset) => {

@@ -31,8 +31,7 @@ after(async () => {
 
 const words = () => page.locator('#alarm-words').textContent();
 const waitForWords = (pattern) => page.waitForFunction(
-    (p) => new RegExp(p).test(document.getElementById('alarm-words').textContent), pattern,
-    { timeout: 30000 });
+    (p) => new RegExp(p).test(document.getElementById('alarm-words').textContent), pattern);
 const limitOf = (name) => tags.find((tag) => tag.name === name).limits;
 // Returns the position of a tag's alarm ring over the picture, and the alarm; null: no ring is drawn.
 const ring = (name) => page.evaluate((tag) => {
@@ -41,7 +40,7 @@ const ring = (name) => page.evaluate((tag) => {
     return found ? { x: box.left + found.x, y: box.top + found.y, kind: found.alarm.kind, state: found.alarm.state } : null;
 }, name);
 const waitForRing = (name) => page.waitForFunction((tag) => globalThis.plantcast.overlay.markers.some((marker) => marker.tag.name === tag &&
-    marker.alarm), name, { timeout: 30000 });
+    marker.alarm), name);
 
 test('what comes beyond its limit is counted, marked and listed, the most urgent first', options, async () => {
     await waitForWords('^No active alarms|returned|^\\d+ active');
@@ -50,7 +49,7 @@ test('what comes beyond its limit is counted, marked and listed, the most urgent
     await plant.ask(`set ${HOT} ${limitOf(HOT).HH + 1}`);
     await page.waitForFunction(
         (hot) => globalThis.plantcast.session.model.alarms.list().some(({ tag, kind }) => tag.name === hot && kind === 'HH'),
-        HOT, { timeout: 30000 });
+        HOT);
     await waitForWords('^\\d+ active alarms, \\d+ unacknowledged$');
     assert.match(await page.locator('#alarm-mode').textContent(), /Plantcast alarms/);
     await waitForRing(HOT);
@@ -122,7 +121,7 @@ test('a row under the hand stays while others come, and can be pressed', options
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
     await page.mouse.down();
     await plant.ask(`set ${name} ${limits.H + 0.1}`);
-    await page.locator('#alarms-list tr', { hasText: `${name}High` }).waitFor({ timeout: 30000 });
+    await page.locator('#alarms-list tr', { hasText: `${name}High` }).waitFor();
     assert.ok(await held.evaluate((tr) => tr.isConnected), 'it is the same');
     const now = await row.locator('button[data-action="shelve"]').boundingBox();
     await page.mouse.move(now.x + now.width / 2, now.y + now.height / 2);
@@ -159,7 +158,7 @@ test('a click flies there, in its own group, and back to normal is said', option
     await shoot(page, 'alarms-fly');
     await plant.ask(`set ${HOT} ${limitOf(HOT).H - 10}`);
     await page.waitForFunction((hot) => globalThis.plantcast.session.model.alarms.list().every(({ tag, state }) => tag.name !== hot ||
-        state === 'returned'), HOT, { timeout: 30000 });
+        state === 'returned'), HOT);
     assert.deepEqual(browser.errors, []);
 });
 
@@ -168,7 +167,7 @@ const settleAll = async () => { // sets all values within their limits and ackno
     for (const { name, limits } of tags.filter((tag) => tag.limits.H !== null))
         await plant.ask(`set ${name} ${((limits.L ?? 0) + limits.H) / 2}`);
     const gone = () => globalThis.plantcast.session.model.alarms.counts().active === 0;
-    await page.waitForFunction(gone, null, { timeout: 30000 });
+    await page.waitForFunction(gone);
     await page.evaluate(() => {
         const { session } = globalThis.plantcast, alarms = [...session.model.alarms.rows.values()].map(({ tag, kind }) => [tag.name, kind]);
         for (const action of ['unshelve', 'acknowledge'])
@@ -182,7 +181,7 @@ test('one row and one count for a tag; what has returned is not active, and draw
     const { LL, L, H } = limitOf(LOW);
     await plant.ask(`set ${LOW} ${LL - 1}`);
     await page.waitForFunction((low) => [...globalThis.plantcast.session.model.alarms.rows.values()]
-        .filter(({ tag }) => tag.name === low).length === 2, LOW, { timeout: 30000 });
+        .filter(({ tag }) => tag.name === low).length === 2, LOW);
     await waitForWords('^1 active alarm, 1 unacknowledged$');
     assert.equal(await rowOf(LOW).count(), 1);
     assert.match(await rowOf(LOW).textContent(), /Low-low.*also Low \(Unacknowledged\)/s);

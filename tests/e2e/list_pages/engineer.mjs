@@ -48,7 +48,7 @@ async function look(on, eye) {
 
 const text = (selector, on = page) => on.locator(selector).textContent();
 const says = (selector, pattern, on = page) => on.waitForFunction(
-    ([where, what]) => new RegExp(what).test(document.querySelector(where)?.textContent ?? ''), [selector, pattern], { timeout: 60000 });
+    ([where, what]) => new RegExp(what).test(document.querySelector(where)?.textContent ?? ''), [selector, pattern]);
 // Returns the position on the page of a point of the plant.
 const at = (place, on = page) => drawnAt(on, place);
 const moved = (on = page) => on.evaluate(() => [...globalThis.plantcast.session.model.placed.values()][0]?.position ?? null);

@@ -48,7 +48,7 @@ after(async () => {
 });
 
 const waitForText = (page, selector, pattern) => page.waitForFunction(
-    ([where, p]) => new RegExp(p).test(document.querySelector(where)?.textContent), [selector, pattern], { timeout: 60000 });
+    ([where, p]) => new RegExp(p).test(document.querySelector(where)?.textContent), [selector, pattern]);
 const labels = (page) => page.evaluate(() => globalThis.plantcast.overlay.labels().filter(({ rank, ring }) => ring && rank >= 0)
     .map(({ parts }) => parts.map(([text]) => text).join(' ')));
 
@@ -81,7 +81,7 @@ test('a note is shown at an instant if it was there then', options, async () => 
     const { page } = desk, nowUs = () => page.evaluate(() => globalThis.plantcast.session.clockUs());
     const pins = () => page.evaluate(() => [...document.querySelectorAll('.note-pin')].map(({ textContent }) => textContent));
     const waitForPins = (...texts) => page.waitForFunction((wanted) => [...document.querySelectorAll('.note-pin')]
-        .map(({ textContent }) => textContent).join('|') === wanted, texts.join('|'), { timeout: 30000 });
+        .map(({ textContent }) => textContent).join('|') === wanted, texts.join('|'));
     const later = async (us) => { // history of an instant is complete after 3 s
         await page.waitForFunction((then) => globalThis.plantcast.session.clockUs() > then + 3.5e6, us);
         return us;
@@ -144,7 +144,7 @@ test('a lost device raises an alarm of its own; rings keep their names and say s
         const said = globalThis.plantcast.overlay.labels().filter(({ rank, ring }) => ring && rank >= 0)
             .map(({ parts }) => parts.map(([text]) => text).join(' '));
         return said.length === 2 && said.every((text) => new RegExp(p).test(text));
-    }, pattern, { timeout: 60000 });
+    }, pattern);
     await rings(desk.page, '^TI-[12] 95\\.5 °C HH$');
     await plant.tell('pause');
     await rings(desk.page, '^TI-[12] HH held since \\d\\d:\\d\\d$');
@@ -154,7 +154,7 @@ test('a lost device raises an alarm of its own; rings keep their names and say s
         return limitText(session, session.model.alarms.list().find(({ tag }) => tag.name === 'TI-1'), true);
     }), /^raised at 95\.5 °C, held since \d\d:\d\d \(limit 90\.0 °C\)$/);
     await desk.page.waitForFunction(() => globalThis.plantcast.session.model.alarms.list().some(({ tag, kind, state }) =>
-        tag.name === 'plc1' && kind === 'LINK' && state === 'unacknowledged'), null, { timeout: 60000 });
+        tag.name === 'plc1' && kind === 'LINK' && state === 'unacknowledged'));
     await desk.page.locator('#alarm-strip').click();
     await waitForText(desk.page, '#alarms-list', 'plc1');
     await waitForText(desk.page, '#alarms-list', '95\\.5no value');
@@ -186,8 +186,7 @@ test('the server is lost: the equipment list goes grey as the strip and the pict
     const filter = () => list.evaluate((element) => getComputedStyle(element).filter);
     assert.equal(await filter(), 'none');
     await plant.daemon.stop();
-    await page.waitForFunction(() => getComputedStyle(document.getElementById('assets-list')).filter === 'grayscale(1)', null,
-        { timeout: 60000 });
+    await page.waitForFunction(() => getComputedStyle(document.getElementById('assets-list')).filter === 'grayscale(1)');
     assert.equal(await page.locator('#alarm-newest').evaluate((element) => getComputedStyle(element).filter), 'grayscale(1)');
     await waitForText(page, '#alarm-newest', 'raised at .*, now –');
     await shoot(page, 'present-server-lost');

@@ -124,7 +124,7 @@ const codec = () => page.evaluate(() => globalThis.plantcast.session.picture.cod
 // Returns the number of tags with a good quality.
 const measured = () => page.evaluate(() => globalThis.plantcast.session.model.readings.filter(({ quality }) => quality === 'good').length);
 const waitForMeasured = (count) => page.waitForFunction((least) =>
-    globalThis.plantcast.session.model.readings.filter(({ quality }) => quality === 'good').length >= least, count, { timeout: 60000 });
+    globalThis.plantcast.session.model.readings.filter(({ quality }) => quality === 'good').length >= least, count);
 
 test('the daemon dies: said in words, the picture stays; it returns: the same view, by itself', options, async () => {
     // probes codecs now; otherwise the page does so at some later picture

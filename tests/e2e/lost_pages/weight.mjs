@@ -132,7 +132,7 @@ test('who has given up is not surprised by what comes late', options, () => with
     await isSaid(page);
     await press(page, 'Escape');
     await page.unroute('**/app/views/views.js*');
-    await page.waitForFunction(() => globalThis.plantcast.modules.there('views'), null, { timeout: 20000 });
+    await page.waitForFunction(() => globalThis.plantcast.modules.there('views'));
     assert.equal(await page.locator('#views.open').isVisible(), false);
     await press(page, 'v');
     await page.locator('#views.open').waitFor();
@@ -216,7 +216,7 @@ test('hands that cannot be followed are told so, and are followed once they can 
     await isSaid(page);
     assert.deepEqual(await eye(page), before);
     await page.unroute('**/app/input/camera_controller.js*');
-    await page.waitForFunction(() => globalThis.plantcast.cameraController, null, { timeout: 20000 });
+    await page.waitForFunction(() => globalThis.plantcast.cameraController);
     await drag(page);
     await waitForMove(page, before);
 }, (page) => page.route('**/app/input/camera_controller.js*', (route) => route.abort())));

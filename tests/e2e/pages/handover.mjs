@@ -18,7 +18,7 @@ before(async () => {
     await waitForPicture(page);
     await plant.ask('set TI-1 95');
     await page.waitForFunction(() => [...globalThis.plantcast.session.model.alarms.rows.values()]
-        .some(({ state }) => state === 'unacknowledged'), null, { timeout: 60000 });
+        .some(({ state }) => state === 'unacknowledged'));
     await page.evaluate(() => {
         const { session } = globalThis.plantcast;
         const rows = [...session.model.alarms.rows.values()].filter(({ state }) => state === 'unacknowledged');
@@ -38,7 +38,7 @@ after(async () => {
 test('it says what was noted, raised, acknowledged and shelved', options, async () => {
     for (let tries = 0; tries < 20; tries++) { // the journal is written with a delay
         await page.goto(`${plant.url}handover.html`);
-        await page.locator('[data-part=notes]').waitFor({ timeout: 30000 });
+        await page.locator('[data-part=notes]').waitFor();
         if (await page.locator('[data-part=shelved] td', { hasText: 'sensor is checked' }).count() > 0)
             break;
         await page.waitForTimeout(1000);
@@ -67,7 +67,7 @@ test('it is printed on paper: no controls, as many pages as it takes', options, 
 
 test('a span is asked for, in other languages too; before it there was nothing', options, async () => {
     await page.goto(`${plant.url}handover.html?from=-2h&to=-1h&lang=de`);
-    await page.locator('h2', { hasText: /^Quittiert$/ }).waitFor({ timeout: 30000 });
+    await page.locator('h2', { hasText: /^Quittiert$/ }).waitFor();
     assert.equal(await page.locator('[data-part=acknowledged] tbody tr').count(), 0);
     await page.goto(`${plant.url}handover.html?from=tomorrow`);
     await page.locator('.wrong').waitFor();

@@ -25,14 +25,14 @@ after(async () => {
 
 const rows = (at) => at.locator('#named-list li .named-open span').allTextContents();
 const isFrom = (at, eye) => at.waitForFunction((wanted) =>
-    globalThis.plantcast?.session.picture?.camera.eye.every((m, i) => Math.abs(m - wanted[i]) < 0.01), eye, { timeout: 60000 });
+    globalThis.plantcast?.session.picture?.camera.eye.every((m, i) => Math.abs(m - wanted[i]) < 0.01), eye);
 const views = async () => (await (await fetch(new URL('api/v1/views', plant.url))).json()).list;
 
 test('those of the plant file are there, each with its picture', options, async () => {
     await page.click('#views-toggle');
     await page.locator('#named-list li').waitFor();
     assert.deepEqual(await rows(page), ['From above']);
-    await page.waitForFunction(() => document.querySelector('#named-list img').naturalWidth === 160, null, { timeout: 60000 });
+    await page.waitForFunction(() => document.querySelector('#named-list img').naturalWidth === 160);
     await page.evaluate(() => globalThis.plantcast.session.setParams({ clip: { planes: [[0, 0, -1, 3]] }, selected: 'E-101' }));
     await page.click('#named-list li .named-open');
     await isFrom(page, [8, 2, 30]);
@@ -49,7 +49,7 @@ test('what is seen is saved under a name, for all', options, async () => {
     await page.waitForFunction(() => document.querySelectorAll('#named-list li').length === 2);
     await waitForPicture(other.page);
     await other.page.click('#views-toggle');
-    await other.page.waitForFunction(() => document.querySelectorAll('#named-list li').length === 2, null, { timeout: 60000 });
+    await other.page.waitForFunction(() => document.querySelectorAll('#named-list li').length === 2);
     assert.deepEqual(await rows(other.page), ['From above', 'Tank, von Süden']);
     const { look } = await other.page.evaluate(() => globalThis.plantcast.session.params);
     assert.equal(look, 'default');

@@ -5,10 +5,10 @@ import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'no
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { freePort } from './ports.mjs';
+import { until } from './until.mjs';
 
 const SCHEMA = '/usr/share/dbconfig-common/data/glewlwyd/install/sqlite3', MODULES = '/usr/lib/glewlwyd';
 export const glewlwydIsThere = existsSync('/usr/bin/glewlwyd') && existsSync(SCHEMA) && existsSync('/usr/bin/sqlite3');
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
 const settings = (port, folder) => `port=${port}
 external_url="http://127.0.0.1:${port}"
@@ -75,15 +75,11 @@ export class Glewlwyd {
 
     async logIn() {
         const body = JSON.stringify({ username: 'admin', password: 'password' });
-        for (let i = 0; i < 100; i++, await sleep(100)) {
+        this.cookie = await until('glewlwyd', async () => {
             const answer = await fetch(`http://127.0.0.1:${this.port}/api/auth/`, { method: 'POST', body,
                 headers: { 'Content-Type': 'application/json' } }).catch(() => null);
-            if (answer?.ok) {
-                this.cookie = answer.headers.getSetCookie()[0].split(';')[0];
-                return;
-            }
-        }
-        throw new Error('glewlwyd does not start');
+            return answer?.ok && answer.headers.getSetCookie()[0].split(';')[0];
+        });
     }
 
     async ask(method, path, json) {
