@@ -248,7 +248,7 @@ test('a disk that is full is said, in the log and the metrics, and nothing is lo
     assert.equal(verify().code, 0);
 });
 
-test('a small disk that is full is alarmed, no line on it is torn, and a read-only one is refused', { skip, timeout: 200000 }, async (t) => {
+test('a small disk that is full is alarmed, no line on it is torn, and a read-only one is refused', { skip, timeout: 2e5 }, async (t) => {
     const small = path('small'), full = join(small, 'full'), usual = trail;
     mkdirSync(small);
     if (spawnSync('mount', ['-t', 'tmpfs', '-o', 'size=64k', 'tmpfs', small]).status !== 0)
