@@ -197,7 +197,7 @@ let toastTimer;
 session.on('error', async ({ text, about, code, refusal }) => {
     console.warn(`error about ${about}: ${text}`);
     if (['ack', 'share_view'].includes(about))
-        return; // not caused by the user; without a short link, the page shows the long one
+        return; // no message: acknowledgements are not caused by the user, and without a short link the page shows the long one
     const { put, refusalText } = await import('../core/refusals.js');
     tell(put('page.refused', { text: refusalText(text, refusal, code) }));
 });
@@ -263,7 +263,7 @@ async function watch() {
     const { watchMainThread } = await import('./common/watchdog.js');
     watchMainThread({ scale: () => page.unit, reloads: document.body.classList.contains('wall') && parent === window });
 }
-// not in a pane of a wall: pane and wall share a main thread, and the wall's is watched
+// no watchdog in a pane of a wall: the pane shares its main thread with the wall's page, which has a watchdog
 if (!new URLSearchParams(location.search).has('pane'))
     setTimeout(() => watch().catch(console.warn), WATCH_AFTER_MS);
 // Opens the equipment list at the start if there is room for it.

@@ -23,7 +23,7 @@ document.documentElement.lang = language;
 sayAll(document);
 const backdrop = chooseTheme(query);
 export const narrow = window.matchMedia('(max-width: 1023px)'); // true on narrow screens, where the equipment list covers the picture
-// a device that a user can turn may become narrow later, when the server may be unreachable
+// touch screens load the style sheet for narrow screens at the start: if the user turns the device later, the server may be unreachable
 const turned = window.matchMedia('(any-pointer: coarse)');
 const fold = () => Promise.all([(narrow.matches || turned.matches) && styled('common/narrow'), phone.matches && !query.has('wall') &&
     styled('common/sheet')])

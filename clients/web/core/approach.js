@@ -4,12 +4,15 @@ import { isParallel, projector, validOr } from './camera.js';
 import { corners, distance, face, orbit } from './camera_moves.js';
 import { along, length, subtract, unit } from './vector.js';
 
-const PART = 1.1, LONG_PART = 0.7; // distances in sides of the equipment's box: the middle side, and the longest
-const LEAST_M = 0.2, MOST_M = 16; // bounds of the distance in plants of usual size
-const LEAST_PART = 1 / 200, MOST_PART = 1 / 20; // bounds for very small and very large plants, in diagonals of the plant
+// distance of the camera as a multiple of the middle side (PART) and of the longest side (LONG_PART) of the equipment's box; the larger
+// distance counts
+const PART = 1.1, LONG_PART = 0.7;
+const LEAST_M = 0.2, MOST_M = 16; // bounds of the camera's distance in plants of usual size
+// bounds of the camera's distance in very small and very large plants, as parts of the plant's diagonal
+const LEAST_PART = 1 / 200, MOST_PART = 1 / 20;
 const FILL = 0.42; // part of the picture that the equipment's box fills, if no bound prevents it
-// Sides from which equipment looks narrow, so that the camera comes much nearer than on the FRONT first sides, are tried last: there a pump
-// is only its motor's fan cover.
+// A side is narrow if the camera comes nearer there than NARROW times its largest distance at the first FRONT sides. Narrow sides are tried
+// last, because they show little: of a pump, only the motor's fan cover.
 const NARROW = 0.75, FRONT = 9;
 const STEPS = 16;  // bisections of the distance
 const TURNS = [ // degrees: about the vertical, up

@@ -68,8 +68,8 @@ export function projector(camera, widthPx, heightPx) {
     };
 }
 
-// Returns the part of the picture that the legend leaves free, in coordinates from -1 to 1. lies: it is a strip of 28 px across the top.
-// title: length of its title in letters.
+// Returns the part of the picture that the legend leaves free, in coordinates from -1 to 1. lies: true: the legend is a strip of 28 px
+// across the top. title: length of the legend's title in letters.
 export const besideLegend = (width, height, lies, title = 14) => (lies ? { top: 1 - 2 * share(32, height) }
     : { right: 1 - 2 * share(Math.max(128, 7.6 * title + 24) + (height <= 320 ? 110 : 28), width) });
 const share = (part, whole) => (whole > 0 && part / whole <= 0.4 ? part / whole : 0.4);

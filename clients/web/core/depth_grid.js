@@ -59,7 +59,8 @@ function predicted(left, up, corner) {
     return Math.max(Math.min(left, up), Math.min(Math.max(left, up), left + up - corner));
 }
 
-// Returns `near`, `far` (-1: the cell is not divided), `back` (codes of the farthest surfaces) and the position behind them.
+// Returns by cell `near` (code of the nearest surface), `far` (code behind a step; -1: the cell has no step) and `back` (code of the
+// farthest surface); and `at`, the byte position after the codes.
 function readCodes({ columns, rows, levels }, bytes) {
     const count = columns * rows, back = new Int16Array(count), far = new Int16Array(count).fill(-1), bits = Math.ceil(count / 8);
     const symbols = new Symbols(bytes, bits, levels);
@@ -84,10 +85,11 @@ class Masks {
     constructor({ columns, rows, maskSide }, { near, far, back }) {
         Object.assign(this, { columns, maskSide, near, far, back, wide: columns * maskSide });
         this.bits = new Uint8Array(this.wide * rows * maskSide); // 255 where the picture is near
-        this.row = new Uint8Array(maskSide); // bits above the row being read
+        this.row = new Uint8Array(maskSide); // mask bits of the row above the row being read
     }
 
-    // Returns to which side of cell `i` the surface of an undivided neighbour belongs: 1 near, 0 far; null: the neighbour has a mask.
+    // Returns null if the neighbour of cell `i` has a mask. Otherwise returns to which side of the step in cell `i` the neighbour's only
+    // surface belongs: 1: near, 0: far.
     sideOf(neighbour, i) {
         const { near, far, back } = this;
         if (far[neighbour] >= 0)
@@ -132,7 +134,7 @@ function readMasks(grid, bytes, codes) {
 export function readGrid(header, bytes) {
     need(bytes.length === header.dataBytes, `${bytes.length} bytes, ${header.dataBytes} stated`);
     const codes = readCodes(header, bytes), { near, far } = codes;
-    const isEmpty = near.every((code) => code === 0); // then the base has no meaning
+    const isEmpty = near.every((code) => code === 0); // true: no cell has a depth, so the base has no meaning
     need(header.parallel || header.base > 0 || isEmpty, `a depth of ${header.base}`);
     return { ...header, payload: null, near, far, masks: readMasks(header, bytes, codes) };
 }

@@ -8,8 +8,9 @@ import { add, along, cross, dot, length, middle, scale, subtract, unit } from '.
 
 const MAX_TAN = Math.tan(60 * RADIANS), LEAST_TAN = 0.02; // the server accepts fields of view of 1 to 120 degrees
 const MARGIN = 1.15; // how much wider the picture is than both eyes see, so that a turned head finds most of its view drawn
-const MOST_PX = 4e6, STEP_PX = 2; // largest picture that is requested; step along a ray
-const MOST_DENSITY = 4096; // pixels of an eye per tangent of 1: above, the numbers make no sense
+const MOST_PX = 4e6, STEP_PX = 2; // MOST_PX: maximum number of pixels of a picture that is requested; STEP_PX: step along a ray
+// largest plausible resolution of an eye, in pixels per tangent of 1; higher values of a device are replaced by this one
+const MOST_DENSITY = 4096;
 const NEAREST_M = 0.05, FARTHEST_M = 1000; // ends of a ray
 export const STAND_M = 1.6; // height of the eyes above the floor, where the device does not know it
 const ROOM_M = 2.5; // distance from the plant at which a user begins

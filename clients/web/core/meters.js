@@ -41,7 +41,7 @@ export class LatencyMeter {
         }
     }
 
-    // Returns by how many milliseconds the newest picture's camera is older than the newest input.
+    // Returns the age in milliseconds of the oldest input whose picture has not been drawn yet; 0: none is waiting.
     behindMs(now) {
         const [oldest = now] = this.inputs.values();
         return now - oldest;

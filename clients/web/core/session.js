@@ -19,7 +19,7 @@ const SHARED = ['light', 'environment', 'backdrop', 'arrows', 'selected', 'hidde
 // lists that are sent even if empty, because the plant's defaults may not be empty
 const SETS = ['hidden', 'isolate', 'ghost'];
 const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m', 'scale', 'isolines'];
-const OF_THE_INSTANT = ['tags', 'picked']; // messages whose data are of the instant that is shown
+const OF_THE_INSTANT = ['tags', 'picked']; // types of messages whose data belong to the instant that is shown
 const NOW = { atUs: null, speed: 0, fromUs: null };
 const QUALITIES = ['good', 'uncertain', 'bad'];
 const MOST_BACKLOG_BYTES = 64 * 1024, RECENT_MS = 5000;
@@ -345,7 +345,7 @@ export class Session {
             this.emit('unkept', message);
     }
 
-    // Sends what changed between the greeting and `welcome`.
+    // Sends the visibility, size and parameters that have changed between the greeting and `welcome`.
     catchUp() {
         if (!this.visible)
             this.setVisible(false);
@@ -484,7 +484,8 @@ const HANDLERS = {
 
     following({ session, who, width, height, gone = false, ...shown }) {
         this.lent ||= session ?? this.leader;
-        const name = who ?? (this.following?.session === session ? this.following.who : undefined); // a leader who left keeps the name
+        // the name of a leader who has left is still shown
+        const name = who ?? (this.following?.session === session ? this.following.who : undefined);
         this.following = session === null ? null : { session, who: name, width, height, ...(gone ? { gone } : {}) };
         this.leader = session;
         this.confirmed = this.params = pick(shown, SAID);

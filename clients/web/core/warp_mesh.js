@@ -6,7 +6,8 @@ import { distance } from './camera_moves.js';
 import { add, dot, length, scale, subtract } from './vector.js';
 
 const STEEPEST = 6; // steepest slope of a surface along the view, as a tangent: cells that differ by more show two surfaces
-const FLAT_SHARE = 0.002, FLAT_CODES = 0.8; // deviation from a plane within which cells are merged
+// cells are merged if their codes deviate from a plane by at most FLAT_CODES, or FLAT_SHARE of the depth
+const FLAT_SHARE = 0.002, FLAT_CODES = 0.8;
 const BLOCK = 16; // largest side of a merged block, in cells
 const LAP_PX = 0.5; // overlap of merged blocks, which hides cracks between blocks of different sizes
 export const WHOLE = 0, NEAR = 1, FAR = 2; // which pixels of its cells a quad shows: all, those before the step, those behind
@@ -30,7 +31,7 @@ class Sheets {
         return a === 0 || b === 0 ? a === b : Math.abs(a - b) <= this.most[Math.max(a, b)];
     }
 
-    // Returns the code of the sheet of cell (x, y) that continues a sheet with this code; -1: none.
+    // Returns the code of the sheet (surface within a cell) of cell (x, y) that continues a sheet with this code; -1: none.
     continuing(code, x, y) {
         if (x < 0 || y < 0 || x >= this.columns || y >= this.rows)
             return -1;
@@ -40,7 +41,8 @@ class Sheets {
         return isNear ? near : -1;
     }
 
-    // Returns half the change of the code from the cell on the other side, with which a sheet is continued to its own edge.
+    // Returns how much the code changes from the centre of a cell to its edge in the direction (dx, dy): half of the change from the
+    // opposite neighbour to the cell. 0: that neighbour does not continue the surface.
     half(code, x, y, dx, dy) {
         const before = this.continuing(code, x - dx, y - dy);
         return before < 0 ? 0 : (code - before) / 2;
@@ -62,7 +64,8 @@ class Sheets {
     }
 }
 
-// Returns the codes at the corners of the grid where the farthest sheets of four cells are one surface; NaN elsewhere.
+// Returns the code at each corner of the grid where the farthest sheets (surfaces within a cell) of the four cells around are one surface;
+// NaN elsewhere.
 function sharedCorners({ columns, rows }, back, sheets) {
     const wide = columns + 1, corners = new Float32Array(wide * (rows + 1)).fill(NaN);
     for (let y = 0; y <= rows; y++)
@@ -164,7 +167,7 @@ class Mesher {
         this.sheet(x, y, this.back[i], this.grid.far[i] < 0 ? WHOLE : FAR);
     }
 
-    // Adds the near sheets of divided cells.
+    // Adds the near sheet (surface before the step) of each divided cell.
     addNear() {
         const { near, far, columns } = this.grid;
         for (let i = 0; i < far.length; i++)
@@ -209,8 +212,8 @@ export function depthAt(grid, px, py) {
 
 const halfHeight = (camera) => (isParallel(camera) ? camera.height_m / 2 : Math.tan(camera.fov * RADIANS / 2));
 
-// Returns the columns for x, y, depth and 1 of a grid, each as [vector in metres from `origin`, homogeneous coordinate]. camera: of the
-// picture.
+// Returns the columns of the matrix that maps [x, y, depth, 1] of a grid to homogeneous plant positions relative to `origin`: each a vector
+// and a homogeneous coordinate. camera: that of the grid's picture.
 export function gridColumns({ width, height }, camera, origin) {
     const old = basis(camera), tall = halfHeight(camera), wide = tall * width / height;
     const eye = subtract(camera.eye, origin), corner = add(scale(old.right, -wide), scale(old.up, tall));

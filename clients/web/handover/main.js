@@ -29,7 +29,7 @@ const timeOf = (us) => {
     const { date, time } = clock(us / 1000);
     return `${date} ${time.slice(0, 5)}`;
 };
-const dayTimeOf = (us) => { // without the year, which the page's head says
+const dayTimeOf = (us) => { // the year is left out, because the page's head has it
     const { day, time } = clock(us / 1000);
     return `${day} ${time.slice(0, 5)}`;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reloads a page whose main thread hangs. It runs as a frame of that page and waits for a message from the page's worker
-// (app/common/watchdog_worker.js). Then it navigates itself to the top, in place of the page; navigating to the page directly would go to
-// the hanging process. From there it goes to the page's URL, for which Chromium starts another process.
+// Reloads a page whose main thread hangs. This code runs in a frame of that page and waits for a message from the page's worker
+// (app/common/watchdog_worker.js). It then makes the top window load keeper.html in place of the page. The page's own URL would be loaded
+// by the hanging process, but from keeper.html it is loaded by another process (in Chromium).
 'use strict';
 
 // interval of attempts while the server does not answer; from the browser's own error page there would be no way back

@@ -15,8 +15,8 @@ const ICONS = {
 };
 
 export class AlarmTable {
-    // table: an empty <table>; select: a list of the same orders, for screens without column titles; pick: content of the first title.
-    // changed(): called after the user chose another order.
+    // table: an empty <table>; select: a selection list of the same sort orders, for screens without column titles; pick: node in the title
+    // of the first column (selection of rows). changed(): called after the user chose another order.
     constructor(table, select, pick, changed) {
         Object.assign(this, { select, changed, sort: { by: null, down: false } });
         this.heads = COLUMNS.filter(sortable).map((name) => [name, make('th', { scope: 'col', 'data-col': name, 'aria-sort': 'none' },

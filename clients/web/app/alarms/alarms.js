@@ -170,7 +170,7 @@ export class AlarmList {
         this.showChosen();
     }
 
-    // Offers areas, and tells how many alarms each choice of a state has.
+    // Fills the filter's lists: areas, and states with the number of alarms in each state.
     showChoices(all) {
         const choices = WHICH.map((name) => [name, `${say(`which.${name}`)} (${all.filter((row) => passes(row, '',
             { which: name, words: '' })).length})`]);

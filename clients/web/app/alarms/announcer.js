@@ -5,7 +5,7 @@ import { say } from '../../core/words.js';
 import { byId } from '../common/dom.js';
 import { limitText } from './alarm_bar.js';
 
-const MOST = 3; // alarms of one message that are announced one by one
+const MOST = 3; // maximum number of alarms in one message that are announced one by one; the others are only counted
 
 export class Announcer {
     constructor({ session }) {

@@ -12,7 +12,7 @@ import { saveFile } from '../common/save_file.js';
 import { AlarmTable, momentButton, refreshCells, rowOf } from './alarm_table.js';
 
 const SPANS = ['shift', 'day', 'today', 'yesterday', 'week', 'chosen'];
-const STEP = 5000, SHOWN = 200; // rows read at a time; rows in the document
+const STEP = 5000, SHOWN = 200; // STEP: number of rows per request; SHOWN: maximum number of rows in the document
 const READ_AGAIN_MS = 3000;     // shortest time between two reads of a span that ends now
 const EVENTS = { raised: ['raise', 'call'], cleared: ['clear'], acknowledged: ['acknowledge', 'reset'],
     shelved: ['shelve', 'unshelve', 'suppress', 'unsuppress', 'out_of_service', 'in_service', 'carry'] };
@@ -55,7 +55,7 @@ export class Journal {
         return this.read();
     }
 
-    // Removes all rows while the journal is out of sight: they would grow by about 40 nodes with each change of an alarm.
+    // Removes all rows when the journal goes out of sight. Otherwise the document would keep growing with each change of an alarm.
     rest() {
         Object.assign(this, { rows: [], drawn: [], number: (this.number ?? 0) + 1 });
         byId('journal-list').replaceChildren();

@@ -37,7 +37,7 @@ export class Moment {
             this.flyTo(alarm.tag);
     }
 
-    // On narrow screens the tag's card would cover the picture.
+    // Selects the tag, which opens its card, and flies to it. On narrow screens no card is opened, because it would cover the picture.
     flyTo(tag) {
         if (!NARROW.matches)
             this.showTag(tag);
@@ -50,7 +50,7 @@ export class Moment {
         travel(this.session, this.alarm.us + afterUs);
     }
 
-    // Closes when the present is shown again.
+    // Closes this notice when the page shows the present again after it showed the moment.
     hear() {
         const { atUs } = this.session.time;
         if (this.alarm && atUs === null && this.arrived)

@@ -5,7 +5,8 @@ import { say } from '../../core/words.js';
 import { make, setVariable } from '../common/dom.js';
 import { store, stored } from '../common/storage.js';
 
-const LEAST_PX = 400, PICTURE_PX = 280, STEP_PX = 40; // smallest widths of list and picture; step of the arrow keys
+// LEAST_PX, PICTURE_PX: smallest widths of list and picture; STEP_PX: step of the arrow keys
+const LEAST_PX = 400, PICTURE_PX = 280, STEP_PX = 40;
 
 export function addEdge(panel) {
     const setWidth = (px) => {

@@ -6,7 +6,8 @@ import { halves } from '../../core/split_view.js';
 import { byId } from '../common/dom.js';
 
 const AWAY_PX = 16, RIM_PX = 8, TALLEST_PX = 280;
-const RING_PX = 14, RING_COST = 3; // half the width of an alarm ring; a covered ring weighs as much as that many covered markers
+// RING_PX: half the width of an alarm ring; RING_COST: a covered ring counts as this many covered markers
+const RING_PX = 14, RING_COST = 3;
 
 // Returns the card's { left, top, most (largest height) } for the point `at` ([x, y]; null: none) within the free part of the picture
 // (left, top, right, bottom). marks: other markers, [x, y, isRing]. last: the previous place, which the card leaves only for one that

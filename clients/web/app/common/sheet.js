@@ -6,7 +6,7 @@ import { byId, phone, setVariable } from './dom.js';
 const STOPS = ['20dvh', '40dvh'], GRIP_PX = 24, SLOP_PX = 8;
 const SHEETS = '.panel.open, .display.open, .alarms, .engineer, .assets, .stage > .card', CARDS = ['card', 'place'].map(byId);
 
-let stop = 1, drag = null; // drag: { y: where it began, moved: 0, up or down in pixels }
+let stop = 1, drag = null; // drag: { y (where the drag began), moved (pixels so far, downwards) }; null: no drag
 
 function stand() {
     const parent = phone.matches ? document.querySelector('.stage') : byId('viewport');

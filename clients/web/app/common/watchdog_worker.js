@@ -25,7 +25,7 @@ onmessage = ({ data }) => {
     if (isSaid || data.width)
         draw();
     if (data.width)
-        requestAnimationFrame(() => postMessage('watches')); // sent once the drawn frame is presented
+        requestAnimationFrame(() => postMessage('watches')); // tells the page that the worker watches, once the first frame is presented
 };
 
 setInterval(() => {

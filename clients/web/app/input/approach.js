@@ -12,8 +12,9 @@ const SEARCH_MS = 1500, MOST_SEEN_THROUGH = 4, MOST_GHOSTS = 8;
 const AROUND = [[-0.12, 0], [0.12, 0], [0, -0.12], [0, 0.12], [-0.2, -0.2], [0.2, -0.2], [-0.2, 0.2], [0.2, 0.2]], BEFORE = 0.9;
 // a surface nearer to a sensor than this is the one on which the sensor is mounted: metres, and at most a part of the asset's size
 const NEAR_M = 0.05, NEAR_PART = 0.02;
-const MOST_COVERED = 9; // cameras that are compared if the tag's own asset hides the tag from all sides
-const MOST_WALLS = 6, CLEAR = 0.95; // walls that the eye passes, and the part of the way to the last wall at which the eye stops
+const MOST_COVERED = 9; // number of cameras that are compared if the tag's own asset hides the tag from all sides
+// MOST_WALLS: maximum number of walls that the eye passes; CLEAR: part of the way to the last wall at which the eye stops
+const MOST_WALLS = 6, CLEAR = 0.95;
 const ROOMY = 0.4; // a room is large enough to look at a tag from inside if it allows this part of the distance from outside
 
 const has = (list, id) => (list ?? []).includes(id);
@@ -95,7 +96,7 @@ export class Approach {
         return null;
     }
 
-    // Returns the camera in front of whose picture's centre the fewest other assets stand; null: there is no camera.
+    // Returns the camera that has the fewest other assets in front of the centre of its picture; null: the list of cameras is empty.
     async leastCovered(cameras, asset) {
         let best = null, least = Infinity;
         for (const camera of cameras.slice(0, MOST_COVERED)) {

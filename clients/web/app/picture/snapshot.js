@@ -66,9 +66,10 @@ export class Snapshot {
         const { session } = this, { camera, size, time } = session;
         if (session.params.show === 'difference' && !session.params.baseline?.name)
             throw new Error(say('snapshot.unnamed'));
-        // all taken before the answer, because the user may go on to another instant or view meanwhile
+        // all values are taken before the server answers, because the user may change the view or the instant meanwhile
         const query = { ...snapshotQuery({ carried: session.carried(), camera, size, time }), language }, now = session.clockUs();
-        const us = time.atUs ?? now, notes = session.signs ? [] : inForce(session.notes, now, time.atUs); // a signed file stays as it is
+        // notes are not added to a signed file, because they would invalidate its signature
+        const us = time.atUs ?? now, notes = session.signs ? [] : inForce(session.notes, now, time.atUs);
         const place = { model: session.model, camera, half: halves(session.params, size.width)[0] };
         const blob = await (await ask('snapshot.png', query, session.token)).blob();
         return { blob: notes.length === 0 ? blob : await (await import('./snapshot_notes.js')).addNotes(blob, notes, place), us };

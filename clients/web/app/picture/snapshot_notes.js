@@ -5,7 +5,8 @@ import { projector } from '../../core/camera.js';
 import { aboutText, placeOf } from '../../core/notes.js';
 
 const FONT_PX = 13, LINE = 1.45, DISC_PX = 9; // at 1280x720
-const AWAY_PX = 20, RING_PX = 9; // distances of disc and line from the place, whose marker and alarm ring stay free
+// distances of a note's disc (AWAY_PX) and line (RING_PX) from the note's position, so that its marker and alarm ring stay free
+const AWAY_PX = 20, RING_PX = 9;
 
 // Splits a text into lines that fit the width: at blanks, and within a word that is longer than a line.
 export function wrapped(pen, text, width) {

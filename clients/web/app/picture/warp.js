@@ -86,7 +86,8 @@ void main() {
         discard;
     colour = vec4(0.0);
 }`;
-const LATTICE_PX = 14, REDUCED = 4; // REDUCED: pixels along the side of one from which the greys of places not drawn are computed
+// REDUCED: REDUCED x REDUCED pixels become one pixel of the reduced picture, from which the greys are computed
+const LATTICE_PX = 14, REDUCED = 4;
 
 // Returns { program, at(name) }; at() returns the location of a uniform.
 export function programOf(gl, ...sources) {
@@ -148,7 +149,8 @@ export class Warp {
         gl.enableVertexAttribArray(0);
         this.gl = gl;
         this.texture = this.newTexture();
-        this.reduced = [gl.LINEAR_MIPMAP_NEAREST, gl.LINEAR].map((filter) => { // the picture, and the greys around places not drawn
+        // two reduced textures: the picture, and the greys for places that the picture does not show
+        this.reduced = [gl.LINEAR_MIPMAP_NEAREST, gl.LINEAR].map((filter) => {
             const one = { texture: this.newTexture(), framebuffer: gl.createFramebuffer() };
             gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
             gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, filter);
@@ -209,8 +211,8 @@ export class Warp {
         return cameraNews || picture?.cameraSeq !== cameraSeq;
     }
 
-    // Returns true if decoded pictures must wait for the depth of the newest picture. Otherwise, depths that are decoded more slowly than
-    // pictures arrive would never belong to the newest picture.
+    // Returns true if decoded pictures must wait until the depth grid of the newest picture is decoded. Without this, if grids are decoded
+    // more slowly than pictures arrive, no grid would ever be that of the newest picture.
     waits(decoded) {
         const newest = decoded.findLast(({ frame }) => !frame.more)?.frame;
         const known = newest?.depth && this.grids.find(({ depth }) => depth === newest.depth);
@@ -248,7 +250,7 @@ export class Warp {
                 return false;
             this.paint(camera, this.source, 0);
             this.fadeStart = null;
-        } catch (error) { // for example, a browser that takes no VideoFrame as a texture
+        } catch (error) { // WebGL can fail here, for example in a browser that does not accept a VideoFrame as a texture
             console.warn(`pictures are not warped: ${error.message}`);
             this.giveUp();
             return true;
@@ -321,14 +323,15 @@ export class Warp {
         gl.bindTexture(gl.TEXTURE_2D, this.texture);
         const pixels = held?.frame.seq === source.picture.seq ? held.picture : viewport.canvas;
         gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-        source.size = [pixels.displayWidth ?? pixels.width, pixels.displayHeight ?? pixels.height]; // may be a pixel more than the frame's
+        // the coded picture may be a pixel wider and higher than the frame
+        source.size = [pixels.displayWidth ?? pixels.width, pixels.displayHeight ?? pixels.height];
         for (const part of source.parts)
             this.loadPart(part);
         source.isLoaded = true;
         return true;
     }
 
-    // Buffers and mask belong to a set of grids, which several pictures may share.
+    // Uploads the mesh and the mask of one depth grid. Several pictures may share a set of grids, so a set that is uploaded already stays.
     loadPart(part) {
         const { gl } = this, { grid, mesh } = part;
         if (part.buffers)
@@ -384,7 +387,7 @@ export class Warp {
         gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
     }
 
-    // gone: part of the pixels that are left out.
+    // Draws the picture as the camera sees it. gone: part (0 to 1) of the pixels that are left out, at which the canvas below shows.
     paint(camera, source, gone) {
         const { gl, canvas, mesh } = this, { picture, parts } = source;
         this.fit(picture);
@@ -439,7 +442,7 @@ export class Warp {
     paintPart(part, source, camera) {
         const { gl, canvas, mesh } = this, { grid, buffers } = part, { fullWidth, fullHeight } = source.picture;
         const across = canvas.width / fullWidth, up = canvas.height / fullHeight;
-        const closest = Math.max(1e-6, grid.base + grid.levels * grid.unit); // at most so many times 1/m
+        const closest = Math.max(1e-6, grid.base + grid.levels * grid.unit); // largest possible 1/z of the grid, 1/m
         part.matrix = warpMatrix(grid, source.camera, camera, NEAREST / closest);
         gl.viewport(grid.x * across, (fullHeight - grid.y - grid.height) * up, grid.width * across, grid.height * up);
         gl.uniformMatrix4fv(mesh.at('warp'), false, part.matrix);

@@ -6,7 +6,7 @@ import { say } from '../../core/words.js';
 import { clock } from '../common/clock.js';
 import { byId, make, setText, setVariable } from '../common/dom.js';
 
-export const BEHIND_MS = 500; // from here on, the status bar says by how much the picture is older than the camera
+export const BEHIND_MS = 500; // if the picture is older than the camera by more than this, the status bar says so
 
 export class Status {
     // onFreshness(isFresh) is called when it changes whether the server still sends messages, so that shown values are current.

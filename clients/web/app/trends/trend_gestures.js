@@ -7,7 +7,7 @@ const WHEEL = 0.0016, LINE_PX = 16, PAN_PX = 0.0025, KEY_ZOOM = 1.5, KEY_PAN = 0
 // view: the trends, with range [from, to], zoomBy(factor, at), pan(part), live(), travel(us) and crosshairUs. element: holds the charts.
 export function listenToGestures(view, element) {
     const fingers = new Map(); // pointer id -> x
-    let dragged = null; // x of a mouse that pans
+    let dragged = null; // pointer's x at the last event of a mouse drag that pans; null: no such drag
     const over = () => element.querySelector('.u-over')?.getBoundingClientRect() ?? element.getBoundingClientRect();
     const instantAt = (x) => {
         const { left, width } = over(), [from, to] = view.range;

@@ -9,7 +9,7 @@ import { byId, make, setText, setVariable } from '../common/dom.js';
 const COLUMNS = ['at', 'now', 'min', 'mean', 'max'], FULL = 0.995;
 
 export class TrendTable {
-    // view: see Plot, and remove(tag), setFocus(tag).
+    // view: the trends, with the members that Plot uses (plot.js), and remove(tag) and setFocus(tag).
     constructor(view) {
         this.view = view;
         this.rows = new Map(); // tag -> { cells by column }
@@ -58,7 +58,8 @@ export class TrendTable {
         byId('trend-tags').classList.toggle('lacks', lacks);
         for (const [tag, cells] of this.rows) {
             const decimals = view.decimalsOf(tag), { value, quality } = session.model.readings[tag.index];
-            if (!isPast && view.isLive && quality !== 'bad' && value !== null) // the recorded series ends some seconds ago
+            // includes the present reading, because the recorded series ends some seconds ago
+            if (!isPast && view.isLive && quality !== 'bad' && value !== null)
                 this.stats.set(tag, withNewest(this.stats.get(tag), value));
             const stats = this.stats.get(tag), text = (number) => numberText(number ?? null, decimals);
             setText(cells.now, quality === 'bad' ? say('novalue') : text(value));

@@ -338,8 +338,8 @@ export class Trends {
         return { tags: this.tags.map(({ name }) => name).join(','), from: (from / 1e6).toFixed(3), to: (to / 1e6).toFixed(3) };
     }
 
-    // Requests and draws the values. While a request is under way no other one starts, or on a slow link none would ever be drawn: the last
-    // range that was asked for meanwhile follows.
+    // Requests and draws the values of the present range. Only one request runs at a time, because on a slow link an answer would otherwise
+    // always be outdated. If the range changes meanwhile, one more request follows, for the newest range.
     async refresh() {
         if (this.isAsking)
             this.isLate = true;

@@ -329,7 +329,7 @@ export class Overlay {
         c.beginPath();
         c.moveTo(x1, y1);
         c.lineTo(x2, y2);
-        for (const [style, width] of [['rgb(255 255 255 / 0.85)', 3], [INK, 1.25]]) { // a dark line with a light case
+        for (const [style, width] of [['rgb(255 255 255 / 0.85)', 3], [INK, 1.25]]) { // draws a dark line with a light outline
             c.lineWidth = width;
             c.strokeStyle = style;
             c.stroke();

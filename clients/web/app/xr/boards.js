@@ -14,7 +14,7 @@ import { BEHIND_MS } from '../toolbar/status.js';
 import { titleOf } from '../viewport/legend.js';
 
 const PX_PER_DEGREE = 24; // resolution of boards that keep their size in the view
-const LETTER_PX = 52; // capitals are 0.72 of that high: 1.56 degrees
+const LETTER_PX = 52; // font size; a capital letter is 0.72 of this, which is 1.56 degrees at PX_PER_DEGREE
 const PATTERN_PX = 18, LINE = 1.24, FAMILY = 'system-ui, sans-serif', INK = '#1d252d', PAPER = 'rgb(250 250 250 / 94%)', ALERT = '#7a0019';
 const WRIST_PX = 4600; // pixels per metre of the panel at the wrist
 const css = ([r, g, b]) => `rgb(${r} ${g} ${b})`;
@@ -40,7 +40,7 @@ export class Board {
         return this;
     }
 
-    // Returns the board at a place, of its size in degrees as seen from there.
+    // Returns the board with the width and height in metres at which it has its size in degrees when seen from this distance.
     seenFrom(metres) {
         const perPx = 2 * metres * Math.tan(0.5 * RADIANS) / PX_PER_DEGREE;
         return { texture: this.texture, width: this.canvas.width * perPx, height: this.canvas.height * perPx };

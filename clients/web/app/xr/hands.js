@@ -7,8 +7,8 @@ import { asAsked } from '../../core/session.js';
 import { add, along, cross, dot, length, scale, subtract, unit } from '../../core/vector.js';
 import { Board, cardLines, showCard, showColour, showRing, showWrist } from './boards.js';
 
-const REACH = Math.cos(2 * RADIANS); // a ray this near to a marker points at it
-const LEVEL = Math.cos(35 * RADIANS); // surfaces less steep than this can be stood on
+const REACH = Math.cos(2 * RADIANS); // cosine of the largest angle between a ray and a marker at which the ray points at the marker
+const LEVEL = Math.cos(35 * RADIANS); // cosine of the steepest slope on which a user can stand
 const RAY_M = 4, RAY_WIDE_M = 0.004, RING_M = 0.5;
 const AGAIN_MS = 1000, UNANSWERED_MS = 3000; // a request without an answer is given up after UNANSWERED_MS
 const WRIST_UP_M = 0.16; // height of the panel above the hand
@@ -110,13 +110,13 @@ export class Hands {
     pick({ point }, purpose = 'headset') {
         const { session, shown } = this.headset, { width, height } = session.size;
         Object.assign(this, { asked: purpose, askedAt: performance.now() });
-        // the point in the middle of the picture of a camera that looks at it
+        // picks at the centre of a picture whose camera looks at the point
         askPick(session, [width / 2, height / 2], purpose, { ...asAsked(shown.camera), target: point });
     }
 
     hear(picked) {
         const { asked } = this;
-        this.asked = null; // also if this is the answer to another module's request, which has replaced this one
+        this.asked = null; // nothing is pending any more: an answer to another module's request means that it has replaced this one
         if (picked.purpose !== asked || (asked === 'headset again' && !this.card))
             return;
         const { sensor, asset, normal, position } = picked;

@@ -19,7 +19,9 @@ const LATE_MS = 1000; // time after which a missing picture is reported
 const LEGEND = { metres: 1.3, pitchDeg: 28 }, BANNER_M = 1.3, MARKER_PX = 32, MOST_MARKERS = 150;
 const STALE = ['lost', 'silent'], GRAVE = [...STALE, 'nodata'];
 
-let current = null, isListening = false; // the Headset in use; a session has no way to stop listening
+// current: the Headset in use; isListening: the session's events are handled. They are handled only once, because a session cannot remove
+// listeners.
+let current = null, isListening = false;
 function listenTo(session) {
     if (isListening)
         return;
@@ -111,7 +113,7 @@ export class Headset {
         viewport.invalidate();
     }
 
-    // Ends where the server shows another plant now: the user would stand in it at a place without meaning.
+    // Ends the headset's session if the server now shows another plant, in which the user's position would have no meaning.
     onWelcome() {
         this.hands.forget();
         if (this.session.model.identity !== this.identity || !this.session.reprojects)

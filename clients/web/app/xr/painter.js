@@ -45,7 +45,7 @@ void main() {
 }`;
 
 export class Painter {
-    // backdrop: of the pictures, light or dark.
+    // backdrop: `light` or `dark`, as in the pictures.
     constructor(gl, backdrop) {
         Object.assign(this, { gl, buffers: null, source: null });
         this.mesh = programOf(gl, MESH, PICTURE);
