@@ -8,7 +8,7 @@
 #include <stdbool.h>
 
 struct shown {                /* content to draw in a frame; owned by the source (source.h), valid until its next call */
-    cairo_surface_t *picture; /* NULL: the text card is shown */
+    cairo_surface_t *picture; /* picture to draw; NULL: the text card is shown */
     const char *headline, *detail; /* texts of the card: the state in large letters, and below it the reason */
     gint64 since_us; /* UTC time since which there is a reason for the text card; 0: the card shows no time */
     const char *title;

@@ -13,8 +13,8 @@
 
 struct outputs;
 struct outputs *outputs_create(void);
-void outputs_destroy(struct outputs **outputs); /* &NULL is fine; sets *outputs to NULL. All threads that push units must have ended
-                                                   before */
+/* Frees the outputs and sets *outputs to NULL; accepts a pointer to NULL. All threads that push units must have ended before. */
+void outputs_destroy(struct outputs **outputs);
 /* Adds an output; takes a reference on src, the source of its pipeline. From the next key frame on, src receives encoded units, timed by
    the running time of its own pipeline. */
 void outputs_add(struct outputs *outputs, GstAppSrc *src);

@@ -517,7 +517,7 @@ static int back_up_plant(struct backup_job *job, const char *plant_path, const c
 static int run(int argc, char **argv, int (*command)(int argc, char **argv, struct backup_job *job))
 {
     struct backup_job job = { .log = log_create(LOG_WARN), .files = json_array(), .added = json_array() };
-    json_t *files = job.files; /* restore and verify replace job.files by a part of the manifest */
+    json_t *files = job.files; /* kept here to be released, because restore and verify let job.files point at a part of the manifest */
     int code = command(argc, argv, &job);
     json_decref(files);
     json_decref(job.added);

@@ -15,8 +15,8 @@
 
 enum { EVENTS = 256 };
 static const int64_t CONNECT_TIMEOUT_NS = 20 * NS_PER_S; /* time limit for connecting */
-/* interval between polls; packets that arrive in between are handled together. Waking for each packet would cost the daemon time,
-   because the wake-up happens inside the daemon's send() and took a quarter of that time */
+/* interval between polls; packets that arrive in between are handled together. Waking for each packet would take processor time from the
+   daemon, because the kernel wakes this process inside the daemon's send() */
 static const int64_t POLL_INTERVAL_NS = 2 * NS_PER_MS;
 
 struct load_generator {
