@@ -152,7 +152,7 @@ export class Notes {
         const title = aboutText(this.session.model, note);
         const pin = make('button', { type: 'button', class: 'note-pin', title, onclick: () => this.lookAt(note) },
             make('span', {}, note.text));
-        byId('overlay').before(pin); // placed before the overlay in the document, so that alarm rings and their labels are drawn over the pin
+        byId('overlay').before(pin); // placed before the overlay, so that alarm rings and their labels are drawn over the pin
         return pin;
     }
 
