@@ -9,7 +9,7 @@
 
 static const struct {
     const char *ending;
-    const char *magic; /* first 8 bytes of the file (format and version); NULL: the file of this kind has a format of its own */
+    const char *magic; /* first 8 bytes (format and version) of files of this kind; NULL: this kind of file has a format of its own */
     bool needs_sensors;
 } kinds[BUILD_CACHE_KINDS] = {
     [BUILD_CACHE_MODELS] = { NULL, "PLCCUTS1", false },           [BUILD_CACHE_GEOMETRY] = { ".stock", "PLCSTOCK", false },

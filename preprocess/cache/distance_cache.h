@@ -18,7 +18,7 @@ struct distance_cache {
     const double (*places_m)[3];
     size_t count;
     size_t *slots;      /* by sensor position: index of its slot (file range of one column); SIZE_MAX: it has no slot */
-    atomic_size_t kept; /* number of positions whose column was found in the file */
+    atomic_size_t kept; /* number of sensor positions whose column (distances) was found in the file */
 };
 
 /* Opens or creates FOLDER/KEY.columns and looks up which of the `count` sensor positions places_m (asset frame, metres; must outlive the

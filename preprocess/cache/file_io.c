@@ -4,8 +4,7 @@
 #include <errno.h>
 #include <unistd.h>
 
-/* Advances the range by the number of bytes that a read or write transferred. Returns false on an error, or if no bytes were
- * transferred. */
+/* Advances the remaining byte range by what one read or write transferred. Returns false on an error, or if no bytes were transferred. */
 static bool went_on(ssize_t done, size_t *bytes, off_t *at)
 {
     if (done < 0)

@@ -186,8 +186,8 @@ static void add_surface(json_t *asset, const char *folder, uint64_t key)
     mem_free(path);
 }
 
-/* Lists the levels of detail in which subdivision left no edge with an interpolation error of the field, so that the daemon need not
- * measure their errors (server/field/drawn_error.h). */
+/* Adds a bit mask of the levels of detail in which subdivision left no interpolation error of the field. The daemon need not measure the
+ * errors of these levels (server/field/drawn_error.h). */
 static void add_resolved(json_t *asset, const char *folder, uint64_t key)
 {
     char *text = folder_report(folder, key);
@@ -206,7 +206,8 @@ static void add_resolved(json_t *asset, const char *folder, uint64_t key)
     mem_free(text);
 }
 
-/* Adds the model's losses. If this run did not parse the model, takes the texts of the old manifest's asset of the same recipe. */
+/* Adds the texts about the model's textures and extensions that are not drawn. If this run did not parse the model, takes them from the
+ * asset's entry in the old manifest, if that has the same recipe (hash of model and cutting parameters). */
 static void add_left_out(json_t *asset, const struct folder_entry *entry, const json_t *old_assets)
 {
     json_t *texts = entry->left_out ? json_array() : NULL;

@@ -17,7 +17,7 @@ struct folder_file {
     void *bytes;
     size_t size;
     struct asset_view view;
-    uint16_t *codes; /* unpacked distances; NULL: none, or those of the file are plain */
+    uint16_t *codes; /* distances unpacked from the file; NULL: none, or the file stores them unpacked */
 };
 
 /* Returns the file name KEY.asset. The caller frees it (mem_free). */
@@ -34,7 +34,7 @@ int folder_lock(const char *folder, struct log *log, const atomic_bool *stop);
 /* Maps FOLDER/KEY.asset and checks it. Returns 1 with *file set (until folder_close()), 0 if there is no such file, or -1 if it is damaged,
    with the reason in why. */
 int folder_open(struct folder_file *file, const char *folder, uint64_t key, char why[200]);
-/* Makes the distances of file->view usable, which an asset file with many sensors packs. Returns false if out of memory. */
+/* Unpacks the distances of file->view if the file stores them packed, as it does for many sensors. Returns false if out of memory. */
 bool folder_unpack(struct folder_file *file);
 /* Unmaps the file. */
 void folder_close(struct folder_file *file);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores the cache's two lists (geometry hashes, node positions) in one file. */
+/* Reads and writes the model cache: one file with two lists, geometry hashes and node positions. */
 #include "preprocess/cache/model_cache.h"
 
 #include <string.h>

@@ -135,7 +135,8 @@ error:
     return false;
 }
 
-/* Reads some output and appends it to text. Returns false at the end of the stream. */
+/* Reads once from the child's pipe and appends the bytes to text, up to MAX_OUTPUT. Returns false at the end of the stream or on an
+ * error. */
 static bool take(int fd, struct text *text)
 {
     char bytes[65536];

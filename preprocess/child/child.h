@@ -25,7 +25,7 @@ struct child_params {
     /* files and folders that the child may use; this includes the working directory only if it is listed here */
     const struct confine_path *paths;
     size_t path_count;
-    int result; /* a descriptor that stays open besides stdin (/dev/null), stdout and stderr; 0: none */
+    int result; /* descriptor that stays open in the child, besides stdin (/dev/null), stdout and stderr; 0: none */
     /* receives the child's error output, at most 8 MB; `why` then stays empty if the child exited without a signal; NULL: not wanted */
     struct text *errors;
 };

@@ -13,9 +13,10 @@
 #include "surface/repair/repair.h"
 #include "surface/mesh/trimesh.h"
 
-#define ISOLINES 20  /* maximum number of isolines */
-#define LIFT 3e-4    /* offset of isolines and open edges from the surface, on both sides, relative to the asset's size */
-#define MARK 0.3     /* length of the cross that marks a bridge, in multiples of the spacing of the surface points */
+#define ISOLINES 20 /* maximum number of isolines */
+#define LIFT 3e-4   /* offset of isolines and open edges from the surface, on both sides, relative to the asset's size */
+/* length of the cross that marks a bridge (connection over a gap), in multiples of the spacing of the surface points */
+#define MARK 0.3
 #define SENSOR 0.012 /* relative to the size */
 #define DARKEST 0.75 /* brightness of faces seen edge-on */
 static const double light[3] = { 0.36, -0.48, 0.8 };
@@ -35,7 +36,7 @@ struct debug_drawing {
 struct soup { /* a shape being built */
     float (*positions)[3];
     uint16_t (*colors)[4];
-    uint32_t *indices, *vertex_of; /* vertex_of: by surface point, index of its vertex in this shape + 1; 0: the shape has none yet */
+    uint32_t *indices, *vertex_of; /* vertex_of: by surface point, 1 + index of its vertex in this shape; 0: it has no vertex here yet */
     size_t vertices, indices_used, position_room, color_room, index_room;
 };
 

@@ -237,7 +237,7 @@ static void find_renamed(struct diff *diff, const struct asset_pair *pair, const
     }
 }
 
-/* Reports the tags of an asset that the new plant file contains but the new model does not. */
+/* Reports the tags whose sensors are on an asset of the new plant file that the new model does not contain. */
 static void lose_sensors(struct diff *diff, const char *id, const char *why)
 {
     for (size_t i = 0; i < diff->new_side.tag_count; i++) {

@@ -19,8 +19,8 @@ double diff_shape_diagonal(const struct diff_shape *shape);
 /* Finds the point of the surface nearest to point_m and writes it to place_m. Returns the distance between both in metres. */
 double diff_shape_nearest(const struct diff_shape *shape, const double point_m[3], double place_m[3]);
 
-/* Returns the largest distance, in metres, between a point of one surface and the other surface, in both directions, after b was moved by
- * the matrix b_to_a. Measures at corners and at points spread over the triangles. If enough_m is not 0, stops once the distance exceeds
+/* Moves b by the matrix b_to_a. Returns the largest distance in metres between a point of one surface and the other surface, in both
+ * directions. Measures at corners and at points spread over the triangles. If enough_m is not 0, stops once the distance exceeds
  * enough_m. */
 double diff_shape_apart(const struct diff_shape *a, const struct diff_shape *b, const double b_to_a[16], double enough_m);
 

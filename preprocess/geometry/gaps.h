@@ -10,9 +10,9 @@
 #define GAPS_OF_SIZE 3e-4 /* widest hair gap relative to the diagonal of the bounding box */
 #define GAPS_MOST_M 0.002 /* widest hair gap in metres */
 
-/* Closes gaps up to GAPS_OF_SIZE and GAPS_MOST_M: moves the vertices at one side of a gap to the open edges at the other side, unless the
- * faces overlap, so that two open edges become one common edge. Vertices at the same position move together. tolerance_m: additional limit
- * of the gap width; 0: none. Adds the number of moved positions to *closed. Returns false if out of memory. */
+/* Closes gaps up to GAPS_OF_SIZE and GAPS_MOST_M: moves the vertices at one side of a gap to the open edges at the other side, so that two
+ * open edges become one common edge. Gaps whose faces overlap stay open. Vertices at the same position move together. tolerance_m:
+ * additional limit of the gap width; 0: none. Adds the number of moved positions to *closed. Returns false if out of memory. */
 bool gaps_close(float (*positions_m)[3], size_t vertex_count, const uint32_t *indices, size_t index_count, double tolerance_m,
                 uint32_t *closed);
 

@@ -139,7 +139,8 @@ static const struct node_box empty_box = { { INFINITY, INFINITY, INFINITY }, { -
 
 static void box_add_primitive(struct node_box *box, const struct gltf_primitive *primitive, const double world[16])
 {
-    for (uint32_t i = 0; i < primitive->vertex_count; i++) { /* unused vertices do not matter: the reader has removed them */
+    /* every vertex counts: the glTF reader has removed those that no triangle uses */
+    for (uint32_t i = 0; i < primitive->vertex_count; i++) {
         const float *p = primitive->positions[i];
         double q[3];
         transform_point(world, (const double[3]){ (double)p[0], (double)p[1], (double)p[2] }, q);

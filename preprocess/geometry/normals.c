@@ -10,7 +10,7 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define MANY 256 /* number of faces at one position up to which all pairs are compared */
+#define MANY 256 /* number of faces at one position up to which all pairs are compared; with more, a tree is searched (normals_half) */
 #define LEAF 16
 /* cosine of the crease angle, 40 degrees: a cylinder with ten sides is shaded round, one with eight sides shows its edges */
 #define CREASE_COSINE 0.766

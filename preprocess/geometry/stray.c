@@ -25,7 +25,8 @@ static double away_from(const struct extent *main, const double place_m[3])
     return vec_length(away_m);
 }
 
-/* Examines a primitive's vertices, including those used only by triangles without area. */
+/* Finds the primitive's vertex that is farthest from the asset's main part, and keeps it if it is farther away than those found before.
+ * Includes vertices that only triangles without area use. */
 static void look_at(struct farthest *farthest, const struct node_primitive *part, const struct geometry_params *params)
 {
     double world[16], place_m[3];
