@@ -7,8 +7,9 @@
 #include "preprocess/import/cad_model.h"
 
 struct attribute_counts {
-    size_t elements, matched; /* elements: NEW ... END blocks of the file; matched: blocks for which the model has a node */
-    size_t attributes;        /* number of attributes added to nodes */
+    /* elements: number of NEW ... END blocks in the file; matched: number of those for which the model has a node */
+    size_t elements, matched;
+    size_t attributes; /* number of attributes added to nodes */
     struct charset_choice encoding;
 };
 

@@ -53,7 +53,7 @@ const struct import_format *import_format_of(const char *path)
         if (has_ending(formats[i].endings, dot))
             found = &formats[i];
     if (found && found->reader == FORMAT_GLTF && strcmp(plain, path) != 0)
-        found = NULL; /* buffers lie next to the compressed file, but the model would be read where it is unpacked */
+        found = NULL; /* refuse a compressed glTF file: it is unpacked in another folder, but its buffers lie next to the original */
     mem_free(plain);
     return found;
 }

@@ -53,7 +53,7 @@ static bool is_printable(const char *text)
 }
 
 struct draft_choice {    /* choices for each outline node */
-    bool *item, *unique; /* by node: item: it becomes an asset; unique: no other node has the same name */
+    bool *item, *unique; /* by node: item: the node becomes an asset; unique: no other node has the same name */
     bool typed, classed; /* typed: the model has nodes whose type is ZONE; classed: it has nodes with IFC classes */
 };
 

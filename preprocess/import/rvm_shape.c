@@ -240,7 +240,7 @@ static struct corner_ring torus_ring(double offset, double radius, double angle)
 }
 
 /* Adds a circular torus. If the first corners of the two ends have different angles (phase_of()), the corners rotate gradually along the
- * bend, in total by at most half the angle between two corners. */
+ * bend. The total rotation is at most half the angle between two corners. */
 static void add_circular_torus(struct cad_node *node, const struct primitive_frame *frame, const double *n, double chord_m,
                                uint32_t open_faces)
 {

@@ -18,10 +18,10 @@ namespace ifc
 namespace
 {
 
-constexpr double STEP_RAD = 0.05;    /* turn of a curve between two interpolated points */
+constexpr double STEP_RAD = 0.05;    /* largest turn of a curve, in radians, between two interpolated points */
 constexpr double MOST_TURN_RAD = 50; /* maximum turn of one segment */
-constexpr double LEAST_MM = 1e-3;    /* shorter segments only mark the end of a curve */
-constexpr double JOINT_MM = 1;       /* tolerance of the distance at which heights begin */
+constexpr double LEAST_MM = 1e-3;    /* millimetres; a segment shorter than this only marks the end of its curve */
+constexpr double JOINT_MM = 1;       /* millimetres; the heights must begin this close to the start of the plan */
 
 /* A segment of the plan. turn(d): direction at d millimetres from its start minus the direction at the start, in radians. */
 struct plan_segment {
@@ -31,7 +31,8 @@ struct plan_segment {
     bool straight;
 };
 
-/* Heights from a distance along the plan until the next grade. height(d): height in millimetres, and slope, d millimetres after `at_mm`. */
+/* One grade of the heights: from at_mm along the plan to the next grade. height(d): height in millimetres, and slope, d millimetres after
+ * at_mm. */
 struct grade {
     double at_mm;
     std::function<gp_XY(double)> height;
@@ -45,7 +46,7 @@ struct segment_values {
     double heading_rad, from_mm, length_mm; /* from: start on the parent curve. A negative length runs against the parent's direction. */
 };
 
-/* Returns the length along a parent curve, in millimetres, that a length or a parameter states. */
+/* Converts an IFC measure, which is a length or a parameter of the parent curve, to a length along the parent curve in millimetres. */
 double measure_of(const ifc_model &in, const entity &parent, const value &measure)
 {
     double number = file::number(measure);
@@ -82,7 +83,7 @@ std::function<double(double)> heading_of(const ifc_model &in, const entity &pare
 {
     if (parent.is("IFCLINE"))
         return [](double) { return 0; };
-    double size = in.length * file::number(parent[1]); /* radius of a circle, constant of a clothoid */
+    double size = in.length * file::number(parent[1]); /* radius of a circle, or constant of a clothoid, in millimetres */
     if (!(std::fabs(size) > LEAST_MM))
         throw unsupported("a curve without a radius");
     if (parent.is("IFCCIRCLE"))
@@ -100,7 +101,7 @@ plan_segment plan_segment_of(const ifc_model &in, const segment_values &from)
     return { from.start, from.heading_rad, std::fabs(from.length_mm), turn, from.parent.is("IFCLINE") };
 }
 
-/* Converts a line or an arc of another curve. */
+/* Converts a piece of a curve to a segment of the plan. Throws `unsupported` unless the piece is a line or an arc. */
 plan_segment plan_segment_of(const curve_piece &piece)
 {
     gp_Vec along = piece.tangent(false);
@@ -141,7 +142,8 @@ std::function<gp_XY(double)> arc_of(double height, double heading, double radius
     };
 }
 
-/* Returns heights of an IfcPolynomialCurve, such as a parabola, whose first coordinate is its parameter. */
+/* Returns the heights of an IfcPolynomialCurve, such as a parabola. Throws `unsupported` unless the curve's x coordinate is its
+ * parameter. */
 std::function<gp_XY(double)> polynomial_of(const ifc_model &in, const segment_values &segment)
 {
     const std::vector<value> &x = segment.parent[1].list, &y = segment.parent[2].list;

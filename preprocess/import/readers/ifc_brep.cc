@@ -201,7 +201,8 @@ class step_writer
         }
         if (type == "IFCORIENTEDEDGE")
             return "ORIENTED_EDGE('',*,*," + text_of(from[2]) + (from[3].is(".F.") ? ",.F.)" : ",.T.)");
-        if (type == "IFCSURFACECURVE" || type == "IFCSEAMCURVE") /* an edge is fully defined by its 3D curve */
+        /* not converted: a 3D curve that also has curves in the parameter space of surfaces */
+        if (type == "IFCSURFACECURVE" || type == "IFCSEAMCURVE")
             throw unsupported(type);
         for (const auto &known : names)
             if (type == known[0]) {

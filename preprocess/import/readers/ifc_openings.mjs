@@ -3,7 +3,8 @@
 import { fields } from './ifc_losses.mjs';
 
 const SAMPLES = 24; // points tested within each opening
-const RAYS = [[0.2672612, 0.5345225, 0.8017837], [-0.6337502, 0.4436252, -0.6337502]]; // directions; parallel to no usual face
+// directions of the test rays; parallel to no usual face
+const RAYS = [[0.2672612, 0.5345225, 0.8017837], [-0.6337502, 0.4436252, -0.6337502]];
 const SHARE = 0.1; // an opening is not cut if more than this share of its points is inside the element
 
 const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -67,7 +68,7 @@ export function uncutOpenings(model, voids, geometry, solids) {
             return { geometryExpressID: `solid ${item}`, flatTransformation: place };
         });
         if (!model.line(opening)?.Representation?.value || elements.every((element) => !shown.has(element)))
-            return; // nothing to cut, or nothing from which it could be cut
+            return; // the opening has no shape, or none of its elements has one
         const points = cutter ? innerPoints(of(opening, cutter)) : [];
         const hosts = elements.filter((element) => shown.has(element)).map((element) => of(element, shown.get(element)));
         const filled = points.filter((point) => hosts.some((host) => isInside(point, host))).length;

@@ -109,7 +109,7 @@ struct relative_placement {
 
 relative_placement in_grid(const ifc_model &in, const entity &from)
 {
-    size_t at = from.values.size() > 2 ? 1 : 0; /* IFC 4.3 adds the placement to which this one is relative */
+    size_t at = from.values.size() > 2 ? 1 : 0; /* IFC 4.3 adds a first value: the placement to which this one is relative */
     crossing origin = crossing_of(in, from[at]);
     relative_placement out;
     if (at > 0)

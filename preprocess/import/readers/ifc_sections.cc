@@ -200,7 +200,7 @@ gp_GTrsf section_place(const section_frame &from)
     for (int row = 1; row <= 3; row++)
         for (int column = 1; column <= 3; column++)
             shear.SetValue(row, column, (row == column) - from.along.Coord(row) * from.plane.Coord(column) / share);
-    /* the point of the corner stays, and its profile lies in the plane through that point */
+    /* add a translation, so that the shear leaves the point of the corner where it is */
     gp_XYZ at = from.at.XYZ(), moved = at;
     shear.Transforms(moved);
     shear.SetTranslationPart(at - moved);

@@ -327,7 +327,8 @@ bool has_any(const file &in)
     return any;
 }
 
-/* Restates the grid placements as local placements, in properties of a node, so that web-ifc reads them. */
+/* Writes the grid placements, restated as local placements, to properties of an output node. ifc.mjs puts them into the IFC file that
+ * web-ifc reads. */
 void add_placements(ifc_writer *w)
 {
     std::map<int, std::string> statements;

@@ -138,8 +138,8 @@ static void pair_run(struct node_pairing *p, const int *olds, size_t old_count, 
         pair_in_order(p, olds, old_count, news, new_count);
 }
 
-/* Goes through the sorted candidates of the old and the new model in parallel, and pairs nodes within each run of nodes that compare equal,
- * as `rule` says (enum run_rule). */
+/* Walks through the sorted candidates (unpaired nodes) of both models in parallel, and pairs nodes within each run of nodes that compare
+ * equal. rule: how a run is paired (enum run_rule). */
 static void pair_runs(struct node_pairing *p, int (*compare)(const struct node_pairing *p, int old_node, int new_node), enum run_rule rule)
 {
     for (size_t i = 0, k = 0; i < p->old_count && k < p->new_count;) {
@@ -206,7 +206,7 @@ static json_t *guids_of(const struct model_outline *outline)
     json_t *found = json_object();
     for (size_t i = 0; i < outline->header.count; i++) {
         const char *guid = model_outline_property(&outline->nodes[i], "GlobalId");
-        if (guid) /* value: node index, or -1 if several nodes share the GUID */
+        if (guid) /* value: index of the node; -1: several nodes share the GUID */
             json_object_set_new_nocheck(found, guid, json_integer(json_object_get(found, guid) ? -1 : (json_int_t)i));
     }
     return found;

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds which node of a new export corresponds to which node of the old one: by GUID, else by names from the roots down, else by a name
- * that occurs once, else (renamed nodes) by an equal box and an equal number of descendants below the same parent. No side effects. Thread:
- * any. */
+/* Finds which node of a new export corresponds to which node of the old one. Compares, in this order: GUIDs; names from the roots down;
+ * names that occur once; for renamed nodes below one parent, boxes and numbers of descendants. No side effects. Thread: any. */
 #ifndef PREPROCESS_IMPORT_NODE_PAIRS_H
 #define PREPROCESS_IMPORT_NODE_PAIRS_H
 #include "preprocess/import/model_outline.h"

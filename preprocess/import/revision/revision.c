@@ -27,7 +27,7 @@ struct planning {
     json_t *ids;
     struct revision_row *tag_rows;
     size_t tag_row_count, tag_row_room;
-    /* State of the model being compared: */
+    /* State for the model that is being compared: */
     const char *file;
     struct model_states states;
     struct asset_patterns patterns;
