@@ -332,8 +332,8 @@ static double next_sign(struct signs *signs)
     return sign;
 }
 
-/* Computes the readings that all sensors would have in a field u drawn from the prior, in units of the standard deviation, and negates
- * them, because they serve to subtract the prediction from the field. First subtracts the value at the body's first sensor, which
+/* Computes the readings that all sensors would have in a field u drawn from the prior, in units of the standard deviation. Negates them,
+ * because they serve to subtract the prediction from the field. First subtracts the value at the body's first sensor, which
  * levels[component] receives: a constant per body does not change the error, and would cost digits. */
 static void take_readings(const struct solving *solving, const double *u, struct signs *signs, double *levels, float *readings)
 {

@@ -29,7 +29,7 @@ struct influence {
 /* Input of influence_conduct() and gaussian_solve(). */
 struct influence_task {
     struct log *log;
-    struct workers *workers;                /* NULL: the calling thread does all work */
+    struct workers *workers;                /* worker threads; NULL: the calling thread does all work */
     const struct influence_mesh *mesh;      /* the surface and the discs of its sensors */
     const struct influence_anchor *anchors; /* for each of the vertex_count vertices, its position on the mesh */
     size_t vertex_count;

@@ -116,8 +116,8 @@ static bool is_corner(const struct finding *finding, const struct bend_place *pl
     return false;
 }
 
-/* Returns whether the place needs no check: both fields are equal there (is_corner()), or the drawn triangle already has an equal
- * place. May miss a duplicate, which costs only time. */
+/* Returns whether the place (corner of an overlap) needs no check: both fields are equal there (is_corner()), or the drawn triangle already
+ * has an equal place. May miss a duplicate, which costs only time. */
 static bool is_known(struct finding *finding, const struct bend_place *place)
 {
     const struct influence_bend *bend = finding->bend;
@@ -157,7 +157,8 @@ static void add_place(struct finding *finding, const double at[2], const double 
 /* --- passes -------------------------------------------------------------------------------------------------------------------- */
 
 /* Processes a mesh triangle whose box is near the drawn triangle: removes the area that it covers from finding->cut. If the triangle
- * belongs to the solved mesh (not to the hidden triangles) and overlaps finding->left, adds the corners of the overlap as places. */
+ * belongs to the solved mesh (not to the hidden triangles) and overlaps finding->left, adds the corners of the overlap as places (points at
+ * which the error is measured). */
 static void visit(void *arg, uint32_t tri)
 {
     struct finding *finding = arg;

@@ -14,7 +14,7 @@
 
 struct bend_place {
     uint32_t tri;                   /* index of the drawn triangle */
-    float weights[3];               /* barycentric weights of the place in the drawn triangle */
+    float weights[3];               /* barycentric weights, in the drawn triangle, of the place (point at which the error is measured) */
     struct influence_anchor anchor; /* position on the mesh */
 };
 
@@ -48,8 +48,9 @@ struct influence_bend {
     size_t point_count;            /* number of points of the mesh */
 };
 
-/* Finds the places of the drawn triangles. The mesh, `drawn` and its arrays must outlive *bend. surface: the surface that the mesh was made
- * from. Returns false if there are more than `most` places, or out of memory. Call influence_bend_finish() in both cases. Thread: one. */
+/* Finds the places of the drawn triangles: the points at which the error is measured. The mesh, `drawn` and its arrays must outlive *bend.
+ * surface: the surface that the mesh was made from. Returns false if there are more than `most` places, or out of memory. Call
+ * influence_bend_finish() in both cases. Thread: one. */
 bool influence_bend_init(struct influence_bend *bend, const struct influence_mesh *mesh, const struct surface *surface,
                          const struct bend_drawn *drawn, size_t most);
 void influence_bend_finish(struct influence_bend *bend);

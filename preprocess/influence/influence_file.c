@@ -158,7 +158,8 @@ static bool bound_errors(const struct influence_making *making, const struct pla
     return true;
 }
 
-/* Computes one interpolation of a group and adds it to the file's entries. task->bend: NULL if it has too many places to measure. */
+/* Computes one interpolation of a group and adds it to the file's entries. task->bend: measures the interpolation errors; NULL: they are
+ * not measured, because there are too many places (corners of overlaps). */
 static bool add_entry(struct influence_making *making, int group, enum interpolation interpolation, const struct influence_task *task,
                       const struct gaussian_params *gp)
 {
