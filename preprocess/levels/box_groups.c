@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Groups boxes by recursive halving of space. The recursion ends in a cell with few boxes, or with boxes that are one group already, or
- * with a box that fills the cell and so overlaps all others. A sweep along one axis, the usual method, would compare all pairs of boxes
- * along a plate perpendicular to that axis. */
+/* Groups boxes by recursive halving of space. The recursion ends in a cell with few boxes, with boxes that are one group already, or with a
+ * box that fills the cell and so overlaps all others. A sweep along one axis, the usual method, would compare all pairs of boxes along a
+ * plate perpendicular to that axis. */
 #include "preprocess/levels/box_groups.h"
 
 #include <math.h>

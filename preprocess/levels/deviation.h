@@ -21,15 +21,15 @@ struct deviation {       /* a triangle surface, prepared for measuring distances
 
 struct deviation_params {
     const float (*positions_m)[3];
-    const uint32_t *first_there; /* by vertex: lowest index of a vertex of the same part at the same position */
+    const uint32_t *first_there; /* by vertex: lowest index of a vertex of the same part (connected component) at the same position */
     const uint32_t *part;        /* by vertex; borrowed */
     size_t part_count;
     const char *only; /* by part: nonzero if the part will be measured; NULL: all parts are */
     bool anywhere;    /* true: build one hierarchy over all parts, which deviation_measure_lost() needs */
 };
-/* Builds a surface to measure: copies positions and triangles (3 vertices each), removes duplicate triangles, and builds a bounding volume
- * hierarchy for each part, so that a distance query for one part does not visit the triangles of others. Surfaces to be compared must share
- * positions and parts. */
+/* Builds a surface to measure: copies positions and triangles (3 vertices each), and removes duplicate triangles. Builds a bounding volume
+ * hierarchy for each part (connected component), so that a distance query for one part does not visit the triangles of others. Surfaces to
+ * be compared must share positions and parts. */
 void deviation_init(struct deviation *surface, const struct deviation_params *params, const uint32_t *triangles, size_t triangle_count);
 /* Frees the surface. */
 void deviation_finish(struct deviation *surface);

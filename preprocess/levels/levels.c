@@ -135,8 +135,8 @@ static void write_level(struct levels_making *making, struct level *level, const
     mem_free(fill);
 }
 
-/* Measures the error caused by omitted parts that lay on other parts: the largest distance from the omitted surface to the surface that is
- * visible in its place. Raises apart_m of these parts to that distance. */
+/* Measures the error caused by omitted parts (connected components) that lay on other parts: the largest distance from the omitted surface
+ * to the surface that is visible in its place. Raises apart_m of these parts to that distance. */
 static void measure_lost(const struct levels_making *making, const uint32_t *welds, size_t count, double expected_m, float *apart_m)
 {
     const struct welds *of = &making->welds;
@@ -158,8 +158,8 @@ static void measure_lost(const struct levels_making *making, const uint32_t *wel
     mem_free(lost);
 }
 
-/* Returns the largest error of any part in its current version, in metres. Excludes omitted parts that lay on other parts, which
- * measure_lost() measures. */
+/* Returns the largest error of any part in its current version (simplification step), in metres. Excludes omitted parts that lay on other
+ * parts, which measure_lost() measures. */
 static float error_of_parts(const struct levels_making *making)
 {
     float most_m = 0;
@@ -210,8 +210,8 @@ static void face_parts(const struct levels_making *making, uint32_t *welds, size
     mem_free(before);
 }
 
-/* Returns the triangles of all parts, each in its current version: three welds (groups of equal vertices) per triangle, *count in total.
- * The caller frees the array. */
+/* Returns the triangles of all parts, each in its current version (simplification step): three welds (groups of equal vertices) per
+ * triangle, *count in total. The caller frees the array. */
 static uint32_t *list_welds(const struct levels_making *making, size_t *count)
 {
     uint32_t *welds = mem_array(3 * making->tri_count, sizeof(*welds));
@@ -227,8 +227,8 @@ static uint32_t *list_welds(const struct levels_making *making, size_t *count)
     return welds;
 }
 
-/* Returns the index of the coarsest version of a part whose error is at most error_m. The result is never finer than the part's version in
- * the last level. */
+/* Returns the index of the coarsest version (simplification step) of a part whose error is at most error_m. The result is never finer than
+ * the part's version in the last level. */
 static uint32_t version_within(const struct levels_making *making, uint32_t part, float error_m)
 {
     uint32_t best = making->shown[part];
@@ -265,15 +265,16 @@ static bool is_far(const struct levels_making *making, const struct level *last,
     return making->tri_count <= FAR_TRIANGLES && fmax((double)error_m, step_m(making, last)) >= FAR * making->welds.whole_m;
 }
 
-/* Returns whether the parts in their current versions have few enough triangles to be worth another level after `last`. */
+/* Returns whether the parts in their current versions (simplification steps) have few enough triangles to be worth another level after
+ * `last`. */
 static bool is_worth(const struct levels_making *making, const struct level *last, float error_m)
 {
     double before = (double)(last->index_count / 3), now = (double)making->tri_count;
     return now <= (is_far(making, last, error_m) ? FAR_WORTH : NEAR_WORTH) * before;
 }
 
-/* Adds a level with the parts in their current versions. *error_out_m receives the level's error. Returns false without adding the level if
- * its triangle count is too large because omitted parts had to be restored. */
+/* Adds a level with the parts in their current versions (simplification steps). *error_out_m receives the level's error. Returns false
+ * without adding the level if its triangle count is too large because omitted parts had to be restored. */
 static bool add_level(struct levels_making *making, struct levels *levels, float *error_out_m)
 {
     size_t count, parts = making->welds.part_count;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Simplifies a part by edge collapses: a mesh point is removed by merging it into a neighbour. The collapse that moves the surface least
- * comes first. Each triangle keeps a list of the original vertices ("places") nearest to it (Ciampalini et al., Multiresolution decimation
- * based on global error, The Visual Computer 1997). The error of a collapse is the distance from these places to the new triangles, and
- * from the new triangles to the original surface. It is computed only when the collapse reaches the top of the heap. Until then, the heap
- * orders the collapse by a lower bound. */
+/* Simplifies a part (connected component) by edge collapses: a mesh point is removed by merging it into a neighbour. The collapse that
+ * moves the surface least comes first. Each triangle keeps a list of the original vertices ("places") nearest to it (Ciampalini et al.,
+ * Multiresolution decimation based on global error, The Visual Computer 1997). The error of a collapse is the distance from these places to
+ * the new triangles, and from the new triangles to the original surface. It is computed only when the collapse reaches the top of the heap.
+ * Until then, the heap orders the collapse by a lower bound. */
 #include "preprocess/levels/levels_bounded.h"
 
 #include <string.h>
@@ -85,15 +85,15 @@ static struct removal_candidate pop(struct bounded *b)
 struct ring_wedge {               /* one triangle around a point */
     uint32_t face, at;            /* at: index (0 to 2) of the face's corner that is at the point */
     uint32_t weld;                /* weld (group of equal vertices) of that corner */
-    uint32_t points[2], welds[2]; /* points and welds of the face's other two corners, in winding order */
+    uint32_t points[2], welds[2]; /* points and welds (groups of equal vertices) of the face's other two corners, in winding order */
 };
 
 struct point_ring {
     uint32_t point;
     struct ring_wedge wedges[RING];
     int count; /* number of wedges (triangles around the point); RING + 1: there are too many to store */
-    /* by edge from the point: the point at the edge's other end, and, in one of the edge's triangles, the welds at this end (here) and the
-     * other end (there) */
+    /* by edge from the point: the point at the edge's other end, and, in one of the edge's triangles, the welds (groups of equal vertices)
+     * at this end (here) and the other end (there) */
     uint32_t ends[2 * RING], weld_here[2 * RING], weld_there[2 * RING];
     bool is_feature[2 * RING]; /* by edge: whether it is an open border or a seam of material or texture */
     int end_count, feature_count;
@@ -180,8 +180,8 @@ static bool has_end(const struct ring_wedge *wedge, uint32_t end)
     return wedge->points[0] == end || wedge->points[1] == end;
 }
 
-/* Returns the new weld of a corner at the ring's point when that point is merged into the target: the target's weld in a triangle that
- * contains both points. NONE: no weld fits, or several do. */
+/* Returns the weld (group of equal vertices) that a corner at the ring's point gets when that point is merged into the target: the target's
+ * weld in a triangle that contains both points. NONE: no weld fits, or several do. */
 static uint32_t weld_after(const struct point_ring *ring, int target, uint32_t weld)
 {
     uint32_t found = NONE;
@@ -282,8 +282,8 @@ static double distance_to_any(const double place[3], const struct moved *moved, 
     return nearest_m;
 }
 
-/* Returns the largest of error_m and the two distances that make up the error of a collapse: from the affected places to the new triangles,
- * and from the new triangles to the original surface. Stops early once the result exceeds enough_m. */
+/* Returns the largest of error_m and the two distances that make up the error of a collapse: from the affected original vertices ("places")
+ * to the new triangles, and from the new triangles to the original surface. Stops early once the result exceeds enough_m. */
 static double error_of(struct bounded *b, const struct point_ring *ring, uint32_t to, double error_m, double enough_m)
 {
     struct moved moved[RING];
@@ -478,7 +478,7 @@ static void place_of(const struct welds *welds, uint32_t weld, double place[3])
 
 /* map from welds (groups of equal vertices) to the mesh points of one part */
 struct point_numbers {
-    /* by weld - low: index of the weld's point + 1; 0: none; low and high: range of welds that the map covers */
+    /* of: by index of a weld minus low: index of the weld's point + 1; 0: none. low, high: range of weld indices that the map covers */
     uint32_t *of, low, high;
 };
 

@@ -66,8 +66,8 @@ uint32_t levels_vertex(const struct welds *welds, const char *used, uint32_t wel
     return best;
 }
 
-/* Returns the cosine between face normal n and the normal of the weld's vertex chosen by levels_vertex(); -1: no vertex of the weld is
- * used. */
+/* Returns the cosine between face normal n and the normal of the vertex that levels_vertex() chooses from the weld (group of equal
+ * vertices); -1: no vertex of the weld is used. */
 static float look(const struct facing_pass *facing, uint32_t weld, const float n[3], bool one_side)
 {
     uint32_t vertex = levels_vertex(facing->welds, facing->used, weld, n, one_side);
@@ -107,8 +107,8 @@ static void find_needs(struct facing_pass *facing, const uint32_t *corners, size
     }
 }
 
-/* Offers weld `to` as a replacement to all corners in need that are at weld `from`. The welds are the ends of an edge of the model. The
- * nearest weld that has a vertex facing the corner's side wins. */
+/* Offers weld `to` (a weld is a group of equal vertices) as a replacement to all corners in need that are at weld `from`. The welds are the
+ * ends of an edge of the model. The nearest weld that has a vertex facing the corner's side wins. */
 static void offer(struct facing_pass *facing, uint32_t from, uint32_t to)
 {
     if (facing->first[from] == SIZE_MAX || facing->welds->primitive[from] != facing->welds->primitive[to])
@@ -124,7 +124,7 @@ static void offer(struct facing_pass *facing, uint32_t from, uint32_t to)
     }
 }
 
-/* Moves corners to their replacement welds, except in faces that would flip or lose their area. */
+/* Moves corners to the welds (groups of equal vertices) that replace theirs, except in faces that would flip or lose their area. */
 static void move_faces(const struct facing_pass *facing, uint32_t *corners)
 {
     for (size_t i = 0; i < facing->count;) {
@@ -143,8 +143,8 @@ static void move_faces(const struct facing_pass *facing, uint32_t *corners)
     }
 }
 
-/* Undoes the repair of faces if it left a weld unused by all faces, because the next coarser levels may only use welds that this level
- * uses. */
+/* Undoes the repair of faces that had a corner at a weld (group of equal vertices) that no face uses any more: the next coarser levels may
+ * only use welds that this level uses. */
 static void keep_knots(const struct facing_pass *facing, const uint32_t *before, uint32_t *corners, size_t count)
 {
     char *kept = mem_array(facing->welds->count, 1);

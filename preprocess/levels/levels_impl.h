@@ -28,17 +28,18 @@ struct welds {
     double whole_m;                           /* size of the asset's main part (base/math/gap_split.h), metres */
 };
 
-/* Groups the geometry's vertices into welds and parts. Returns false if out of memory; call welds_finish() in both cases. */
+/* Groups the geometry's vertices into welds (groups of equal vertices) and parts (connected components). Returns false if out of memory;
+ * call welds_finish() in both cases. */
 bool welds_init(struct welds *welds, const struct geometry *geometry);
 /* Frees the arrays. */
 void welds_finish(struct welds *welds);
 
 /* --- versions (levels_versions.c) --- */
 
-/* The asset's triangles after some simplification; each version is made from the version before. */
+/* A version: the asset's triangles after some simplification. Each version is made from the version before. */
 struct version {
     uint32_t *welds; /* three weld indices per triangle */
-    size_t count;    /* number of weld indices; three per triangle */
+    size_t count;    /* number of elements of `welds`; three per triangle */
     /* by part: largest distance between this version and the first one, in either direction, metres; INFINITY: the part has no triangle
      * left */
     float *error_m;
@@ -47,15 +48,16 @@ struct version {
 
 #define VERSIONS_MAX 24
 struct versions {
-    struct version at[VERSIONS_MAX]; /* versions, each coarser than the one before; at[0] is the original model */
+    struct version at[VERSIONS_MAX]; /* versions (simplification steps), each coarser than the one before; at[0] is the original model */
     size_t count;
     struct deviation first; /* surface of the first version */
 };
 
-/* Makes the versions, each by simplifying the version before, and measures the error of each part in each version. workers may be NULL. */
+/* Makes the versions (simplification steps), each by simplifying the version before, and measures the error of each part in each version.
+ * workers may be NULL. */
 void versions_make(struct versions *versions, const struct welds *welds, struct workers *workers);
-/* Prepares a surface for measuring distances from triangles: `count` welds, three per triangle. only: by part, nonzero if it is included;
- * NULL: all parts. */
+/* Prepares a surface for measuring distances from triangles: `count` welds (groups of equal vertices), three per triangle. only: by part,
+ * nonzero if it is included; NULL: all parts. */
 void levels_surface(struct deviation *surface, const struct welds *welds, const char *only, const uint32_t *corners, size_t count);
 /* Frees all versions. */
 void versions_finish(struct versions *versions);
@@ -64,7 +66,7 @@ void versions_finish(struct versions *versions);
 
 struct omission {
     float from_m; /* minimum error in metres of a level that omits the part; INFINITY: no level omits it */
-    /* no larger part is near. The part then belongs to a group of small neighbouring parts, and from_m is the size of the group. */
+    /* true: no larger part is near, so the part belongs to a group of small neighbouring parts, and from_m is the size of that group */
     bool alone;
 };
 
@@ -74,7 +76,8 @@ void omissions_find(struct omission *omissions, const struct welds *welds, struc
 
 /* --- flattened parts (levels_facing.c) --- */
 
-/* Writes the unit normal of the triangle whose corners are the three welds, or the zero vector if it has no area. */
+/* Writes the unit normal of the triangle whose corners are the three welds (groups of equal vertices), or the zero vector if it has no
+ * area. */
 void levels_normal(const struct welds *welds, const uint32_t corners[3], float n[3]);
 /* Returns, among the vertices of a weld (group of equal vertices at one position), the one whose normal is closest to the face normal n.
  * used: by vertex, nonzero if the level may use it; other vertices are ignored. Without one_side, a normal that points the opposite way

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Simplifies an asset step by step into versions, and measures the error of each part in each version. Assets with many triangles are first
- * simplified as a whole (meshoptimizer), to about half the triangles each time; then part by part, by edge collapses. */
+/* Simplifies an asset step by step into versions, and measures the error of each part (connected component) in each version. Assets with
+ * many triangles are first simplified as a whole (meshoptimizer), to about half the triangles each time; then part by part, by edge
+ * collapses. */
 #include <math.h>
 #include <meshoptimizer.h>
 #include <string.h>
@@ -10,15 +11,19 @@
 #include "preprocess/levels/levels_impl.h"
 
 #define SHRINK 0.55 /* share of the previous version's triangles that each version (simplification step) should keep */
-#define STUCK 0.9   /* simplification of the whole asset stops at a version with more than this share of the previous version's triangles */
+/* simplification of the whole asset stops at a version (simplification step) with more than this share of the previous version's
+ * triangles */
+#define STUCK 0.9
 /* number of triangles above which the asset is simplified as a whole, which is fast; with fewer, part by part (levels_bounded.c) */
 #define HALVE_ABOVE 40000
 /* maximum number of triangles for simplification part by part, also if simplification of the whole makes no more progress */
 #define MAX_COLLAPSED 100000
-#define LEAST 0.00025 /* allowed error of the first version that is made by edge collapses, relative to the asset's size */
-#define STEP 1.3      /* factor from the allowed error of one version to that of the next, in the range of far levels (levels.c) */
-/* factor from the allowed error of one version to that of the next, in the range of near levels; larger, because each version must be
- * measured and near levels need fewer versions */
+/* allowed error of the first version (simplification step) that is made by edge collapses, relative to the asset's size */
+#define LEAST 0.00025
+/* factor from the allowed error of one version (simplification step) to that of the next, in the range of far levels (levels.c) */
+#define STEP 1.3
+/* factor from the allowed error of one version (simplification step) to that of the next, in the range of near levels; larger, because each
+ * version must be measured and near levels need fewer versions */
 #define STEP_ELSE 1.7
 #define ALIKE 0.85       /* a version (simplification step) with more than this share of the previous version's triangles is dropped */
 #define MIN_TRIANGLES 60 /* smaller assets are not simplified */
@@ -54,7 +59,7 @@ static size_t simplify(const struct welds *welds, const struct version *from, ui
                             options, error);
 }
 
-/* Simplifies the version `from` to about half its triangles. Returns meshoptimizer's error estimate in metres. */
+/* Simplifies the version (simplification step) `from` to about half its triangles. Returns meshoptimizer's error estimate in metres. */
 static double halve(struct version *to, const struct version *from, const struct welds *welds)
 {
     float error = 0;
@@ -107,7 +112,7 @@ struct collapsing {
     const struct deviation *first;
     const struct version *from;
     struct bounded **parts; /* by part (connected component): its edge collapser (levels_bounded.h); NULL: the part has no triangle left */
-    size_t *first_corner;   /* by part: index in `corners` of its first triangle in the version `from` */
+    size_t *first_corner;   /* by part: index in `corners` of its first triangle in the version (simplification step) `from` */
     uint32_t *corners;
     size_t *first_place; /* by part: index in `places` of its first vertex of the original model */
     uint32_t *places;
@@ -181,8 +186,8 @@ static void read_parts(const struct collapsing *collapsing, struct version *vers
         }
 }
 
-/* Lists the errors allowed for the versions made by edge collapses, from the largest useful error down to the smallest, at most `room`.
- * Returns their number, and sorts the list in ascending order. */
+/* Lists the errors allowed for the versions (simplification steps) made by edge collapses, from the largest useful error down to the
+ * smallest, at most `room`. Returns their number, and sorts the list in ascending order. */
 static size_t list_errors(double whole_m, size_t room, double errors_m[VERSIONS_MAX])
 {
     size_t count = 0;
@@ -198,7 +203,7 @@ static size_t list_errors(double whole_m, size_t room, double errors_m[VERSIONS_
     return count;
 }
 
-/* Makes versions by edge collapses, one for each allowed error. */
+/* Makes versions (simplification steps) by edge collapses, one for each allowed error. */
 static void make_collapsed(struct versions *versions, const struct welds *welds, struct workers *workers)
 {
     struct collapsing collapsing = { .welds = welds, .first = &versions->first, .from = &versions->at[versions->count - 1] };
