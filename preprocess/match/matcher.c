@@ -69,7 +69,7 @@ static void decide(const struct matcher *matcher, const struct proposal proposal
     /* indices of methods. chosen: the method whose proposal is taken; -1: none. open: the first method that proposed several assets; -1:
      * none */
     int chosen = -1, open = -1;
-    for (int pass = 0; pass < 2 && chosen < 0; pass++) /* first pass: only sure proposals; second pass: any */
+    for (int pass = 0; pass < 2 && chosen < 0; pass++) /* first pass: only sure proposals of the methods; second pass: all proposals */
         for (int i = 0; i < METHODS && chosen < 0; i++) {
             const struct proposal *proposal = &proposals[i];
             if (proposal->candidates.count == 1 && !proposal->candidates.more && (pass == 1 || proposal->confidence >= sure))

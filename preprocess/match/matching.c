@@ -199,7 +199,7 @@ static bool obey(struct matching_run *run)
                                  .confidence = match->asset == asset ? match->confidence : 1,
                                  .reason = mem_strdup("by hand") };
         if (match->node < 0 && match->confidence > 0.98)
-            match->confidence = 0.95; /* below 1, because only the asset is certain and the sensor's position on it is assumed */
+            match->confidence = 0.95; /* confidence below 1, because only the asset is certain; the sensor's position on it is assumed */
         run->by_hand++;
     }
     mem_free(path);

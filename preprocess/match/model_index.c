@@ -141,7 +141,7 @@ static bool take_nodes(struct model_index *site, int asset, char why[MODEL_INDEX
             from = i;
             to = tree->nodes[i].end;
         }
-    if (of->nodes && named != 1) { /* the asset's nodes are not selected by a single plain name */
+    if (of->nodes && named != 1) { /* the asset is not selected by one plain node name: match its node patterns */
         bool *taken = mem_array(tree->count, sizeof(*taken));
         bool good = nodes_take(of->nodes, tree->nodes, tree->count, taken, reason, sizeof(reason));
         for (size_t i = 0; i < tree->count && good; i++)

@@ -14,11 +14,11 @@
 
 enum {
     MAX_SHEETS = 1024,
-    MAX_BYTES = 1 << 28,      /* bytes of all strings and cells; a shared string counts for each cell that uses it */
-    MAX_CELL_BYTES = 1 << 20, /* bytes of one cell or shared string; programs that write spreadsheets allow 32,767 characters */
-    MAX_TAG_BYTES = 1 << 20,  /* bytes of one XML tag; expat reads an unfinished tag again with each block */
-    MAX_DEPTH = 64,           /* nested XML elements; a sheet has 8 */
-    STRING_BYTES = 40         /* memory of an empty shared string */
+    MAX_BYTES = 1 << 28,      /* maximum bytes of all strings and cells together; a shared string counts for each cell that uses it */
+    MAX_CELL_BYTES = 1 << 20, /* maximum bytes of one cell or shared string; programs that write spreadsheets allow 32,767 characters */
+    MAX_TAG_BYTES = 1 << 20,  /* maximum bytes of one XML tag; expat parses an unfinished tag again with each block */
+    MAX_DEPTH = 64,           /* maximum depth of nested XML elements; a sheet has 8 */
+    STRING_BYTES = 40         /* bytes of memory that an empty shared string takes */
 };
 static const size_t max_part_bytes = (size_t)512 << 20;
 
