@@ -12,7 +12,7 @@ extern "C" {
 struct gltf_primitive { /* triangles of one material, in model units and the mesh's frame */
     uint32_t vertex_count, index_count;
     float (*positions)[3];
-    float (*normals)[3];          /* NULL: the primitive has no normals */
+    float (*normals)[3];          /* vertex normals; NULL: the primitive has none */
     float (*texcoords)[2];        /* coordinates for the material's first texture mapping; NULL: none */
     float (*second_texcoords)[2]; /* coordinates for the textures that the mask `second` of the material names; NULL: none */
     uint8_t (*colors)[4];         /* vertex colours; NULL: none */

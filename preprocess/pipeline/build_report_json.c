@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum report_value_kind { COUNT32, COUNT, WHOLE, METRES /* a double; null if it is not finite */, SHARE /* float */ };
+enum report_value_kind { COUNT32, COUNT, WHOLE, METRES /* a double; JSON null if it is not finite */, SHARE /* float */ };
 
 struct number {
     const char *name;

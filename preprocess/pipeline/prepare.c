@@ -518,8 +518,8 @@ static bool any_good(const struct prepare *prepare)
     return false;
 }
 
-/* Names the losses of the asset's model, if this run parsed the model. Only a model's first asset has texts, because a plant may have
- * thousands of assets of one model. */
+/* Lists the textures and extensions of the asset's model that are not drawn, if this run parsed the model. Only a model's first asset has
+ * texts, because a plant may have thousands of assets of one model. */
 static void name_left_out(const struct prepare *prepare, size_t index, struct folder_entry *entry)
 {
     static const char *const none[] = { NULL };

@@ -89,8 +89,8 @@ static void add_bend(struct concerns *concerns, const struct prepare_asset *asse
                        bend->unmeasured > 0 ? 100 : 100 * bend->unknown_share));
 }
 
-/* Reports high powers of inverse distance weights. A weight is the power -p of a distance, so the ratio of two sensors' weights has a
- * relative error of up to p/2 times the relative error of a distance. */
+/* Reports high powers of inverse distance weights. A weight is the power -p of a distance, so errors of distances grow in it: the ratio of
+ * two sensors' weights has a relative error of up to p/2 times that of a distance. */
 static void add_powers(struct concerns *concerns, const struct prepare *prepare, const struct prepare_asset *asset)
 {
     for (size_t g = 0; g < prepare->plant->group_count; g++) {
@@ -109,7 +109,7 @@ static void add_powers(struct concerns *concerns, const struct prepare *prepare,
     }
 }
 
-/* Reports doubtful sizes of assets (wrong unit?), also of assets that were not built in this run, because a wrong unit remains an error
+/* Reports doubtful sizes of assets (wrong unit?). Includes assets that were not built in this run, because a wrong unit remains an error
  * until somebody corrects it. */
 static void add_sizes(struct concerns *concerns, const struct prepare *prepare)
 {

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Linear interpolation error: how wrong a triangle or edge can be that interpolates the field linearly between its corners. A value is the
  * sum of readings times interpolation weights, for any readings within MIN and MAX. The error at a point, as a share of the range, is
- * therefore the larger of two sums over sensors, that of the amounts by which weights exceed their linear interpolation, and that of
- * the amounts by which weights fall below it. The result is the maximum over all groups with sensors on the asset, over Shepard
- * interpolation and Algorithm 1 of Kim & Suh (`paper` in PLANT.md), and over geodesic and straight-line distances, with the plant file's
- * parameters. Sensors with an assumed position are ignored: they show nothing, or colour the whole asset evenly. Groups whose field each
- * pixel evaluates (plant/exact.h) are ignored too.
- * Where no sensor of a group reaches, the group has no data, and the nearest sensor's value is continued. Thread: any, once initialised. */
+ * therefore the larger of two sums over sensors. One sums the amounts by which weights exceed their linear interpolation; the other sums
+ * the amounts by which weights fall below it. The result is the maximum over all groups with sensors on the asset, over both interpolations
+ * (Shepard, and Algorithm 1 of Kim & Suh, `paper` in PLANT.md), and over geodesic and straight-line distances. Parameters come from the
+ * plant file. Sensors with an assumed position are ignored: they show nothing, or colour the whole asset evenly. Groups whose field each
+ * pixel evaluates (plant/exact.h) are ignored too. Where no sensor of a group reaches, the group has no data, and the nearest sensor's
+ * value is continued. Thread: any, once initialised. */
 #ifndef PREPROCESS_SUBDIVISION_LINEAR_ERROR_H
 #define PREPROCESS_SUBDIVISION_LINEAR_ERROR_H
 #include "plant/plant.h"
@@ -58,8 +58,8 @@ void linear_error_norms(const struct linear_error *linear, const float point_m[3
  * with Algorithm 1. Does not write the changes per metre. */
 void linear_error_weights_again(const struct linear_error *linear, const float point_m[3], const float *geodesic_m,
                                 const struct interp_norm *norms, float *interp);
-/* Returns, from a sample's normalisations, a lower bound of the distance in metres to the nearest point where a group's data ends, because
- * all its sensors are out of reach. The field may peak at such a point, so edges near it must be short. */
+/* Returns, from a sample's normalisations, a lower bound of the distance in metres to the nearest point where a group's data ends. Data
+ * ends where all sensors of the group are out of reach. The field may peak at such a point, so edges near it must be short. */
 double linear_error_rim_of(const struct linear_error *linear, const struct interp_norm *norms);
 /* Returns, from a sample's normalisations, the shorter of two distances in metres: the straight line to the nearest sensor, and the
  * distance to the nearest point where a group's data ends. */

@@ -18,8 +18,8 @@
 /* largest doubt (subdiv_cache.h: weight of the sensors that changed since the measurement) of a finding that is used. Measured: with this
  * doubt, one in a thousand edges with an error of about one colour step is wrong by a tenth of a colour step or more. */
 #define MAX_DOUBT 0.05f
-/* largest doubt of a finding that is used although it exceeds MAX_DOUBT, because its error is so far from every limit that the sensor
- * changes cannot move it across one */
+/* above MAX_DOUBT, up to this doubt (weight of the sensors that changed since the measurement), a finding is used only if its error is so
+ * far from every limit that the changes cannot move it across one */
 #define MAX_SETTLED 0.5f
 #define LITTLE 0.4f /* share of SUBDIV_AIM; an edge whose error at the midpoint is smaller was not measured at other points */
 
@@ -39,8 +39,8 @@ struct subdiv_head {
     uint64_t given_up, changes_since; /* see subdiv_cache.h */
 };
 
-/* Flags that say which optional numbers of a finding follow in the file, in the order of these flags. Most findings have only a key and an
- * error. */
+/* Flags that say which optional numbers of a finding (measured error) follow in the file, in the order of these flags. Most findings have
+ * only a key and an error. */
 #define SHARE_FOLLOWS 1
 #define BARRED_FOLLOWS 2
 /* two numbers follow: the doubt of the finding (weight of the sensors that changed since, subdiv_cache.h), and the amount by which its
@@ -140,7 +140,8 @@ static void index_findings(struct subdiv_cache *cache, size_t count)
     }
 }
 
-/* Computes for each finding the index of its first optional number in `rest`. Returns the number of optional numbers of all findings. */
+/* Computes for each finding (measured error) the index of its first optional number in `rest`. Returns the number of optional numbers of
+ * all findings. */
 static size_t index_rest(struct subdiv_cache *cache, size_t count)
 {
     size_t rest = 0;
@@ -363,8 +364,8 @@ static void unpack_finding(const struct subdiv_cache *cache, size_t i, struct su
     }
 }
 
-/* Finds a finding by key and unpacks it to *found. *next: guess of the finding's index, tried first, because most findings are looked up in
- * the order of the last run; receives the index after the found one. Returns false if the key is absent. */
+/* Looks up a finding (measured error) by key and unpacks it to *found. *next: guess of the finding's index, tried first, because most
+ * findings are looked up in the order of the last run; receives the index after the found one. Returns false if the key is absent. */
 static bool find(const struct subdiv_cache *cache, uint64_t key, uint32_t *next, struct subdiv_cache_entry *found)
 {
     if (*next >= cache->finding_count || cache->keys[*next] != key) {

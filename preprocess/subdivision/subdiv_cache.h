@@ -34,12 +34,12 @@ struct subdiv_cache {
      * run */
     uint64_t hopeless, given_up;
     uint64_t changes_since;     /* count of sensor changes since the dropped levels were last tried */
-    struct text sensors, found; /* sensors and findings of this run, in binary form, to be written to the file */
+    struct text sensors, found; /* sensors and findings (measured errors) of this run, in binary form, to be written to the file */
     size_t measured_count, kept_count;
 };
 
-/* Opens the findings of the last run that were stored under this key, and determines which sensors have changed since. Never fails: without
- * a usable file the cache is empty. linear must outlive the cache. */
+/* Opens the findings (measured errors) of the last run that were stored under this key, and determines which sensors have changed since.
+ * Never fails: without a usable file the cache is empty. linear must outlive the cache. */
 void subdiv_cache_open(struct subdiv_cache *cache, const char *folder, uint64_t key, const struct linear_error *linear);
 /* Unmaps the file and frees the arrays. A zeroed cache is allowed. */
 void subdiv_cache_close(struct subdiv_cache *cache);

@@ -464,8 +464,8 @@ static void try_edges(void *arg, size_t begin, size_t end)
     room_finish(&room, subdiv);
 }
 
-/* Returns whether the geodesic distance jumps between a point inside a triangle and one of the corners, and the triangle's edges are so
- * short that a split would not help. */
+/* Returns whether a split would not help: the geodesic distance jumps between a point inside a triangle and one of the corners, and the
+ * triangle's edges are short. */
 static bool jumps_inside(const struct subdiv *subdiv, const struct subdiv_tri *tri, const float middle[3], const float *geodesic_m)
 {
     for (int c = 0; c < 3; c++) {
@@ -559,8 +559,8 @@ static void try_insides(void *arg, size_t begin, size_t end)
     room_finish(&room, subdiv);
 }
 
-/* Rounds distances beyond a group's reach to the precision of the asset file. There the nearest sensor has all the weight, so rounding
- * decides between two sensors that are about equally near, and must be the same here as in the file. */
+/* Rounds distances beyond a group's reach to the precision of the asset file. There the nearest sensor has all the weight. Where two
+ * sensors are about equally near, rounding decides between them, and must decide as it does in the file. */
 static void round_beyond_reach(const struct linear_error *linear, float *geodesic_m)
 {
     for (size_t g = 0; g < linear->group_count; g++) {

@@ -9,7 +9,7 @@
 #include "surface/mesh/trimesh.h"
 
 struct subdiv_tri {
-    uint32_t v[3], e[3]; /* e[i]: the edge from v[i] to v[i + 1] */
+    uint32_t v[3], e[3]; /* v: vertex index of each corner; e[i]: index of the edge from v[i] to v[i + 1] */
     /* primitive: index of the level's primitive; origin: index of the original triangle, before subdivision, that contains this one */
     uint32_t primitive, origin;
     bool good;  /* the error inside the triangle has been measured */

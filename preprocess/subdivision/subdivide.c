@@ -577,7 +577,7 @@ static bool start(struct subdiv *subdiv, struct geometry *geometry)
     if (!subdiv_mesh_init(&subdiv->mesh, geometry) || !subdiv_find_parts(subdiv))
         return false;
     size_t places = subdiv->mesh.welded.count;
-    /* large, but the kernel provides memory only for pages that are used */
+    /* reserves more memory than needed, because the kernel provides it only for pages that are used */
     subdiv->geodesic_capacity = (size_t)(MORE_PLACES * (double)places) * subdiv->sensors;
     subdiv->geodesic_m = mem_try_array(subdiv->geodesic_capacity, sizeof(*subdiv->geodesic_m));
     if (subdiv->samples <= MAX_STORED) {

@@ -116,8 +116,8 @@ void subdiv_cache_add(struct subdiv *subdiv, const struct subdiv_finding *findin
 
 /* --- edge flips (subdiv_flip.c) --- */
 
-/* Flips edges between two triangles with an error above `limit`, if the error along the other diagonal is smaller and the surface moves by
- * at most a small share of the level's error. */
+/* Flips edges with an error above `limit`, each between two triangles, if the error along the other diagonal is smaller. The surface may
+ * move by at most a small share of the level's error. */
 void subdiv_flip_edges(struct subdiv *subdiv, double limit);
 
 /* --- sensors (subdiv_sensors.c) --- */
