@@ -12,7 +12,7 @@ struct video_branch {
     struct outputs *outputs;
     void (*prepare)(struct video_branch *branch, GstElement *pipeline); /* called before the pipeline plays */
     const struct video_options *options;
-    GstElement *pipeline; /* NULL: the pipeline has failed and is started again at again_us */
+    GstElement *pipeline; /* pipeline of the output; NULL: the pipeline has failed and is started again at again_us */
     gint64 again_us;
     gint readers; /* number of connected readers; atomic */
 };

@@ -30,7 +30,7 @@ static void metrics_clear(gpointer data)
     g_mutex_clear(&metrics->lock);
 }
 
-/* Drops a reference; the last one frees. Threads that still answer requests may outlive metrics_destroy(). */
+/* Drops a reference to the metrics; the last one frees them. Threads that still answer requests may outlive metrics_destroy(). */
 static void metrics_unref(struct metrics *metrics)
 {
     g_atomic_rc_box_release_full(metrics, metrics_clear);

@@ -20,7 +20,7 @@ struct fleet_plant {
 
 struct fleet_file {
     char *path, *folder, *name;
-    double poll_s, picture_s; /* intervals for plants that give none of their own */
+    double poll_s, picture_s; /* default intervals in seconds, for plants without own values (as in struct fleet_plant) */
     struct fleet_plant *plants;
     size_t count;
 };

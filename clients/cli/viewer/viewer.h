@@ -41,7 +41,7 @@ struct viewer_params {
     int number;          /* index of this viewer, used in names of saved files */
     bool stalls;         /* true: the viewer stops reading from its socket after the first frame, like a client that hangs */
     struct leader *lead; /* state that leader and followers share; NULL: the viewer neither leads nor follows */
-    bool follows;        /* true: this viewer follows; false: it leads */
+    bool follows;        /* true: this viewer shows the view of the leader in `lead`; false: this viewer is the leader */
 };
 
 struct latency_samples { /* milliseconds */

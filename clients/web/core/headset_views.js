@@ -127,7 +127,8 @@ export function hitOf(grid, camera, origin, direction) {
         return [width / 2 + dot(v, right) / z * px, height / 2 - dot(v, up) / z * px, h / z];
     };
     const from = subtract(origin, camera.eye), near = dot(from, forward), slope = dot(direction, forward);
-    const skip = near < NEAREST_M ? (NEAREST_M - near) / slope : 0; // the ray begins where it is in front of the picture's camera
+    // distance along the ray to its first point in front of the picture's camera
+    const skip = near < NEAREST_M ? (NEAREST_M - near) / slope : 0;
     if (!(skip >= 0 && skip < Infinity))
         return null;
     const end = slope < -1e-3 ? (NEAREST_M / 2 - near) / slope : Infinity;

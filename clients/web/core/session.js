@@ -65,7 +65,7 @@ export class Session {
         this.lent = null;        // camera of the followed session that this one has taken over; null: none
         this.followers = { count: 0, sessions: [], names: [] }; // sessions that follow this one
         this.wantsDepth = false; // true: asks for depth grids, with which a picture can be shown from another camera
-        this.depth = null;       // newest depth grids: { messages, more (true: one is missing) }
+        this.depth = null;       // newest depth grids: { messages (binary), more (true: the grid of the other half is missing) }
         this.forget();
         // the instant shown, as the server reports it; atUs null: now; fromUs null: no history is recorded
         this.time = { ...NOW, ...wanted.time };

@@ -22,7 +22,8 @@ const UPRIGHT = { matches: false, addEventListener() {} }, SMALLEST = 0.6;
 // REACH: fraction of a tile's width by which a label may begin beyond the edge, on the neighbouring tile
 const OLD_MS = 3000, POINTS_MS = 4000, REACH = 0.35;
 
-// Returns { element, kind, tick(now) }. pane: description of the pane from /api/v1/walls, with `tile`; second argument: as for other panes.
+// Returns { element, kind, tick(now) }. pane: description of the pane from /api/v1/walls, with `tile`; second argument: the context that
+// all panes get (main.js).
 export function tileOf(pane, { session: words, call, wall, display, streamUrl }) {
     const { columns, rows } = pane.tile, canvases = [make('canvas', { class: 'front' }), make('canvas')];
     const marks = make('div', { class: 'marks' });

@@ -114,7 +114,7 @@ export class AlarmList {
         this.show();
     }
 
-    // Reads the journal if it has come into sight, and empties it if not.
+    // Reads the journal if it is visible now, else empties it.
     readJournal() {
         if (this.open && this.journalOpen)
             this.modules.use('journal', (part) => part.open(this), 'open');

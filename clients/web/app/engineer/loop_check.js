@@ -128,7 +128,7 @@ export class LoopCheck {
     onTags() {
         const { model } = this.session;
         if (this.session.time.atUs !== null)
-            return; // while the past is shown, its readings are not the forced ones
+            return; // while the past is shown, the readings are not those of the forced transmitter
         this.loopCheck.observe(model.readings.map(({ value, quality }) => (quality === 'bad' ? null : value)));
         if (this.element.offsetParent === null)
             return;

@@ -226,7 +226,7 @@ export class Trends {
         return !this.fixed || this.fixed[1] > this.nowUs - FRESH_MS * 1000;
     }
 
-    // Goes to a range as readRange() returns it.
+    // Shows a range of time, in the form in which readRange() returns one.
     goTo({ spanS, fromUs, toUs }, isUndone = false) {
         if (!isUndone)
             this.before = [...this.before.slice(1 - MOST_BACK), { spanS: this.spanS, fixed: this.fixed }];

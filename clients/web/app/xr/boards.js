@@ -66,7 +66,7 @@ function write(c, text, x, y, most, { size = LETTER_PX, weight = 400, align = 'l
     c.fillText(text, x, y, most);
 }
 
-// Breaks a text into lines of at most so many pixels, by the font in use.
+// Breaks a text into lines of at most `most` pixels in the context's font.
 function linesOf(c, text, most) {
     const lines = [''];
     for (const word of text.split(' ')) {

@@ -52,7 +52,7 @@ export class Hands {
         }
     }
 
-    // Grabs the plant with a hand, until the same is called with null.
+    // Grabs the plant with a hand (an input source); null: releases the plant.
     grab(source) {
         const ray = source && this.rays.get(source);
         this.grabbed = ray ? { source, at: pointOf(this.headset.rig, ray.origin) } : null;

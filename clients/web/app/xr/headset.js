@@ -81,7 +81,7 @@ export class Headset {
         this.before = { camera, size: session.size, split: params.split ?? null, onDrawn: viewport.onDrawn, warp: viewport.warp,
             picture: session.picture };
         viewport.warp?.hide();
-        this.modules.there('place')?.close(); // the card of a place would replace the requests of the hands by its own
+        this.modules.there('place')?.close(); // closes the card of a point, whose pick requests would replace those of the hands
         const warp = { hold: () => false, draw: () => false, waits: () => !this.isDecoded(clock.now()) };
         Object.assign(viewport, { warp, onDrawn: () => {}, invalidate: () => {} });
         session.resize = (size) => { this.before.size = size; };
