@@ -8,7 +8,7 @@
 struct depth_query {
     GLuint program; /* program of shaders/depth_cells.comp, owned by the caller; zero-initialise all other members */
     GLuint buffer;
-    const struct depth_cell *cells; /* memory of the GPU mapped into this process */
+    const struct depth_cell *cells; /* cells that the GPU finds, in GPU memory that is mapped into this process */
     size_t capacity;
     struct depth_lens lens;
     int width_px, height_px; /* size of the frame; 0: the frame gets no depth grid */

@@ -7,10 +7,11 @@
 #include "render/view.h"
 
 enum pick_state {
-    PICK_CONTEXT, /* no value of the shown group is there: an asset without a sensor of the group, the inner side of a cut, or background */
+    /* the pixel shows no value of the group: an asset without a sensor of the group, the inner side of a cut, or background */
+    PICK_CONTEXT,
     PICK_NO_DATA,
     PICK_BETWEEN,
-    PICK_MEASURED /* a contributing sensor is there, and the interpolation reproduces its reading */
+    PICK_MEASURED /* the pixel is at a contributing sensor, whose reading the interpolation reproduces */
 };
 enum { PICK_NEAREST = 4 };
 

@@ -120,7 +120,8 @@ static bool step(const struct tracing *tracing, struct direction_place *place, c
         if (!(vec_normalize(v) > 0) || !rates_of(at, normal, v, rates))
             return false;
         double most_m = step_m;
-        int edge = -1; /* exit edge, from corner `edge` to the next: there the third corner's weight reaches 0 */
+        /* edge at which the step leaves the triangle, from corner `edge` to the next one; the third corner's weight reaches 0 there */
+        int edge = -1;
         for (int i = 0; i < 3; i++) {
             double room_m = rates[(i + 2) % 3] < 0 ? max_of(weights[(i + 2) % 3], 0) / -rates[(i + 2) % 3] : INFINITY;
             if (i != from && room_m < most_m) {

@@ -57,9 +57,9 @@ static void aim_rays(struct raster *raster, const double clip[16])
     }
 }
 
-/* Chooses raster->stretch_px: the number n of pixels over which the sky's elevation is interpolated linearly. The interpolation deviates
-   from the sine of a ray's elevation by at most 0.15 n^2 / f^2, where f is the distance of eye and image plane in pixels: a ray's direction
-   turns by at most 1 / f per pixel, and its second difference is at most 1.2 / f^2. */
+/* Chooses raster->stretch_px: the number n of pixels over which the sky's elevation is interpolated linearly. f is the distance of eye and
+   image plane in pixels. A ray's direction turns by at most 1 / f per pixel, and its second difference is at most 1.2 / f^2. So the
+   interpolation deviates from the sine of a ray's elevation by at most 0.15 n^2 / f^2. */
 static void choose_stretch(struct raster *raster)
 {
     /* largest error in columns of the backdrop table: half a grey level at the horizon, where the backdrop changes most */

@@ -17,7 +17,7 @@ struct soft_part {
     uint16_t rounded; /* triangle_count rounded up to a multiple of LANES; the padding triangles have no area */
     uint16_t material;
     bool double_sided;
-    bool blended; /* the material is transparent; the part (group of triangles) is blended unless it shows a field */
+    bool blended; /* true: the material is transparent, so the part (group of triangles) is blended unless it shows a field */
 };
 
 struct soft_parts {
@@ -27,7 +27,7 @@ struct soft_parts {
     uint8_t *corners;   /* corners of triangles: indices of vertices within the part; see soft_part.first_corner for the order */
     float *planes;      /* planes of triangles (n . p + d = 0); the list of each part has all n.x, then all n.y, all n.z, all d */
     uint8_t *closed;    /* by index in `vertices`: 1: the vertex belongs to a closed body, 0: not. NULL: not computed yet */
-    bool blended;       /* at least one part is blended */
+    bool blended;       /* true: at least one part is blended */
     size_t part_count, vertex_count, corner_count;
     size_t part_capacity, vertex_capacity, place_capacity, corner_capacity, plane_capacity;
 };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides for squares of pixels which sensors are near. A sensor is far if its weight is so smooth in the box around the square's places
-   that a quadratic Taylor polynomial or a constant is good enough: the bounds of all far sensors' errors add up to an allowed share of
-   the least sum of all weights. Sensors that may be the nearest somewhere in the box are always near. */
+/* Decides for squares of pixels which sensors are near. The surface points of a square lie in a box. A sensor is far if its weight is so
+   smooth in the box that a quadratic Taylor polynomial or a constant can replace it. The error bounds of all far sensors together stay
+   below an allowed share of the least sum of all weights. Sensors that may be the nearest somewhere in the box are always near. */
 #include "render/soft/pixel_lists.h"
 
 #include <math.h>
@@ -101,10 +101,11 @@ struct jet { /* a weight as a quadratic function of the place: value and derivat
     lanes value, first, second, tilt, error, least;
 };
 
-/* Inverse squares. With q = radius / distance, t the cosine of the angle between the ways from the box's centre to a place and to the
-   sensor, and p = distance of the place from the centre / radius, the weight is its value at the centre times the sum of U_n(t) (p q)^n,
-   n = 0, 1, ..., where U_n are Chebyshev polynomials of the second kind and at most n + 1. U_3(t) p^3 differs from 2 t p by at most 2, and
-   U_4(t) p^4 from 4 (t p)^2 - 1 by at most 2, so the terms for n = 3 and 4 are replaced by these. The others are neglected. */
+/* Fills *out for weights that are strength / distance^2. q: radius / distance; t: cosine of the angle, seen from the box's centre, between
+   a place and the sensor; p: distance of the place from the centre / radius. The weight at the place is the weight at the centre times the
+   sum over n of U_n(t) (p q)^n. U_n are the Chebyshev polynomials of the second kind, at most n + 1. Two terms are replaced by quadratic
+   ones: U_3(t) p^3 differs from 2 t p by at most 2, and U_4(t) p^4 from 4 (t p)^2 - 1 by at most 2. Higher terms are neglected. out->error
+   bounds all these errors. */
 SOFT_INLINE void inverse_square_jet(const struct eight_sensors *of, lanes distance, float radius, float top, struct jet *out)
 {
     lanes over = 1.0f / lanes_most(distance, all(1e-12f)), last = 1.0f / (distance + radius), q = lanes_least(radius * over, all(0.999f));

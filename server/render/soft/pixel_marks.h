@@ -8,7 +8,7 @@
 struct mark_ink {
     int32_t last_row; /* index of the last row (brightness step) of the colour map */
     float pattern_px;
-    bool rich; /* there are isolines, or the scale is logarithmic */
+    bool rich; /* true: there are isolines, or the scale is logarithmic */
     bool log;
     float low, over;    /* logarithmic scales: position on the scale, 0..1 = (log2(value) - low) * over */
     float line_px;      /* width of isolines in pixels; 0: there are no isolines */

@@ -203,7 +203,7 @@ const struct soft_light *soft_get_light(struct soft *soft, const struct light_se
 void soft_free_light(const struct soft *soft, struct soft_light *light);
 /* Returns the table of colours for this colour map; valid as long as the colour map. */
 const uint32_t *soft_colormap(struct soft *soft, const struct shaded_colormap *colormap, bool glossy);
-void raster_finish(struct raster *raster); /* frees its memory; the raster can be used again */
+void raster_finish(struct raster *raster); /* frees the raster's memory; the raster can be used again */
 size_t raster_bytes(const struct raster *raster);
 void refined_destroy(struct refined **refined); /* frees the refined frame and sets *refined to NULL; accepts a pointer to NULL */
 size_t refined_bytes(const struct refined *refined);

@@ -9,7 +9,7 @@
 struct cell_search {
     const struct visibility_buffer *buffer;
     struct visibility_band *band;
-    size_t first; /* index of the first cell at this position */
+    size_t first; /* index in band->cells of the first cell at `column`, `row`; meshes that meet there have a cell each */
     uint16_t column, row;
 };
 
