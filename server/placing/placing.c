@@ -15,12 +15,12 @@
 #include "surface/relocation.h"
 #include "value/quality.h"
 
-enum { MOVERS = 4 }; /* relocation objects kept in memory at most; those of assets with moved sensors are kept in any case */
+enum { MOVERS = 4 }; /* with more relocation objects in memory, those of assets without moved sensors are freed */
 
 struct distance_ask { /* pending request for the geodesic distances of one moved sensor */
     struct placing *placing;
     uint64_t number;
-    float *along_m; /* geodesic distance of each vertex; NULL: computing them failed */
+    float *along_m; /* by vertex: geodesic distance from the sensor; NULL: computing the distances failed */
     struct distance_ask *next;
 };
 

@@ -13,7 +13,7 @@ struct asset {
     struct asset_view view;
     void *map; /* mapped file; NULL: the asset was built in memory, see `made` */
     void *made;
-    uint16_t *distances; /* unpacked distances; NULL: those of the file are plain */
+    uint16_t *distances; /* distances unpacked from the file; NULL: the file stores them unpacked */
     size_t bytes;
     /* mapped file KEY.influence (influence of sensors), which lies in the folder of the asset's file; all zero: not opened */
     struct cache_file influence_file;

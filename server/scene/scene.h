@@ -42,8 +42,8 @@ struct scene {
     double whole_min_m[3], whole_max_m[3];
     struct scene_outside {
         size_t triangles; /* number of triangles outside the main part */
-        int assets;       /* number of assets with such triangles */
-        double away_m;    /* distance from the main part of the farthest triangle outside it */
+        int assets;       /* number of assets that have triangles outside the main part */
+        double away_m;    /* distance of the farthest triangle from the main part, metres */
     } outside;
     double (*extremes_m)[3]; /* outermost points that a view of the whole plant has to contain (scene/extremes.h) */
     size_t extreme_count;    /* number of extremes_m; 0: not known */

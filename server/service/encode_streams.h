@@ -16,7 +16,7 @@ struct encode_stream {
     int64_t key_ns;             /* monotonic: when the newest key frame was planned */
     struct frame_request shown; /* request that caused the newest frame: its view, codec and quality */
     uint64_t content;           /* content hash of the newest frame */
-    bool has_depth;             /* the packets of this content have a depth grid */
+    bool has_depth;             /* true: the packets that show the newest content include a depth grid */
     /* the kept packets, of the frames with sequence numbers `oldest` to oldest + kept_count - 1; NULL where nothing had changed */
     struct packet *kept[ENCODE_STREAM_KEPT];
     int kept_count;
@@ -43,8 +43,8 @@ struct encode_streams { /* zero-initialise */
 struct encode_plan { /* zero-initialise */
     struct encode_stream *stream;
     bool encode;     /* true: encode the frame; false: the stream's newest packet already shows this content */
-    bool key;        /* encode the frame as a key frame */
-    bool again;      /* send the frame even if nothing changed in it */
+    bool key;        /* true: encode the frame as a key frame */
+    bool again;      /* true: send the frame even if its content is unchanged */
     uint64_t number; /* sequence number of the frame in its stream */
     /* for each ticket, sequence number of the first packet that its client needs; a number above `number`: the client needs none */
     uint64_t *from;

@@ -44,7 +44,8 @@ struct render_service {
     struct render_client **clients;        /* sorted by id, ascending */
     size_t client_count, client_capacity;
     struct time_accounts accounts;
-    int64_t spent_ns[SCHEDULER_SHARES];      /* by share of drawing time: the charge that the client served last had before it was served */
+    /* by share (scheduler_share()): drawing time that the client served last had been charged before its turn */
+    int64_t spent_ns[SCHEDULER_SHARES];
     struct encoded_frame *done, **done_last; /* encoded frames not collected yet, oldest first */
     bool announced;                          /* params.notify was called for them */
 };

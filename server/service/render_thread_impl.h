@@ -36,7 +36,7 @@ struct render_thread {
     struct field *field;
     struct renderer *renderer;
     struct snapshot *snapshot; /* the newest readings taken */
-    bool stale;                /* a submitted frame took `snapshot` away: a new one must be taken before the next use */
+    bool stale;                /* true: `snapshot` was handed to a submitted frame, so a new one must be taken before the next use */
     struct request_group same; /* scratch memory: requests that are answered without drawing a frame */
     struct recent_frames recent;
     struct long_job long_job;

@@ -16,7 +16,8 @@ struct time_account {
 struct time_accounts { /* zero-initialise; free with time_accounts_finish() */
     struct time_account **all;
     size_t count, capacity;
-    int64_t served_ns[SCHEDULER_SHARES]; /* by share of drawing time: the charge that the account served last had before it was served */
+    /* by share (scheduler_share()): drawing time that the account served last had been charged before its turn */
+    int64_t served_ns[SCHEDULER_SHARES];
 };
 
 /* Adds a client to the account with that id; creates the account if needed. Returns it; time_accounts_leave() releases it. */
@@ -36,7 +37,8 @@ void time_accounts_charge(struct time_accounts *accounts, uint64_t id, int share
 
 struct time_claim { /* one client's request, compared with those of others */
     const struct time_account *account;
-    int64_t spent_ns, asked_ns; /* drawing time charged to the client itself; when it made the request */
+    /* spent_ns: drawing time charged to the client itself, not to its address; asked_ns: when the client made the request */
+    int64_t spent_ns, asked_ns;
 };
 /* Returns whether `a` is served before `b`: first the request whose address was charged less; within one address, the one whose client was
    charged less; else the older one. Drawing is charged, waiting is not. So each other address, and each other client of the same address,

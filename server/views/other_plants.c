@@ -306,7 +306,7 @@ char *other_plants_text(struct other_plants *others, const int *which, size_t co
     pthread_mutex_lock(&others->lock);
     for (size_t i = 0; i < count; i++) {
         struct other *other = &others->at[which[i]];
-        if (!other->wanted_ns) { /* this is the first request after a time in which no display wanted the picture */
+        if (!other->wanted_ns) { /* first request after a time in which no display wanted the picture */
             other->why = WHY_WAITING;
             other->since_us = clock_plant_ns() / 1000;
             wakes = true;
