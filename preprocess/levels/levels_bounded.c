@@ -478,7 +478,7 @@ static void place_of(const struct welds *welds, uint32_t weld, double place[3])
 
 /* map from welds (groups of equal vertices) to the mesh points of one part */
 struct point_numbers {
-    /* of: by index of a weld minus low: index of the weld's point + 1; 0: none. low, high: range of weld indices that the map covers */
+    /* by index of a weld minus low: index of the weld's point + 1 (0: none); low, high: range of weld indices that the map covers */
     uint32_t *of, low, high;
 };
 
