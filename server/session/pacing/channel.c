@@ -5,10 +5,10 @@
 #include "base/clock.h"
 
 static const int64_t RTT_WINDOW_NS =
-    15 * NS_PER_S; /* length of a measuring window: a measured round trip counts for this window and the next */
-/* a longer round trip is caused by a queue somewhere, not by the network's delay: the sample is ignored */
+    15 * NS_PER_S; /* length of a measuring window; a measured round trip counts in its own window and the next */
+/* a longer round trip counts as this long: it is caused by a queue somewhere, not by the network's delay */
 static const int64_t MAX_RTT_NS = 1 * NS_PER_S;
-static const int64_t MIN_TRANSFER_NS = NS_PER_MS / 4; /* faster transfers are not measured: they show only that bandwidth is plentiful */
+static const int64_t MIN_TRANSFER_NS = NS_PER_MS / 4; /* a faster transfer counts as this long: it only shows plentiful bandwidth */
 /* if decoding of a frame began within this time after the acknowledgement of the frame before, the frame had waited for the decoder */
 static const int64_t WAITED_NS = 1 * NS_PER_MS;
 static const size_t SMALL_BYTES = 4096;   /* smaller frames may only raise the bandwidth estimate, not lower it */

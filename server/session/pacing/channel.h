@@ -17,7 +17,7 @@ struct channel_last { /* ring of the last samples; zero-initialise */
     int count; /* number of samples so far, reduced before it can overflow */
 };
 
-struct channel {                     /* zero-initialise; in all members 0 means not measured yet */
+struct channel {                     /* estimate for one client; zero-initialise; 0 in any member: not measured yet */
     int64_t rtt_ns[2], rtt_begin_ns; /* minimum round trip: [0] in the current measuring window, [1] in the one before; 0: not measured */
     double ns_per_byte; /* nanoseconds that the network needs per byte, smoothed; reacts faster to a slowdown than to a recovery */
     double lag_ns;      /* time from sending to acknowledgement, minus round trip and decoding, smoothed: the delay that the network adds */

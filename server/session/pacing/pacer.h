@@ -12,7 +12,7 @@ enum { PACER_LEAST = 2, PACER_MOST = 8 };
 struct pacer_note {    /* facts about a frame that are needed when it is acknowledged */
     bool moving, full; /* moving: the frame is a preview, at ladder step `step`; full: the frame is refined, in full quality */
     int step;
-    bool of_data;              /* true: made because of a changed reading; false: because of an input */
+    bool of_data;              /* true: the frame was made because a reading changed; false: because of an input */
     int64_t input_ns, made_ns; /* monotonic: when the input or the changed reading happened; when the frame was encoded */
 };
 
@@ -36,7 +36,8 @@ struct pacer {                              /* initialise with pacer_init() */
     struct quality_ladder ladder;
 };
 
-enum { PACER_STALL_S = 2 }; /* seconds without an acknowledgement after which a client counts as stalled (PROTOCOL.md) */
+/* seconds after which a client that acknowledges no frame and accepts no bytes counts as stalled (PROTOCOL.md) */
+enum { PACER_STALL_S = 2 };
 enum pacer_state { PACER_FLOWS, PACER_STALLS, PACER_DEAD };
 enum pacer_ack { PACER_ACK_NEW, PACER_ACK_OLD, PACER_ACK_NEVER_SENT };
 
@@ -57,8 +58,8 @@ void pacer_gave_up(struct pacer *pacer);
    reported by the client; negative: not reported. Returns PACER_ACK_NEW, PACER_ACK_OLD if the frame was acknowledged before, or
    PACER_ACK_NEVER_SENT. */
 enum pacer_ack pacer_acked(struct pacer *pacer, uint32_t seq, int64_t decode_ns, int64_t now_ns);
-/* Returns PACER_FLOWS; PACER_STALLS if the client acknowledged nothing for PACER_STALL_S (send no more); or PACER_DEAD if it should be
-   disconnected. */
+/* Returns PACER_FLOWS; PACER_STALLS if, for PACER_STALL_S, the client acknowledged no frame and its socket accepted no bytes (send no
+   more); or PACER_DEAD if it should be disconnected. */
 enum pacer_state pacer_state(const struct pacer *pacer, int64_t now_ns);
 /* Returns whether the network would take longer than limit_ns to carry `bytes` bytes. */
 bool pacer_is_slower(const struct pacer *pacer, double bytes, int64_t limit_ns);

@@ -143,8 +143,8 @@ static bool lasts(int64_t *since_ns, bool now, int64_t limit_ns, int64_t now_ns)
     return now && now_ns - *since_ns >= limit_ns;
 }
 
-/* Chooses a smaller picture once a frame's cost (cost_ns) stayed above hard_ns for HARD_FOR_NS, and a larger one once the larger picture's
-   expected cost stayed below easy_ns for EASY_FOR_NS. */
+/* Chooses a smaller picture once a frame's cost (cost_ns) has stayed above hard_ns for HARD_FOR_NS. Chooses a larger one once that
+   picture's expected cost has stayed below easy_ns for EASY_FOR_NS. */
 static void follow_cost(struct quality_ladder *ladder, int64_t cost_ns, int64_t hard_ns, int64_t easy_ns, int64_t now_ns)
 {
     double ratio = ladder->size > 0 ? sizes[ladder->size - 1] / sizes[ladder->size] : 1;

@@ -30,10 +30,10 @@ void quality_ladder_init(struct quality_ladder *ladder);
 void quality_ladder_begin(struct quality_ladder *ladder, const struct channel *channel, double pixels);
 /* Returns the quality and scale of a step, at the ladder's own picture size. */
 struct rung quality_ladder_rung(const struct quality_ladder *ladder, int step);
-/* Returns the ladder step for all viewers of one view, so that each frame is drawn and encoded once. It is the worst step that three
-   quarters of the viewers need, but never one whose frames would occupy the event loop while they are sent to all. counts: number of
-   viewers at each step. seen: ladder of the session whose view the others follow. Returns a negative number if there are too few viewers to
-   share a step. */
+/* Returns the ladder step for all viewers of one view, so that each frame is drawn and encoded once. It is the best step that at least
+   three quarters of the viewers can receive. A worse step is returned if sending that step's frames to all would occupy the event loop.
+   counts: number of viewers at each step. seen: ladder of the session whose view the others follow. Returns a negative number if there are
+   too few viewers to share a step. */
 int quality_ladder_common(const struct quality_ladder *seen, const int counts[QUALITY_LADDER_STEPS]);
 /* Returns the step to use: the common one, or this client's own if that is much worse. common negative: returns the client's own step. */
 int quality_ladder_step(const struct quality_ladder *ladder, int common);

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pixels that a session's view takes from the admission budget: reserved when the view gets its size, returned while the page is
+/* Counts the pixels that a session's view takes from the admission budget: reserved when the view gets its size, returned while the page is
    hidden. */
 #include <string.h>
 
 #include "base/clock.h"
 #include "session/session_impl.h"
 
-/* A page hidden for longer than this, or hidden again within this time of being shown, loses its pixels. When it is shown again, it is
+/* A page that was hidden for longer than this, or is shown again within this time after it was last shown, loses its pixels. It is then
    admitted like a new session. */
 static const int64_t HIDDEN_NS = 15 * NS_PER_S;
 
