@@ -15,15 +15,15 @@ struct kept_answer {
     char *text;
     char *what;        /* description of the action, for the audit trail */
     const char *event; /* kind of the action, for the audit trail */
-    /* alarm service that carried out the action; NULL: the journal's decision is in `journal`, or there was no alarm action */
+    /* alarm service that carried out the action; NULL: its result is in journal_error, or this is no alarm action */
     const struct alarm_service *alarms;
-    int journal_error; /* 0: the action is in the journal on disk; -errno: writing failed */
+    int journal_error; /* 0: the action is in the alarm journal on disk; -errno: writing failed */
     struct settling_ticket journal, file, audit;
     struct kept_answer *next;
 };
 
-/* Returns whether the journal has the action on disk: 0, -EINPROGRESS or an error. A plant reload replaces the journal: the decision of the
-   old one stands, and without a decision the action counts as not kept (-ECANCELED). */
+/* Returns whether the alarm journal has the action on disk: 0, -EINPROGRESS or an error. A plant reload replaces the journal: a result that
+   the old journal has given stands; without one, the action counts as not kept (-ECANCELED). */
 static int journal_state(const struct session *session, struct kept_answer *kept)
 {
     struct alarm_service *service = session->context->services->alarm_service;
@@ -34,18 +34,18 @@ static int journal_state(const struct session *session, struct kept_answer *kept
     return kept->journal_error;
 }
 
-/* Returns whether journal and file have the action on disk: 0, -EINPROGRESS or an error. */
+/* Returns whether alarm journal and file have the action on disk: 0, -EINPROGRESS or an error. */
 static int disk_state(const struct session *session, struct kept_answer *kept)
 {
     int journal = journal_state(session, kept), file = file_writer_settled(session->context->file_writer, &kept->file);
     return journal ? journal : file;
 }
 
-/* Changes an answer that says that the action is on disk. Returns false if the answer does not say that. */
+/* Changes an answer that says that the action is on disk, so that it says the opposite. Returns false if the answer does not say that. */
 static bool say_not_kept(json_t *answer, int error)
 {
     json_t *done = json_object_get(answer, "done");
-    if (json_integer_value(done) > 0) { /* an alarm action, which is in force although it is not on disk */
+    if (json_integer_value(done) > 0) { /* the answer to an alarm action, which is in force although it is not on disk */
         json_object_set(answer, "not_kept", done);
         json_object_set_new(answer, "done", json_integer(0));
     } else if (json_is_true(json_object_get(answer, "kept"))) {

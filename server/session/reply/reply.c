@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Short answers: followers, picks, cameras and errors. */
+/* Builds short texts: followers, answers to picks (what is at a pixel), errors, and messages to the tiles of a wall. */
 #include "session/reply/reply_impl.h"
 
 #include "base/text/json_text.h"

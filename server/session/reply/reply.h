@@ -27,8 +27,8 @@ char *reply_tiles_text(const struct wall *wall, const struct wall_place *place, 
                        const int64_t *late_us, bool leads);
 /* Lists the named views. id: the view whose earlier versions are listed too; NULL: no earlier versions. */
 char *reply_views_text(const struct session_context *context, const char *id);
-/* If the address of a named view is not valid in this plant, for example because it names an unknown tag, adds the error to the view's
-   JSON: member `wrong` has its text, `refusal` its code. */
+/* Adds an error to the JSON of a named view whose address is not valid in this plant, for example because it names an unknown tag: member
+   `wrong` has the text, `refusal` the code. */
 void reply_add_wrong(const struct session_context *context, json_t *view, const char *address);
 /* Answers the message `fit`. */
 char *reply_camera_text(const struct camera *camera, uint32_t seq);

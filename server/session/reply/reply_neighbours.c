@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lists the sensors of all assets, each with the estimate from its neighbouring sensors, as one JSON array. */
+/* Lists a group's sensors on all assets, each with the estimate from its neighbouring sensors, as JSON. */
 #include "session/reply/reply_neighbours.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Texts about readings and their data sources. */
+/* Builds texts about readings and their data sources. */
 #include "session/reply/reply_impl.h"
 
 #include "base/text/json_text.h"
@@ -70,7 +70,7 @@ char *reply_status_text(const struct session_context *context, int64_t now_utc_n
             json_object_set_new(link, "simulated", json_true());
         json_array_append_new(links, link);
     }
-    if (context->hand_on) /* on a renderer, the list of sources has one more entry: the link to the core */
+    if (context->hand_on) /* on a renderer (daemon that draws for a core), the list of sources has one more entry: the link to the core */
         json_array_append_new(links, json_pack("{s:s,s:b}", "source", "core", "up", context->core_up));
     json_t *status = json_pack("{s:s,s:o,s:I,s:b,s:b}", "type", "status", "links", links, "time_us", us(now_utc_ns), "live", context->live,
                                "clock_set", context->clock.set);

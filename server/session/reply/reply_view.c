@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Texts about what a session is shown: parameters, leader, instant, camera. */
+/* Builds texts about what a session is shown: parameters, leader, instant, camera. */
 #include "session/reply/reply_impl.h"
 
 #include "base/text/json_text.h"

@@ -53,7 +53,7 @@ void tile_layout_init(struct tile_layout *layout, const struct wall *wall, int w
     double scale = fmin(1, fmin(VIEW_MAX_SIDE_PX / side, sqrt((double)most_px / (width * height))));
     *layout = tile_layout_scale(&full, scale);
     while (scale > 0.01 && (tile_layout_width(layout) > VIEW_MAX_SIDE_PX || tile_layout_height(layout) > VIEW_MAX_SIDE_PX ||
-                            /* the gaps are rounded up, so the picture may exceed the limit again */
+                            /* sizes are rounded to whole pixels, so the picture may exceed the limit again */
                             (int64_t)tile_layout_width(layout) * tile_layout_height(layout) > most_px))
         *layout = tile_layout_scale(&full, scale *= 0.99);
 }

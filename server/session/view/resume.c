@@ -18,7 +18,7 @@ struct kept_view {
 };
 
 struct resumes {
-    struct kept_view *kept; /* entries of disconnected clients, earliest disconnection first */
+    struct kept_view *kept; /* entries of connected sessions, and of lost ones in the order in which their connections were lost */
     size_t count, capacity;
 };
 

@@ -160,7 +160,7 @@ static bool is_own(const struct session *session, const json_t *item)
            json_integer_value(json_object_get(item, "display")) == session->identity.holder.display;
 }
 
-/* Returns whether a list item concerns this display's panes. Items for a picture over many displays are listed under its first display. */
+/* Returns whether a list item concerns this display. Items for a picture over many displays are listed under its first display. */
 static bool is_ours(const struct session *session, const json_t *item)
 {
     const char *id = json_string_value(json_object_get(item, "wall"));
