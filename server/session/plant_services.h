@@ -17,12 +17,13 @@ struct plant_services {
     struct wall_remote *wall_remote;
     struct pairings *pairings;
     struct other_plants *other_plants; /* pictures of other plants; NULL: the plant file names no other plants */
-    struct core_link *core_link;       /* on a renderer or a standby core: link to the core; NULL: this daemon reads its devices itself */
-    struct historian *historian;       /* NULL: nothing is recorded */
-    struct notifier *notifier;         /* sends alarm notifications; NULL: none are sent */
-    struct loop_checks *loop_checks;   /* NULL: loops cannot be checked */
-    char *tag_list;                    /* text of the tag list in force; NULL: it could not be read */
-    char *history_folder;              /* NULL: nothing is recorded */
+    /* on a renderer (daemon that draws for a core) or a standby core: link to the core; NULL: this daemon reads its devices itself */
+    struct core_link *core_link;
+    struct historian *historian;     /* NULL: nothing is recorded */
+    struct notifier *notifier;       /* sends alarm notifications; NULL: none are sent */
+    struct loop_checks *loop_checks; /* NULL: loops cannot be checked */
+    char *tag_list;                  /* text of the tag list in force; NULL: it could not be read */
+    char *history_folder;            /* NULL: nothing is recorded */
 };
 
 #endif

@@ -173,7 +173,7 @@ static bool on_resize(struct session *session, const struct message *message, st
     if (session_is_tile(session))
         session_tile_fit(session, &session->tile.place, message->width_px, message->height_px, &session->view, &session->tile.layout);
     session_scope_fit(session, &session->view);
-    /* a view of the plant file may give no camera. The camera then depends on the picture's size, so the view is set again */
+    /* set a view of the plant file again at its new size: if the file states no camera, the camera depends on the size */
     if (session->scope.named[0] && session->identity.holder.views[0])
         return session_look(session, session->scope.named, &session->view, error);
     if (message->pixel_ratio > 0)
@@ -401,8 +401,8 @@ static bool in_order(const struct session *session, const struct message *messag
            (role_may_send(session->identity.role, message, error) && session_scope_allows(session, message, error));
 }
 
-/* On a renderer: forwards messages that the core must act on. Returns whether the message was dealt with. error: names the message's
-   type. */
+/* On a renderer (daemon that draws for a core): forwards messages that the core must act on. Returns true if it forwarded the message, or
+   replied with an error because the core is not connected. error: receives that error. */
 static bool hand_on(struct session *session, const struct message *message, const char *text, struct message_error *error)
 {
     const struct session_context *context = session->context;
@@ -493,7 +493,7 @@ void session_on_oversize(struct session *session, size_t count, int64_t now_ns)
 static const int64_t TOKEN_NS = 3600 * NS_PER_S; /* interval at which a view token is sent again although the view has not changed */
 
 /* Sends the client a new view token if its view changed, so that another daemon can restore the view if this one dies. View tokens are
-   accepted for a day, and across one restart of the core. */
+   accepted for a day, and across one restart of the core (daemon that reads the devices). */
 static void tell_token(struct session *session, int64_t now_ns)
 {
     struct session_identity *identity = &session->identity;

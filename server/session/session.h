@@ -26,22 +26,23 @@ void session_introduce(struct session *session, const struct session_client *cli
 void session_leave(struct session *session, bool keep, int64_t now_ns);
 /* Records the end of the session in the audit trail. why: static text; NULL: the client left by itself. */
 void session_record_leave(const struct session *session, const char *why);
-/* Queues the answers to actions whose journal and audit entries are on disk by now, or can never be written. Returns whether it queued
+/* Queues the answers to actions that journal, files and audit trail have on disk by now, or can never have. Returns whether it queued
    any. */
 bool session_settle(struct session *session);
-/* Destroys a session whose client has gone. While it is open whether an action is on disk, the session stays in the list `gone` of its
+/* Destroys a session whose client has gone. While it is not known whether an action is on disk, the session stays in the list `gone` of its
    context, so that a failure is still recorded in the audit trail. */
 void session_retire(struct session **session);
-/* For the sessions in the context's list `gone`: records in the audit trail which actions on alarms failed to reach the disk, and destroys
-   the sessions that have no open action left. */
+/* For the sessions in the context's list `gone`: records in the audit trail which actions failed to reach the disk, and destroys the
+   sessions that have no open action left. */
 void session_settle_gone(struct kept_answers *answers);
 /* Asks the event loop to close the connection once all queued texts are sent. text: static. If called more than once, the first reason
    counts. */
 void session_close(struct session *session, int code, const char *text);
-/* Returns whether the user has been inactive for longer than --lock-after allows, with *error saying so. Always false for a person who
-   signed in with OpenID Connect: access/openid watches that person across several pages. */
+/* Returns whether the user has been inactive for longer than --lock-after allows, with *error saying so. Always false for tokens of walls
+   and programs (unattended), and for a person who signed in with OpenID Connect: access/openid watches that person across several pages. */
 bool session_left_alone(const struct session *session, int64_t now_ns, struct message_error *error);
-/* Closes the session if its token was revoked or has expired; otherwise updates the session's role from the token. */
+/* Closes the session if its token was revoked or has expired, or if its user was inactive for too long; otherwise updates the session's
+   role from the token. */
 void session_check_token(struct session *session, int64_t now_ns, int64_t now_utc_ns);
 /* Returns the pacer's state. A client that acknowledges nothing is first sent no more frames (PACER_STALLS), then disconnected
    (PACER_DEAD). */
@@ -97,15 +98,15 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded);
 bool session_has_frame(const struct session *session);
 /* Returns whether the client is told that it gets depth grids. */
 bool session_gets_depth(const struct session *session);
-/* depth of a frame for its client: none; the newest depth grids that the client was sent; those of the frame, to be sent before it */
+/* depth grids that go with a frame: none; those that the client was sent before; new ones, to be sent before the frame */
 enum session_depth { SESSION_DEPTH_NONE, SESSION_DEPTH_SENT, SESSION_DEPTH_NEW };
 /* Takes out the next frame to send and writes its sequence number to *seq. The caller owns the frame. NULL: none is ready. Call
    session_wrote() after each part of the frame is written. */
 struct encoded_frame *session_next_frame(struct session *session, int64_t now_ns, uint32_t *seq, enum session_depth *depth);
 /* Notes that the socket accepted a part of the frame being sent. all: it was the last part. */
 void session_wrote(struct session *session, bool all, int64_t now_ns);
-/* Returns whether the rest of the frame being sent is not worth sending: the view of a refined frame has changed, or the client
-   acknowledges nothing at all. */
+/* Returns whether the rest of the frame being sent is not worth sending: the view of a refined frame has changed, the page is hidden, or
+   the client acknowledges nothing at all. Always false for an H.264 frame. */
 bool session_gives_up(const struct session *session, const struct encoded_frame *sending, size_t bytes_left, int64_t now_ns);
 /* Notes that the frame being sent was cut short. */
 void session_gave_up(struct session *session);

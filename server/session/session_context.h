@@ -10,7 +10,6 @@
 #include "session/plant_services.h"
 #include "session/session_state.h"
 
-/* Members of struct session_context are set by the event loop. Sessions change only members whose comments say so. */
 struct view_token_keys;
 
 enum audience_lists { LISTS_NAMED, LISTS_OPEN, LISTS_VIEWS, LISTS };
@@ -21,20 +20,23 @@ struct kept_answers {
     struct session *gone; /* sessions whose client has gone, kept until it is known whether their actions reached the disk */
 };
 
+/* Members are set by the event loop. Sessions change only members whose comments say so. */
 struct session_context {
     const struct plant *plant;
-    const struct plant_services *services; /* sessions change only its named views, notes, walls, pairings and loop checks */
+    /* sessions change only its named views, short links, baselines, notes, walls, pairings and loop checks */
+    const struct plant_services *services;
     const struct snapshot *snapshot;       /* the newest readings */
     int64_t history_first_us;              /* UTC microseconds at which recorded history begins; 0: nothing is recorded yet */
     int64_t changed_ns;                    /* monotonic time when a snapshot last differed from its predecessor */
     struct alarm_text_cache *alarm_texts;  /* cache of alarm texts; NULL: no caching */
     bool saving;                           /* a saved tag list is being activated by a reload */
-    /* On a renderer: forwards a session's message to the core, which answers later. Returns false if the core is not connected. NULL:
-       this daemon is no renderer and acts on messages itself. */
+    /* On a renderer (daemon that draws for a core): forwards a session's message to the core, which answers later. Returns false if the
+       core is not connected. NULL: this daemon is no renderer and acts on messages itself. */
     bool (*hand_on)(void *arg, const struct session *session, const char *text);
     void *hand_on_arg;
-    bool core_up;                             /* on a renderer: the core sends readings */
-    const struct view_token_keys *token_keys; /* keys that sign view tokens; NULL: clients get no view tokens */
+    bool core_up;                             /* on a renderer (daemon that draws for a core): the core sends readings */
+    /* keys that sign view tokens (views that another daemon can restore); NULL: clients get no view tokens */
+    const struct view_token_keys *token_keys;
     const bool *links_up;                     /* connection state of each data source, by source index */
     bool imports;                             /* engineers may import plants */
     const char *signing_key;                  /* id of the key that signs pictures; NULL: pictures are not signed */
@@ -59,8 +61,8 @@ struct session_context {
     struct resumes *resumes;           /* changed by hello */
     struct admission *admission;       /* admission budget; its pixel counts are changed by hello, resize and visible */
     struct tag_text_cache *tag_texts;  /* cache of `tags` messages; NULL: no caching */
-    /* Cached parts of `welcome`, by enum audience_lists: for clients with names, for open viewers, for tokens narrowed to views. NULL:
-       no caching. */
+    /* Cached parts of `welcome`, by enum audience_lists: for clients with names, for open viewers (without a token), for tokens narrowed to
+       views. NULL: no caching. */
     char **lists_said;
 };
 

@@ -6,9 +6,10 @@
 #include "session/session_impl.h"
 
 static const int64_t STILL_NS = 200 * NS_PER_MS; /* a refined frame is due after this long without movement of the camera */
-/* a refined frame is due after this long without movement of the camera while the render thread is overloaded */
+/* while the render thread is overloaded or the network slow: a refined frame is due once no preview was requested for this long */
 static const int64_t LOADED_STILL_NS = 1000 * NS_PER_MS;
-/* while the render thread is overloaded: a refined frame is due if the last one is this old, even if readings keep changing */
+/* while the render thread is overloaded or the network slow: a refined frame is due if the last one is this old, even if previews
+   continue */
 static const int64_t LOADED_SHARE_NS = 3 * NS_PER_S;
 static const int64_t MAX_POSTPONE_NS = 10 * NS_PER_S; /* a refined frame is postponed for at most this long while other cameras move */
 /* a refined frame for which the network needs longer than this is sent in two stages: draft, then full quality */
@@ -69,8 +70,8 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded)
     if (!encoded->packet && encoded->absence == FRAME_FAILED)
         on_failure(session, &encoded->request);
     bool late = encoded->number < session->delivery.newest_number;
-    /* After a preview the shown picture is no longer refined. This also holds if a refined frame arrived while the preview was drawn, or if
-       the preview equals the frame already shown and therefore has no packet. */
+    /* After a preview the shown picture is no longer refined. This holds in two more cases: a refined frame arrived while the preview was
+       drawn, or the preview equals the frame already shown and therefore has no packet. */
     if (encoded->request.view.tier == TIER_PREVIEW && !late)
         session->demand.refined = REFINED_NOT;
     if (is_lost(session, encoded, late)) {
@@ -180,8 +181,8 @@ static void make_still(const struct session *session, struct frame_request *requ
     request->quality = request->draft ? DRAFT : STILL;
 }
 
-/* Requests a refined frame for changed readings. or_moving: while the render thread cannot refine the frames of all sessions, or a frame is
-   requested already, the render service draws a preview instead, unless refining is as quick. A refined frame can take a minute, for
+/* Requests a refined frame for changed readings. or_moving: the render service draws a preview instead, unless refining is as quick; set
+   while the render thread cannot refine the frames of all sessions, or a frame is requested already. A refined frame can take a minute, for
    example while lighting is baked; render_thread_next.c shows a preview once readings have waited too long. */
 static void make_refreshed(const struct session *session, int64_t now_ns, struct frame_request *request)
 {
@@ -432,7 +433,7 @@ void session_wrote(struct session *session, bool all, int64_t now_ns)
 
 bool session_gives_up(const struct session *session, const struct encoded_frame *sending, size_t bytes_left, int64_t now_ns)
 {
-    /* an H.264 client is better served later: the next frame would have to be a key frame, which is larger */
+    /* an H.264 frame is never cut short: the next frame would have to be a key frame, which is larger */
     if (sending->packet->codec == WIRE_CODEC_H264)
         return false;
     if (pacer_state(&session->delivery.pacer, now_ns) != PACER_FLOWS || session->hidden)

@@ -176,7 +176,7 @@ bool session_hello(struct session *session, const struct message *message, int64
     session_scope_begin(session);
     char secret[RESUME_CHARS + 1];
     bool back = !message->hello.tile.display && find_resumed(session, message->hello.resume, now_ns, now_utc_ns, secret, &resumed);
-    /* NULL if the client asked for a new view, not for a kept one */
+    /* the view to resume; NULL: there is none, or the client asked for a new view */
     const struct resumed *before = back && !message->hello.anew ? &resumed : NULL;
     if (!begin_view(session, message, before, &view, error) ||
         !session_choose_codec(session, message->codecs.count ? &message->codecs : &resumed.codecs, error) ||

@@ -40,7 +40,8 @@ void session_record_refusal(const struct session *session, const struct message_
 struct kept_action {
     struct settling_ticket journal, file, audit;
 };
-/* Notes the ends of journal, files and audit trail; call this before carrying out an action. Pass the result to session_kept_reply(). */
+/* Notes how many rows journal, files and audit trail have so far; call this before carrying out an action. Pass the result to
+   session_kept_reply(). */
 struct kept_action session_kept_begin(const struct session *session);
 /* Records the action in the audit trail, and queues the answer once journal, file and audit trail have the action on disk. If they cannot
    be written, or are not written within a second, the answer says so: `not_kept` for an action on alarms, otherwise `kept` false, and
@@ -51,8 +52,8 @@ void session_kept_drop(struct session *session);
 
 /* --- session_hello.c -------------------------------------------------------------------------------------------------- */
 
-/* Acts on `hello`: checks the token, admits the session and sets its first view. If the session is refused, returns false with *error,
-   and sets session->close. */
+/* Acts on `hello`: checks the token, admits the session and sets its first view. If the session is refused, returns false with *error, and
+   sets session->close unless the client may send another hello. */
 bool session_hello(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error);
 /* Applies the parameters of a message to a view. Returns false with *error if a parameter is wrong; then the view is unchanged. */
 bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error);
@@ -61,8 +62,8 @@ bool session_apply_params(const struct session *session, const struct message *m
 
 /* Returns whether the token allows the client to send that message. If not, *error says why. */
 bool session_scope_allows(const struct session *session, const struct message *message, struct message_error *error);
-/* For a paired device: restricts the session to the panes that the plant file shows on that display. Call it at hello, and again after a
-   plant reload. */
+/* For a paired device: restricts the session to what the plant file shows on that display. Call it at hello, and again after a plant
+   reload. */
 void session_scope_begin(struct session *session);
 void session_scope_end(struct session *session);
 /* Sets the view to the one with this id in the plant file, at its present size. Returns false with *error if the token does not allow
@@ -80,7 +81,7 @@ char *session_scope_text(const struct session *session, char *text);
 /* Frees everything that the session holds of the plant. Afterwards only the session's answers and identity may be used. */
 void session_let_go(struct session *session);
 
-/* Stores the client's token if this daemon forwards actions to a core, which verifies the token itself. */
+/* Stores the client's token if this daemon is a renderer, which forwards actions to a core: the core verifies the token itself. */
 void session_keep_token(struct session *session, const char *token);
 
 /* Returns whether the session may act as display `place`; a paired device may act only as the display with which it was paired. If not,
@@ -118,7 +119,8 @@ void session_release_pixels(struct session *session);
 bool session_has_pixels(const struct session *session);
 /* Acts on the message `visible`, which says whether the client's page is on screen: a hidden page gets no frames. */
 void session_on_visible(struct session *session, bool visible, int64_t now_ns);
-/* Returns the session's pixels to the admission budget while the page is hidden, and reserves them again. Call it every tick. */
+/* Returns the session's pixels to the admission budget once the page has been hidden for a while, and reserves them again when it is shown.
+   Call it every tick. */
 void session_keep_pixels(struct session *session, int64_t now_ns);
 
 /* --- session_time.c --------------------------------------------------------------------------------------------------- */

@@ -21,12 +21,14 @@ enum { SESSION_MAX_REPLIES = 64 };
 struct session_identity {
     uint64_t number; /* random number by which other clients refer to this session; a resumed session keeps its number */
     enum role role;
-    uint8_t address[16];             /* address of the client, as in struct address_usage */
-    char from[64];                   /* the same address as text; "": not known */
-    enum login login;                /* verdict on the token in hello */
-    struct token_holder holder;      /* holder of the token; role ROLE_NOBODY: no token was given, or it was not accepted */
-    char token[TOKEN_MAX_CHARS + 1]; /* on a renderer: the client's token, to be forwarded to the core; "": none, or not forwarded */
-    char through[192];               /* on a core: names of the daemon and of the token that forwarded the message; "": not forwarded */
+    uint8_t address[16];        /* address of the client, as in struct address_usage */
+    char from[64];              /* the same address as text; "": not known */
+    enum login login;           /* verdict on the token in hello */
+    struct token_holder holder; /* holder of the token; role ROLE_NOBODY: no token was given, or it was not accepted */
+    /* on a renderer (daemon that draws for a core): the client's token, to be forwarded to the core; "": none, or not forwarded */
+    char token[TOKEN_MAX_CHARS + 1];
+    /* on a core (daemon that reads the devices): names of the renderer and of its token that forwarded the message; "": not forwarded */
+    char through[192];
     char resume_secret[RESUME_CHARS + 1]; /* secret with which the client can resume its view over another connection */
     int64_t active_ns;                    /* monotonic: when the user was last active at the page; 0: not since it connected */
     bool tokens;                          /* the client wants its view as a signed view token after each change */
@@ -84,7 +86,7 @@ struct frame_demand {
     bool starting;        /* the first frame waits for the bandwidth from session_begin(), for a second at most */
     int64_t starting_ns;
     bool failure_said; /* the client was told that the present view cannot be drawn */
-    int64_t failed_ns; /* monotonic: when the newest request was made whose frame was lost, or failed for lack of memory; 0: none */
+    int64_t failed_ns; /* monotonic time of the newest request whose frame was lost, or failed for lack of memory; 0: none */
     bool lost; /* a refined frame was lost on its way to the client, but the render service counts it as shown: it must be drawn again */
 };
 
@@ -188,16 +190,16 @@ struct session_tile {
 };
 
 struct message_rate {
-    int64_t begin_ns; /* monotonic start of the second being counted */
+    int64_t begin_ns; /* monotonic time at which the counted second began */
     int count;
-    bool exceeded; /* the limit is reached: the event loop reads no message until that second is over */
+    bool exceeded; /* the client has sent as many messages as it may: the event loop reads none until that second is over */
 };
 
 struct session_stats { /* counts for the log and the metrics */
     int64_t messages, errors, dropped;
 };
 
-/* Restrictions of a narrowed token (session_scope.c). */
+/* Restrictions of a narrowed token, which allows only some views or one display (session_scope.c). */
 struct session_scope {
     char named[NAMED_VIEW_ID_BYTES]; /* id of the plant file's view that is shown; "": none */
     bool *tags; /* for a paired display without pictures: flags by tag, whether the display shows the tag; NULL: no restriction */
