@@ -36,7 +36,7 @@ struct notifier {
     struct outbox *outbox;
     struct recipient_counters *counters; /* by index of the recipient */
     counter *lost, *spool_good;
-    bool *failing;   /* by index of the recipient; true: the last delivery failed */
+    bool *failing;   /* by index of the recipient: true if the last delivery failed */
     uint64_t number; /* change number of the newest alarm change that was processed */
     bool looked, unsaved;
     /* value of outbox_counts.lost up to which lost notifications were counted already; an outbox restored after a reload may start above
@@ -141,7 +141,8 @@ static void on_end(void *arg, int recipient, const char *why)
             log_err(log, "notify: %s cannot be reached: %s; messages are queued and sent later", id, why);
     } else {
         outbox_sent(notifier->outbox, recipient, now_us());
-        save(notifier); /* saved immediately: if the daemon were killed before saving, the next one would send the message again */
+        /* saved immediately, because a daemon that is killed before saving would send the message again after its restart */
+        save(notifier);
         counter_inc(notifier->counters[recipient].sent, 1);
         if (notifier->failing[recipient])
             log_info(log, "notify: %s accepts messages again", id);

@@ -24,7 +24,7 @@
 static const int64_t CONNECT_NS = 10 * NS_PER_S;
 
 struct topic {
-    char *name, *unit;       /* unit: JSON object that has only the unit */
+    char *name, *unit;       /* unit: JSON object that has the unit as its only member */
     int64_t received_utc_ns; /* UTC time of the reading that was published last */
     uint32_t quality;
     bool is_published; /* published on the current connection */
@@ -34,7 +34,7 @@ struct publisher {
     struct publisher_params params;
     pthread_t thread;
     bool started;
-    int stop_fd; /* eventfd; readable: the thread must end */
+    int stop_fd; /* eventfd that becomes readable when the thread must end */
     char *client_id;
     counter *up, *messages;
     /* --- below: used by the publisher's thread only */

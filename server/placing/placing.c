@@ -15,7 +15,7 @@
 #include "surface/relocation.h"
 #include "value/quality.h"
 
-enum { MOVERS = 4 }; /* with more relocation objects in memory, those of assets without moved sensors are freed */
+enum { MOVERS = 4 }; /* number of relocation objects in memory above which those of assets without moved sensors are freed */
 
 struct distance_ask { /* pending request for the geodesic distances of one moved sensor */
     struct placing *placing;

@@ -22,7 +22,7 @@ struct sensor_coverage {
     double far_m;            /* the limit used */
     double farthest_m;       /* metres from the farthest surface point to its nearest sensor, among points that a path connects to a
                                 sensor */
-    double farthest_at_m[3]; /* position of that point, in plant coordinates */
+    double farthest_at_m[3]; /* position of the farthest surface point, in plant coordinates */
     double far_share;        /* fraction of the surface's area that counts as far (far_m), 0..1 */
     double lost_share;       /* fraction of the area that no sensor reaches, or whose nearest sensor has no usable reading */
     double next_m;           /* metres from a sensor to its nearest other sensor, for the sensor where that is largest; 0: there is only

@@ -16,7 +16,7 @@ struct tag_save {
     uint64_t client; /* id of the client that gets the answer */
     uint32_t seq;
 };
-/* Frees the request. NULL is fine. */
+/* Frees a request to save a tag list. NULL is fine. */
 void tag_save_free(struct tag_save *save);
 
 /* Returns the text of the tag list (mem_free). NULL with the reason in *why. */

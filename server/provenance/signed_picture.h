@@ -10,11 +10,11 @@
 #include "render/frame_record.h"
 #include "scene/scene.h"
 
-struct picture_origin { /* data of the server about a picture that the picture itself lacks */
+struct picture_origin { /* data for the statement of a picture that the picture itself does not contain */
     const struct scene *scene;
     const char *const *args; /* the query that the picture answers, as name=value */
     size_t arg_count;
-    bool bare;           /* the viewer may not see readings, so the statement omits them */
+    bool bare;           /* true: the viewer may not see readings, so the statement omits them */
     const char *overlay; /* overlay drawn on the picture: `full`, `bare` (no sensors and alarms) or `none` */
     const char *version;
 };

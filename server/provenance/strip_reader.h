@@ -25,7 +25,8 @@ struct strip_found {
 enum strip_state { STRIP_VALUE, STRIP_BELOW, STRIP_ABOVE, STRIP_NO_COLOR };
 struct strip_value {
     enum strip_state state; /* STRIP_NO_COLOR: not a colour of the legend: background, a label, no data */
-    /* only for STRIP_VALUE: the pixel's value, and bounds: values within them have colours that cannot be told from the pixel's */
+    /* only for STRIP_VALUE: value: the pixel's value; low, high: bounds of all values whose colours cannot be told from the pixel's
+       colour */
     double value, low, high;
     double off; /* CIELAB distance of the pixel's colour from the nearest colour of the legend */
 };

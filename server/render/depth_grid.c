@@ -22,7 +22,8 @@ static const double MOVEMENT = 0.1;
 /* Shifts in pixels that a camera movement by MOVEMENT causes. STEP_SHIFT_PX: smallest shift between two depths that makes a step between
    them. UNIT_SHIFT_PX: shift between two depths whose codes differ by 1. */
 static const double STEP_SHIFT_PX = 2, UNIT_SHIFT_PX = 1.5;
-static const double LEAST_INVERSE = 1e-5; /* ground farther away than 100 km counts as background; 1/m */
+/* smallest 1 / distance of ground, in 1/m: ground farther away than 100 km counts as background */
+static const double LEAST_INVERSE = 1e-5;
 
 /* --- from the depth buffer to metres ----------------------------------------------------------------------------------------- */
 

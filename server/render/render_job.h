@@ -21,7 +21,7 @@ struct render_job {
     struct view view;
     struct frame *frame;
     struct light_set *light;            /* reference to the light, held once the light is ready; NULL: not yet */
-    const struct fields_entry **fields; /* by asset: its field; NULL: it shows none */
+    const struct fields_entry **fields; /* by asset: its field; NULL: the asset shows no field */
     /* copies of the shown fields, per asset; NULL: the frame is drawn in a single call and needs no copies */
     struct fields_entry *copies;
     int *visible;

@@ -61,10 +61,10 @@ struct view {
     enum tier tier;
     int selected_asset;  /* outlined; -1: none */
     double light_dir[3]; /* unit vector towards the sun, in the plant frame */
-    bool dark;           /* dark backdrop; field colours are unchanged */
+    bool dark;           /* true: dark backdrop; field colours are unchanged */
     enum directions_look directions;
     enum language language; /* language of the texts in the overlay, if one is drawn */
-    bool strip;             /* draws a machine-readable legend strip into the overlay */
+    bool strip;             /* true: the overlay contains a machine-readable legend strip */
     int environment;        /* index of the environment map: 0: the built-in sky; 1 and up: those of the plant file */
     struct visibility visibility;
     int64_t at_us;           /* the instant shown, UTC microseconds; 0: now. Set it with view_set_instant() */

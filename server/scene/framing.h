@@ -9,7 +9,7 @@
 enum side { SIDE_NOW, SIDE_TOP, SIDE_BOTTOM, SIDE_FRONT, SIDE_BACK, SIDE_LEFT, SIDE_RIGHT, SIDE_ISO };
 
 struct framing {
-    int asset, tag;              /* indices; -1: not requested; both -1: the whole plant */
+    int asset, tag;              /* index of the asset and of the tag to frame; -1: none; both -1: the whole plant */
     enum side side;              /* SIDE_NOW: keeps the camera's direction; a sensor is viewed from outside its asset */
     struct camera_window window; /* rectangle of the picture to fill */
 };

@@ -25,7 +25,8 @@ struct scene_asset {
     struct scene_sensor *sensors;            /* sensors of all groups, in the order of the tag list */
     size_t sensor_count;
     bool stray; /* true if a piece of the asset is far from the main part (scene/main_part.h) */
-    /* position of the asset's farthest corner outside the main part, and its distance from there; 0: none */
+    /* stray_at_m: position of the asset's farthest corner outside the main part; stray_away_m: distance of that corner from the main part,
+       0: no corner is outside */
     double stray_at_m[3], stray_away_m;
     /* reason why the asset could not be prepared; it then has no sensors and is invisible; NULL: it was prepared */
     char *missing;

@@ -397,7 +397,8 @@ void scene_home(const struct scene *scene, double aspect, struct camera *camera)
 
 void scene_depth_box(const struct scene *scene, const double eye_m[3], double min_m[3], double max_m[3])
 {
-    double away_m = 0, farthest_m2 = 0; /* distance from the eye to the main part; squared distance to the farthest corner of everything */
+    /* away_m: distance from the eye to the main part; farthest_m2: squared distance from the eye to the farthest corner of everything */
+    double away_m = 0, farthest_m2 = 0;
     for (int c = 0; c < 3; c++) {
         away_m = fmax(away_m, fmax(scene->bounds_min_m[c] - eye_m[c], eye_m[c] - scene->bounds_max_m[c]));
         farthest_m2 += pow(fmax(fabs(scene->whole_min_m[c] - eye_m[c]), fabs(scene->whole_max_m[c] - eye_m[c])), 2);

@@ -16,7 +16,7 @@ bool asset_set_has(const struct asset_set *set, int asset);
 
 struct clip { /* section planes; the space on the inner side of all planes is kept */
     int plane_count;
-    /* the planes are those of an axis-aligned box, in the order min x, max x, min y, max y, min z, max z */
+    /* true: the planes are those of an axis-aligned box, in the order min x, max x, min y, max y, min z, max z */
     bool is_box;
     double planes[CLIP_MAX_PLANES][4]; /* (n.x, n.y, n.z, d): points p with n . p + d >= 0 are kept; n: unit normal in the plant frame */
 };

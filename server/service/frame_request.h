@@ -26,7 +26,7 @@ struct frame_request {
     enum wire_codec moving_codec;
     struct frame_part part; /* rectangle of the picture that the client gets; one drawing serves the requests for all rectangles */
     uint64_t picture; /* sequence number of the wall's picture that all its tiles share (session/tiles/tile_sync.h), from 1; 0: no tile */
-    /* the request is only valid in place of an earlier one whose drawing has not begun, because the client may have no more frames in
+    /* true: the request is valid only in place of an earlier one whose drawing has not begun, because the client may have no more frames in
        flight */
     bool only_replace;
     bool always; /* true: the frame is drawn and sent even if the client already shows the content */

@@ -6,7 +6,7 @@
 struct content_of {
     struct render_service *service;
     uint64_t content;
-    bool gives_depth; /* the frame has a depth grid */
+    bool gives_depth; /* true: the frame has a depth grid */
     int64_t cost_ns; /* drawing time that is charged to each client that shares the frame */
 };
 

@@ -18,7 +18,7 @@ struct pending_readbacks {
         const struct historical_snapshot *historical;
         struct snapshot *snapshot;
         uint64_t content; /* hash of the content that the frame shows */
-        bool gives_depth; /* the frame gets a depth grid */
+        bool gives_depth; /* true: the frame gets a depth grid */
     } at[PENDING_READBACKS_MAX];
     int count;
 };

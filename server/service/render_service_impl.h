@@ -12,8 +12,8 @@ struct render_client {
     uint64_t id, number; /* id: of the client; number: sequence number of its requests, incremented when the drawing of one begins */
     bool pending;        /* true: `request` waits for its drawing to begin */
     bool has_content;
-    bool has_depth; /* the client was given the depth grid of the content */
-    bool left; /* the client no longer wants the frame that the long job (a frame drawn in steps) draws for it */
+    bool has_depth; /* true: the client was given the depth grid of the content */
+    bool left; /* true: the client no longer wants the frame that the long job (a frame drawn in steps) draws for it */
     /* how long changed readings wait for the client's long job (a frame drawn in steps) before they get a preview; 0: the initial delay */
     int64_t patience_ns;
     struct frame_request request;
@@ -35,12 +35,12 @@ struct render_service {
     pthread_cond_t wake;
     /* --- below: protected by `lock` */
     enum { STARTING, RUNNING, FAILED, STOPPING } state;
-    bool has_news;                         /* requests were queued since the render thread was last woken */
+    bool has_news;                         /* true: requests were queued since the render thread was last woken */
     struct snapshot *readings;             /* newest snapshot of the event loop */
     const struct loop_checks *loop_checks; /* loop check records; NULL: no tag is marked as unchecked */
-    bool lost;                             /* the GL context is lost and being rebuilt */
+    bool lost;                             /* true: the GL context is lost and being rebuilt */
     int64_t asked_ns;                      /* monotonic: since when the render thread owes a sign of life; 0: none was requested */
-    bool lose;                             /* set by a test: the GL context is destroyed in the middle of the next frame */
+    bool lose;                             /* set to true by a test: the GL context is destroyed in the middle of the next frame */
     struct render_client **clients;        /* sorted by id, ascending */
     size_t client_count, client_capacity;
     struct time_accounts accounts;

@@ -14,7 +14,7 @@ struct thread_memory { /* memory of the caches (render_thread_memory.c) */
     int64_t looked_ns;      /* monotonic: when the memory in use was last measured */
     int64_t trimmed_ns;     /* monotonic: when free heap memory was last returned to the system */
     int64_t alone_since_ns; /* monotonic time since when the service has had no client; 0: there are clients */
-    bool released;          /* the caches were released, and no frame was drawn since */
+    bool released;          /* true: the caches were released, and no frame was drawn since */
 };
 
 struct long_job {                                 /* a frame that is drawn in steps, between other clients' frames */

@@ -9,7 +9,8 @@
 enum { OTHER_NAME_BYTES = 257 };
 
 struct other_picture {
-    int64_t oldest_age_ms;       /* age, when the picture was drawn, of the oldest reading in it; -1: the picture shows no readings */
+    /* age of the oldest reading in the picture at the time when the picture was drawn; -1: the picture shows no readings */
+    int64_t oldest_age_ms;
     char name[OTHER_NAME_BYTES]; /* name of the plant; "": not stated by its server */
 };
 

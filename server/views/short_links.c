@@ -80,7 +80,7 @@ static size_t find_view(const json_t *list, const char *view, char id[SHORT_LINK
 /* Returns whether a new link may be made, and counts it. */
 static bool may_add(struct short_links *links, int64_t now_us)
 {
-    /* whole_us is further ahead only if the clock was set back */
+    /* if whole_us is further ahead than this, the clock was set back */
     if (links->whole_us < now_us || links->whole_us > now_us + BURST_LINKS * LINK_US)
         links->whole_us = now_us;
     if (links->whole_us > now_us + (BURST_LINKS - 1) * LINK_US)

@@ -33,7 +33,7 @@ struct gl_job {
     struct frame_tiles tiles;
     struct frame_in_flight *in_flight; /* slot of the frame once it is submitted to the GPU as a whole; NULL: not yet */
     size_t drawn;                      /* number of assets of the current tile drawn so far, nearest first */
-    bool short_of_memory;              /* the GPU ran out of memory while drawing, so the frame's content is undefined */
+    bool short_of_memory;              /* true: the GPU ran out of memory while drawing, so the frame's content is undefined */
 };
 
 /* --- life ------------------------------------------------------------------------------------------------------------------- */

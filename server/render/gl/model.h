@@ -35,7 +35,7 @@ struct model_material {
     GLuint maps[MODEL_MAPS]; /* GL texture of each material map (enum model_map), owned by the model; 0: none */
     int mask;                /* bit mask, by enum model_map: maps that the material has */
     int second;              /* bit mask, by enum model_map: maps that use the second set of texture coordinates */
-    bool masked;             /* alpha of the base colour cuts holes (glTF alphaMode MASK) */
+    bool masked;             /* true: alpha of the base colour cuts holes (glTF alphaMode MASK) */
 };
 
 struct gl_model {

@@ -13,7 +13,7 @@ struct light_key {
     double towards[3];       /* unit vector towards the sun, in the plant frame */
     int environment;         /* number of the environment (render/light/environments.h) */
     struct visibility shown; /* assets that cast shadows */
-    bool rough;              /* a rough set: openness is not baked but constant, which is much faster */
+    bool rough;              /* true: a rough light set, whose openness is not baked but constant, which is much faster */
 };
 
 struct light_set {

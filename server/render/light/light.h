@@ -18,7 +18,7 @@ struct light {
     struct light_set sets[LIGHT_SETS];
     struct bake *bake; /* in progress; NULL: none */
     uint64_t uses, last_id;
-    bool kept;                      /* the openness file has been written, or writing was attempted and failed */
+    bool kept;                      /* true: the openness file has been written, or writing was attempted and failed */
     struct openness_writer *writer; /* writer of the openness file; NULL: not writing */
 };
 

@@ -263,8 +263,8 @@ static void collect_arrows(struct isolines *isolines, const struct frame_context
     const struct scene *scene = context->gpu_scene->scene;
     const size_t most = out->count + 2 * MAX_POINTS;
     size_t longest = 0;
-    /* fields of assets that the trial does not change still have directions of the time before the trial: a view with a trial shows no
-       arrows */
+    /* a view with a trial shows no arrows: fields of assets that the trial leaves unchanged would still have directions from before the
+       trial */
     if (!isolines_has_arrows(scene, context->view))
         return;
     for (size_t i = 0; i < context->visible_count; i++) {

@@ -7,7 +7,7 @@
 struct culling { /* planes and eye in the coordinates of one asset's file */
     float planes[6][4];
     float eye_m[3];
-    bool cones; /* the asset's triangles are wound consistently, so back faces are recognised and normal cones may be used */
+    bool cones; /* true: the asset's triangles are wound consistently, so back faces are recognised and normal cones may be used */
 };
 
 void culling_init(struct culling *culling, const struct view_constants *constants, const struct scene_asset *asset);

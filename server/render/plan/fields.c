@@ -14,7 +14,7 @@
 
 /* content hash of fields->lost, the placeholder for fields without memory; no other entry has it */
 static const uint64_t LOST = 0x6c6f7374;
-/* default bound of the cache in main memory, and again on the GPU: enough for about 700 assets of 66,000 vertices */
+/* default bound of the cache, once for main memory and once for the GPU: enough for about 700 assets of 66,000 vertices */
 static const size_t BOUND_BYTES = (size_t)384 << 20;
 
 void fields_init(struct fields *fields, struct log *log, struct field *field)

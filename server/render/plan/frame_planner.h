@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Makes frame plans. Thread: the one of the GL context. */
+/* Makes frame plans: what one frame shows, decided before it is drawn (frame_plan.h). Thread: the one of the GL context. */
 #ifndef RENDER_PLAN_FRAME_PLANNER_H
 #define RENDER_PLAN_FRAME_PLANNER_H
 #include "render/plan/frame_plan.h"

@@ -7,7 +7,7 @@
 
 struct view_constants { /* matrices and planes of a view. Eye space has the axes of the plant frame and its origin at the camera */
     double eye_m[3];
-    double clip_from_eye[16]; /* clip depth: 1 near, 0 far */
+    double clip_from_eye[16]; /* matrix from eye space to clip space; clip depth is 1 at the near plane and 0 at the far plane */
     double clip_from_plant[16];
     double pixel_per_radian;
     double pixel_per_metre; /* orthographic cameras; 0: perspective */

@@ -177,7 +177,7 @@ SOFT_INLINE lanes most_of(lanes a, lanes b, lanes c)
 }
 
 /* first_pixel() returns the first pixel whose centre lies at or after x, last_pixel() the last one whose centre lies at or before x;
-   clamped to the tile. Also for y. */
+   clamped to the tile. Rows use the two functions in the same way, with y. */
 SOFT_INLINE lanes_int first_pixel(lanes x, int low)
 {
     return lanes_whole(lanes_clamp(x + 0.4999f, (float)low, 1e5f));

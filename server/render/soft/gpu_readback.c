@@ -7,7 +7,7 @@
 #include "base/system/huge_pages.h"
 #include "render/soft/soft_impl.h"
 
-/* number of rows of the sun map read at a time, 2 MB */
+/* number of rows of tiles, and of texels, of the sun map that are read at a time (2 MB) */
 enum { SUN_BAND_TILES = 32, SUN_BAND_ROWS = SUN_BAND_TILES * SUN_TILE_STEP_PX + 1 };
 
 static bool fail(const struct soft *soft, const char *what)

@@ -36,7 +36,7 @@ SOFT_INLINE lanes byte_of(lanes_int packed, int number)
    sun_look. */
 struct sun_aim {
     lanes u_part, v_part, place; /* u_part, v_part: position between the four texels, 0..1; place: depth in units of the map */
-    lanes_int tile, at;          /* at: index of the upper left of the four texels */
+    lanes_int tile, at;          /* tile: index of the tile of the map; at: index of the upper left of the four texels */
     lanes_int open; /* mask of lanes whose texels must still be read; for the others `lit` is final: the visible part of the sun, 0..1 */
     lanes lit;
 };

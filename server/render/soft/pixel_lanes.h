@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A field by straight-line distance (field/pixel_field.h) at eight places at a time. Private to soft/. */
+/* Evaluates a field of straight-line distances (field/pixel_field.h) at eight places at a time. Private to soft/. */
 #ifndef RENDER_SOFT_PIXEL_LANES_H
 #define RENDER_SOFT_PIXEL_LANES_H
 #include <math.h>
@@ -212,8 +212,8 @@ SOFT_INLINE void pixel_lanes_at(const struct pixel_field *field, const struct pi
     const float reach2 = field->reach_m < 1e15f ? field->reach_m * field->reach_m : 0.5f * PIXEL_FAR2;
     lanes_int reached = nearest.used <= reach2, lost = nearest.lost < nearest.used;
     pixel_value_of(field, &sums, out);
-    /* seen * 2^(log2(e)/2 (near/s)^2), where near is the distance of the nearest sensor and s the size of a hot spot; the limit `most` caps
-       the result */
+    /* height of the smallest hot spot that is detectable: seen * 2^(log2(e)/2 (near/s)^2), where near is the distance of the nearest sensor
+       and s the size of a hot spot; `most` limits the result */
     if (field->show == PIXEL_BLIND) {
         lanes down = nearest.used * (-0.72134752f / (field->hot_spot_m * field->hot_spot_m));
         out->value = lanes_least(field->seen / lanes_exp2_down(lanes_most(down, none - 100.0f)), none + field->most);

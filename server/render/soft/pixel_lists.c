@@ -20,8 +20,8 @@ struct node {
                                  stored as integers */
     int count;
     struct pixel_list far; /* polynomials of the far sensors; far.sensors is not set */
-    float least;           /* lower bound of the far sensors' sum of weights */
-    float left;            /* share of the sum of all weights by which the sum may still err */
+    float least;           /* lower bound of the sum of the weights of the far sensors */
+    float left;            /* error budget that is left: share of the sum of all weights by which the sum may still err */
 };
 
 struct building {
@@ -73,7 +73,8 @@ SOFT_INLINE lanes all(float x)
     return (lanes){ 0 } + x;
 }
 
-/* Returns 2^-top times the weight at a distance. term (paper only): 2^-top times the weight times nearness^decay instead. */
+/* Returns the weight at a distance, times 2^-top so that it fits in a float. term (paper only): returns the weight times nearness^decay
+   instead, also times 2^-top. */
 SOFT_INLINE lanes weight_at(const struct pixel_field *field, const struct eight_sensors *of, lanes distance, bool term, float top)
 {
     lanes log, zero = { 0 };

@@ -27,7 +27,7 @@ struct setup {
     struct plane no_data, uncertain, no_limits;
     uint32_t mark, flags;
     bool flat; /* perspective is negligible */
-    bool thin; /* the face is so thin that rounding may give values outside the range of its corners' values */
+    bool thin; /* true: the face is so thin that rounding may give values outside the range of its corners' values */
 };
 
 SOFT_INLINE struct soft_vertex vertex_of(const struct soft_corners *corners, int i)

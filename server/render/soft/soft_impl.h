@@ -54,7 +54,7 @@ struct soft_mesh { /* one asset in this frame */
     float place[4][4];
     uint32_t first_vertex, vertex_count;
     bool mirrored;
-    bool cut;      /* section planes remove a part of the mesh, so the inner side of the rest is drawn */
+    bool cut;      /* true: section planes remove a part of the mesh, so the inner side of the rest is drawn */
     float turn[9]; /* rotation of normals from file to plant, columns; for cut meshes only */
 };
 
@@ -155,7 +155,7 @@ struct raster { /* source and target of one frame's rasterization; its memory is
     float cuts[CLIP_MAX_PLANES][4];
     int cut_count, entry_count;
     float shift_px[2];  /* offset of the samples from pixel centres */
-    bool counts_bodies; /* the frame has section caps, for which the closed bodies at each pixel are counted (caps.c) */
+    bool counts_bodies; /* true: the frame has section caps, for which the closed bodies at each pixel are counted (caps.c) */
     bool blends;        /* true: some of the parts (groups of triangles) found are blended (transparent) */
     bool has_ground;
     bool greys;                                                                /* context is drawn grey */

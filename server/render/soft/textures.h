@@ -19,9 +19,9 @@ struct soft_texture {
 struct soft_material {
     const struct asset_material *of;
     const struct soft_texture *maps[MODEL_MAPS]; /* NULL: none */
-    bool mapped;                                 /* at least one texture map is set */
+    bool mapped;                                 /* true: at least one texture map is set */
     bool blended;
-    bool cut_out; /* the alpha of the base colour cuts holes */
+    bool cut_out; /* true: the alpha of the base colour cuts holes */
 };
 
 struct soft_materials {

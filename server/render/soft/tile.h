@@ -21,7 +21,7 @@ struct soft_corners { /* vertices of a part with the members of struct soft_vert
     int count, placed;  /* placed: number of vertices that clipping did not add; they come first */
     uint32_t all_flags; /* the OR of all flags */
     bool flat;          /* perspective is negligible */
-    bool cut;           /* some vertices are in front of the near plane or beyond the guard band (clip.h), so faces must be clipped */
+    bool cut;           /* true: some vertices are in front of the near plane or beyond the guard band (clip.h), so faces must be clipped */
 };
 
 struct soft_face { /* a triangle that faces the eye and covers a pixel centre of the tile; its area in pixels is positive */

@@ -98,7 +98,7 @@ static void begin_part(struct soft_tile *tile, const struct soft_found *found, c
     tile->cuts = cuts;
 }
 
-/* Sets a, b and flags of all vertices to 0, for output without colours. */
+/* Sets a and b (colour map column and row, or light) and the flags of all vertices to 0, for output without colours. */
 static void carry_nothing(struct soft_tile *tile)
 {
     size_t count = (size_t)tile->corners.count;

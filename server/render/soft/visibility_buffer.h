@@ -100,7 +100,7 @@ struct visibility_buffer {
     struct visibility_band *bands;
     struct visibility_mesh *meshes;
     size_t mesh_count, mesh_capacity, vertex_count;
-    bool evaluates;     /* some mesh's field is evaluated at pixels */
+    bool evaluates;     /* true: the field of at least one mesh is evaluated at pixels */
     bool finds_cells;   /* true: resolve_read() must find the cells again, because other meshes than before have many sensors */
     float scale[4];     /* struct frame_uniforms.scale at the time when the vertices' values were read */
     uint32_t *vertices; /* kept (visible) vertices, mesh by mesh: index in the asset's file */
