@@ -96,7 +96,7 @@ static bool send_frame(const struct raw_websocket *raw, int opcode, const char *
         out[2] = (unsigned char)(count >> 8);
         out[3] = (unsigned char)count;
     }
-    /* RFC 6455 requires clients to mask payloads, as a protection of HTTP caches; a mask of zeros meets that and leaves the data
+    /* RFC 6455 requires clients to mask payloads, to protect HTTP caches; a mask of zeros satisfies this rule and leaves the data
        unchanged */
     memset(out + head - 4, 0, 4);
     memcpy(out + head, bytes, count);

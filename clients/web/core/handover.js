@@ -3,7 +3,7 @@
 import { fieldInstant, fieldText } from './instant.js';
 
 const WORKED = { acknowledge: 'acknowledged', shelve: 'shelved', unshelve: 'shelved', out_of_service: 'aside', in_service: 'aside' };
-const SAME_ACT_US = 1e6; // an action on a tag acts on all its alarms within this time
+const SAME_ACT_US = 1e6; // an operator's equal actions on several alarms of a tag count as one action if they are less than this apart
 
 // Gives a model the alarms of /api/v1/alarms, so that they are counted and sorted as on the page: one alarm for each tag.
 export function hearAlarms(model, { mode, alarms }) {

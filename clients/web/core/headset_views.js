@@ -6,7 +6,8 @@ import { basis, heightAt, RADIANS } from './camera.js';
 import { depthAt, gridColumns } from './warp_mesh.js';
 import { add, along, cross, dot, length, middle, scale, subtract, unit } from './vector.js';
 
-const MAX_TAN = Math.tan(60 * RADIANS), LEAST_TAN = 0.02; // the server accepts fields of view of 1 to 120 degrees
+// MAX_TAN, LEAST_TAN: bounds for the tangent of half the field of view, because the server accepts 1 to 120 degrees
+const MAX_TAN = Math.tan(60 * RADIANS), LEAST_TAN = 0.02;
 const MARGIN = 1.15; // how much wider the picture is than both eyes see, so that a turned head finds most of its view drawn
 const MOST_PX = 4e6, STEP_PX = 2; // MOST_PX: maximum number of pixels of a picture that is requested; STEP_PX: step along a ray
 // largest plausible resolution of an eye, in pixels per tangent of 1; higher values of a device are replaced by this one
@@ -27,7 +28,7 @@ export function rigAt(at, forward, up) {
     return { at, axes: [x, unit(up), cross(x, unit(up))] };
 }
 
-// Returns a pose of the room, as a WebXR matrix, in the plant: { at, axes }.
+// Converts a pose in the room, given as a WebXR matrix, to the plant. Returns { at, axes }.
 export const poseOf = (rig, matrix) =>
     ({ at: pointOf(rig, positionOf(matrix)), axes: columnsOf(matrix).map((column) => turned(rig.axes, column)) });
 

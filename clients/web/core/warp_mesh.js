@@ -12,7 +12,7 @@ const BLOCK = 16; // largest side of a merged block, in cells
 const LAP_PX = 0.5; // overlap of merged blocks, which hides cracks between blocks of different sizes
 export const WHOLE = 0, NEAR = 1, FAR = 2; // which pixels of its cells a quad shows: all, those before the step, those behind
 const ORDER = [0, 2, 1, 1, 2, 3]; // corners of a quad's two triangles
-export const FLOATS = 4; // per vertex: x and y in pixels of the part, depth, kind
+export const FLOATS = 4; // number of floats per vertex: x and y in pixels of the part, depth, kind
 
 class Sheets {
     constructor(grid, camera) {

@@ -109,7 +109,7 @@ async function look() {
 
 // --- periodic work
 
-// OPENED: time by the display's own clock
+// OPENED: time at which the page was opened, by the display's own clock
 const lostWords = make('p'), lostSelf = make('p', { class: 'self' }), OPENED = new Date().toLocaleTimeString('en-GB');
 byId('lost').replaceChildren(lostWords, lostSelf);
 

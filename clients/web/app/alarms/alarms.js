@@ -14,7 +14,8 @@ import { addEdge } from './panel_edge.js';
 import { actionButton, AlarmTable, momentButton, refreshCells, rowOf } from './alarm_table.js';
 
 const SHOWN = 200; // maximum number of rows in the document
-const WIDE = window.matchMedia('(min-width: 1200px)'); // narrower screens show the list over the equipment (alarms.css)
+// true on wide screens; on narrower ones the list covers the equipment list (alarms.css)
+const WIDE = window.matchMedia('(min-width: 1200px)');
 const WHICH = ['all', 'waiting', 'active', 'gone'];
 const FILTERS = { words: 'alarms-words', which: 'alarms-which', priority: 'alarms-priority', area: 'alarms-area' };
 

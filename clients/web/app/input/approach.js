@@ -61,7 +61,8 @@ export class Approach {
         this.setGhosts([]);
         this.reveal(asset);
         const { camera: now, model, params } = this.session, { width } = halfAt(params, this.viewport.width, 0);
-        const solid = isRoom(asset, model.assets) ? null : asset.id; // the eye does not go into this asset
+        // id of the asset that the eye must not enter; null: the tag's asset is a room
+        const solid = isRoom(asset, model.assets) ? null : asset.id;
         const cameras = approaches({ camera: now, point: tag.position, box: asset.bounds, aspect: width / this.viewport.height,
             whole: model.plant.bounds, solid: solid !== null });
         fly(cameras[0]);

@@ -83,7 +83,7 @@ export class Notes {
         this.at.disabled = Boolean(this.edited);
     }
 
-    // Fills the form with a note to change, or with null empties it.
+    // Fills the form with the note that the user wants to change; null: empties the form.
     edit(note) {
         this.edited = note;
         this.text.value = note?.text ?? '';

@@ -8,7 +8,7 @@ import { hatch, hatchAlong, strokeAlong, triangle } from './chart_style.js';
 
 const EXPAND = 2; // uPlot's mode in which gaps (nulls) extend to neighbouring instants
 const AXIS_PX = 58, UNIT_PX = 16, TIME_PX = 28, LINE_PX = 1.75, BOLD_PX = 3, LABEL_PX = 15, BADGE_PX = 13, DRAGGED_PX = 4;
-const DAYS_S = 2 * 86400; // length of a range from which ticks are days
+const DAYS_S = 2 * 86400; // the ticks of the time axis are days if the range is longer than this
 const FONT = 'system-ui, sans-serif';
 
 export class Plot {

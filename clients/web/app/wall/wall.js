@@ -6,7 +6,7 @@ import { legendsLie, readWall, SPREAD_MS, wallFit } from '../../core/wall.js';
 import { keepScreenOn } from '../common/clock.js';
 import { byId, make, setVariable, styled } from '../common/dom.js';
 
-const FAR_MS = 60000; // milliseconds for which the person who installs the wall sees from which distance the text is readable
+const FAR_MS = 60000; // for this many milliseconds, the page shows the installer from which distance its text is readable
 const LEAST_PICTURE = 0.3; // smallest height of the picture as a fraction of the window's; below this, the whole page shrinks
 const TIGHT = 620; // width in units below which the date has no room next to the time
 
