@@ -135,7 +135,7 @@ static void fail(struct sample *out)
     out->quality = QUALITY_BAD_SENSOR_FAILURE;
 }
 
-/* Decodes a numeric value. bits: width of `raw` on the wire. */
+/* Decodes a numeric value. bits: bit pattern of `raw` as received, to recognise special values that are stated as bits. */
 static void decode_analog(const struct tag_scale *scale, uint64_t bits, double raw, struct sample *out)
 {
     /* checked before scaling, because a scaled special value would look like a measurement */

@@ -55,8 +55,8 @@ static void read_block(struct modbus_source *modbus, size_t index)
     modbus_manners_after(modbus);
 }
 
-/* Returns the time from which a block (tags read by one request) may be read: the latest of its due time, its unit's retry time and the
- * connection's retry time. */
+/* Returns the time from which a block (tags read by one request) may be read: the latest of its due time, its unit's retry time while the
+ * unit is down, and the time of the next connection attempt while the link is closed. */
 static int64_t ready_ns(const struct modbus_source *modbus, const struct read_plan_block *block)
 {
     const struct modbus_unit *unit = modbus_unit_of(modbus, block);

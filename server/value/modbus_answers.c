@@ -44,13 +44,13 @@ static uint32_t quality_of_exception(int code)
     case MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE: return QUALITY_BAD_CONFIGURATION;
     case MODBUS_EXCEPTION_SLAVE_OR_SERVER_FAILURE:
     case MODBUS_EXCEPTION_MEMORY_PARITY: return QUALITY_BAD_DEVICE_FAILURE;
-    /* the device is busy, or answered with a similar exception: the block is retried soon; its readings go stale if the device stays
-     * busy */
+    /* busy or a similar exception: Good, so that no quality is written: the block is retried soon, and its readings go stale if the device
+     * stays busy */
     default: return QUALITY_GOOD;
     }
 }
 
-/* Logs that a device answers every request with the exception acknowledge (5) or busy (6). The tags of the block go stale. */
+/* Logs that a device answers every request with an exception such as acknowledge (5) or busy (6). The tags of the block go stale. */
 static void note_busy(struct modbus_source *modbus, const struct read_plan_block *block, int code, int64_t now_ns)
 {
     char more[LOG_PACE_BYTES];

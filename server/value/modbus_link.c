@@ -253,7 +253,8 @@ int modbus_link_open(struct modbus_link *link)
     link->open = status == 0;
     link->answers = 0;
     link->opened_ns = clock_mono_ns();
-    /* modbus_link_interrupt() was called before the socket was in its reserved descriptor, so it could not end this connection */
+    /* in case modbus_link_interrupt() was called before the socket was in its reserved descriptor, so that it could not end this
+     * connection */
     if (link->open && wait_for(-1, 0, link->stop_fd, 0) == -ECANCELED) {
         close_link(link);
         status = -ECANCELED;
@@ -336,7 +337,7 @@ static int ask(struct modbus_link *link, const struct modbus_question *question,
 }
 
 /* Discards the answer to an abandoned request. RTU frames have no transaction numbers, so such an answer could be taken for that to the
- * next request. After an error, discards one answer, then waits one timeout for stray bytes. Returns false if the device does not
+ * next request. Sends a request and discards the answer, then waits one timeout for stray bytes. Returns false if the device does not
  * answer. */
 static bool clear_line(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
 {

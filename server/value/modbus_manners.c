@@ -136,8 +136,8 @@ static bool is_closed(int status)
     return status == -ECONNRESET || status == -EPIPE || status == -ECONNREFUSED || status == -ECONNABORTED;
 }
 
-/* Counts a connection that the device closed after answering on it. After a few consecutive ones, switches to one request per
- * connection. */
+/* Counts a connection that the device closed after a single answer. After SHORT_CONNECTIONS consecutive ones, switches to one request per
+ * connection. Logs once that the device closes connections after several answers. */
 static void learn_end(struct modbus_source *modbus, int answers)
 {
     struct modbus_manners *manners = &modbus->manners;

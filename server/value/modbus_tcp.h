@@ -11,7 +11,7 @@
 struct modbus_question {
     uint16_t number; /* transaction identifier */
     uint8_t unit;
-    bool any_unit; /* a response may name unit 0 or 255 instead of the unit requested; or any unit if 0 or 255 was requested */
+    bool any_unit; /* a response may state unit 0 or 255 in place of the requested unit; to a request for 0 or 255, any unit */
     /* transaction identifier of the first copy of a request that was repeated on this connection; equal to `number` if it was sent once */
     uint16_t oldest;
     enum register_table table;

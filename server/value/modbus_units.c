@@ -105,8 +105,7 @@ static void lose_tags_of(struct modbus_source *modbus, const struct modbus_unit 
     store_tags_lost(modbus->base.store, modbus->lost, count, clock_mono_ns());
 }
 
-/* Switches to the next host. Connects without a delay to a host that was not tried since a unit last answered; after a backoff delay if all
- * were tried. */
+/* Switches to the next host and connects without a delay; once all hosts were tried, with a backoff delay before the first one. */
 static void try_elsewhere(struct modbus_source *modbus)
 {
     int64_t now_ns = clock_mono_ns();

@@ -7,7 +7,7 @@
 
 enum { SNAPSHOT_CACHE_SPARE = 16 }; /* number of snapshots without a user that stay in the cache: the newest ones */
 
-struct historical_snapshot { /* immutable while a user holds it */
+struct historical_snapshot { /* the readings of one past instant; immutable while a user holds it */
     struct snapshot snapshot;
     int64_t at_us; /* UTC, since 1970; above 0 */
     /* slot number, from 1, unique among snapshots with a user; the renderer assigns its fields and buffers to snapshots by this number */

@@ -49,8 +49,8 @@ static int64_t mono_of(const struct stamped_writer *writer, int tag, int64_t utc
     return utc_ns >= writer->last[tag].utc_ns && mono_ns < writer->last[tag].mono_ns ? writer->last[tag].mono_ns : mono_ns;
 }
 
-/* Adds a sample to the batch. A batch contains samples of one time, at most one per tag; if the sample does not fit, the batch is written
- * first. */
+/* Adds a sample to the batch. A batch contains samples of one time, at most as many as there are tags; if the sample does not fit, the
+ * batch is written first. */
 static void add(struct stamped_writer *writer, const struct sample *sample, int64_t utc_ns)
 {
     int64_t mono_ns = mono_of(writer, sample->tag, utc_ns);

@@ -288,8 +288,8 @@ static bool hold(struct store *store, const struct sample *sample, int64_t now_m
     struct held *held = &store->tags[sample->tag];
     bool bad = quality_is_bad(sample->quality), finite = isfinite(sample->value), value_changed = false;
     if (now_mono_ns < held->sampled_mono_ns) {
-        /* A sample older than the last one is ignored, unless the tag is dead and the sample has the UTC time of the last value or a later
-         * one: then it shows that the lost source is back. */
+        /* A sample older than the last one is ignored. Exception: the tag is dead, and the sample has the UTC time of the last value or a
+         * later one; then it shows that the lost source is back. */
         if (!held->dead || !held->has_value || now_utc_ns < held->received_utc_ns)
             return false;
         now_mono_ns = held->sampled_mono_ns;
@@ -346,7 +346,8 @@ static void mirror(struct store *store, const struct mirrored *reading, int64_t 
     held->received_utc_ns = reading->received_utc_ns;
     held->sampled_mono_ns = held->changed_mono_ns = now_mono_ns;
     held->lost = held->dead = false;
-    held->stale_ns = held->flatline_ns = INT64_MAX; /* the core decides when a reading is stale, so this daemon does not */
+    /* this reading comes from a core (daemon that reads the devices), which decides when it is stale */
+    held->stale_ns = held->flatline_ns = INT64_MAX;
     if (count_change(store, (size_t)reading->tag, value_changed, now_mono_ns))
         tell_watch(store);
 }

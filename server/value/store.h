@@ -51,16 +51,16 @@ void store_unlisten(struct store *store, store_listener *listener, void *arg);
 void store_watch(struct store *store, void (*changed)(void *arg), void *arg);
 /* Writes samples that arrived at this time. If a read failed, call store_link_lost() instead. */
 void store_write(struct store *store, const struct sample *samples, size_t count, int64_t now_mono_ns, int64_t now_utc_ns);
-/* a reading as another daemon's store shows it; a renderer receives such readings from its core */
+/* a reading as another daemon's store shows it; a renderer (daemon that draws for a core) receives such readings from its core */
 struct mirrored {
     int tag;
-    uint32_t quality; /* quality that the core shows, including the effect of the reading's age */
+    uint32_t quality; /* quality that the core (daemon that reads the devices) shows, including the effect of the reading's age */
     double value;     /* last usable value, if has_value */
     bool has_value;
     int64_t received_mono_ns, received_utc_ns; /* arrival time of the value; received_mono_ns: on this machine's monotonic clock */
 };
-/* Writes readings of a core in place of samples: their quality is the core's, and their age here does not change it. Listeners are not
- * called. store_link_lost(), store_tags_lost() and store_tags_dead() apply to such readings too. */
+/* Writes readings of a core (daemon that reads the devices) in place of samples: their quality is the core's, and their age here does not
+ * change it. Listeners are not called. store_link_lost(), store_tags_lost() and store_tags_dead() apply to such readings too. */
 void store_mirror(struct store *store, const struct mirrored *readings, size_t count, int64_t now_mono_ns);
 /* Records that a source cannot be read from now on. Its tags keep their last values: Uncertain_NoCommunicationLastUsableValue until
    stale_s after their arrival, then Bad_CommunicationError. Tags that never had a value are Bad_NoCommunication. */
@@ -72,7 +72,8 @@ void store_tags_lost(struct store *store, const int *tags, size_t count, int64_t
 void store_tags_dead(struct store *store, const int *tags, size_t count, int64_t now_mono_ns);
 /* Records that a source can be read again. Each of its tags becomes usable with its next sample. */
 void store_link_up(struct store *store, int source, int64_t now_mono_ns);
-/* Records that a source is not connected, without changing its tags. For renderers, which receive each tag's state from the core. */
+/* Records that a source is not connected, without changing its tags. For renderers (daemons that draw for a core), which receive each tag's
+ * state from the core. */
 void store_link_down(struct store *store, int source, int64_t now_mono_ns);
 /* Sets the alarm of a tag's readings from now on (enum alarm_kind) and its state (enum alarm_status). */
 void store_set_alarm(struct store *store, int tag, int alarm, int status);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An MQTT source: connects, subscribes, and marks all readings as lost when the connection to the broker is lost. The only message it can
- * publish is the request for a Sparkplug birth certificate, if the plant file allows it. */
+/* An MQTT source: connects, subscribes, and marks all readings as lost when the connection to the broker is lost. It can publish only two
+ * messages, if the plant file allows them: the request for a Sparkplug birth certificate, and a last will on a topic below plantcast/. */
 #include <errno.h>
 #include <string.h>
 #include <sys/random.h>
@@ -10,7 +10,7 @@
 #include "value/lookup.h"
 #include "value/mqtt/mqtt_impl.h"
 
-/* time limits for opening a session with the broker, and for the broker's answers to subscriptions */
+/* time limit from the start of a connection to the broker's answers to all subscriptions */
 static const int64_t CONNECT_NS = 10 * NS_PER_S;
 static const int64_t LINE_NS = 60 * NS_PER_S; /* minimum time between two log lines about refused messages */
 

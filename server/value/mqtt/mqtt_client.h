@@ -38,7 +38,7 @@ void mqtt_client_destroy(struct mqtt_client **client);
 /* Waits for the connection until the deadline. Returns 0; -ECANCELED if stop_fd became readable; -ETIMEDOUT; another negative code with the
  * reason in `why`. */
 int mqtt_client_wait(struct mqtt_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
-/* Sends and receives, and makes the callbacks. Returns after one message or at the deadline: 0; -ECANCELED if stop_fd became readable;
+/* Waits for input, at most until the deadline; sends, receives, and makes the callbacks. Returns 0; -ECANCELED if stop_fd became readable;
  * another negative code with the reason in `why` when the connection has ended. */
 int mqtt_client_serve(struct mqtt_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
 /* Subscribes to topics, which must outlive the client; may be called once per client. Returns false if the request cannot be sent:

@@ -18,7 +18,7 @@ enum { TIMEOUT_MS = 5000, CLOSING_MS = 300, CHANNEL_MS = 3600000, SESSION_MS = 6
 /* maximum bytes of one message from the server; maximum number of chunks in which the message may arrive; bytes of the connection's receive
    and send buffers, which bound one chunk */
 enum { MESSAGE_BYTES = 2 << 20, CHUNKS = 512, BUFFER_BYTES = 65536 };
-enum { DISCOVERIES = 3 }; /* maximum number of discovery attempts: the server may redirect the client to another address */
+enum { DISCOVERIES = 3 }; /* maximum number of discovery attempts; after the first, each follows a request that the server refused */
 
 /* --- library callbacks ------------------------------------------------------------------------------------------------------ */
 
