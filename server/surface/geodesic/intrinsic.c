@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Connects triangles to patches across edges with two faces, and flips these edges until the triangulation is Delaunay. */
+/* Connects triangles to patches across edges with two faces, and flips these edges until the triangulation is Delaunay (as far as edges can
+ * be flipped). */
 #include "surface/geodesic/intrinsic.h"
 
 #include <math.h>
@@ -64,8 +65,8 @@ static double cotangent_opposite(const double lengths[3], int side)
     return (b * b + c * c - a * a) / (2 * sqrt(max_of(area2, 1e-300)));
 }
 
-/* Flips the edge between two triangles of one patch. Returns false if that is impossible: both sides belong to one triangle, or the
-   quadrilateral is not convex. */
+/* Flips the edge between two triangles of one patch (triangles connected by edges with two faces). Returns false if that is impossible:
+ * both sides belong to one triangle, or the quadrilateral is not convex. */
 static bool flip(struct intrinsic *in, uint32_t t, int i)
 {
     uint32_t u = in->glue[t][i] / 3;
@@ -112,8 +113,8 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
     return true;
 }
 
-/* Lengthens all sides by the same small amount, so that in no triangle two sides together exceed the third by less than MOLLIFY mean edge
- * lengths (Sharp & Crane 2020, section 4.5). */
+/* Lengthens all sides of all triangles by the same small amount. In each triangle, two sides together then exceed the third by at least
+ * MOLLIFY mean edge lengths (Sharp & Crane 2020, section 4.5). */
 static void mollify(struct intrinsic *in)
 {
     double sum = 0, lack = 0;

@@ -109,8 +109,8 @@ static struct propagation_fan *add_fan(struct propagation *propagation, uint32_t
 }
 
 /* Appends a row of adjacent wedges (triangles around a point) to the point's fans. A fan has PROPAGATION_FAN lanes, one per neighbour; the
- * neighbour in the last lane of a full fan is stored again in the next fan. lane: number of lanes used in the last fan. Returns the new
- * number. */
+ * neighbour in the last lane of a full fan is stored again in the next fan. lane: number of lanes used in the last fan. Returns the number
+ * used afterwards. */
 static int add_row(struct propagation *propagation, uint32_t point, const struct vertex_wedge *row, size_t count, int lane)
 {
     for (size_t i = 0; i <= count; i++) {

@@ -107,8 +107,8 @@ SIMD_BODY void choose(const mask *which, const lanes *x, const lanes *otherwise,
 
 /* Computes, in each lane, the distance that reaches point c through the edge from p to b. p is at distance d from the source, b at db; the
  * edge has length pb, the side from p to c length pc and the cosine and sine of its angle to the edge. The source is placed in the
- * triangle's plane, beyond the edge. The result is INFINITY where the ray from the source to c does not pass between p and b, or where db
- * exceeds `reached`, so that it is not final. */
+ * triangle's plane, beyond the edge. The result is INFINITY where the ray from the source to c does not pass between p and b. It is also
+ * INFINITY where db exceeds `reached`, because such a distance is not final. */
 SIMD_BODY void through_edge(const lanes *d_of_p, const lanes *reached, const lanes *d_of_b, const lanes *p_to_b, const lanes *p_to_c,
                             const lanes *cosine, const lanes *sine, lanes *out)
 {
@@ -125,8 +125,9 @@ SIMD_BODY void through_edge(const lanes *d_of_p, const lanes *reached, const lan
     choose(&seen, &straight, &infinite, out);
 }
 
-/* Computes the distance that point p, at distance d, offers to each neighbour in a fan. It is the shorter of d plus the edge's length, and
- * the distance through the triangle shared with the previous or next neighbour, if that neighbour is nearer to the source. */
+/* Computes the distance that point p, at distance d, offers to each neighbour in a fan: the shorter of two. One is d plus the edge's
+ * length. The other passes through the triangle shared with the previous or next neighbour, and exists only if that neighbour is nearer to
+ * the source than this one. */
 SIMD_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes *d_of_each, const lanes *length_m, const lanes *cosine,
                          const lanes *sine, lanes *out)
 {
@@ -161,7 +162,8 @@ struct front_turn {
     uint32_t takes;                   /* bit mask of lanes: neighbours whose distance the offer lowers */
 };
 
-/* Takes the next point from the buckets and makes its fans the current ones. Returns false if all buckets are empty. */
+/* Takes the next point from the buckets and makes its fans (neighbours and triangles around it) the current ones. Returns false if all
+ * buckets are empty. */
 SIMD_BODY bool next_point(const struct propagation *propagation, struct front_turn *turn)
 {
     struct propagation_front *front = turn->front;
@@ -186,7 +188,7 @@ SIMD_BODY bool next_point(const struct propagation *propagation, struct front_tu
 }
 
 /* Computes the distances that the current point offers to the neighbours in the current fan. Has no branches, so that the processor
- * overlaps the computations of several fronts. */
+ * overlaps the computations of several fronts (propagations from different sources). */
 SIMD_BODY void look_round(struct front_turn *turn)
 {
     const lanes zero = { 0 };

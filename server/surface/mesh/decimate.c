@@ -109,8 +109,8 @@ static bool has(const struct thin *thin, uint32_t tri, uint32_t point)
     return v[0] == point || v[1] == point || v[2] == point;
 }
 
-/* Returns whether corner `point`, which loses the triangle that it forms with `from` and `to` when `from` is merged into `to`, has another
- * visible triangle at `to` afterwards. Checked because a lost triangle without area may be the only connection of two parts. */
+/* Returns whether corner `point` still has another visible triangle at `from` or `to`, when `from` is merged into `to` and the triangle of
+ * all three is lost. Checked because a lost triangle without area may be the only connection of two parts. */
 static bool stays_joined(const struct thin *thin, uint32_t point, uint32_t from, uint32_t to)
 {
     for (uint32_t corner = thin->heads[point]; corner != TRIMESH_NONE; corner = thin->next[corner]) {
