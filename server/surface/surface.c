@@ -226,8 +226,8 @@ static void join_parts(struct surface *surface, struct body_parts *parts)
     mem_free(made.crossings);
 }
 
-/* Moves triangles with an edge longer than the asset's main part to the end of the mesh: triangles that reach to a stray vertex. Returns
- * the number of moved triangles. */
+/* Moves triangles that reach from the asset's main part to a stray vertex (one far from all others) to the end of the mesh: those with an
+ * edge longer than the main part. Returns the number of moved triangles. */
 static size_t set_aside_needles(struct surface *surface)
 {
     struct trimesh *mesh = &surface->mesh;

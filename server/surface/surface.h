@@ -126,14 +126,14 @@ struct surface_field {
    any thread. */
 struct surface_columns {
     bool (*fetch)(void *arg, size_t source, float *distances_m); /* false: not cached */
-    /* stores a newly computed column, after rounding it in place to the values that fetch() will return */
+    /* stores a newly computed column (distances from one source), after rounding it in place to the values that fetch() will return */
     void (*keep)(void *arg, size_t source, float *distances_m);
     void *arg;
 };
-/* Returns the number of points of the sampled surface, the length of a column. */
+/* Returns the number of points of the sampled surface, which is the length of a column (distances from one source). */
 size_t surface_column_length(const struct surface *surface);
-/* Computes the field of these sources. Columns that the cache contains are fetched; computed columns are stored in the cache (columns NULL:
- * no cache). Returns false when out of memory, logged; nothing needs freeing then. */
+/* Computes the field of these sources. Columns (distances from one source) that the cache contains are fetched; computed columns are stored
+ * in the cache (columns NULL: no cache). Returns false when out of memory, logged; nothing needs freeing then. */
 bool surface_field_init(struct surface_field *field, const struct surface *surface, const double (*points_m)[3], size_t point_count,
                         const struct surface_columns *columns);
 /* Frees the field. */

@@ -48,8 +48,8 @@ static void take_vertices(const struct surface *surface, const float *distances_
         out[surface->strays[i].vertex] = at_stray(&surface->strays[i], distances_m, 1);
 }
 
-/* Copies a block of columns (distances by point, one column per source) into the rows of the field (distances by source, one row per
- * point), one cache line at a time. */
+/* Copies a block of distances into the field, one cache line at a time. The block has a column per source, sorted by point; the field has a
+ * row per point, sorted by source. */
 static void take_rows(const struct solve *solve, const float *block, size_t first, size_t count)
 {
     size_t points = solve->surface->mesh.point_count;

@@ -34,8 +34,8 @@ struct surface {
     size_t bridge_count, bridge_capacity;
 };
 
-/* Builds the data that searches and distances need: the bounding volume hierarchy, the propagation fans, the lists of triangles by model
- * triangle, and the intrinsic triangulation if the stored surface had none. */
+/* Builds the data that searches and distances need: the bounding volume hierarchy, the propagation fans (neighbours around each point), the
+ * lists of triangles by model triangle, and the intrinsic triangulation if the stored surface had none. */
 void surface_index(struct surface *surface);
 
 /* Argument of surface_faces(): the normal along which accepted triangles must face. */

@@ -49,9 +49,9 @@ static void face_outwards(struct parts_finding *f)
     mem_free(votes);
 }
 
-/* Finds walls: faces where two bodies touch with identical vertices, so that welding left one face of two. A wall is a patch that ends at
- * edges with three or more faces, and its triangles occur twice as often in the model as the others of its part. Walls, and fins that stand
- * on a surface, bound nothing: sets their side to 0. */
+/* Finds walls: faces where two bodies touch with identical vertices, so that welding left one face of two. A wall is a patch (triangles
+ * connected by edges with two faces) that ends at edges with three or more faces. Its triangles occur twice as often in the model as the
+ * others of its part. Walls, and fins that stand on a surface, bound nothing: sets their side to 0. */
 static void drop_walls(struct parts_finding *f, const uint32_t *times)
 {
     struct body_parts *parts = f->parts;
@@ -78,8 +78,8 @@ static void drop_walls(struct parts_finding *f, const uint32_t *times)
 
 /* --- reach: the distance up to which parts count as touching --- */
 
-/* Limits the reach of closed parts to half of their thickness, estimated as twice the volume divided by the area. The estimate is exact for
- * plates; other bodies are thicker. */
+/* Limits the reach (distance up to which a part counts as touching) of closed parts to half of their thickness, estimated as twice the
+ * volume divided by the area. The estimate is exact for plates; other bodies are thicker. */
 static void limit_reach(struct body_parts *parts, double tolerance_m)
 {
     const struct trimesh *mesh = &parts->solid;

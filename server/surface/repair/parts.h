@@ -29,9 +29,9 @@ struct body_parts {
 };
 
 /* Finds the parts of `mesh`: the model's source_count triangles after welding and closing seams, with the number of model triangles in each
- * of its triangles (tri_times). Every part's reach is tolerance_m. If the program chose the tolerance (is_chosen), a closed part's reach is
- * at most half of its thickness, so that a surface that touches one side of a plate does not touch the other side. Surfaces beyond the
- * reach are joined if the part faces them (line_of_sight.h). Free with parts_finish(). */
+ * of its triangles (tri_times). Every part's reach (distance up to which it counts as touching) is tolerance_m. If the program chose the
+ * tolerance (is_chosen), a closed part's reach is at most half of its thickness. Then a surface that touches one side of a plate does not
+ * touch the other side. Surfaces beyond the reach are joined if the part faces them (line_of_sight.h). Free with parts_finish(). */
 void parts_init(struct body_parts *parts, const struct trimesh *mesh, size_t source_count, double tolerance_m, bool is_chosen);
 /* Frees the parts. */
 void parts_finish(struct body_parts *parts);

@@ -11,16 +11,16 @@ struct parts_finding {
     /* by triangle: its patch (triangles connected by edges with two faces), identified by the lowest triangle index */
     uint32_t *patch;
     struct surface_patch { /* a patch (triangles connected by edges with two faces), stored at the index of its lowest triangle */
-        /* open_m: total length of its edges with one face; branching_m: total length of its edges with three or more faces, of which only
-         * one belongs to the patch */
+        /* open_m: total length of the patch's edges with one face; branching_m: total length of its edges with three or more faces, of
+         * which only one belongs to the patch */
         double open_m, branching_m, area_m2;
         double doubles_m2; /* area of triangles that occur at least twice as often in the model as the other triangles of the part */
         bool loose;        /* the patch is open and only stands on other patches, like a fin on a tube */
     } * patches;
 };
 
-/* Finds edges, patches and parts of parts->solid, decides which parts are closed, and assigns bodies to the triangles of `mesh`, which are
- * those of parts->solid. */
+/* Finds edges, patches (triangles connected by edges with two faces) and parts of parts->solid, decides which parts are closed, and assigns
+ * bodies to the triangles of `mesh`, which are those of parts->solid. */
 void parts_number(struct parts_finding *f, const struct trimesh *mesh);
 
 #endif

@@ -12,7 +12,8 @@
 /* maximum total length of open edges of a closed part, relative to the root of its area: more than remnants of a hair gap, less than the
  * end of a pipe */
 #define MAX_OPEN_OF_SIZE 0.05
-/* maximum total length of all edges at which a patch ends, relative to the root of its area, for the patch to count as a body of its own */
+/* maximum total length of all edges at which a patch (triangles connected by edges with two faces) ends, relative to the root of its area,
+ * for the patch to count as a body of its own */
 #define MAX_BODY_OPEN_OF_SIZE 0.5
 
 static double edge_length(const struct trimesh *mesh, size_t t, int i)
@@ -106,7 +107,9 @@ static bool stands(const struct open_branch *branch)
     return branch->runs_through && branch->faces == 1;
 }
 
-struct core { /* a set of patches connected at edges through which no patch continues; stored at the index of its lowest triangle */
+/* a set of patches (triangles connected by edges with two faces) that are connected at edges through which no patch continues; stored at
+ * the index of its lowest triangle */
+struct core {
     double open_m, area_m2;
     bool stands;
 };
@@ -116,14 +119,16 @@ static bool is_closed(double open_m, double area_m2)
     return open_m <= MAX_OPEN_OF_SIZE * sqrt(area_m2);
 }
 
-/* Joins patches that meet at edges into parts. Two closed sets of patches stay separate where one only stands on the other, or on a fin of
- * the other: fins of two bodies, joined by a seam, do not make the bodies one part. of[triangle] on entry: its patch; on return: its part.
- * Both are identified by their lowest triangle. */
+/* Joins patches (triangles connected by edges with two faces) that meet at edges into parts. Two closed sets of patches stay separate where
+ * one only stands on the other, or on a fin of the other: fins of two bodies, joined by a seam, do not make the bodies one part.
+ * of[triangle] on entry: its patch; on return: its part. Both are identified by their lowest triangle. */
 static void join_patches(struct parts_finding *f, const struct branches *b, uint32_t *of)
 {
     size_t tri_count = f->parts->solid.tri_count;
     struct core *cores = mem_array(tri_count, sizeof(*cores));
-    char *holds = mem_array(tri_count, 1); /* by lowest triangle of a part: 1 if the part contains patches that are closed together */
+    /* by lowest triangle of a part: 1 if the part contains patches (triangles connected by edges with two faces) that are closed
+     * together */
+    char *holds = mem_array(tri_count, 1);
     for (size_t i = 1; i < b->count; i++)
         if (b->at[i].edge == b->at[i - 1].edge && !b->at[i].runs_through)
             trimesh_join(of, b->at[i - 1].patch, b->at[i].patch);
@@ -190,8 +195,8 @@ static void find_closed(struct parts_finding *f)
     mem_free(open_m);
 }
 
-/* Assigns bodies: usually the parts. A patch that is nearly closed by itself is a body of its own: only a few edges join it to its part, by
- * mistake of the model. */
+/* Assigns bodies: usually the parts. A patch (triangles connected by edges with two faces) that is nearly closed by itself is a body of its
+ * own: only a few edges join it to its part, by mistake of the model. */
 static void find_bodies(struct parts_finding *f, const struct trimesh *mesh)
 {
     struct body_parts *parts = f->parts;

@@ -117,8 +117,8 @@ static bool runs_along(const struct seams *s, uint32_t p, uint32_t e, const doub
     return false;
 }
 
-/* Returns whether the border passes straight through point p along edge e. Such a point is a hanging vertex of e, because the border of a
- * gap is rarely that straight. */
+/* Returns whether the border passes straight through point p along edge e. Such a point is a hanging vertex of e (a vertex on an edge of
+ * which it is no end), because the border of a gap is rarely that straight. */
 static bool hangs(const struct seams *s, uint32_t p, uint32_t e)
 {
     double forth[3], back[3], within_m = STRAIGHT * s->tolerance_m;
@@ -136,8 +136,8 @@ static bool have_an_edge(const struct seams *s, uint32_t p, uint32_t q)
     return false;
 }
 
-/* Returns whether p, distance_m away from an end of edge e, counts as that end. Hanging vertices in one line stay separate points, however
- * near each other they are. */
+/* Returns whether p, distance_m away from an end of edge e, counts as that end. Hanging vertices (vertices on an edge of which they are no
+ * end) in one line stay separate points, however near each other they are. */
 static bool is_at_end(const struct seams *s, uint32_t p, uint32_t e, uint32_t end, double distance_m, double length_m)
 {
     if (distance_m > max_of(REPAIR_AT_END * length_m, s->end_m))
@@ -146,9 +146,9 @@ static bool is_at_end(const struct seams *s, uint32_t p, uint32_t e, uint32_t en
     return !(apart && (have_an_edge(s, p, end) || (hangs(s, p, e) && hangs(s, end, e))));
 }
 
-/* Tries to insert a border point into edge e. A hanging vertex is inserted immediately, and so into all edges along which the border runs.
- * If it were inserted into the nearest edge only, some of these edges would be joined to each other and the others would stay open. For
- * another point, records e if it is the nearest edge so far. */
+/* Tries to insert a border point into edge e. A hanging vertex (a vertex on an edge of which it is no end) is inserted immediately, and so
+ * into all edges along which the border runs. If it were inserted into the nearest edge only, some of these edges would be joined to each
+ * other and the others would stay open. For another point, records e if it is the nearest edge so far. */
 static void try_edge(struct seams *s, size_t i, uint32_t e)
 {
     const struct borders *b = s->borders;
@@ -237,9 +237,9 @@ void repair_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, st
     size_t target_count = mesh->point_count;
     for (uint32_t i = 0; i < target_count; i++)
         target[i] = i;
-    /* Rounds 0 and 1 close exact fits only (points within a hundredth of the tolerance), so that their edges are no borders any more when
-     * rounds 2 and 3 close gaps, and are not pulled to a neighbour. In round 1, a point that is on an edge by chance is not inserted,
-     * because it would split the edge into pieces too short to be closed. */
+    /* Rounds 0 and 1 close exact fits only (points within a hundredth of the tolerance). Their edges are then no borders any more when
+     * rounds 2 and 3 close gaps, and are not pulled to a neighbour. In round 1, a point that is on an edge by chance is not inserted: it
+     * would split the edge into pieces too short to be closed. */
     for (int round = 0; round < 4; round++) {
         struct borders borders;
         borders_init(&borders, mesh);

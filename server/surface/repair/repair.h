@@ -31,16 +31,16 @@ void repair_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, st
  * each other. target: as in repair_seams(). */
 void repair_join_points(struct trimesh *mesh, double tolerance_m, uint32_t *target, struct repair_report *report);
 
-/* Joins parts in contact. Where an edge passes through a face (also one of its own part, recorded in parts->crossed), a point is inserted
- * into the edge and the face, and both faces are cut along their intersection. A point is inserted into another body if the distance is
- * within both parts' reach, or within the tolerance and both face each other (line_of_sight.h). Where the rim of a face that lies on
- * another part crosses an edge of that part, a point is inserted into both edges. target: as in repair_seams(). */
+/* Joins parts in contact. Where an edge passes through a face, also one of its own part (recorded in parts->crossed), a point is inserted
+ * into both. Both faces are cut along their intersection. A point is inserted into another body if the distance is within both parts' reach
+ * (distance up to which they count as touching), or within the tolerance and both face each other (line_of_sight.h). Where the rim of a
+ * face that lies on another part crosses an edge of that part, a point is inserted into both edges. target: as in repair_seams(). */
 void repair_contacts(struct trimesh *mesh, struct body_parts *parts, uint32_t *target, struct repair_report *report);
 
 /* Closes rims: edges that are open only because the triangles beyond them are hidden. Two bodies may share vertices along one stretch of a
- * rim and have a gap along another; hidden faces had closed this gap. Rims are closed like seams, within both parts' reach. hidden[tri]: 1
- * if the triangle is hidden, else 0. Moves visible triangles to the front of the mesh. Returns the number of visible triangles. target: as
- * in repair_seams(). */
+ * rim and have a gap along another; hidden faces had closed this gap. Rims are closed like seams, within both parts' reach (distance up to
+ * which they count as touching). hidden[tri]: 1 if the triangle is hidden, else 0. Moves visible triangles to the front of the mesh.
+ * Returns the number of visible triangles. target: as in repair_seams(). */
 size_t repair_rims(struct trimesh *mesh, const char *hidden, const struct body_parts *parts, uint32_t *target,
                    struct repair_report *report);
 

@@ -72,7 +72,7 @@ static void visit_crossed(void *arg, uint32_t tri)
         return;
     double length = vec_distance(p, q), reach_m = min_of(c->parts->reach_m[c->own], reach_of(c, tri));
     if (t * length < reach_m || (1 - t) * length < reach_m || (own && !stands_clear(c, v)))
-        return; /* ignored: only the end of the edge touches the triangle, which find_touches() handles */
+        return; /* no crossing: only the end of the edge touches the triangle, which find_touches() handles */
     struct contact_crossing *found = add_crossing(c);
     *found = (struct contact_crossing){ .tri = tri, .a = c->edge[0], .b = c->edge[1], .t = t, .own = own };
     memcpy(found->weights, w, sizeof(w));
@@ -143,8 +143,8 @@ static bool reaches_as_far(const void *arg, uint32_t tri)
     return reach_of(c, tri) >= c->reach_m;
 }
 
-/* Finds the point of another body that is nearest to point_m, within the reach of both bodies' parts. place->tri is TRIMESH_NONE if there
- * is none. */
+/* Finds the point of another body that is nearest to point_m, within the reach (distance up to which a part counts as touching) of both
+ * bodies' parts. place->tri is TRIMESH_NONE if there is none. */
 static void find_touch(const struct contacts *c, const double point_m[3], struct bvh_place *place)
 {
     bvh_nearest_unlike(c->bvh, point_m, c->reach_m, c->own, NULL, NULL, place);
@@ -356,8 +356,8 @@ static void join_meetings(const struct contacts *c, const struct meeting *meetin
             join_corners(c, meetings[0].point, meetings[0].tris[i], meetings[0].tris[1 - i]);
 }
 
-/* Cuts all pairs of intersecting triangles along their intersection, so that afterwards each triangle is on one side of the other, and can
- * be hidden or visible as a whole. */
+/* Cuts all pairs of intersecting triangles along their intersection. Afterwards each triangle is on one side of the other, and can be
+ * hidden or visible as a whole. */
 static void cut_along(struct contacts *c)
 {
     struct meetings meetings = { 0 };
