@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides which parts a far level may omit: small parts that lie on larger parts, and groups of parts that are together smaller than a
- * pixel. */
+/* Decides which parts (connected components) a far level may omit: small parts that lie on larger parts, and groups of parts that are
+ * together smaller than a pixel. */
 #include <math.h>
 #include <string.h>
 
@@ -22,8 +22,8 @@
 #define CLASSES_MAX 20
 #define FEWER 0.75 /* a class of parts by size is made only if it has at most this share of the triangles of the class before */
 
-/* Size class: the triangles of all parts larger than than_m, with a bounding volume hierarchy of their own. In a hierarchy of all
- * triangles, each search for a larger part would first meet the small part itself and its neighbours. */
+/* Size class: the triangles of all parts larger than than_m, with a bounding volume hierarchy of their own. With one hierarchy of all
+ * triangles, each search for a larger part would first find the small part itself and its neighbours. */
 struct size_class {
     float than_m;
     struct trimesh mesh; /* triangles of the class; shares the points of the whole mesh */
