@@ -14,9 +14,9 @@ struct json_selected {
     const json_t *foreign;
 };
 
-/* Follows the path from `root`. tag: name of the tag whose value is read. An array item addressed by position that names itself (a text or
- * number called `id`, `name`, `tag` and the like) is selected only if its name is the tag's, or ends in the tag's name after a separator: a
- * publisher that sends only changed items changes their positions. */
+/* Follows the path from `root`. tag: name of the tag whose value is read. An array item addressed by position may name itself (a text or
+ * number called `id`, `name`, `tag` and the like). It is selected only if its name is the tag's, or ends in the tag's name after a
+ * separator: a publisher that sends only changed items changes their positions. */
 struct json_selected json_select(const json_t *root, const char *path, const char *tag);
 
 #endif
