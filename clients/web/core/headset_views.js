@@ -22,7 +22,8 @@ export const directionOf = (rig, direction) => turned(rig.axes, direction);
 const columnsOf = (matrix) => [0, 4, 8].map((i) => [matrix[i], matrix[i + 1], matrix[i + 2]]);
 const positionOf = (matrix) => [matrix[12], matrix[13], matrix[14]];
 
-// Returns the level rig at a position whose -z looks along `forward`, as far as that is level.
+// Returns the rig (place and axes of the room in the plant) at a position. The rig is level, and its -z points along the level part of
+// `forward`.
 export function rigAt(at, forward, up) {
     const right = cross(forward, up), x = unit(length(right) > 1e-6 ? right : cross([0.6, 0.8, 0.1], up));
     return { at, axes: [x, unit(up), cross(x, unit(up))] };
@@ -34,8 +35,8 @@ export const poseOf = (rig, matrix) =>
 
 export const eyeOf = (rig, { transform, projectionMatrix }) => ({ ...poseOf(rig, transform.matrix), projection: projectionMatrix });
 
-// Returns the level rig in which a user begins who looked through the page's camera: below that camera if it is within the plant's bounds,
-// else on the plant's floor in front of the plant.
+// Returns the level rig (place and axes of the room in the plant) for a user who looked through the page's camera: below that camera if it
+// is within the plant's bounds, else on the plant's floor in front of the plant.
 export function rigFor(camera, { min, max }, up) {
     const vertical = unit(up), height = (point) => dot(point, vertical), { eye } = camera;
     const floor = [min, max].flatMap((a) => [min, max].flatMap((b) => [min, max].map((c) => height([a[0], b[1], c[2]]))));
@@ -51,19 +52,21 @@ export function rigFor(camera, { min, max }, up) {
     return rigAt(stand, subtract(centre, stand), vertical);
 }
 
-// Returns the clip coordinates, for an eye, of a vector in metres from that eye with a homogeneous coordinate. Nothing is too far to be
-// drawn, and nothing nearer than `nearest` metres is drawn.
+// Returns the clip coordinates of a point for an eye. v: vector from the eye to the point, in metres; h: homogeneous coordinate of that
+// vector. Nothing is too far to be drawn; nothing nearer than `nearest` metres is drawn.
 export function clipOf({ axes, projection: p }, [v, h], nearest) {
     const [x, y, z] = axes.map((axis) => dot(v, axis)), across = (row) => p[row] * x + p[4 + row] * y + p[8 + row] * z + p[12 + row] * h;
     const w = across(3);
     return [across(0), across(1), w * (1 - 1e-6) - 2 * nearest * h, w];
 }
 
-// Returns the 4x4 matrix, column by column, from [x, y, depth, 1] of a grid to clip coordinates of an eye. camera: of the picture.
+// Returns the 4x4 matrix, column by column, from [x, y, depth, 1] of a grid to clip coordinates of an eye. camera: that of the grid's
+// picture.
 export const eyeMatrix = (grid, camera, eye, nearest) =>
     gridColumns(grid, camera, eye.at).flatMap((column) => clipOf(eye, column, nearest));
 
-// Returns the tangent of a direction to the side; the largest one if the device's numbers make no sense.
+// Returns the tangent of the angle between a direction and the view. aside, depth: the direction's components across and along the view.
+// MAX_TAN if the device's numbers make no sense.
 const tanOf = (aside, depth) => (depth > 0.1 && Math.abs(aside) < Infinity ? Math.max(LEAST_TAN, Math.abs(aside) / depth) : MAX_TAN);
 
 // Returns the shape of a picture that covers what all eyes see: { fov, width, height }. head: matrix of the viewer; views: of WebXR; eyePx:
@@ -153,7 +156,7 @@ export function floorHit(origin, direction, level, up) {
     return down > 0.05 && t > 0 && t * length(direction) <= 30 ? along(origin, direction, t) : null;
 }
 
-// Returns the rig moved so that a user, whose head is at `head` in the room, stands at a point.
+// Returns the rig (place and axes of the room in the plant), moved so that a user, whose head is at `head` in the room, stands at a point.
 export function standAt(rig, head, point) {
     const feet = pointOf(rig, [head[0], 0, head[2]]);
     return { ...rig, at: add(rig.at, subtract(point, feet)) };

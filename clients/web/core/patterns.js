@@ -12,7 +12,7 @@ const mix = (a, b, t) => a.map((x, i) => Math.round(x + (b[i] - x) * t));
 // Returns the period of the patterns in pixels, for a picture of that height.
 export const patternPeriodPx = (heightPx) => Math.max(PATTERNS.PATTERN_LEAST_PX, heightPx / PATTERNS.PATTERN_PERIODS);
 
-// Returns how much of the pixel around a position the stripes cover, 0 to 1; y is upwards, as in GL.
+// Returns the part (0 to 1) of the pixel at a position that stripes cover. In this and the functions below, y is upwards, as in GL.
 const stripes = (place, edge, period) => clamp((Math.abs(fract(place) - 0.5) - edge) * period + 0.5);
 const hatch = (x, y, period) => stripes((x + y) / (period * PATTERNS.HATCH_SLANT), PATTERNS.HATCH_EDGE, period);
 

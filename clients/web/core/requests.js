@@ -3,7 +3,8 @@
 import { cameraMessage } from './camera.js';
 import { asAsked } from './session.js';
 
-// Asks for a camera that shows an asset, a tag or the whole plant (id null); side: see plantcast.v1. The server answers with `fitted`.
+// Asks for a camera that shows an asset, a tag or the whole plant (id null); side: as in the message `fit` (PROTOCOL.md). The server
+// answers with `fitted`.
 export function askFit(session, { id = null, side = 'now', projection } = {}) {
     session.post({ type: 'fit', seq: ++session.fitSeq, id, side, ...(projection ? { projection } : {}) });
 }

@@ -188,7 +188,7 @@ class Mesher {
 }
 
 // Returns { vertices, indices, count } of quads over a depth grid: merged where the surface is plane, apart where the depth has a step.
-// camera: of the picture.
+// camera: that of the grid's picture.
 export function meshOf(grid, camera) {
     const mesher = new Mesher(grid, camera);
     for (let y = 0; y < grid.rows; y += BLOCK)

@@ -150,7 +150,7 @@ export class AlarmList {
             this.modules.there('journal')?.show();
     }
 
-    // Adds what the table shows and sorts by to an alarm.
+    // Returns an alarm with the members that the table shows and sorts by.
     rowOf = (alarm) => ({ ...alarm, us: alarm.raisedUs, area: areaOf(this.session.model, alarm.tag), about: alarm.tag.description ?? '' });
 
     showList() {
@@ -210,7 +210,7 @@ export class AlarmList {
 
     can = (row) => rowActions(row, this.alarms.mode, this.role).some((action) => ['acknowledge', 'shelve'].includes(action));
 
-    // Deselects rows that have another alarm than when they were selected, because the user has not seen it.
+    // Deselects rows whose alarms have changed since the rows were selected, because the user has not seen the new alarms.
     forgetChanged(all) {
         const now = new Map(all.map((row) => [row.tag.name, this.can(row) ? this.signatureOf(row) : null]));
         for (const [name, was] of this.chosen)

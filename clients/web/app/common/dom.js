@@ -90,7 +90,7 @@ export function glyph(quality) {
 export const limitFlag = ({ kind, priority, state }) =>
     make('span', { class: `limit-flag p${priority}${isGone(state) ? ' hollow' : ''}` }, kind);
 
-// A small screen: the legend lies along the edge, panels are sheets.
+// Matches small screens, on which the legend lies along the edge and panels are sheets.
 export const phone = globalThis.matchMedia?.('(max-width: 719px), (max-width: 1023px) and (max-height: 480px)');
 
 export function icon(id) {

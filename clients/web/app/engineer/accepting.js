@@ -98,7 +98,7 @@ export class Accepting {
         this.send('accept', 'accept_places', { ...this.filter, confirm: this.found.hash });
     }
 
-    // Handles that a request has ended without changing the list: shows the text and allows the next request.
+    // Ends a request that has not changed the list: shows the text and allows the next request.
     end(text) {
         if (this.sent) {
             this.sent = null;

@@ -238,7 +238,7 @@ export class Placing {
             this.dialog.showModal();
     }
 
-    // Handles that a save has ended without changing the list: allows the next save.
+    // Ends a save that has not changed the list, and allows the next save.
     stopSaving() {
         if (this.saving)
             setText(this.note, '');

@@ -68,7 +68,7 @@ export class Painter {
         return texture;
     }
 
-    // Takes a picture to draw from now on. canvas: its pixels; part: { grid, mesh } of its depth; camera: its own.
+    // Takes a picture to draw from now on. canvas: its pixels; part: { grid, mesh } of its depth; camera: the picture's camera.
     take(canvas, part, camera) {
         const { gl } = this, { grid, mesh } = part;
         gl.bindTexture(gl.TEXTURE_2D, this.picture);
