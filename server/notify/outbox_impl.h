@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared by outbox.c and outbox_json.c. Private to them. */
+/* State of an outbox, shared by outbox.c and outbox_json.c. Private to them. */
 #ifndef NOTIFY_OUTBOX_IMPL_H
 #define NOTIFY_OUTBOX_IMPL_H
 #include "notify/outbox.h"

@@ -66,7 +66,7 @@ uint8_t *png_text_add(const uint8_t *png, size_t count, const struct png_text *t
     return out;
 }
 
-/* Decompresses the text, which follows keyword and method. */
+/* Decompresses the text of a zTXt chunk, which follows the keyword and the compression method. */
 static char *inflate_text(const uint8_t *at, size_t count, size_t max_bytes, size_t *out_length)
 {
     char *text = mem_try_array(max_bytes + 1, 1);

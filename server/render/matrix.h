@@ -15,9 +15,10 @@ void matrix_normals(const double m[16], float out[9]);
 /* Transforms a plane (n . p + d = 0, given as n.x, n.y, n.z, d) into the coordinates from which m maps. */
 void matrix_plane(const double m[16], const double plane[4], float out[4]);
 void matrix_to_float(const double m[16], float out[16]);
-/* Orthographic projection of a sphere, seen from infinity along `towards`. Clip depth is 1 nearest to the viewer, 0 farthest. */
+/* Writes the orthographic projection that fits a sphere, seen from infinity along `towards`. Clip depth is 1 nearest to the viewer, 0
+   farthest. */
 void matrix_parallel(const double center[3], double radius, const double towards[3], double out[16]);
-/* Maps clip space to texture coordinates, with rows from the top (GL_UPPER_LEFT). */
+/* Writes a matrix that applies `clip` and then maps clip space to texture coordinates, with rows from the top (GL_UPPER_LEFT). */
 void matrix_texture_from_clip(const double clip[16], double out[16]);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fields, light and colour map of a frame, for the backends. */
+/* Prepares the fields, the light and the colour map of a frame for the backends. */
 #include "render/plan/content_hash.h"
 #include "render/render_job.h"
 #include "render/renderer_impl.h"

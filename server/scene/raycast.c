@@ -58,7 +58,8 @@ struct surface_crossing {
     bool back; /* true: the triangle's back is hit, so the ray leaves a body */
 };
 
-/* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997. The determinant is negative for back faces. */
+/* Intersects the ray with one triangle: Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997. The determinant is
+   negative for back faces. */
 static bool cross_triangle(const struct raycast_search *search, const uint32_t corners[3], struct surface_crossing *out)
 {
     const float *a = search->view->positions_m[corners[0]], *b = search->view->positions_m[corners[1]],

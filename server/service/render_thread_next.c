@@ -4,7 +4,7 @@
 #include "service/render_thread_impl.h"
 
 /* How long changed readings wait for a refined frame of the same client. After that the refined frame is given up for a preview and the
-   delay doubles, so that at some time one gets finished. */
+   delay doubles, so that eventually a refined frame is finished. */
 static const int64_t OWN_DATA_NS = 1 * NS_PER_S, OWN_DATA_MAX_NS = 16 * NS_PER_S;
 /* a frame may overtake a long job (a frame drawn in steps) that has this many times its pixels: memory suffices for one more frame of the
    smaller size, but not for two large ones */

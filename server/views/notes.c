@@ -11,7 +11,7 @@
 
 struct notes {
     struct kept_list
-        kept; /* { id, text, tag or asset or position or none, by, time_us, until_us, ended_us, ended_by }; absent times are 0 */
+        kept; /* entries: { id, text, tag or asset or position or none, by, time_us, until_us, ended_us, ended_by }; absent times are 0 */
 };
 
 static int64_t time_of(const json_t *note, const char *name)

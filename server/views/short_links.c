@@ -19,7 +19,7 @@ enum { BURST_LINKS = 20 };
 static const int64_t LINK_US = 2000000;
 
 struct short_links {
-    struct kept_list kept; /* { id, view, time_us, used }; time_us: when the link was made or last marked as used, UTC */
+    struct kept_list kept; /* links: { id, view, time_us, used }; time_us: when the link was made or last marked as used, UTC */
     int64_t whole_us;      /* UTC: time from which BURST_LINKS links may be made at once again */
 };
 
@@ -60,11 +60,11 @@ static const char *member(const json_t *list, size_t at, const char *name)
     return json_string_value(json_object_get(json_array_get(list, at), name));
 }
 
-/* Writes the id of a view, made from its SHA-256, and returns its index in the list, or the list's length. An id that another view has got
-   one character more. */
+/* Writes the id of a view, made from its SHA-256, and returns its index in the list, or the list's length. If another view has that id
+   already, the id gets one more character. */
 static size_t find_view(const json_t *list, const char *view, char id[SHORT_LINK_ID_BYTES])
 {
-    static const char digits[] = "abcdefghijkmnpqrstuvwxyz23456789"; /* 32 characters that are not mistaken for one another */
+    static const char digits[] = "abcdefghijkmnpqrstuvwxyz23456789"; /* 32 characters that are easy to tell apart */
     uint8_t hash[EVP_MAX_MD_SIZE] = { 0 };
     EVP_Digest(view, strlen(view), hash, NULL, EVP_sha256(), NULL);
     size_t length = 0, at = 0;

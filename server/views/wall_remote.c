@@ -27,7 +27,7 @@ struct display_seen {
 
 struct wall_remote {
     const struct plant *plant;
-    struct kept_list kept; /* { id, wall, display, area, view, title, held, desk, by, time_us } */
+    struct kept_list kept; /* orders: { id, wall, display, area, view, title, held, desk, by, time_us } */
     struct pointer pointers[WALL_POINTERS];
     uint64_t pointed;
     struct display_seen seen[SEEN];

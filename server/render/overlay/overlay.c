@@ -48,7 +48,7 @@ static bool shows_simulated(const struct pen *pen)
     return false;
 }
 
-/* Returns the height of the plant's name and these many lines of small text. */
+/* Returns the height of the header: the plant's name, and `lines` lines of small text. */
 static double header_height(const struct pen *pen, int lines)
 {
     return (1.25 + 1.35 * lines) * pen->text_px + 12 * pen->unit;

@@ -30,7 +30,7 @@ static void add_vertex(struct parts_maker *maker, struct soft_part *part, uint32
     maker->number[vertex] = (uint8_t)part->vertex_count++;
 }
 
-/* Returns false if the part (group of triangles) has no room for the triangle's vertices. */
+/* Adds a triangle to the part (group of triangles). Returns false if the part has no room for the triangle's vertices. */
 static bool add_triangle(struct parts_maker *maker, struct soft_part *part, const uint32_t *indices)
 {
     uint32_t part_number = (uint32_t)maker->parts->part_count + 1, fresh = 0;

@@ -84,7 +84,8 @@ SOFT_INLINE lanes pixel_polynomial(const float of[PIXEL_TERMS], const lanes u[3]
     return of[0] + x + u[1] * (of[2] + u[1] * of[7] + u[2] * of[8]) + u[2] * (of[3] + u[2] * of[9]);
 }
 
-/* Adds the polynomials of a list's far sensors. part: converts them to the unit of weights at each point, 2^top / unit. */
+/* Adds the polynomials of a list's far sensors. part: by point: factor that converts the polynomials to the unit of the weights there
+   (2^top / unit). */
 SOFT_INLINE void pixel_add_far(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3], lanes near2, lanes part,
                                struct eight_sums *sums)
 {

@@ -449,7 +449,7 @@ static void bound_cells(const struct pixel_cell *cells, size_t count, size_t fir
     out->radius = sqrtf(square) * 1.0001f + 1e-6f;
 }
 
-/* Returns the first level at which two neighbours on the curve are in different squares. */
+/* Returns the first level at which two cells that follow each other on the curve (pixel_cells_order()) are in different squares. */
 static int level_apart(const struct pixel_cell *a, const struct pixel_cell *b)
 {
     uint32_t differ = pixel_cells_order(a->column, a->row) ^ pixel_cells_order(b->column, b->row);

@@ -229,7 +229,7 @@ struct mixed_pixel {
     size_t first, end; /* range of the blended fragments over the pixel */
 };
 
-/* Adds the pixel to the row. */
+/* Adds a pixel that shows several surfaces, and its items (surfaces to shade), to the row. */
 static void add_mixed(struct recent *recent, struct refined_row *row, const struct soft_sample samples[SAMPLES],
                       const struct layers *layers, const struct mixed_pixel *pixel)
 {

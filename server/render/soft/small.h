@@ -65,8 +65,8 @@ SOFT_INLINE struct eight_faces read_faces(const struct soft_face *const faces[LA
     };
 }
 
-/* Sets up the edge functions of eight faces and interpolation of their depth; shaded: also of a and b. at: corners, as indices in
-   `corners`. */
+/* Sets up the edge functions of eight faces and interpolation of their depth; shaded: also of a and b (colour map column and row, or
+   light). at: corners, as indices in `corners`. */
 SOFT_INLINE void small_init(struct small *small, const struct soft_corners *corners, const lanes_int at[3], bool shaded)
 {
     lanes x[3], y[3];
