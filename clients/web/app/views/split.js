@@ -33,8 +33,8 @@ export class Split {
         this.session.setParams({ split: params.split ? null : this.first() });
     }
 
-    // Returns what the right half shows first: the group that the view showed before, else the next group. If that is the left half's group,
-    // returns the group's alarm limits, or its values if the left half shows the limits.
+    // Returns what the right half shows first: the group that the view showed before, else the next group. If that is the left half's
+    // group, returns its alarm limits, or its values if the left half shows the limits.
     first() {
         const { model, params } = this.session, { groups } = model, now = groups.findIndex(({ id }) => id === params.group);
         const last = model.group(this.last)?.id ?? groups[(now + 1) % groups.length].id;
