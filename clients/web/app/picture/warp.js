@@ -331,7 +331,7 @@ export class Warp {
         return true;
     }
 
-    // Uploads the mesh and the mask of one depth grid. Several pictures may share a set of grids, so a set that is uploaded already stays.
+    // Uploads the mesh and the mask of one depth grid to the GPU, unless an earlier picture that shares the grid has uploaded them.
     loadPart(part) {
         const { gl } = this, { grid, mesh } = part;
         if (part.buffers)
