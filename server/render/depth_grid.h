@@ -30,7 +30,7 @@ struct depth_lens {
 
 struct depth_grid {
     _Atomic int refs;
-    struct wire_depth wire; /* header without seq and without the position in the picture */
+    struct wire_depth wire; /* header of the depth grid's message, without the sequence number and without the position in the picture */
     uint8_t *payload;
 };
 

@@ -19,8 +19,9 @@ struct note {
     /* place of the note: at most one of a tag, the id of an asset, and a position; all NULL: the whole plant */
     const char *tag, *asset;
     const double *position_m;
-    const char *replaces; /* id of a note of the same user, which ends, and whose place the new note gets; NULL: none */
-    int64_t until_us;     /* time at which the note ends, UTC in microseconds; 0: it has no end */
+    /* id of the note that this note replaces, a note of the same user: it ends, and the new note gets its place; NULL: none */
+    const char *replaces;
+    int64_t until_us; /* time at which the note ends, UTC in microseconds; 0: it has no end */
 };
 
 struct notes;

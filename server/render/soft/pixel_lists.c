@@ -26,8 +26,8 @@ struct node {
 
 struct building {
     const struct pixel_field *field;
-    /* For shepard: an error of a sensor's weight changes a value by no more than that error times (1/2 + away * |reading - middle|) times
-       the spread of the readings. For paper: away is 0 */
+    /* For the interpolation `shepard`: an error of a sensor's weight changes a value by no more than that error times (1/2 + away *
+       |reading - middle|) times the spread of the readings. For `paper`, away is 0 */
     float middle, away;
     /* by index in the parent's list: largest change of a value if this sensor becomes far, as a multiple of the readings' spread; INFINITY:
        the sensor must stay near; -1: it has no weight */
