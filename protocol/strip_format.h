@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The legend strip: rows of coloured cells along a picture's lower edge. From them programs read which value a colour means, also after
-   JPEG compression or from a screenshot. Layout and code: PROTOCOL.md, *Legend strip*. Pure. Thread: any. */
+   JPEG compression or from a screenshot. Layout and code: HTTP.md, *Legend strip*. Pure. Thread: any. */
 #ifndef PROTOCOL_STRIP_FORMAT_H
 #define PROTOCOL_STRIP_FORMAT_H
 #include <stdbool.h>

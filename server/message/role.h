@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The roles of clients, and which messages each may send. PROTOCOL.md has the same table for users. Pure; any thread. */
+/* The roles of clients, and which messages each may send. PROTOCOL.md has the same table for authors of clients. Pure; any thread. */
 #ifndef MESSAGE_ROLE_H
 #define MESSAGE_ROLE_H
 #include "message/message.h"

@@ -14,7 +14,7 @@ struct other_plants;
 struct other_plants *other_plants_start(struct log *log, const struct plant *plant);
 /* Ends the thread, aborts requests in progress and sets *others to NULL. *others may be NULL. */
 void other_plants_stop(struct other_plants **others);
-/* Returns the state of the plants whose indices `which` lists, as JSON (/api/v1/other_plants in PROTOCOL.md), and keeps requesting their
+/* Returns the state of the plants whose indices `which` lists, as JSON (/api/v1/other_plants in HTTP.md), and keeps requesting their
  * pictures for the next half minute. now_ns: monotonic. The caller frees the text (mem_free()). */
 char *other_plants_text(struct other_plants *others, const int *which, size_t count, int64_t now_ns);
 /* Returns the picture with this id, or NULL if it is no longer the newest one. The caller frees it (mem_free()). */

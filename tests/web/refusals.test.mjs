@@ -39,11 +39,10 @@ test('the server uses every code, and gives the arguments of its words', () => {
 });
 
 test('PROTOCOL.md names every code with its arguments', () => {
-    const page = read('protocol/PROTOCOL.md').replace(/\s+/g, ' ');
-    for (const code of codes) {
-        const [, args = ''] = page.match(new RegExp(`Codes and arguments: .*?\`${code}\`(?: \\(([^)]*)\\))?`)) ?? assert.fail(code);
-        assert.deepEqual(args.split(', ').filter(Boolean).sort(), blanks(tables.en[code]), code);
-    }
+    const rows = [...read('protocol/PROTOCOL.md').split('## Refusals')[1].matchAll(/^\| `(\w+)` \| ([^|]*)\| [^|]+ \| [^|]+ \|$/gm)];
+    for (const [, code, args] of rows)
+        assert.deepEqual((args.match(/\w+/g) ?? []).sort(), blanks(tables.en[code] ?? assert.fail(`no code ${code}`)), code);
+    assert.deepEqual(rows.map(([, code]) => code).sort(), [...codes].sort());
 });
 
 test('a sentence is formed from the code and the arguments, whatever the English text says', () => {

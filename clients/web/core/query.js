@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes and reads parameters as text for the page's URL and for snapshot queries, in the grammar of /snapshot.png (protocol/PROTOCOL.md).
+// Writes and reads parameters as text for the page's URL and for snapshot queries, in the grammar of /snapshot.png (protocol/HTTP.md).
 
 const round = (x) => Number(x.toFixed(4)) + 0;
 export const numbersText = (list) => list.map(round).join(',');

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds the texts that the server sends: JSON messages of PROTOCOL.md and the bodies of /api. Each function returns the message that its
-   name contains; the caller frees the text with mem_free. Pure. Thread: the event loop. */
+/* Builds the texts that the server sends: JSON messages of PROTOCOL.md, and bodies of /api as in HTTP.md. Each function returns the
+   message that its name contains; the caller frees the text with mem_free. Pure. Thread: the event loop. */
 #ifndef SESSION_REPLY_REPLY_H
 #define SESSION_REPLY_REPLY_H
 #include "session/session_context.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Drift of a sensor against its neighbours' prediction over a week, which the daemon computes from recorded readings (PROTOCOL.md,
+// Drift of a sensor against its neighbours' prediction over a week, which the daemon computes from recorded readings (HTTP.md,
 // /api/v1/drift): a line on the sensor's card with the week as a curve, and a list of drifting sensors.
 import { decimalsFor, numberText, unitText } from '../../core/format.js';
 import { ask } from '../../core/history.js';
