@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Manages the folder of prepared files. */
+/* Manages the folder of prepared files: asset files, their reports, and the manifest. */
 #include "preprocess/cache/folder.h"
 
 #include <dirent.h>

@@ -95,7 +95,7 @@ static bool cut_shape(const struct gltf_model *model, const struct geometry_para
                                        .index_count = g.index_count,
                                        .own = true };
     memcpy(shape->origin_m, g.origin_m, sizeof(shape->origin_m));
-    g.positions_m = NULL; /* the shape owns this array from here on */
+    g.positions_m = NULL; /* the shape owns this array and the next from here on: geometry_finish() must not free them */
     g.indices = NULL;
     geometry_finish(&g);
     return true;
@@ -230,7 +230,7 @@ static bool shape_of_folder(struct diff_side *side, const struct diff_side_asset
     return true;
 }
 
-/* --- either ------------------------------------------------------------------------------------------------------------------------ */
+/* --- plant file or folder ---------------------------------------------------------------------------------------------------------- */
 
 bool diff_side_open(struct diff_side *side, const char *path, struct diag *diag)
 {

@@ -24,7 +24,7 @@
 /* minimum size of a model in metres; a smaller model certainly has a wrong unit, and fourth powers of its lengths would underflow */
 #define MIN_SIZE_M 1e-6
 
-/* --- which nodes --------------------------------------------------------------------------------------------------------- */
+/* --- selecting nodes ----------------------------------------------------------------------------------------------------- */
 
 /* Converts the nodes to the form that patterns are matched against. The caller frees the array with mem_free. */
 static struct model_node *nodes_of(const struct gltf_model *model)
@@ -298,7 +298,7 @@ bool geometry_node_place(const struct gltf_model *model, const struct geometry_p
     return good;
 }
 
-/* --- putting parts together ------------------------------------------------------------------------------------------------ */
+/* --- joining primitives ---------------------------------------------------------------------------------------------------- */
 
 struct geometry_room { /* state while a geometry's arrays are filled: capacities of the arrays, and flags */
     size_t positions, normals, texcoords, second_texcoords, colors, indices, primitives;

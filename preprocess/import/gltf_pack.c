@@ -16,7 +16,7 @@ struct pack {
     json_t *root;
     struct model_bytes binary;
     struct text bytes;
-    json_int_t *offsets; /* by original buffer: its offset in `bytes` */
+    json_int_t *offsets; /* by original buffer: its offset in `bytes`, the merged buffer */
     char *why;
 };
 

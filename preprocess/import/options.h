@@ -7,7 +7,7 @@
 
 #include "preprocess/import/conversion.h"
 
-/* entries for the option array of getopt_long() */
+/* entries of the shared options, for the option array of getopt_long() */
 #define OPTIONS_OF_CONVERSION                                                                                                              \
     { "chord", required_argument, NULL, 'c' }, { "units", required_argument, NULL, 'u' }, { "up", required_argument, NULL, 'U' },          \
         { "encoding", required_argument, NULL, 'e' }, { "mesh-units", required_argument, NULL, 'M' },                                      \

@@ -31,8 +31,8 @@ struct rvm_shape {
     enum rvm_kind kind;
     double to_plant[12];                /* 3 x 4 matrix by columns; the last column is the translation */
     double numbers[RVM_MAX_NUMBERS];    /* dimensions in the order of the file; the first rvm_numbers[kind] are used */
-    const struct rvm_contour *contours; /* contours of RVM_FACETS; NULL for other kinds */
-    const double (*points)[3];          /* points of RVM_FACETS, in the primitive's own frame */
+    const struct rvm_contour *contours; /* contours of a primitive of the kind RVM_FACETS; NULL for other kinds */
+    const double (*points)[3];          /* points of a primitive of the kind RVM_FACETS, in its own frame */
     size_t contour_count;
     uint32_t open_faces; /* bit i set: face i of rvm_shape_faces() is left out, because a neighbour's face covers it */
 };

@@ -25,7 +25,7 @@ struct gaussian_covariance {
     /* matrix to factor: lower triangle of the stiffness matrix G, below it the sensors' weights D', and the border's diagonal, filled in
      * for each range */
     cholmod_sparse *bordered;
-    cholmod_factor *symbolic; /* symbolic factor: elimination order and sparsity */
+    cholmod_factor *symbolic; /* symbolic factor of CHOLMOD: elimination order and sparsity */
 };
 
 /* Prepares everything that does not depend on the correlation length. Returns false after logging if out of memory. Call

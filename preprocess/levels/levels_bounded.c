@@ -84,7 +84,7 @@ static struct removal_candidate pop(struct bounded *b)
 
 struct ring_wedge {               /* one triangle around a point */
     uint32_t face, at;            /* at: index (0 to 2) of the face's corner that is at the point */
-    uint32_t weld;                /* weld (group of equal vertices) of that corner */
+    uint32_t weld;                /* weld (group of equal vertices) of the face's corner at the point */
     uint32_t points[2], welds[2]; /* points and welds (groups of equal vertices) of the face's other two corners, in winding order */
 };
 

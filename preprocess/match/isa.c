@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Identification letters of ANSI/ISA-5.1-2009, table 4.1. */
+/* Lists the identification letters of ANSI/ISA-5.1-2009, table 4.1. */
 #include "preprocess/match/isa.h"
 
 #include <string.h>

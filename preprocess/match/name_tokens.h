@@ -30,7 +30,7 @@ void name_tokens_split(const struct name_tokens *tokens, int from, int to, char 
 /* Returns whether the tokens [from, to) include a run of digits (digits true) or of letters (digits false). */
 bool name_tokens_have(const struct name_tokens *tokens, int from, int to, bool digits);
 
-enum name_slip { NAME_SAME, NAME_SLIP /* one letter doubled, left out or swapped */, NAME_OTHER_LETTER, NAME_DIFFERENT };
+enum name_slip { NAME_SAME, NAME_SLIP /* names differ by one letter doubled, left out or swapped */, NAME_OTHER_LETTER, NAME_DIFFERENT };
 /* Compares two runs of letters. Returns NAME_SAME if they are equal, NAME_SLIP if they differ by one slip, NAME_OTHER_LETTER if they differ
  * in one letter, else NAME_DIFFERENT. */
 enum name_slip name_slip(const char *a, const char *b);

@@ -22,7 +22,7 @@ struct gltf_primitive { /* triangles of one material, in model units and the mes
 
 struct gltf_mesh {
     char *name;
-    uint32_t first_primitive, primitive_count; /* every primitive has at least one triangle */
+    uint32_t first_primitive, primitive_count; /* range of the mesh's primitives, each of which has at least one triangle */
     uint64_t index_count;                      /* sum over the mesh's primitives */
     uint32_t skipped_lines, skipped_points;    /* primitives skipped because they are not triangles */
 };

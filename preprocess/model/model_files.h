@@ -16,7 +16,8 @@ struct model_file {
     struct gltf_model parsed; /* valid between model_file_parse() and model_file_release() */
     bool is_parsed, was_parsed;
     double parse_s;
-    uint32_t skipped_lines, skipped_points, scaled_rotations, left_out_textures; /* counts of the last parse; valid if was_parsed */
+    /* numbers of skipped, scaled and ignored items in the model at its last parse; valid if was_parsed */
+    uint32_t skipped_lines, skipped_points, scaled_rotations, left_out_textures;
     /* texts for the report, one for each ignored texture use and each ignored extension */
     char **left_out;
 };

@@ -23,7 +23,7 @@ struct session_identity {
     enum role role;
     uint8_t address[16];        /* address of the client, as in struct address_usage */
     char from[64];              /* the same address as text; "": not known */
-    enum login login;           /* verdict on the token in hello */
+    enum login login;           /* whether the token in the client's hello was accepted */
     struct token_holder holder; /* holder of the token; role ROLE_NOBODY: no token was given, or it was not accepted */
     /* on a renderer (daemon that draws for a core): the client's token, to be forwarded to the core; "": none, or not forwarded */
     char token[TOKEN_MAX_CHARS + 1];

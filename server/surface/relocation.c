@@ -281,7 +281,7 @@ enum relocation_state relocation_state(struct relocation *relocation)
     return state;
 }
 
-/* --- asking ------------------------------------------------------------------------------------------------------------------- */
+/* --- requests ----------------------------------------------------------------------------------------------------------------- */
 
 bool relocation_place(struct relocation *relocation, const double point_m[3], struct relocation_place *place, float *euclidean_m)
 {

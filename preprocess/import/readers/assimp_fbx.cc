@@ -50,7 +50,7 @@ void assimp_losses_of_fbx(const std::string &bytes)
 namespace
 {
 
-constexpr const char *SCENE = "0"; /* id of the root in connections */
+constexpr const char *SCENE = "0"; /* id of the scene's root node in the connections of an FBX file */
 
 /* The models of an FBX text, and their connections. Keys are ids. */
 struct fbx_graph {

@@ -143,7 +143,7 @@ std::string converted_string(preparing *p, const std::string &before, size_t sta
 std::string converted_text(preparing *p, const std::string &text)
 {
     std::string out;
-    size_t statement = 0; /* start of the current statement in out */
+    size_t statement = 0; /* offset in `out` at which the current statement begins */
     for (size_t i = 0; i < text.size(); i++) {
         size_t comment = text.compare(i, 2, "/*") == 0 ? text.find("*/", i + 2) : std::string::npos;
         size_t end = i;

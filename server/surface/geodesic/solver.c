@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Calls cholmod_solve2 with reused work memory. */
+/* Solves with cholmod_solve2(), whose work memory is reused from call to call. */
 #include "surface/geodesic/solver.h"
 
 #include <string.h>

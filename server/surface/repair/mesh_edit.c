@@ -58,7 +58,7 @@ void mesh_edit_connect(struct mesh_edit *edit, uint32_t a, uint32_t b)
     edit->joins[edit->join_count++] = (struct mesh_edit_pair){ a, b };
 }
 
-/* --- carrying it out ------------------------------------------------------------------------------------------------------ */
+/* --- applying the edits --------------------------------------------------------------------------------------------------- */
 
 static void find_targets(const struct mesh_edit *edit, size_t point_count, uint32_t *target)
 {

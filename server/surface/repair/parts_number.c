@@ -34,7 +34,7 @@ static void find_patches(struct parts_finding *f)
         f->patch[t] = trimesh_root(f->patch, t);
 }
 
-/* --- what hangs together ------------------------------------------------------------------------------------------------------ */
+/* --- connected patches -------------------------------------------------------------------------------------------------------- */
 
 /* Patches at edges with three or more faces: one entry per edge and patch, sorted by edge. A patch with two faces at the edge continues
  * through it. A patch with one face only stands on the others, like a fin. */
