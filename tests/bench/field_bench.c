@@ -152,7 +152,7 @@ static void measure_plant(struct workers *workers, size_t sensors)
     synthetic_destroy(&bench.plant);
 }
 
-/* So many sensors that columns are not cached but recomputed from distances at each change. */
+/* Measures a plant with so many sensors that the field does not cache their columns, but recomputes them from distances at each change. */
 static void measure_many(struct workers *workers, size_t sensors)
 {
     struct field_bench bench = { .plant = synthetic_create(.vertices = VERTICES, .sensors = sensors, .seed = 1), .sensors = sensors };

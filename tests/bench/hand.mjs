@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How soon the page answers the hand: real pointer events in chromium over the demo plant, through a slow link. Prints one JSON object per
-// row. Arguments: WIDTHxHEIGHT (1920x1080), CODEC (auto), ROUND_TRIP_MS (0), BYTES_PER_S of the link (0: no limit).
+// Measures how soon the page reacts to the hand: sends real pointer events to chromium, which shows the demo plant through a slow link.
+// Prints one JSON object per row. Arguments: WIDTHxHEIGHT (1920x1080), CODEC (auto), ROUND_TRIP_MS (0), BYTES_PER_S of the link (0: no
+// limit).
 import { createRequire } from 'node:module';
 import { missing, startPlant } from '../e2e/support/plant.mjs';
 import { cpuMs, family } from '../e2e/support/processes.mjs';
@@ -84,7 +85,7 @@ async function measure(page, browserPid, daemonPid) {
     await page.mouse.move(width / 2, height / 2);
     await clear(page, true);
     await pointer('mousePressed', width / 2, height / 2);
-    await circle(page, pointer, 2); // loads everything that the first drag loads
+    await circle(page, pointer, 2); // makes the page load everything that it loads at the first drag
     const firsts = [];
     for (let n = 0; n < TRIES; n++) {
         await rest(page);

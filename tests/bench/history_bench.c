@@ -152,7 +152,7 @@ static void measure_disk(struct log *log)
         month_file_write(file, rows.at, rows.count, held.at, held.count);
         if (second % TIDY_S == TIDY_S - 1)
             month_file_tidy(file);
-        if (second == PLANT_SECONDS / 2 - 1) /* without what the file takes whatever its age */
+        if (second == PLANT_SECONDS / 2 - 1) /* kept bytes are counted from here on, which leaves out the file's fixed size */
             at_half = kept_bytes(log, folder, month);
     }
     month_file_close(&file);

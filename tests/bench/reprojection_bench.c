@@ -19,9 +19,9 @@
 #include "value/quality.h"
 
 enum { ROUNDS = 30, PREVIEW_QUALITY = 80 };
-static const double NEARER = 0.4; /* distance from the target, as part of the plant's own first view's */
+static const double NEARER = 0.4; /* distance of the camera from its target, as a share of the distance in the plant's first view */
 
-struct pair_case { /* the second camera, from the first */
+struct pair_case { /* how the second camera of a pair differs from the first */
     const char *name;
     double orbit_deg, nearer; /* nearer: part of the distance by which the camera approaches its target */
 };

@@ -263,7 +263,7 @@ test('a small disk that is full is alarmed, no line on it is torn, and a read-on
     await start();
     await found('the start', (line) => line.event === 'start');
     assert.notEqual(spawnSync('dd', ['if=/dev/zero', `of=${full}`]).status, 0);
-    // The last page of the file still holds some lines.
+    // Sends wrong tokens until the audit log fails: the disk is full, but the last page of the file still has room for some lines.
     for (let i = 0; i < 60 && await good() === '1'; i++, await sleep(20))
         await ask('/api/v1/tags', 'pc_wrong', { localAddress: `127.0.2.${i + 1}` });
     await plant.daemon.line(/audit: .*audit\.log cannot be written \(No space left on device/);

@@ -9,7 +9,7 @@ import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
 const options = { skip: notBuilt(), timeout: 200000 };
-const PX_PER_TAN = EYE.height / 2; // of an eye with a field of view of 90 degrees
+const PX_PER_TAN = EYE.height / 2; // focal length of one eye in pixels: its field of view is 90 degrees
 let plant;
 
 before(async () => {
@@ -86,13 +86,13 @@ test('both eyes see the plant from their own places; a turned head sees it in th
     await page.evaluate(() => globalThis.plantcast.session.setParams({ look: 'flat', hidden: ['P-101A'] }));
     await enterVr(page);
     for (const away of [2, 20]) {
-        const eye = [0, -0.5 - away, 0]; // in front of the side of the box at y = -0.5
+        const eye = [0, -0.5 - away, 0]; // 2 or 20 m in front of the box's side at y = -0.5
         await lookFrom(page, eye, [0, 1, 0]);
         const { left, right } = await seen(page), row = EYE.height / 2 + (away === 2 ? 30 : 6); // beside the markers
         const trueRuns = await Promise.all([-1, 1].map(async (side) => runOf(await truth(page, eye, side), row)));
         const runs = [left, right].map((picture) => runOf(picture, row));
         t.diagnostic(`${away} m: runs ${JSON.stringify(runs)}, true ${JSON.stringify(trueRuns)}`);
-        for (const i of [0, 1]) { // the left and the right edge of the box
+        for (const i of [0, 1]) { // index of the box's edge: left, right
             const [own, real] = [runs, trueRuns].map(([a, b]) => a[i] - b[i]);
             assert.ok(Math.abs(own - real) <= 1, `at ${away} m: a disparity of ${own} px, in truth ${real}`);
             assert.ok(Math.abs(runs[0][i] - trueRuns[0][i]) <= 2, `at ${away} m: ${runs[0][i]} px, in truth ${trueRuns[0][i]}`);
@@ -141,7 +141,8 @@ test('hands: the floor, equipment, a sensor, the wrist, and a grip', options, ()
     await lookFrom(page, [0, -2.5, 0.8], [0, 1, 0], true);
     const button = await page.evaluate(() => {
         const { hands } = globalThis.plantcast.modules.there('enterVr').headset, { at, axes: [x, y], width, height } = hands.panel();
-        return at.map((m, i) => m + x[i] * width * 0.25 + y[i] * height * 0.38); // the right button of the first row
+        // position in the room of the right button of the panel's first row
+        return at.map((m, i) => m + x[i] * width * 0.25 + y[i] * height * 0.38);
     });
     await aimAt(page, button);
     await keep(page, 'headset-wrist');

@@ -163,7 +163,8 @@ test('an element whose shape is not built is named, with its class and the reaso
     assert.match(stdout, /lost: #904 LINE-1002 \(IfcPipeSegment, 0\$PlantcastKinds000000A\): its representation is empty/);
 }));
 
-// The axes are a line, against its direction, and an arc around the origin; the grid stands 10 m from the origin.
+// Grid axis A is a straight line, used against its direction; axis 1 is an arc around the origin, or the curve `second`. The grid stands 10
+// m from the origin.
 test('an element is placed where axes of a grid meet, or named', { skip: skip || (hasOcct ? false : 'no Open CASCADE') }, () => inFolder(
     (folder) => {
     const imported = (schema, placement, second = '#{arc}') => {

@@ -347,7 +347,7 @@ after(async () => {
 test('an empty plant opens the panel; a model and a tag list make a plant', options, async () => {
     await waitForPicture(page);
     await page.locator('#import.new .drop').waitFor();
-    await page.locator('.drop-zone').waitFor(); // instead of a picture with nothing but a person in it
+    await page.locator('.drop-zone').waitFor(); // an empty plant shows this instead of a picture, which would show only a person
     assert.equal(await page.locator('#import .measures').isVisible(), false, 'there is nothing to be measured');
     assert.deepEqual(await assetsOf(page), ['person']);
     await settle(page);

@@ -109,7 +109,7 @@ test('a certificate of init is renewed before it expires, and programs that trus
     assert.equal(init('two', '--plant', plant.folder, '--host', 'plant.example').code, 0);
     assert.deepEqual([mode(tls('ca.key')), mode(tls('privkey.pem')), mode(tls('ca.pem'))], ['600', '640', '640']);
     assert.equal(renew(), '');
-    // the same certificate, which expires in 20 days
+    // replaces the certificate by one for the same names and key, which expires in 20 days
     const copy = ['-copy_extensions', 'copy'], byAuthority = (days) => openssl('x509', '-req', '-in', tls('csr'), ...copy,
         '-CA', tls('ca.pem'), '-CAkey', tls('ca.key'), '-days', days, '-out', tls('leaf.pem'));
     openssl('x509', '-in', tls('fullchain.pem'), '-x509toreq', ...copy, '-signkey', tls('privkey.pem'), '-out', tls('csr'));
@@ -127,12 +127,12 @@ test('a certificate of init is renewed before it expires, and programs that trus
     assert.equal(openssl('x509', '-in', tls('fullchain.pem'), '-noout', '-pubkey').stdout,
         openssl('pkey', '-in', tls('privkey.pem'), '-pubout').stdout);
     assert.equal(renew(), '');
-    // the authority signs for this plant alone
+    // the authority may sign only for this plant: a certificate for another host is refused
     openssl('req', '-new', '-key', tls('privkey.pem'), '-subj', '/CN=bank.example', '-addext', 'subjectAltName=DNS:bank.example',
         '-out', tls('csr'));
     byAuthority('3');
     assert.match(openssl('verify', '-CAfile', tls('ca.pem'), tls('leaf.pem')).stderr, /permitted subtree violation/);
-    // a self-signed one of an older init; then one of another authority
+    // replaces the certificate by a self-signed one, as older versions of init made, and later by one of another authority
     openssl('req', '-x509', '-key', tls('privkey.pem'), '-days', '20', '-out', tls('fullchain.pem'), '-subj', '/CN=plant.example',
         '-addext', 'subjectAltName=DNS:plant.example');
     assert.match(renew(), /: copy it to browsers/);

@@ -153,7 +153,7 @@ test('on a full disk each kind is answered with "not kept", and why; once there 
     t.after(free);
     const unkept = [], unaudited = [];
     for (const [i, [name, message, type]] of ACTIONS.entries()) {
-        if (/^(remove|revoke|unshelve|put back)/.test(name)) // would undo an action that could not be kept
+        if (/^(remove|revoke|unshelve|put back)/.test(name)) // skipped, because its message would undo an action that could not be kept
             continue;
         fill();
         const { answer, client } = await act(message, type, i + 1);

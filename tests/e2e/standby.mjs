@@ -145,7 +145,8 @@ function isOfRest(points, us, value, quality) {
 
 const FEW = 50; // points that may wait to be sent: there are always new ones
 
-// In make test-long: two cores, a device and a database go at their own pace. historian_test has the points that time alone makes.
+// This test runs only in make test-long, because two cores, a device and a database each go at their own pace. historian_test covers the
+// points that no sample but the passing of time makes.
 const inLong = { ...options, skip: skip || long };
 test('history is whole: what the database has is what the API has, and the gaps are the take-overs', inLong, async () => {
     await sleep(5000);

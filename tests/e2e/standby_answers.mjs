@@ -88,7 +88,7 @@ for (const reloads of [false, true])
             t.diagnostic(`${isConfirmed ? 'confirmed' : 'not confirmed'}, and ${state} at the next leader`);
             assert.ok(!isConfirmed || state === 'acknowledged', `confirmed, and ${state} at the next leader`);
             anna.close();
-            if (state !== 'acknowledged') { // so that the alarm can end
+            if (state !== 'acknowledged') { // acknowledges again, so that the alarm can end
                 const ben = await other.node.client({}, { token: two.nodes.tokens.operator });
                 acknowledge(ben);
                 await ben.text('alarmed');

@@ -132,8 +132,8 @@ test('anyone who looks on is told of no reading, tag or person, and follows nobo
     }
     assert.ok(picks.some((pick) => pick.asset && pick.position), 'what is there may be asked');
     assert.ok(picks.every((pick) => pick.value === null && pick.nearest.length === 0 && pick.sensor === null));
-    // Readings are told at most twice a second, and markers before a picture: the second change and its picture follow all that the first
-    // one causes.
+    // Readings are sent at most twice a second, and markers before a picture. So when the second change and its picture come, all messages
+    // that the first change causes have come before.
     const changes = [];
     for (const value of [82.5, 61.5]) {
         await plant.tell(`set TI-1 ${value}`);

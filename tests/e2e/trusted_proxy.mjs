@@ -86,7 +86,7 @@ test('eighty sessions of twenty clients on two nodes are all let in, with the de
 
 test('one client with wrong tokens is slowed down, and nobody else; also where it forges X-Forwarded-For', options, async () => {
     const [liar, user] = ['127.0.0.40', '127.0.0.41'];
-    for (const page of ['/api/v1/tags', '/api/v1/history?tags=TI-1']) { // at the renderers, and at the core
+    for (const page of ['/api/v1/tags', '/api/v1/history?tags=TI-1']) { // renderers answer the first page, the core the second
         const answers = [], forged = `X-Forwarded-For: ${user}\r\nForwarded: for=${user}\r\nX-Real-IP: ${user}\r\n`;
         const isSlowed = () => answers.length >= 6 && answers.slice(-6).every((status) => status === 429); // at both nodes
         while (!isSlowed() && answers.length < 200)

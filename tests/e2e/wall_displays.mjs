@@ -138,7 +138,7 @@ test('another display has its own panes', options, async () => {
     await gone.close();
 });
 
-// Another picture in its place would be taken for the requested one.
+// The page must show no other picture instead: people would take it for the requested view.
 test('a view that names what the plant does not have is not shown, and said', options, async () => {
     const { list } = await (await fetch(new URL('api/v1/views', plant.url))).json();
     const wrong = Object.fromEntries(list.map(({ id, wrong: why }) => [id, why]));

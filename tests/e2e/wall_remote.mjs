@@ -111,7 +111,7 @@ test('a click while pointing is answered', options, async () => {
         const { askPick } = await import('./core/requests.js');
         askPick(session, viewport.pixelOf(viewport.width * 0.45, viewport.height * 0.55), 'place');
         remote.askedAt = -1e6;
-        remote.ask(); // the pointer is due at once
+        remote.ask(); // sends the pointer at once
         for (let i = 0; i < 100 && !heard.includes('place'); i++) // waits, because a pointer may still be under way
             await new Promise((done) => setTimeout(done, 50));
         return [Boolean(remote.page.pointed), heard.includes('place')];

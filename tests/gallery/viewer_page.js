@@ -121,8 +121,8 @@ function lab([r, g, b]) {
 
 const at = (rgba, i) => rgba.subarray(4 * i, 4 * i + 3);
 
-// Whether the pixel is well inside the model: not at a silhouette, which both programs antialias differently, nor at an edge that Plantcast
-// draws.
+// Returns whether a pixel is well inside the model: not at a silhouette, which both programs antialias differently, nor at an edge that
+// Plantcast draws.
 function inside(x, y) {
     const { rgba, width, height } = drawn;
     for (let dy = -RIM_PX; dy <= RIM_PX; dy++) {

@@ -51,7 +51,7 @@ static bool is_right(const struct depth_read *read, int code, double z)
     return code && fabs(value - expected) < unit + (parallel ? 0.05 : 0.02 / z);
 }
 
-/* Compares the cells of a grid with rays through their centres. left_px: of the grid in the picture. */
+/* Compares the cells of a depth grid with rays through their centres. left_px: the grid's left edge in the picture. */
 static void check_grid(const struct view *view, const struct depth_grid *grid, int left_px)
 {
     struct depth_read read;
@@ -73,7 +73,7 @@ static void check_grid(const struct view *view, const struct depth_grid *grid, i
         wrong += !good;
     }
     print_message("%d cells right, %d wrong, %d on the ground, %u bytes\n", right, wrong, ground, read.wire.payload_bytes);
-    assert_true(right > 40 && wrong <= (right + wrong) / 25); /* wrong ones lie at outlines, where the centre is beside the surface */
+    assert_true(right > 40 && wrong <= (right + wrong) / 25); /* cells may be wrong at outlines, where the centre is beside the surface */
     depth_read_finish(&read);
 }
 

@@ -39,8 +39,9 @@ struct drawn_error_tally {
     double worst_marked, worst_beyond; /* largest error of marked pixels; largest excess over pick.drawn_error, negative if that is a
                                           bound */
     double worst_evaluated;            /* largest difference between pixel_field_at() and picks */
-    double worst_placed;               /* largest error of an unmarked pixel less the change of the truth within SNAP_PX around it */
-    int soft, soft_off, flags_off;     /* software pixels: compared, of another colour; flags of pixel_field_at() unlike the pick's */
+    double worst_placed;               /* largest error of unmarked pixels, less what the true value changes within SNAP_PX */
+    /* number of software pixels compared, and with another colour; number of picks whose flags pixel_field_at() does not share */
+    int soft, soft_off, flags_off;
 };
 
 static double between(double low, double high)
@@ -92,7 +93,7 @@ static double truth_at(const struct drawn_error_case *site, const struct view *v
 
 /* --- comparing -------------------------------------------------------------------------------------------------------------- */
 
-/* The inputs that renderers evaluate at each pixel. */
+/* Compares a pick with the value that pixel_field_at() computes from the inputs that renderers get for each pixel. */
 static void compare_evaluated(const struct drawn_error_case *site, const struct view *view, const struct pick *pick,
                               struct drawn_error_tally *tally)
 {
@@ -155,7 +156,8 @@ static void compare_pixel(const struct drawn_error_case *site, const struct view
         tally->worst_beyond = fmax(tally->worst_beyond, drawn - pick.drawn_error / range);
 }
 
-/* One flat surface all round, as far as depths tell, on which the value does not jump from pixel to pixel. */
+/* Returns whether the pixel and its neighbours show one flat surface, judged by their depths, on which the value does not jump from pixel
+   to pixel. */
 static bool is_within(const float (*measured)[4], int x, int y)
 {
     if (x < 1 || y < 1 || x + 1 >= WIDTH_PX || y + 1 >= HEIGHT_PX)
@@ -173,7 +175,7 @@ static bool is_within(const float (*measured)[4], int x, int y)
     return true;
 }
 
-/* Pictures without a GPU, moving and still, against what GL measured. */
+/* Compares pictures that are drawn without a GPU, while moving and while still, with what GL measured. */
 static void compare_soft(const struct drawn_error_case *site, const struct view *view, const float (*measured)[4],
                          struct drawn_error_tally *tally)
 {

@@ -201,7 +201,7 @@ static bool right_devices_draw(struct log *log, char *list)
     return true;
 }
 
-/* Whether opening this device fails, without falling back to software, and logs the reason once. */
+/* Returns whether opening this device fails, without falling back to software, and logs the reason once. */
 static bool is_refused(struct log *log, FILE *said, const char *name, const char *reason)
 {
     char text[4096] = "";

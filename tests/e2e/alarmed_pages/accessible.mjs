@@ -18,7 +18,7 @@ const RULES = ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-pra
 const COLOURS = { type: 'rule', values: ['color-contrast', 'link-in-text-block'] };
 const WALKS = sweep([['dark', RULES], ['light', RULES]], [['dark', RULES, 'light']]);
 const THEMES = { dark: RULES, light: sweep(RULES, COLOURS) };
-// Parts that have opened, by the name of the step: by default the rest of the page is not checked again.
+// Parts of the page that a step has opened, by the step's name: only this part is checked after the step, unless asked otherwise.
 const PARTS = {
     card: '#card', place: '#place', picture: '#picture-panel', split: '#split-bar', views: '#views', display: '#display',
     trend: '.lower', alarms: '#alarms', shelve: '#shelve',

@@ -283,7 +283,7 @@ export async function grab(page) {
     return { width, height, rgba: Buffer.from(text, 'base64') };
 }
 
-// Returns the pixels of a PNG file in the same form.
+// Returns the pixels of a PNG file in the form that grab() returns: { width, height, rgba }.
 export async function readPng(page, bytes) {
     const { width, height, text } = await page.evaluate(async (base64) => {
         const picture = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], { type: 'image/png' }));

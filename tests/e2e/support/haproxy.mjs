@@ -17,7 +17,7 @@ export class Haproxy {
         const proxy = new Haproxy();
         proxy.folder = mkdtempSync(join(tmpdir(), 'plantcast-haproxy-'));
         proxy.port = own ?? await freePort();
-        const authorities = [ca, coreCa]; // in the order of the shipped file
+        const authorities = [ca, coreCa]; // in the order in which the shipped file names them
         const tls = (authority) => (authority ? ` ssl verify required ca-file ${authority}` : '');
         let text = readFileSync(SHIPPED, 'utf8').replaceAll(/ ssl verify required ca-file \S+/g, () => tls(authorities.shift()))
             .replace(/bind :443 .*/, `bind 127.0.0.1:${proxy.port}`).replace('/run/haproxy', proxy.folder)

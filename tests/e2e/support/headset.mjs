@@ -3,7 +3,8 @@
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 
-export const EYE = { width: 700, height: 700 }; // of an eye's picture in pixels; the emulator draws both into the window, side by side
+// size of an eye's picture in pixels; the emulator draws both eyes into the window, side by side
+export const EYE = { width: 700, height: 700 };
 export const SCREEN = { viewport: { width: 2 * EYE.width, height: EYE.height } };
 export const IPD_M = 0.063;
 const HEAD_M = 1.6; // height of the emulated head above the room's floor

@@ -26,7 +26,7 @@ export const ply = (by = 1) => `ply\nformat ascii 1.0\nelement vertex ${POINTS.l
     `element face ${FACES.length}\nproperty list uchar int vertex_indices\nend_header\n` +
     `${scaled(by).map((p) => p.join(' ')).join('\n')}\n${FACES.map((f) => `3 ${f.join(' ')}`).join('\n')}\n`;
 
-// In units of `meter` metres, Z up.
+// Returns the wedge as COLLADA with coordinates in units of `meter` metres, Z up.
 export const dae = (meter = 0.001) => `<?xml version="1.0" encoding="utf-8"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset><unit name="unit" meter="${meter}"/><up_axis>Z_UP</up_axis></asset>
@@ -42,7 +42,7 @@ export const dae = (meter = 0.001) => `<?xml version="1.0" encoding="utf-8"?>
 <node id="n2" name="쐐기"><instance_geometry url="#g"/></node></node>
 </visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>\n`;
 
-// In units of `centimetres`, Z up.
+// Returns the wedge as FBX with coordinates in units of `centimetres`, Z up.
 export const fbx = (centimetres = 2.54) => `; FBX 7.4.0 project file
 FBXHeaderExtension:  {
     FBXHeaderVersion: 1003

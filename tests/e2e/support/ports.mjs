@@ -2,8 +2,8 @@
 // Port numbers for programs that cannot choose their own: no other test gets the same one, nor does an outgoing connection of this machine.
 import { createServer } from 'node:net';
 
-// As in tests/support/ports.c. Below the system's own range for outgoing connections (net.ipv4.ip_local_port_range begins at 32768). Ports
-// come in groups of four: the simulator of a plant with several devices uses the ports after its first.
+// The same ports as in tests/support/ports.c. They are below the system's own range for outgoing connections (net.ipv4.ip_local_port_range
+// begins at 32768). Ports come in groups of four: the simulator of a plant with several devices uses the ports after its first.
 const FIRST = 20000, COUNT = 1500, EACH = 4, LOCKS = FIRST + COUNT * EACH;
 
 function listen(port, host) {

@@ -39,7 +39,8 @@ const watch = (page) => page.evaluate((LEAST_RUN_PX) => {
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? max[i] : min[i])));
     const minus = (a, b) => a.map((v, i) => v - b[i]), dot = (a, b) => a.reduce((sum, v, i) => sum + v * b[i], 0);
     const cross = ([a, b, c], [d, e, f]) => [b * f - c * e, c * d - a * f, a * e - b * d], unit = (a) => a.map((v) => v / Math.hypot(...a));
-    const seenFrom = ({ eye, target, up, fov }) => (point) => { // projects a point; in multiples of the picture's height, from its centre
+    // returns a function that projects a point; in multiples of the picture's height, from the picture's centre
+    const seenFrom = ({ eye, target, up, fov }) => (point) => {
         const forward = unit(minus(target, eye)), right = unit(cross(forward, up)), d = minus(point, eye);
         const far = 2 * Math.tan((fov * Math.PI) / 360) * dot(d, forward);
         return [dot(d, right) / far, -dot(d, cross(right, forward)) / far];
@@ -284,7 +285,8 @@ test('the picture follows the hand before the server answers; nothing is coloure
         assert.ok(off <= MARK_PX, `a marker ${off} px off`);
         assert.ok(beyond <= WARPED_SHARE, `${beyond} of the colours are beyond the box`);
         await settle(page);
-        await page.waitForFunction(() => !globalThis.plantcast.viewport.warp.isShown); // then the server's picture is shown
+        // waits until the server's own picture replaces the warped one
+        await page.waitForFunction(() => !globalThis.plantcast.viewport.warp.isShown);
         const fades = await page.evaluate(() => globalThis.fades);
         assert.ok(fades.length > 0 && fades.every((mixed) => mixed === 0), `pixels that mix two pictures: ${fades}`);
         const updates = await page.evaluate(() => globalThis.plantcast.viewport.warp.updates);

@@ -240,7 +240,7 @@ test('tags come by typing, and by dragging a marker or a row of the list', optio
     assert.deepEqual(await names(), ['TI-1', 'PI-1'], 'by its description');
     await page.evaluate(() => {
         globalThis.plantcast.session.setParams({ group: 'temperature' });
-        globalThis.plantcast.selectTag(null); // its card may cover the marker
+        globalThis.plantcast.selectTag(null); // closes the tag's card, which may cover the marker
     });
     await arrive(page);
     const [from, to] = await page.evaluate(() => {
@@ -379,7 +379,7 @@ test('marks lead to their instant, from alarm to alarm, and to a date', options,
         const { rows } = await (await fetch('/api/v1/alarms/journal')).json();
         return rows.filter(({ event }) => event === 'raise').map(({ time_us: us }) => us).reverse();
     });
-    const old = (us) => globalThis.plantcast.session.clockUs() - us > 4e6; // newer instants count as the present
+    const old = (us) => globalThis.plantcast.session.clockUs() - us > 4e6; // newer instants count as the present, so the test waits
     await page.waitForFunction(old, raises.at(-1));
     await page.locator('#time-track .alarm').last().click();
     await page.waitForFunction((all) => all.includes(globalThis.plantcast.session.time.atUs), raises);

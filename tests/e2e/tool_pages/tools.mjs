@@ -314,7 +314,7 @@ test('links to the view, the tag and the equipment, each with a code that a came
     await other.page.locator('#toast', { hasText: 'this short link is unknown or no longer stored' }).waitFor();
     await shoot(other.page, 'short-link-unknown');
     await other.close();
-    let requests = 0; // a server that answers the first request for the link never: the page starts without it, and opens it later
+    let requests = 0; // The server never answers the first request for the link: the page starts without it, and opens it later.
     const late = await openPage(links['This view'], SCREEN, null, (on) => on.route('**/api/v1/link?*', (route) =>
         requests++ > 0 && route.continue()));
     await late.page.waitForURL(/#group=.*colormap=cividis/);
@@ -451,7 +451,7 @@ test('dark, and light again; it stays as it was left', options, async () => {
     await page.evaluate(() => {
         const { session } = globalThis.plantcast, { width, height } = session.size;
         session.setParams({ group: 'temperature' });
-        session.setCamera(session.homeIn(width, height)); // no equipment at the left edge of the picture
+        session.setCamera(session.homeIn(width, height)); // shows the whole plant, with no equipment at the left edge
     });
     // The code for keys and buttons is loaded when it is first needed, so the effect may come a little later.
     const waitForTheme = (name) => page.waitForFunction((is) => document.documentElement.dataset.theme === is, name);
