@@ -78,8 +78,8 @@ static double project(const struct view *view, const struct pick_case *site, con
     return 0.5 - 0.5 * clip[2] / clip[3];
 }
 
-/* Returns the measured value, of the pixel and its neighbours, whose depth is closest to the pick: at silhouettes a pixel may fall to
-   either side. */
+/* Returns the measured value of the pixel or the neighbour whose depth is closest to the pick's: at silhouettes a pixel may fall to either
+   side. */
 static const float *same_place(const float (*measured)[4], int x, int y, double depth)
 {
     const float *best = measured[y * WIDTH_PX + x];

@@ -209,7 +209,7 @@ static void plate_finish(struct textured_plate *plate)
     mem_free(plate->texcoords);
 }
 
-/* A grey material without textures; every texel is white. */
+/* Returns a plate of a grey material without textures; every texel is white. */
 static struct textured_plate plain_plate(void)
 {
     struct textured_plate plate = { .material = { .base_color = { 0.5f, 0.5f, 0.5f, 1 },
@@ -279,7 +279,8 @@ TEST(test_normals)
     struct textured_plate plate = plain_plate();
     int left[3], right[3];
     plate.material.normal_texture = 0;
-    for (int i = 0; i < TEXELS; i++) /* left: tilted towards the sun on the right; right: tilted away from it */
+    /* left half: normals tilted towards the sun, which is on the right; right half: normals tilted away from it */
+    for (int i = 0; i < TEXELS; i++)
         memcpy(plate.texels[i], i % CELLS < CELLS / 2 ? (uint8_t[4]){ 204, 128, 230, 255 } : (uint8_t[4]){ 52, 128, 230, 255 }, 4);
     plate_init(&plate, NULL, 0);
     halves(&plate, TIER_REFINED, left, right);

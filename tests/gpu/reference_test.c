@@ -38,7 +38,7 @@ static bool has_value(const float pixel[4])
     return pixel[1] >= 0 && pixel[1] < 0.5f;
 }
 
-struct pixels_seen { /* values of all pixels, as one camera sees them */
+struct pixels_seen { /* values of all pixels of a picture, as one camera sees them */
     const struct view *view;
     float (*shown)[4], (*here)[4], (*finest)[4]; /* here: the reference values on the displayed level */
     bool shown_is_finest;
@@ -112,7 +112,7 @@ static void compare(struct site *site, const struct pixels_seen *seen, size_t sa
         double beyond = error_within_a_pixel(site, seen, at, value);
         tally->compared++;
         tally->over += error > TOLERANCE;
-        tally->beyond += beyond > TOLERANCE; /* counts points where the finest level has nothing nearby, too */
+        tally->beyond += beyond > TOLERANCE; /* also counts points near which the finest level has no value */
         tally->worst_beyond = isinf(beyond) ? tally->worst_beyond : fmax(tally->worst_beyond, beyond);
         if (error > tally->worst) {
             tally->worst = error;
@@ -259,7 +259,8 @@ static void compare_group(struct site *site, int group, int row, int each, int r
         const struct reference_display way = {
             .group = group,
             .number = i + i / 4,
-            .each = (i & 12) == 8 ? 4 : 7, /* every fourth of the preview cases on drawn levels, where errors are largest */
+            /* every fourth of the preview cases on drawn levels, where errors are largest; every seventh of the others */
+            .each = (i & 12) == 8 ? 4 : 7,
             .interpolation = i & 1 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD,
             .distance = i & 2 ? DISTANCE_EUCLIDEAN : DISTANCE_GEODESIC,
             .tier = i & 4 ? TIER_REFINED : TIER_PREVIEW,

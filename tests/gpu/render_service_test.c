@@ -30,7 +30,7 @@ static struct render_service *service;
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static pthread_cond_t came = PTHREAD_COND_INITIALIZER;
 static int notices;
-static bool hardware; /* a GPU, which draws a refined frame in one step */
+static bool hardware; /* whether a GPU draws, which draws a refined frame in one step */
 
 static void on_pictures(void *arg)
 {
@@ -370,7 +370,7 @@ TEST(test_withdrawn_requests_are_not_drawn)
             assert_true(!encoded->packet && encoded->absence == FRAME_SKIPPED);
         encoded_frame_destroy(&encoded);
     }
-    ask(MOVER, URGENCY_INPUT, 72); /* as when the view is shown again */
+    ask(MOVER, URGENCY_INPUT, 72); /* requests a frame again, as a client does when its view is shown again */
     struct encoded_frame *encoded = next();
     assert_true(encoded->packet && encoded->client == MOVER);
     encoded_frame_destroy(&encoded);

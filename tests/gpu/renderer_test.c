@@ -324,7 +324,7 @@ TEST_WITH(test_light_can_be_chosen, reset, NULL)
         }
 }
 
-/* Otherwise each window size would have its own light baked. */
+/* The default light is the same for all window sizes; otherwise each size would need a baked light of its own. */
 TEST_WITH(test_default_light_is_one, reset, NULL)
 {
     struct view wide, tall;
@@ -432,7 +432,7 @@ TEST_WITH(test_what_is_kept_can_be_had_anew, reset, NULL)
     frame_unref(&after);
 }
 
-/* Lighting is excluded: two sets always exist, one displayed and one being baked. */
+/* The memory of what the renderer keeps has a bound. Lighting is excluded: two sets always exist, one displayed and one being baked. */
 TEST_WITH(test_what_is_kept_has_a_bound, reset, NULL)
 {
     size_t full[RENDER_STORES], bytes[RENDER_STORES], bound = (size_t)1 << 20;

@@ -33,7 +33,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* How a frame reaches its viewer. */
+/* How a frame is encoded, and how its viewer sees colours. */
 struct delivery_path {
     const char *name;
     int quality;                             /* of JPEG; 0: none */
@@ -84,7 +84,8 @@ static void through_jpeg(struct frame *frame, const struct delivery_path *way)
     encoder_destroy(&encoder);
 }
 
-/* Returns the 95th percentile of the misreading in percent of the range. truth: the same frame in the flat look, without edges. */
+/* Returns the error with which a viewer reads values from a shaded frame: its 95th percentile, in percent of the range. truth: the same
+   frame in the flat look, without edges. */
 static double misread(const struct colormap *map, const struct frame *truth, const struct frame *shaded, bool deuteranope)
 {
     double *errors = mem_array(WIDTH * HEIGHT, sizeof(*errors)), p95;
@@ -143,8 +144,8 @@ static void look_close(struct view *view)
     look_from(0.5, view);
 }
 
-/* Also with the whole plant in view and from twice as far, where its parts are a few pixels wide. There the standard tables, made for
-   photographs, lose more chroma than that, with and without shading. */
+/* Shading is not read as value either with the whole plant in view, or from twice as far, where its parts are a few pixels wide. There the
+   standard JPEG tables, made for photographs, lose more chroma than that, with and without shading. */
 TEST_WITH(test_far_away_it_is_not_either, set_up, tear_down)
 {
     struct view view;

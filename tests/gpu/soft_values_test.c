@@ -73,9 +73,10 @@ static bool is_within(const float (*numbers)[4], int at)
 }
 
 struct soft_values_tally {
-    int within, off, unreadable; /* pixels within one surface; of them, with another colour than their value's, and with a colour that is
-                                    not in the map */
-    int rims, rims_off;          /* other pixels with a value; of them, those with another colour */
+    /* within: pixels within one surface; off, unreadable: those of them with another colour than their value's, and with a colour that is
+       not in the map */
+    int within, off, unreadable;
+    int rims, rims_off;          /* rims: other pixels with a value; rims_off: those of them with another colour */
     int most;
 };
 

@@ -30,7 +30,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* Left: values; right: bands and isolines in other colours. */
+/* Makes a split view: the left half shows values, the right half bands and isolines in other colours. */
 static void make_view(struct view *view)
 {
     struct view right;
@@ -68,7 +68,8 @@ TEST_WITH(test_halves_are_pictures, set_up, tear_down)
             assert_true(same_row(whole, parts[1], y, LEFT + DIVIDER_PX / 2, DIVIDER_PX / 2, WIDTH - LEFT - DIVIDER_PX / 2));
         }
         assert_true(memcmp(parts[0]->bgrx, parts[1]->bgrx, (size_t)LEFT * 4 * HEIGHT) != 0);
-        assert_in_range(whole->marker_count, 8, markers); /* counts fewer markers, because those outside their half are dropped */
+        /* the whole view has fewer markers than its two halves, because those outside their half are dropped */
+        assert_in_range(whole->marker_count, 8, markers);
         for (size_t i = 0; i < whole->marker_count; i++)
             assert_true(whole->markers[i].half == (whole->markers[i].x_px >= LEFT));
         assert_true(whole->label_count > 0 && whole->label_count == parts[1]->label_count);

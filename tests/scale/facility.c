@@ -239,7 +239,7 @@ static void add_asset(struct facility *f, long asset)
         text_add(&children, "%s%ld", c ? "," : "", root + 1 + c);
     add_node(f, "{\"name\":\"A-%05ld\",\"translation\":[%.9g,%.9g,%.9g],\"children\":[%s]}", asset, at[0], at[1], at[2], children.at);
     add_node(f, "{\"name\":\"A-%05ld body\",\"mesh\":%ld}", asset, add_mesh(f, &body));
-    for (int c = 0; c < flanges; c++) /* set onto the tank's wall, or around the pipe */
+    for (int c = 0; c < flanges; c++) /* flanges are set onto the tank's wall, or around the pipe */
         add_node(
             f,
             "{\"name\":\"A-%05ld flange %d\",\"mesh\":%ld,\"translation\":[%.6g,%.6g,%.6g],\"rotation\":[%s],\"scale\":[%.6g,%.6g,%.6g]}",

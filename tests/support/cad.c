@@ -131,7 +131,7 @@ static void on_bent_pipe(const double size[3], double u, double v, double out[3]
 {
     const double bend = 0.75 * PI;
     double s = (u < 0.5 ? u : 1 - u) * 2 * bend, x = sin(s), y = 1 - cos(s), nx = -sin(s), ny = cos(s);
-    if (u >= 0.5) { /* rotated by half a turn about the end of the first bend */
+    if (u >= 0.5) { /* the second bend is the first one, rotated by half a turn about its end */
         x = 2 * sin(bend) - x;
         y = 2 * (1 - cos(bend)) - y;
     }

@@ -24,10 +24,12 @@ void cad_plate(struct cad *cad, struct cad_random *random, int across, int up, d
 /* A plate like that of cad_plate(), without jitter and with cells left out: columns first..first + wide - 1, rows below `high`. */
 void cad_slotted_plate(struct cad *cad, struct cad_random *random, int across, int up, double width, double height, int first, int wide,
                        int high);
-void cad_sphere(struct cad *cad, struct cad_random *random, int cells); /* radius 1; 6 * cells^2 + 2 vertices */
-/* radius 1, open ends */
+/* A sphere of radius 1 with 6 * cells^2 + 2 vertices. */
+void cad_sphere(struct cad *cad, struct cad_random *random, int cells);
+/* A cylinder of radius 1 with open ends. */
 void cad_cylinder(struct cad *cad, struct cad_random *random, int around, int along, double length, double jitter);
-void cad_torus(struct cad *cad, struct cad_random *random, int around, int tube, double tube_radius, double jitter); /* radius 1 */
+/* A torus of radius 1 along the middle of its tube. */
+void cad_torus(struct cad *cad, struct cad_random *random, int around, int tube, double tube_radius, double jitter);
 /* An open pipe of two bends of 135 degrees and radius 1, in opposite directions. */
 void cad_bent_pipe(struct cad *cad, struct cad_random *random, int along, int around, double pipe_radius, double jitter);
 /* A box without lid, x * y * z cells large; its walls and bottom are one cell thick. */

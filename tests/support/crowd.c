@@ -18,8 +18,9 @@
 #include "tests/support/synthetic.h"
 #include "value/quality.h"
 
-static const double GAP = 1.01;   /* distance between the centres of neighbours, in multiples of their size */
-static const double ASPECT = 1.0; /* width to height of the ground area; fills a wide picture seen obliquely from above */
+static const double GAP = 1.01; /* distance between the centres of neighbours, in multiples of their size */
+/* width divided by height of the ground area, which fills a wide picture when seen obliquely from above */
+static const double ASPECT = 1.0;
 
 struct places { /* positions of the sensors, in the asset's frame */
     double (*at_m)[3];

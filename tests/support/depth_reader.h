@@ -6,7 +6,7 @@
 
 struct depth_read {
     struct wire_depth wire;
-    uint16_t *near, *far; /* codes by cell; equal: the cell is not divided; 0: background */
+    uint16_t *near, *far; /* codes of each cell's depths; equal: the cell is not divided; 0: background */
     uint8_t **masks;      /* by cell: one byte per bit of its mask, row by row; NULL: the cell is not divided */
 };
 

@@ -27,7 +27,7 @@ static get_proc_fn *get_proc;
 static uint8_t *steps;
 static size_t used;
 
-/* mov r11, where; inc qword [r11] */
+/* Appends the instructions `mov r11, where` and `inc qword [r11]`. */
 static uint8_t *put_count(uint8_t *at, const uint64_t *where)
 {
     memcpy(at, (const uint8_t[]){ 0x49, 0xbb }, 2);

@@ -29,7 +29,7 @@ struct device_thread {
     modbus_mapping_t *mapping, *wrong;
     int listen_fd, stop_fd;
     int line_fd; /* the terminal's slave end, kept open so that the terminal survives while nobody else has it open */
-    int header;  /* bytes before the function code; the last of them is the unit */
+    int header;  /* number of bytes before the function code; the last of them is the unit */
     int clients[MAX_CLIENTS];
     struct {
         int64_t since_ns, heard_ns;
@@ -335,7 +335,7 @@ void device_stop(struct modbus_device *device)
     eventfd_write(t->stop_fd, 1);
     pthread_join(t->thread, NULL);
     while (t->client_count)
-        drop_client(t, 0, true); /* with RST, which leaves no TIME_WAIT, so that the port is free at once */
+        drop_client(t, 0, true); /* closes with RST, which leaves no TIME_WAIT, so that the port is free at once */
     if (t->listen_fd >= 0)
         close(t->listen_fd);
     if (t->line_fd >= 0)

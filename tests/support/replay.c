@@ -47,7 +47,7 @@ static void replay(const char *path, int rounds, int (*feed)(const uint8_t *byte
         uint8_t *bytes = mem_array(count + 1, 1);
         size_t length = count;
         memcpy(bytes, seed, count);
-        srand((unsigned)round); /* so that a single round can be repeated */
+        srand((unsigned)round); /* each round has its own seed, so that it can be repeated alone */
         for (int changes = rand() % 4; changes >= 0; changes--)
             length = change(bytes, length);
         feed(bytes, length);

@@ -182,7 +182,7 @@ TEST(a_forwarded_address_is_the_one_that_a_proxy_appended)
                   { "2001:db8::1", "2001:db8::1" },
                   { "198.51.100.1, 203.0.113.7, 10.0.0.10", "203.0.113.7" }, /* two trusted proxies in a row */
                   { "198.51.100.1, 203.0.113.7, fd00:1::7, 10.0.0.10", "203.0.113.7" },
-                  { "198.51.100.1, unknown, 10.0.0.10", "10.0.0.10" }, /* nobody vouches for what is before an unknown peer */
+                  { "198.51.100.1, unknown, 10.0.0.10", "10.0.0.10" }, /* addresses before an unknown peer are not trusted */
                   { "10.0.0.11, 10.0.0.10", "10.0.0.11" },             /* a client on the proxy's host */
                   { "10.0.0.10", "10.0.0.10" },
                   { "203.0.113.7, unknown", NULL }, /* only the last address of the header comes from our proxy */
@@ -221,7 +221,8 @@ TEST(only_the_named_networks_are_proxies)
         if (access_is_proxy(&params, others[i]))
             fail_msg("a proxy: %s", others[i]);
     assert_false(params.behind_proxy);
-    assert_true(access_add_proxy(&params, "127.0.0.1") && params.behind_proxy); /* so that local clients are not trusted */
+    /* a local proxy: from now on, local clients are not trusted */
+    assert_true(access_add_proxy(&params, "127.0.0.1") && params.behind_proxy);
     while (params.proxy_count < ACCESS_MAX_NAMES)
         assert_true(access_add_proxy(&params, "10.0.0.10"));
     assert_false(access_add_proxy(&params, "10.0.0.10"));

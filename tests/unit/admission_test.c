@@ -131,7 +131,7 @@ TEST_WITH(who_would_slow_the_others_down_too_far_is_refused, set_up, NULL)
     struct address_share share = { 0 };
     admission_join(&admission, &share);
     assert_int_equal(0, refuses(&admission, &share, 1000, 0));
-    seconds(&admission, &share, 4, 6, 40, 0); /* 4 sessions at 6 frames/s each: a fifth session would leave 4.8 */
+    seconds(&admission, &share, 4, 6, 40, 0); /* 4 sessions at 6 frames/s each: a fifth session would leave 4.8 for each */
     assert_int_equal(admission_busy_percent(&admission), 96);
     assert_true(refuses(&admission, &share, 1000, 4));
     seconds(&admission, &share, 4, 7, 34, 0); /* 5.6 */

@@ -145,7 +145,7 @@ CASE(a_thousand_at_once_are_all_written)
     assert_int_equal(all.count, 2 * TAGS + 1);
     assert_int_equal(page.count, 500);
     assert_int_equal(read_rows(s, NULL, 100000, page.smallest_id).count, 2 * TAGS + 1 - 500);
-    struct alarm_rows one = read_rows(s, "T-0007", 2, INT64_MAX); /* older of the tag's two newest rows */
+    struct alarm_rows one = read_rows(s, "T-0007", 2, INT64_MAX); /* one.last: the older of the tag's two newest rows */
     assert_string_equal(one.last, "T-0007 H shelve shelved 3 nan kim filter is being changed");
     struct alarm_rows then = { 0 };
     assert_int_equal(journal_at(s->log, s->folder, between_us, count_row, &then), 0);

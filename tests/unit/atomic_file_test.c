@@ -104,7 +104,7 @@ CASE(links_and_files_beside_are_not_written_through)
 struct held_job {
     struct file_job job;   /* first member */
     pthread_mutex_t *gate; /* the job is written once the gate is open; NULL: at once */
-    int error, *finished;  /* finished: receives the result; ENOENT before */
+    int error, *finished;  /* error: result of the write; finished: receives it, and is ENOENT before */
 };
 
 static int write_held(struct file_job *job)
@@ -158,7 +158,7 @@ TEST(a_failed_write_fails_those_that_build_on_it)
     assert_int_equal(file_writer_settled(writer, &first), -ETIMEDOUT);
     pthread_mutex_unlock(&gate);
     assert_true(file_writer_wait(writer, 60 * NS_PER_S));
-    assert_int_equal(one, ENOENT); /* nothing is in force, or dropped, before the loop collects it */
+    assert_int_equal(one, ENOENT);                                           /* the loop gets no result before it collects the jobs */
     assert_int_equal(queue_held(writer, &owner_a, NULL, 0, &late), -ENOSPC); /* builds on what failed */
     assert_int_equal(late, -ENOSPC);
     assert_true(file_writer_collect(writer));
@@ -169,10 +169,10 @@ TEST(a_failed_write_fails_those_that_build_on_it)
     assert_int_equal(file_writer_settled(writer, &first), -ENOSPC);
     assert_int_equal(file_writer_settled(writer, &second), -ENOSPC);
     assert_int_equal(file_writer_settled(writer, &none), 0);
-    assert_int_equal(queue_held(writer, &owner_a, NULL, 0, &late), 0); /* builds on what is on disk */
+    assert_int_equal(queue_held(writer, &owner_a, NULL, 0, &late), 0); /* the new job builds on what is on disk */
     file_writer_destroy(&writer);
     assert_int_equal(late, 0);
-    assert_int_equal(atomic_load(&written), 3); /* the follower of the failed job was not written */
+    assert_int_equal(atomic_load(&written), 3); /* the job that followed the failed one was not written */
     log_destroy(&log);
 }
 
@@ -188,7 +188,7 @@ TEST(a_disk_that_hangs_fills_the_queue_and_owners_may_leave)
     while (count < 200 && queue_held(writer, &owner, NULL, 0, &results[count]) == 0)
         count++;
     assert_in_range(count, 63, 64);
-    assert_int_equal(results[count], -ETIMEDOUT); /* refused at once, those before it wait */
+    assert_int_equal(results[count], -ETIMEDOUT); /* the queue is full: this job is refused at once, and those before it wait */
     assert_int_equal(results[count - 1], ENOENT);
     file_writer_forget(writer, &leaver);
     pthread_mutex_unlock(&gate);

@@ -7,7 +7,7 @@ const KIND = 'H', HIGH = 95, NORMAL = 50, SHOWN_MS = 60000, STEP_MS = 100, JOURN
 const EVENTS = ['raise', 'acknowledge', 'clear'];
 
 export class AlarmCycles {
-    // plant: sends commands to the simulator; operators: who acknowledge; tags: alarms go on for each at the same time.
+    // plant: passes commands to the simulator; operators: acknowledge in turn; tags: each has its own alarms, all at the same time.
     constructor(plant, operators, tags) {
         Object.assign(this, { plant, operators, tags, failures: [], total: 0, notKept: 0, idle: new Set() });
         this.isPaused = this.isOver = false;

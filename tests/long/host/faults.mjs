@@ -41,7 +41,8 @@ function busiest({ operators, renderers }) {
 }
 const anyHow = (random) => (random() < 0.5 ? 'cut' : 'freeze');
 
-// act({ site, leader, standby, random }). alerts: names that must fire, and stop firing once the plant has recovered.
+// act({ site, leader, standby, random }) causes the fault. alerts: names of alerts that must fire, and stop firing once the plant has
+// recovered.
 export const FAULTS = [
     { name: 'leader killed', alerts: ['PlantcastDown'], act: ({ site, leader }) => endAndStart(site, leader, 'SIGKILL') },
     { name: 'standby killed', alerts: ['PlantcastDown'], act: ({ site, standby }) => endAndStart(site, standby, 'SIGKILL') },
@@ -117,7 +118,7 @@ async function reload({ site, leader, standby }) {
             throw new Error(`reload of ${node.name}: ${said}`);
     }
 }
-// The order of deploy/pages/STANDBY.md; programs of the same version.
+// Restarts the nodes in the order in which deploy/pages/STANDBY.md upgrades them. The programs stay the same version.
 async function upgrade({ site, leader, standby }) {
     const maintain = async (how, value) => {
         const { code, said } = await site.plantcast('standby', how, leader.disk);

@@ -45,7 +45,7 @@ export class Alerts {
             if (!firing.has(name))
                 this.firing.delete(name);
     }
-    // Names of alerts that fired since then, or did already.
+    // Returns the names of the alerts that fire now or began to fire since a time.
     since(at) { return new Set([...this.firing.keys(), ...this.fired.filter((one) => one.at >= at).map(({ name }) => name)]); }
     // Returns the number of targets that Prometheus reads.
     async read() { return (await this.ask('targets')).data.activeTargets.filter(({ health }) => health === 'up').length; }
@@ -58,7 +58,7 @@ export class Alerts {
 
 const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
 export class Footprint {
-    constructor(processes) { // returns [{ name, pid }] of the processes that run now
+    constructor(processes) { // processes: function that returns [{ name, pid }] of the processes that run now
         Object.assign(this, { processes, samples: new Map(), began: new Map() });
         this.timer = setInterval(() => this.sample(), 5000);
     }
