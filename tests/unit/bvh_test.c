@@ -284,7 +284,7 @@ static bool is_other(const void *arg, uint32_t tri)
     return l->label[tri] != l->skipped;
 }
 
-/* Labels by place, so that whole nodes have one label. */
+/* Triangles get their labels by position, so that whole nodes of the BVH have one label. */
 TEST(test_skipping_a_label_finds_what_a_predicate_finds)
 {
     uint32_t label[3000];

@@ -250,7 +250,7 @@ static bool finds_memory(void)
     return opens(path, O_RDONLY);
 }
 
-/* The bit of each attempt that succeeds. */
+/* Bits of a set of attempts: each is set if the attempt succeeds. */
 enum { READ_SECRET = 1, EMPTY_SECRET = 2, SIGNAL = 4, ALTER = 8, ALLOWED = 16 };
 
 static int attempt_all(void)
@@ -297,7 +297,8 @@ static void lay_out(const char *folder)
     assert_true((mkdir(own, 0700) == 0 || errno == EEXIST) && (mkdir(away, 0700) == 0 || errno == EEXIST));
 }
 
-/* A reader can do nothing of the list with any ABI; for a command the log names what is left open, and nothing else is. */
+/* With any ABI, a confined reader can do nothing of the list but what is allowed; a confined command can also do what the log names, and no
+ * more. */
 TEST(test_each_abi_of_landlock_holds_or_the_log_names_what_it_leaves_open)
 {
     char lacks[CONFINE_LACKS_BYTES], *folder = temp_folder_create();
@@ -351,7 +352,7 @@ static int use_cgroup(const char *service)
     if (!cgroup_divide() || !cgroup_divide() || !cgroup_create("reader", (size_t)64 << 20, 8, &path) || !path)
         return 3;
     if (cgroup_add(path, 1 << 30) || errno != ESRCH)
-        return 8; /* a process that is not there */
+        return 8; /* joining a cgroup fails for a process that does not exist */
     int go[2];
     if (pipe(go) != 0)
         return 4;

@@ -141,7 +141,7 @@ static size_t covered_corners(const struct outer *outer, const struct cad *shape
     return count;
 }
 
-/* Whether to test this fault: the default run takes the clean shape and one fault per pair, a different one for each pair. */
+/* Returns whether to test this fault: the default run takes the clean shape and one fault per pair, a different one for each pair. */
 static bool is_tried(int row, int fault)
 {
     return fault == CAD_CLEAN || sweep_takes(row, fault, 5);

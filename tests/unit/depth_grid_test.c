@@ -78,7 +78,7 @@ static int count_behind(const struct depth_lens *lens, const float *all, int cou
     return divided ? behind : background;
 }
 
-/* The rule of depth_cells.c, from sorted depths. */
+/* Computes what a cell must hold by the rule of depth_cells.c, from the cell's depths in order. */
 static void expect_cell(const struct depth_picture *picture, const struct depth_lens *lens, int column, int row, struct depth_cell *out)
 {
     float all[64];
@@ -223,7 +223,7 @@ TEST(the_ground_is_behind_surfaces)
     struct depth_picture picture = picture_of(64, 64);
     lens.has_ground = true;
     lens.ground[1] = 0.01; /* depth of the ground: 0.01 y */
-    lens.ground_from_pixel[0][0] = 1 / 64.0; /* seen in the upper half only */
+    lens.ground_from_pixel[0][0] = 1 / 64.0; /* the ground is seen in the upper half of the picture only */
     lens.ground_from_pixel[1][1] = 1 / 32.0;
     lens.ground_from_pixel[2][2] = 1;
     for (int y = 0; y < 64; y++)

@@ -86,7 +86,7 @@ TEST(jpeg_keeps_the_picture)
     check_jpeg(16, 16, 90, true, 40, 8);
 }
 
-/* Whether column x belongs to a vertical line: lines are three pixels wide, alternately blue and amber, on grey. */
+/* Returns whether column x belongs to a vertical line: lines are three pixels wide, alternately blue and amber, on grey. */
 static bool is_line(int x)
 {
     return x % 11 < 3;

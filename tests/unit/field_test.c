@@ -1244,7 +1244,7 @@ TEST(test_in_pieces_it_is_the_same)
         set(&rig, 8, 5, round % 2 ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE);
         while (!field_advance(rig.field, 0, &rig.params, rig.plant->snapshot, 5000, 10000)) {
             if (pieces++ == 2)
-                set(&rig, 3, first + 1, QUALITY_GOOD); /* too late for this pass, whose pieces are being computed */
+                set(&rig, 3, first + 1, QUALITY_GOOD); /* this reading comes too late for this pass, whose pieces are being computed */
         }
         assert_in_range(pieces, 3, 100);
         assert_true(show(&rig)->at[3].value == (float)(first + 1));

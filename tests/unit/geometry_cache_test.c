@@ -296,8 +296,8 @@ CASE(points_are_found_once)
 
 /* --- killed midway ------------------------------------------------------------------------------------------------------------ */
 
-/* Prepares into FOLDER/kept with a file size limit of `bytes`: beyond it the system kills the process, or writing fails if `told`.
-   Returns the exit status. */
+/* Prepares into FOLDER/kept with a file size limit of `bytes`. Beyond the limit the system kills the process; with `told`, writing fails
+   instead. Returns the exit status. */
 static int prepare_limited(struct prep_case *c, const char *tags, size_t bytes, bool told)
 {
     char *program = prep_case_program(), *folder = temp_path(c->folder, "kept"), *said = temp_path(c->folder, "said");
@@ -572,7 +572,7 @@ CASE(one_of_many_sensors_is_split_for_alone)
         if (move > 0) /* levels that an earlier run rejected are not tried again */
             assert_true(measured + kept < 0.97 * first_found);
         assert_true(move == 0 ? kept == 0 : kept > measured / 2);
-        if (move == moves - 1) { /* here the uncertainties of all moves have added up (two in a full sweep) */
+        if (move == moves - 1) { /* by now the uncertainties of all moves have added up (two moves in a full sweep) */
             open_prepared(&moved, c, "kept", found);
             assert_on_vertices(&moved);
             assert_shows_as_anew(c, &moved, tags, "kept");

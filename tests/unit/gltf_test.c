@@ -480,7 +480,7 @@ CASE(wrong_instances_and_sparse_elements_are_refused)
     }
 }
 
-/* Whether the triangle's normals agree with its winding. Smoothed normals may lean over an edge. */
+/* Returns whether the triangle's normals agree with its winding. Smoothed normals may lean over an edge. */
 static bool faces_outward(const struct geometry *g, uint32_t tri)
 {
     float out[3];

@@ -562,7 +562,8 @@ CASE(a_full_disk_has_room_for_a_spool)
         mem_free(folder);
         skip();
     }
-    char *reserve = temp_write_text(folder, "spool.reserve", ""); /* left by a process that was killed while it made the reserve */
+    /* a reserve without its size, as a process leaves it that is killed while it makes it */
+    char *reserve = temp_write_text(folder, "spool.reserve", "");
     char *spool = temp_path(folder, "unwritten.spool");
     struct stat st = { 0 };
     start(s);

@@ -315,7 +315,7 @@ CASE(every_point_comes_back_bit_by_bit)
         struct history_row rows[TAGS];
         size_t count = 0;
         for (int tag = 0; tag < TAGS; tag++) {
-            int at = rand() % 20 == 0 ? rand() % (second + 1) : second; /* the clock was set back now and then */
+            int at = rand() % 20 == 0 ? rand() % (second + 1) : second; /* now and then the clock was set back */
             uint32_t quality = rand() % 8 ? QUALITY_GOOD : 0x80000000U + (unsigned)rand();
             struct history_point point = { NOVEMBER + at * S + at % 7, odd_value(), quality };
             if (rand() % 3)
@@ -325,7 +325,7 @@ CASE(every_point_comes_back_bit_by_bit)
         if (rand() % 200 == 0)
             assert_int_equal(month_file_tidy(file), 0);
         if (rand() % 300 == 0) {
-            month_file_close(&file); /* as a killed daemon leaves it */
+            month_file_close(&file); /* closes the file without tidying it, as a killed daemon does */
             file = open_file(s, NOVEMBER);
         }
         if (second % 700 == 699)

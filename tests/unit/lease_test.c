@@ -424,7 +424,7 @@ TEST(in_maintenance_a_leader_promises_itself_and_no_other_may_bid)
     lease_bid(&a);
     lease_won(&a, S);
     lease_promised(&a, "a", 2 * S);
-    assert_false(lease_acts(&a, 3 * S)); /* the row does not say so yet */
+    assert_false(lease_acts(&a, 3 * S)); /* the row in the database does not name this follower yet */
     lease_renew(&a, "a");
     lease_renewed(&a, "a", 2 * S);
     lease_promised(&a, "a", 100 * S); /* without the database */

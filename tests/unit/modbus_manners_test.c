@@ -92,7 +92,7 @@ static bool all_good(struct modbus_case *s)
     return good;
 }
 
-enum { LONGEST_TURN = 20 }; /* maximum of requests between two readings of a block; there are three blocks */
+enum { LONGEST_TURN = 20 }; /* largest number of requests between two readings of one block; the device has three blocks */
 
 /* Counts a device's requests since the last new reading of a block. Counting requests does not depend on the machine's load. */
 struct turn {

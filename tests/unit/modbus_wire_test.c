@@ -58,7 +58,8 @@ static void check_late_rtu(struct modbus_case *s, enum device_wire wire)
     plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16);
     use_wire(s, wire);
     s->plant->sources[0].timeout_ms = 200;
-    s->device.late_ms = 1000; /* later than the next request, which follows after a timeout of 0.2 s and at most 0.75 s of backoff */
+    /* late answers come after the next request, which follows after a timeout of 0.2 s and at most 0.75 s of backoff */
+    s->device.late_ms = 1000;
     modbus_case_start(s);
     modbus_case_expect(s, 1, QUALITY_GOOD, 3);
     s->device.manner = DEVICE_LATE;

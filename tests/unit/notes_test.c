@@ -183,7 +183,8 @@ CASE(a_note_is_shown_once_it_is_on_disk)
     struct notes *notes = notes_open(f->log, f->history, writer);
     const struct note one = { .text = "one", .tag = "t" }, two = { .text = "two", .tag = "t" }, three = { .text = "three", .tag = "t" };
     assert_int_equal(notes_add(notes, &one, "kim", NOON, f->id), REFUSAL_NONE);
-    assert_int_equal(notes_add(notes, &two, "kim", NOON, f->id), REFUSAL_NONE); /* keeps the first, which is still on its way */
+    /* the second note keeps the first one, which is not written yet */
+    assert_int_equal(notes_add(notes, &two, "kim", NOON, f->id), REFUSAL_NONE);
     assert_notes(notes_text(notes, NOON), "");
     assert_int_equal(notes_number(notes), 0);
     collect(writer);
@@ -196,7 +197,7 @@ CASE(a_note_is_shown_once_it_is_on_disk)
     file_writer_end(writer, &ticket);
     collect(writer);
     assert_int_equal(file_writer_settled(writer, &ticket), -ENOTDIR);
-    assert_notes(notes_text(notes, NOON + 2 * S), "one two"); /* what cannot be kept has not happened */
+    assert_notes(notes_text(notes, NOON + 2 * S), "one two"); /* the note's end could not be written, so the note has not ended */
     assert_int_equal(system(mended), 0);
     assert_int_equal(notes_end(notes, f->id, "kim", NOON + S), REFUSAL_NONE);
     assert_int_equal(notes_add(notes, &three, "kim", NOON + S, f->id), REFUSAL_NONE);

@@ -115,7 +115,7 @@ CASE(a_flood_is_one_message)
     for (int i = 0; i < 500; i++)
         put(f, i, LOCAL, true, true, T0, T0 + i * S / 500);
     assert_int_equal(deliver(f, OPS, T0 + 2 * S), 0);
-    assert_int_equal(deliver(f, OPS, T0 + 4 * S), 500); /* each alarm once, although two rules match some of them */
+    assert_int_equal(deliver(f, OPS, T0 + 4 * S), 500); /* each alarm is delivered once, although two rules match some of them */
     for (int s = 5; s < 200; s++)
         assert_int_equal(deliver(f, OPS, T0 + s * S), 0);
     assert_int_equal(outbox_counts(f->outbox, OPS).waiting, 0);
@@ -367,7 +367,7 @@ CASE(a_clock_that_jumps_ahead_loses_nothing_later)
     assert_true(outbox_next(f->outbox, AM, T0 + 3 * S, &message));
     outbox_failed(f->outbox, AM, T0 + 4 * S);
     assert_true(outbox_next(f->outbox, AM, T0 + 2 * MIN, &message));
-    outbox_tick(f->outbox, later); /* while the message is being sent again */
+    outbox_tick(f->outbox, later); /* the clock jumps while the message is being sent again */
     put(f, 1, LOCAL, true, true, later, later);
     assert_int_equal(deliver(f, OPS, later + 3 * S), 1);
     assert_int_equal(outbox_counts(f->outbox, OPS).lost, 0);

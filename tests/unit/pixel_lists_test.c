@@ -17,7 +17,7 @@ enum { MOST_SENSORS = 4096, PLACES = 8 };
 static uint64_t random_state;
 
 struct list_tally {
-    double worst; /* in steps: 1/255 of the range */
+    double worst; /* largest error, in steps of 1/255 of the range */
     size_t lists, sensors, pixels, flags_off;
     int64_t built_ns;
     int reported;
@@ -96,7 +96,7 @@ static void make_field(struct pixel_field *field, int count, bool paper, bool od
                                          .state = PIXEL_CONFIGURED | PIXEL_USABLE };
         for (int c = 0; c < 3; c++)
             sensor->place_m[c] = (float)(c == 2 ? between(0, 1) < 0.5 ? 0 : between(0, 0.3) : between(0, 4));
-        if (odd && i % 7 == 3) /* at the same place, or a hair beside it */
+        if (odd && i % 7 == 3) /* some sensors are at the same place as the one before, or a hair beside it */
             memcpy(sensor->place_m, sensor[-1].place_m, sizeof(sensor->place_m));
         if (odd && i % 14 == 3)
             sensor->place_m[0] += 1e-6f;
@@ -194,7 +194,7 @@ static void tally_fields(int count, bool paper, bool odd, int rounds)
                       paper ? "paper" : "shepard", odd ? ", odd" : "", count, sizes[s], tally.pixels, tally.worst,
                       (double)tally.sensors / (double)tally.lists, (double)tally.built_ns / (double)tally.lists, tally.flags_off);
         assert_true(tally.worst <= 0.8);
-        assert_true(tally.flags_off <= tally.pixels / 100); /* at places as near to another sensor */
+        assert_true(tally.flags_off <= tally.pixels / 100); /* flags may differ where two sensors are about equally near */
     }
 }
 

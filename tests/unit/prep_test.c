@@ -202,7 +202,7 @@ static void group_says(struct prep_case *s, const char *more)
     mem_free(text);
 }
 
-/* Triangles in the finest level of the first asset. */
+/* Returns the number of triangles in the finest level of the first asset. */
 static size_t triangles_of_first(struct prep_case *s)
 {
     struct folder_file file;

@@ -80,7 +80,8 @@ TEST_WITH(test_the_farthest_place_and_the_next_sensor, set_up, tear_down)
     assert_true(fabs(gaps.farthest_m - hypot(1, 4)) < 1e-6);
     assert_true(fabs(gaps.farthest_at_m[0] - 101) < 1e-5 && fabs(gaps.farthest_at_m[1] - 4) < 1e-5);
     assert_true(fabs(gaps.farthest_at_m[2] - 7) < 1e-5);
-    assert_true(fabs(gaps.next_m - 4) < 1e-6); /* from the first sensor to the second; these two are 1.1 m apart across the plate */
+    /* the distance from the first sensor to the second, which are 1.1 m apart across the plate */
+    assert_true(fabs(gaps.next_m - 4) < 1e-6);
     assert_int_equal(gaps.next_tags[0], 0);
     assert_int_equal(gaps.next_tags[1], 1);
     assert_true(fabs(gaps.far_m - side_m * sqrt(2) / 5) < 1e-6); /* a fifth of its size */

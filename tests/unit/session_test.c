@@ -201,7 +201,7 @@ CASE(depth_is_sent_when_it_changes)
     assert_int_equal(show_depth(f, &request, none), SESSION_DEPTH_NONE);
     assert_int_equal(show_depth(f, &request, split), SESSION_DEPTH_NEW);
     assert_int_equal(show_depth(f, &request, first), SESSION_DEPTH_NEW);
-    request.depth = false; /* a frame that was requested without depth, while the session followed another one */
+    request.depth = false; /* like a frame that was requested without depth, while the session followed another one */
     assert_int_equal(show_depth(f, &request, first), SESSION_DEPTH_NONE);
     for (int i = 0; i < 2; i++) {
         depth_grid_unref(&first[i]);
@@ -256,7 +256,8 @@ CASE(refined_frames_are_asked_for_signed)
     f->now_ns += NS_PER_S;
     struct frame_request refined = show(f);
     assert_true(refined.view.tier == TIER_REFINED && refined.record && refined.codec == WIRE_CODEC_PNG && !refined.draft);
-    struct frame_request data = show_data(f, true); /* recolours the refined frame, or is a preview like those before */
+    /* the request is for the recoloured refined frame, or for a preview like those before */
+    struct frame_request data = show_data(f, true);
     assert_true(data.record && data.codec == WIRE_CODEC_PNG && (!data.or_moving || data.moving_codec == WIRE_CODEC_JPEG));
     say(f, "{\"type\":\"sign\",\"frames\":\"all\"}");
     preview = show(f);

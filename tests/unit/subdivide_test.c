@@ -72,7 +72,7 @@ static double along_plate(const double a[3], const double b[3])
     return vec_distance(a, b);
 }
 
-/* Distance on a cylinder of radius 1 around the z axis, along the shorter way around when unrolled. */
+/* Returns the distance on a cylinder of radius 1 around the z axis, along the shorter way around. */
 static double along_cylinder(const double a[3], const double b[3])
 {
     double turn = fabs(atan2(a[1], a[0]) - atan2(b[1], b[0]));

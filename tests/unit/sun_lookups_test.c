@@ -14,7 +14,7 @@ struct lookup_counts {
     int told, open, half; /* number of points decided by bounds, by texels, and of the latter those partly lit */
 };
 
-/* Random depth map with flat areas, slopes and noise. */
+/* Returns the depth at a texel of a random map with flat areas, slopes and noise. */
 static uint16_t depth_at(const uint16_t areas[], int x, int y)
 {
     uint16_t area = areas[y / AREA_PX * (SIDE_PX / AREA_PX) + x / AREA_PX];
@@ -55,7 +55,7 @@ static int whole_within_map(float part)
     return px < 0 ? 0 : px > SIDE_PX - 1 ? SIDE_PX - 1 : (int)px;
 }
 
-/* Points slightly beyond the map too; depths at random, or close to a texel of the tile. */
+/* Makes random points, some slightly beyond the map; depths are random, or close to the depth of a texel of the tile. */
 static void places_at_random(const struct soft_light *light, lanes at[3])
 {
     for (int i = 0; i < LANES; i++) {

@@ -479,7 +479,8 @@ TEST(nearest_is_the_nearest)
     cad_finish(&torus);
 }
 
-/* Also with a limit that excludes the right side's triangles, at points inside the tube. */
+/* A search within a limit finds the same point as one without, or nothing if that point is farther away; also where the limit excludes all
+   triangles that face the right way, as for points inside the tube. */
 TEST(within_a_limit_is_the_same_spot_or_none)
 {
     struct cad torus = { 0 };
@@ -554,8 +555,8 @@ TEST(long_thin_strips_are_exact_near_a_source_too)
     cad_finish(&pipe);
 }
 
-/* Shifts a few cells, so that most triangles after resampling have a flipped edge. Near a source distances are short, so a small error
-   is a large share. */
+/* Returns the largest relative error of short distances on a plate whose cells are shifted, so that most triangles have a flipped edge
+   after resampling. Near a source a small error is a large share. */
 static double worst_short_way(int across, int up)
 {
     enum { SOURCES = 8, PLACES = 800 };

@@ -79,7 +79,8 @@ TEST(no_request_waits_for_frames_without_end)
         served_ns = scheduler_asked(claim->spent_ns, served_ns);
         time_accounts_served(&accounts, account, SCHEDULER_LONG);
         if (first == GREEDY)
-            time_accounts_charge(&accounts, 1, SCHEDULER_LONG, cost_ns[GREEDY]); /* given up: only the address is charged */
+            /* the frame was given up, so only the address is charged */
+            time_accounts_charge(&accounts, 1, SCHEDULER_LONG, cost_ns[GREEDY]);
         else
             account->spent_ns[SCHEDULER_LONG] += cost_ns[first];
         claim->spent_ns = scheduler_asked(claim->spent_ns + (first == GREEDY ? 0 : cost_ns[first]), served_ns);
@@ -87,7 +88,8 @@ TEST(no_request_waits_for_frames_without_end)
         time_accounts_asked(&accounts, account, SCHEDULER_LONG);
     }
     assert_int_equal(turns[SNAPSHOT], 1);
-    assert_in_range(turns[GREEDY], 1, 7); /* up to what the other address had had before: 5 s of its 0.9 s */
+    /* at most as many frames of 0.9 s as fit into the 5 s that the other address was charged before */
+    assert_in_range(turns[GREEDY], 1, 7);
     assert_in_range(turns[SESSION], 0, 1);
     time_accounts_finish(&accounts);
 }

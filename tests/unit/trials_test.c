@@ -45,7 +45,7 @@ static int teardown(void **state)
 
 #define CASE(name) TEST_ON(struct trials_fixture *f, name, setup, teardown)
 
-/* Distance along the surface from vertex `to`, as the synthetic plant defines it: the sum of the distances along the axes. */
+/* Returns the distances along the surface to vertex `to`, as the synthetic plant defines them: sums of the distances along the axes. */
 static float *along(const struct trials_fixture *f, size_t to)
 {
     const float(*at)[3] = f->plant->file.view.positions_m;

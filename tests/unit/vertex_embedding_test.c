@@ -86,7 +86,8 @@ static void on_side(double turn, double y, double radius, float out[3])
     out[2] = (float)(radius * cos(turn));
 }
 
-/* Points as on edges of a coarser level of the plate's outer side: nearer to its inner side. */
+/* Points that lie like an edge of a coarser level of the plate's outer side are found on that side, although they are nearer to the inner
+   side. */
 TEST(what_stands_off_is_on_the_side_that_it_looks_along)
 {
     enum { COUNT = 200 };
@@ -98,7 +99,7 @@ TEST(what_stands_off_is_on_the_side_that_it_looks_along)
     double worst_m = 0, nearest_m = INFINITY;
     cad_random_start(&chance);
     make_bent_plate(&plate, &chance);
-    for (int i = 0; i < COUNT; i++) { /* first points on the side itself, like the finest level's vertices */
+    for (int i = 0; i < COUNT; i++) { /* the first half of the points is on the side itself, like the finest level's vertices */
         double turn = 0.8 * (cad_random(&chance) - 0.5), y = UP * CELL * (0.3 + 0.4 * cad_random(&chance));
         double off_m = CELL * (0.55 + 0.4 * cad_random(&chance));
         on_side(turn, y, outer, places[i]);

@@ -44,7 +44,7 @@ function* variants(args) {
         yield numbers.reduce((all, path) => (random(3) === 0 ? changed(all, path, () => ODD[random(ODD.length)]) : all), args);
 }
 
-// Whether the result contains a non-finite number that was not simply passed through from the arguments.
+// Returns whether the result contains a non-finite number that was not simply passed through from the arguments.
 const made = (result, args) => paths(result, (v) => typeof v === 'number' && !Number.isFinite(v)).length > 0 &&
     paths(args, (v) => Object.is(v, result) || (v && typeof v === 'object' && JSON.stringify(v) === JSON.stringify(result))).length === 0;
 const printed = (v, most) => JSON.stringify(v, (_, x) => (typeof x === 'number' && !Number.isFinite(x) ? String(x) : x)).slice(0, most);

@@ -12,12 +12,12 @@ import { moveBy } from '../../clients/web/core/warp_mesh.js';
 const UP = [0, 0, 1], DEGREE = Math.PI / 180;
 const isClose = (a, b, most = 1e-6) => assert.ok(length(subtract(a, b)) < most, `${a} is not ${b}`);
 
-// A WebXR projection matrix of a frustum with these tangents, as of a Quest 3.
+// Returns the WebXR projection matrix of a frustum with these tangents, such as a Quest 3 has.
 function projection(left, right, bottom, top, near = 0.1, far = 1000) {
     return [2 / (right - left), 0, 0, 0, 0, 2 / (top - bottom), 0, 0, (right + left) / (right - left), (top + bottom) / (top - bottom),
         -(far + near) / (far - near), -1, 0, 0, -2 * far * near / (far - near), 0];
 }
-// A pose of the room: turned by yaw about y, at a position.
+// Returns the matrix of a pose in the room: turned by yaw about y, at a position.
 function matrix(yawDeg, [x, y, z]) {
     const c = Math.cos(yawDeg * DEGREE), s = Math.sin(yawDeg * DEGREE);
     return [c, 0, -s, 0, 0, 1, 0, 0, s, 0, c, 0, x, y, z, 1];
@@ -28,7 +28,7 @@ const viewsAt = (yaw, [x, y, z], turn = 0) => [[-0.0315, LEFT, turn], [0.0315, R
     transform: { matrix: matrix(yaw + more, [x + side * Math.cos(yaw * DEGREE), y, z - side * Math.sin(yaw * DEGREE)]) },
 }));
 
-// A flat wall at y = 5 with a board at y = 3, 1 m wide, as a grid of depth without masks.
+// Returns the depth grid, without masks, of a flat wall at y = 5 with a board at y = 3 that is 1 m wide.
 function gridOf(camera, width, height, cellPx) {
     const columns = Math.ceil(width / cellPx), rows = Math.ceil(height / cellPx), base = 1e-3, unitOf = 2e-4, near = [];
     for (let y = 0; y < rows; y++)

@@ -59,7 +59,7 @@ test('simulated is said on the picture, but not of the past', () => {
     assert.equal(simulatedText({ model: null, time, picture: null }), '');
 });
 
-// Height of a capital letter (0.72 of the font size) in minutes of arc.
+// Returns the height of a capital letter (0.72 of the font size) in minutes of arc.
 function letterMinutes(fontPx, { inches, metres }, screen) {
     const millimetres = (0.72 * fontPx * inches * 25.4) / Math.hypot(screen.width, screen.height);
     return (Math.atan(millimetres / (metres * 1000)) * 60 * 180) / Math.PI;

@@ -26,7 +26,7 @@ test('what a view is kept as', () => {
     for (const { text, params, camera } of cases('addresses')) {
         const read = readAddress(text);
         if (read.params.baseline)
-            read.params.baseline = read.params.baseline.name; // the form in which it is sent to the server
+            read.params.baseline = read.params.baseline.name; // the server gets only the baseline's name
         assert.deepEqual(read.params, params, text);
         assert.deepEqual(read.camera && cameraMessage(read.camera), camera, text);
     }
