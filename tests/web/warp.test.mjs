@@ -220,6 +220,12 @@ test('pictures wait for their depth, but not for a worker that does not answer',
         assert.equal(waits(0, 1), false, 'the worker still owes an answer');
         warp.take({ id: 0, parts: [] });
         assert.deepEqual([waits(0, 1), waits(0, 0), waits(900, 1), waits(200, 1)], [true, false, true, false]);
+        Object.assign(warp, { isShown: false, session: { cameraNews: false, cameraSeq: 1, picture: { cameraSeq: 1 } } });
+        warp.take({ id: 1, parts: [] });
+        assert.ok(waits(0, 2), 'a picture in a still view: the next move is drawn from it');
+        warp.take({ id: 2, parts: [] });
+        const before = draws;
+        assert.deepEqual([waits(0, 2), waits(5000, 2), draws], [false, false, before], 'no timer is left in a still view');
     } finally {
         calls.restore();
         mock.timers.reset();

@@ -194,6 +194,7 @@ export class Warp {
     take({ id, parts, why }) {
         const entry = this.grids.find((one) => one.id === id);
         this.waitsFrom = null;
+        clearTimeout(this.lateTimer);
         if (!entry)
             return;
         if (parts) {
@@ -212,14 +213,15 @@ export class Warp {
     }
 
     // Returns true if decoded pictures must wait until the depth grid of the newest picture is decoded. Without this, if grids are decoded
-    // more slowly than pictures arrive, no grid would ever be that of the newest picture.
+    // more slowly than pictures arrive, no grid would ever be that of the newest picture, and a move could not be drawn from a picture
+    // that has just arrived.
     waits(decoded) {
         const newest = decoded.findLast(({ frame }) => !frame.more)?.frame;
         const known = newest?.depth && this.grids.find(({ depth }) => depth === newest.depth);
-        if (!known || known.parts || known.fails || !(this.isShown || this.isAhead))
+        if (!known || known.parts || known.fails)
             return false;
         if (this.waitsFrom === null)
-            setTimeout(() => this.viewport.invalidate(), LATE_MS);
+            this.lateTimer = setTimeout(() => this.viewport.invalidate(), LATE_MS);
         this.waitsFrom ??= performance.now();
         return performance.now() - this.waitsFrom < LATE_MS;
     }
