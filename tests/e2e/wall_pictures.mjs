@@ -69,7 +69,7 @@ async function keep(page, name, [width]) {
 // Whether each pane of views has a refined picture of its own size, and each trend its curves.
 const whole = () => [...document.querySelectorAll('.pane iframe')].every((frame) => {
     const { session } = frame.contentWindow.plantcast ?? {}, { picture } = session ?? {};
-    return frame.closest('.trend') ? frame.contentWindow.plantcast?.trends?.series.length > 0 :
+    return frame.closest('.trend') ? frame.contentWindow.plantcast?.trends?.series.size > 0 :
         picture?.still && picture.cameraSeq === session.cameraSeq && picture.paramsSeq === session.paramsSeq && !session.cameraNews;
 });
 

@@ -87,7 +87,7 @@ test('an alarm: counted at once, listed, and one click leads there', options, as
 test('its trend, and the instant before it began', options, async () => {
     await page.locator('#card .trend').click();
     await page.locator('#trend-chart canvas').waitFor();
-    await page.waitForFunction(() => globalThis.plantcast.trends?.series.length > 0);
+    await page.waitForFunction(() => globalThis.plantcast.trends?.series.size > 0);
     await settle(page);
     await page.locator('#time-toggle').click();
     const slider = page.locator('#time-slider');

@@ -109,7 +109,7 @@ test('several tags are compared, each by its unit, and exported', options, async
         assert.equal(await page.locator('#trend-tags tbody tr').count(), name === 'TI-2' ? 1 : 2, 'what is only chosen replaces nothing');
         await page.locator('#card .add-trend').click();
     }
-    await page.waitForFunction(() => globalThis.plantcast.trends.series.length === 3);
+    await page.waitForFunction(() => globalThis.plantcast.trends.series.size === 3);
     assert.equal(await page.locator('#trend-tags tbody tr').count(), 3);
     const axes = await page.evaluate(() => globalThis.plantcast.trends.chart.axes.filter((axis) => axis.show)
         .map((axis) => axis.label ?? 'time'));
@@ -141,7 +141,7 @@ const drawn = ([from, to]) => page.waitForFunction((span) => { // the values of 
 }, [from, to]);
 
 test('a drag zooms, the wheel zooms about the pointer, a drag of the axis pans, and each is undone', options, async () => {
-    await page.waitForFunction(() => globalThis.plantcast.trends.series.length === 3 && globalThis.plantcast.trends.chart);
+    await page.waitForFunction(() => globalThis.plantcast.trends.series.size === 3 && globalThis.plantcast.trends.chart);
     const box = await page.locator('#trend-chart .u-over').boundingBox(), y = box.y + box.height / 2;
     const [from, to] = await rangeOf(), at = (x) => from + ((to - from) * (x - box.x)) / box.width;
     const [a, b] = [0.3, 0.7].map((part) => Math.round(box.x + part * box.width));
@@ -259,6 +259,33 @@ test('tags come by typing, and by dragging a marker or a row of the list', optio
     assert.deepEqual(await page.evaluate(() => globalThis.plantcast.session.camera.eye), before, 'the camera did not turn');
     await page.locator('#trend-tags tr', { hasText: 'PI-1' }).locator('.drop').click();
     await page.evaluate(() => globalThis.plantcast.addTrend(globalThis.plantcast.session.model.tag('PI-1')));
+});
+
+test('until the answer for its tags is there, a chart draws and reads no series', options, async () => {
+    const state = () => page.evaluate(() => {
+        const { chart, crosshairUs } = globalThis.plantcast.trends;
+        const cells = [...document.querySelectorAll('#trend-tags tbody .at')].map(({ textContent }) => textContent);
+        return { labels: chart.series.slice(1).map(({ label }) => label), cells, isRead: crosshairUs !== null };
+    });
+    const path = /api\/v1\/history/;
+    let answer;
+    const answered = new Promise((done) => { answer = done; });
+    await page.route(path, async (route) => { await answered; await route.continue(); });
+    await page.evaluate(() => { const { trends, session } = globalThis.plantcast; trends.only(session.model.tag('PI-1')); });
+    await page.locator('#theme').click();
+    await page.waitForFunction(() => globalThis.plantcast.trends.shownTheme === 'dark');
+    await page.locator('#trend-chart .u-over').hover();
+    await page.waitForFunction(() => globalThis.plantcast.trends.crosshairUs);
+    assert.deepEqual(await state(), { labels: [], cells: ['–'], isRead: true });
+    answer();
+    await page.waitForFunction(() => globalThis.plantcast.trends.chart.series[1]?.label === 'PI-1');
+    await page.unroute(path);
+    await page.locator('#theme').click();
+    await page.evaluate(() => {
+        const { addTrend, session: { model } } = globalThis.plantcast;
+        ['TI-1', 'TI-2'].forEach((name) => addTrend(model.tag(name)));
+    });
+    await page.waitForFunction(() => globalThis.plantcast.trends.series.size === 3);
 });
 
 test('in the dark theme the chart is dark, and its lines and limits are read', options, async () => {

@@ -21,14 +21,14 @@ export class Plot {
         this.element = element;
     }
 
-    // rows: [{ tag, series, alarms }] of this chart's units; span: the time of the values, in microseconds.
+    // rows: [{ tag, series, alarms }] of this chart's units, none before the answer; span: the time of the values, in microseconds.
     show(uPlot, rows, span, window) {
-        const names = JSON.stringify(rows.map(({ tag }) => tag.name));
+        const names = JSON.stringify(rows.map(({ tag }) => [tag.name, this.view.colourOf(tag)]));
         Object.assign(this, { rows, span });
         const tables = rows.map(({ series }) => line(series, ...span))
             .map((table) => (table[0].length > 0 ? table : [[span[0] / 1e6], [null]]));
         // a gap in one series must extend over the instants of the others
-        const data = uPlot.join(tables, tables.map(() => [EXPAND, EXPAND]));
+        const data = tables.length > 0 ? uPlot.join(tables, tables.map(() => [EXPAND, EXPAND])) : [[span[0] / 1e6]];
         this.bands = rows.map(({ series }) => bands(series));
         if (this.chart && this.names === names) {
             this.chart.setData(data, false);

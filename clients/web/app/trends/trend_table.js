@@ -43,9 +43,9 @@ export class TrendTable {
                 onclick: () => view.remove(tag) }, '×')));
     }
 
-    // Computes the statistics of the shown period.
+    // Computes the statistics of the shown period. series: a Map from names of tags.
     count(series, [from, to]) {
-        this.stats = new Map(this.view.tags.map((tag, i) => [tag, series[i] ? statistics(series[i], from, to) : null]));
+        this.stats = new Map(this.view.tags.map((tag) => [tag, series.has(tag.name) ? statistics(series.get(tag.name), from, to) : null]));
         this.fill();
     }
 
@@ -71,10 +71,10 @@ export class TrendTable {
 
     // Shows the values at the crosshair; null: none.
     point(us, series) {
-        this.view.tags.forEach((tag, i) => {
-            const cell = this.rows.get(tag)?.at;
+        for (const tag of this.view.tags) {
+            const cell = this.rows.get(tag)?.at, one = series.get(tag.name);
             if (cell)
-                setText(cell, numberText(us === null || !series[i] ? null : valueAt(series[i], us), this.view.decimalsOf(tag)));
-        });
+                setText(cell, numberText(us === null || !one ? null : valueAt(one, us), this.view.decimalsOf(tag)));
+        }
     }
 }

@@ -55,9 +55,9 @@ function load() {
 
 export class Trends {
     constructor({ session, overlay, handlers }) {
-        Object.assign(this, { session, tags: [], spanS: 3600, fixed: null, before: [], series: [], plots: [], focus: null,
-            isAsking: false });
-        this.alarms = new Map(); // tag -> alarms of the range
+        Object.assign(this, { session, tags: [], spanS: 3600, fixed: null, before: [], plots: [], focus: null, isAsking: false });
+        this.series = new Map(); // name of a shown tag -> its series, once the server has answered
+        this.alarms = new Map(); // name of a tag -> its alarms of the range
         this.element = byId('trends');
         this.addControls();
         this.table = new TrendTable(this);
@@ -67,6 +67,8 @@ export class Trends {
             this.zone = zoneOf(session.model.plant.time_zone);
             this.clock = zoneClock(this.zone);
             this.setTags(this.tags.map(({ name }) => session.model.tag(name)).filter(Boolean));
+            if (this.isOpen)
+                this.showTags();
         });
         onCrosshair((us, from) => this.onCrosshair(us, from));
         setInterval(() => this.isOpen && !document.hidden && this.isLive && !this.isAsking && this.refresh(), FRESH_MS);
@@ -144,6 +146,20 @@ export class Trends {
         this.tags = tags;
         if (!tags.includes(this.focus))
             this.focus = tags[0] ?? null;
+        const names = new Set(tags.map(({ name }) => name));
+        this.series = new Map([...this.series].filter(([name]) => names.has(name)));
+        if (this.plots.length === 0)
+            return;
+        this.note(this.words());
+        this.draw(globalThis.uPlot);
+    }
+
+    // Makes the rows of the tags and requests their values; closes the trend if there are no tags.
+    showTags() {
+        if (this.tags.length === 0)
+            return this.close();
+        this.table.build();
+        return this.refresh();
     }
 
     // Shows this tag alone.
@@ -175,10 +191,7 @@ export class Trends {
 
     remove(tag) {
         this.setTags(this.tags.filter((one) => one !== tag));
-        if (this.tags.length === 0)
-            return this.close();
-        this.table.build();
-        return this.refresh();
+        return this.showTags();
     }
 
     // Fills the list of tags that match a typed text.
@@ -364,10 +377,10 @@ export class Trends {
     }
 
     take(uPlot, span, series) {
-        Object.assign(this, { span, series });
+        Object.assign(this, { span, series: new Map(series.map((one) => [one.tag, one])) });
         this.note(this.words());
         this.draw(uPlot);
-        this.table.count(series, span);
+        this.table.count(this.series, span);
         clearTimeout(this.alarmTimer);
         this.alarmTimer = setTimeout(() => this.askAlarms(), SETTLED_MS);
     }
@@ -378,7 +391,8 @@ export class Trends {
 
     words() {
         const [from, to] = this.span;
-        const lacking = this.series.filter((one) => gaps(one, from, to).some(({ severity }) => severity === BAD)).map(({ tag }) => tag);
+        const lacks = (one) => gaps(one, from, to).some(({ severity }) => severity === BAD);
+        const lacking = [...this.series.values()].filter(lacks).map(({ tag }) => tag);
         return lacking.length > 0 ? say('trends.gaps', { tags: lacking.join(', ') }) : '';
     }
 
@@ -390,10 +404,10 @@ export class Trends {
             const answer = await ask('api/v1/alarms/journal', query, token).catch(() => null);
             return answer ? alarmSpans((await answer.json()).rows).filter(({ endUs }) => endUs === null || endUs > span[0]) : [];
         }));
-        if (tags !== this.tags || !this.isOpen)
+        if (tags !== this.tags || span !== this.span || !this.isOpen)
             return;
-        this.alarms = new Map(tags.map((tag, i) => [tag, all[i]]));
-        this.plots.forEach((plot) => plot.rows.forEach((row) => { row.alarms = this.alarms.get(row.tag); }));
+        this.alarms = new Map(tags.map(({ name }, i) => [name, all[i]]));
+        this.plots.forEach((plot) => plot.rows.forEach((row) => { row.alarms = this.alarms.get(row.tag.name); }));
         this.redraw();
     }
 
@@ -414,7 +428,8 @@ export class Trends {
                 isLast: i === count - 1, units: units.slice(i * UNITS_PER_PLOT, (i + 1) * UNITS_PER_PLOT) }));
             Object.assign(this, { shape, shownTheme: this.theme });
         }
-        const rows = this.tags.map((tag, i) => ({ tag, series: this.series[i], alarms: this.alarms.get(tag) }));
+        const answered = this.tags.filter(({ name }) => this.series.has(name));
+        const rows = answered.map((tag) => ({ tag, series: this.series.get(tag.name), alarms: this.alarms.get(tag.name) }));
         this.resize();
         for (const plot of this.plots)
             plot.show(uPlot, rows.filter(({ tag }) => plot.units.includes(this.unitOf(tag) || '–')), this.span, this.range);
@@ -449,10 +464,11 @@ export class Trends {
     }
 
     async save() {
+        const file = `${this.tags.map(({ name }) => name).join('_')}.csv`;
         try {
             const response = await ask('api/v1/history', { ...this.query(this.range), points: 20000, format: 'csv' }, this.session.token);
             const url = URL.createObjectURL(await response.blob());
-            make('a', { href: url, download: `${this.tags.map(({ name }) => name).join('_')}.csv` }).click();
+            make('a', { href: url, download: file }).click();
             setTimeout(() => URL.revokeObjectURL(url), 10000);
         } catch (error) {
             this.note(say('trends.unsaved', { why: error.message }));
