@@ -655,6 +655,29 @@ test('alarms: each alarm is announced once, when it is raised', () => {
     assert.deepEqual(raised(false, [0, 'HH', 'returned', 2, 20], [1, 'L', 'returned', 3, 20]), []);
     assert.deepEqual(raised(false, [0, 'HH', 'normal'], [1, 'L', 'unacknowledged', 3, 30]), ['1 L'], 'raised again');
     assert.deepEqual(raised(false, [1, 'L', 'normal'], [1, 'L', 'normal']), []);
+    assert.deepEqual(raised(true, [0, 'H', 'acknowledged', 3, 10], [1, 'L', 'unacknowledged', 3, 40]), ['1 L'], 'one message with all');
+});
+
+test('alarms: those raised while the connection was lost are announced once, in the same plant', () => {
+    const { clock, session, sockets } = greeted();
+    const of = { kept: [0, 'H', 'unacknowledged', 3, 10], late: [1, 'L', 'unacknowledged', 3, 20] };
+    const raised = (...rows) => {
+        sockets.at(-1).say(alarmRows(...rows));
+        return session.model.alarms.raised.map(({ tag, kind }) => `${tag.index} ${kind}`);
+    };
+    const reconnect = (greeting) => {
+        sockets.at(-1).fail();
+        clock.advance(60000);
+        sockets.at(-1).accept();
+        sockets.at(-1).say(greeting);
+    };
+    assert.deepEqual(raised(of.kept), []);
+    reconnect(welcome);
+    reconnect(welcome); // lost again before the alarms arrived
+    assert.deepEqual(raised(of.kept, of.late), ['1 L']);
+    assert.deepEqual(raised(of.kept, of.late), []);
+    reconnect({ ...welcome, plant: { ...welcome.plant, name: 'Another' } });
+    assert.deepEqual(raised(of.kept, of.late, [1, 'HH', 'unacknowledged', 1, 30]), []);
 });
 
 test('alarms: what is done to a row is done to all of its tag that it can be done to; a filter', () => {

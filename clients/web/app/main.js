@@ -98,9 +98,10 @@ setInterval(() => modules.there('card')?.tag && refresh(), 500); // updates the 
 
 for (const name of ['tags', 'alarms', 'proofs'])
     session.on(name, refresh);
-session.on('alarms', () => {
-    if (session.model.alarms.raised.length > 0 && !document.body.classList.contains('wall'))
-        modules.get('announcer');
+session.on('alarms', async () => {
+    const { raised } = session.model.alarms;
+    if (raised.length > 0 && !document.body.classList.contains('wall'))
+        (await modules.get('announcer')).take(raised);
 });
 session.on('time', () => {
     byId('time-toggle').hidden = false;

@@ -21,6 +21,8 @@ export const graver = (a, b) => isGone(a.state) - isGone(b.state) || a.priority 
 export class Alarms {
     constructor(tags) {
         Object.assign(this, { tags, mode: 'display', known: false, raised: [] });
+        // tag or device name -> times of its annunciated alarms, also of an earlier connection (session.js); null: none are known yet
+        this.times = null;
         this.rows = new Map(); // "tag index/kind" -> alarm
         this.then = null; // readings of the past instant that is shown, which then determine each tag's alarm; null: the present is shown
         // tag index or device name -> its most urgent annunciated alarm; `waiting` true: any of its alarms is unacknowledged
@@ -29,7 +31,7 @@ export class Alarms {
     }
 
     hear({ mode, all, alarms }) {
-        const before = new Map(all ? [] : this.byTag);
+        const before = this.times;
         Object.assign(this, { mode, known: true });
         if (all)
             this.rows.clear();
@@ -47,11 +49,12 @@ export class Alarms {
         }
         this.byTag = new Map([...ofTags].map(([key, [gravest, ...others]]) =>
             [key, { ...gravest, others, waiting: [gravest, ...others].some(({ state }) => isWaiting(state)) }]));
-        // alarms that this message raised, one per tag, the most urgent first; not those that only changed their state
-        this.raised = all ? [] : this.list().filter(({ tag, state, raisedUs }) => {
-            const was = before.get(tag.index ?? tag.name), known = was ? [was, ...was.others].map((one) => one.raisedUs) : [];
-            return !isGone(state) && state !== 'acknowledged' && known.every((us) => us < raisedUs);
-        });
+        const list = this.list();
+        this.times = new Map(list.map((one) => [one.tag.name, [one, ...one.others].map(({ raisedUs }) => raisedUs)]));
+        // alarms raised since the previous message, also since one of an earlier connection: one per tag, the most urgent first; not those
+        // that only changed their state
+        this.raised = list.filter(({ tag, state, raisedUs }) => before && !isGone(state) && state !== 'acknowledged' &&
+            !before.get(tag.name)?.some((us) => us >= raisedUs));
     }
 
     // Returns one alarm per tag: unacknowledged first, then active, then by priority, then newest first.

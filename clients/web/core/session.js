@@ -436,7 +436,10 @@ const HANDLERS = {
         this.codec = message.codec;
         this.connection.settle();
         this.confirmed = this.params = pick(message.view, SAID);
-        if (!this.helloParts.includes('camera') || (before && before.identity !== this.model.identity))
+        const isOther = before && before.identity !== this.model.identity;
+        if (before && !isOther)
+            this.model.alarms.times = before.alarms.times;
+        if (!this.helloParts.includes('camera') || isOther)
             this.camera = null;
         const { width, height, pixel_ratio: ratio = 1 } = this.size;
         this.camera ??= this.homeIn(width / ratio, height / ratio);

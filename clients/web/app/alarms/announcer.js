@@ -5,22 +5,33 @@ import { say } from '../../core/words.js';
 import { byId } from '../common/dom.js';
 import { limitText } from './alarm_bar.js';
 
-const MOST = 3; // maximum number of alarms in one message that are announced one by one; the others are only counted
+const MOST = 3; // alarms that are announced one by one; the others are counted
+const READ_MS = 3000; // shortest time between two announcements: a screen reader drops a text that is replaced too soon
 
 export class Announcer {
     constructor({ session }) {
-        this.session = session;
-        session.on('alarms', () => this.announce());
-        this.announce();
+        Object.assign(this, { session, waiting: [], timer: null });
+    }
+
+    // Announces alarms, those of a flood together.
+    take(raised) {
+        this.waiting.push(...raised.map((alarm) => ({ priority: alarm.priority, text: this.textOf(alarm) })));
+        if (this.timer === null)
+            this.announce();
+    }
+
+    textOf(alarm) {
+        return [`${alarm.tag.name} ${say(`kind.${alarm.kind}`)}`, say(`state.${alarm.state}`), limitText(this.session, alarm, true)]
+            .filter(Boolean).join(', ');
     }
 
     announce() {
-        const { raised } = this.session.model.alarms;
-        if (raised.length === 0)
+        this.timer = null;
+        if (this.waiting.length === 0)
             return;
-        const texts = raised.slice(0, MOST).map((alarm) => [`${alarm.tag.name} ${say(`kind.${alarm.kind}`)}`, say(`state.${alarm.state}`),
-            limitText(this.session, alarm, true)].filter(Boolean).join(', '));
-        const more = raised.length > MOST ? [say('alarms.more', { count: raised.length - MOST })] : [];
-        byId('alarm-said').textContent = [...texts, ...more].join('; ');
+        const all = this.waiting.splice(0).sort((a, b) => a.priority - b.priority);
+        const more = all.length > MOST ? [say('alarms.more', { count: all.length - MOST })] : [];
+        byId('alarm-said').textContent = [...all.slice(0, MOST).map(({ text }) => text), ...more].join('; ');
+        this.timer = setTimeout(() => this.announce(), READ_MS);
     }
 }

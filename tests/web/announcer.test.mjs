@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The live region that tells screen readers about new alarms.
+import assert from 'node:assert/strict';
+import { mock, test } from 'node:test';
+import { Announcer } from '../../clients/web/app/alarms/announcer.js';
+import { learnWords } from '../../clients/web/core/words.js';
+
+test('in a flood each alarm is announced once, and no text is replaced before it can be read', async () => {
+    await learnWords();
+    const said = [], region = { set textContent(text) { said.push(text); } };
+    const session = { model: { readings: [] }, time: { atUs: 1 }, now: () => 0, clockUs: () => null };
+    const alarm = (n, priority = 3) => ({ tag: { name: `T-${n}`, index: n }, kind: 'H', state: 'unacknowledged', priority, value: null,
+        limit: null });
+    mock.timers.enable({ apis: ['setTimeout'] });
+    globalThis.document = { getElementById: () => region };
+    try {
+        const announcer = new Announcer({ session });
+        announcer.take([alarm(0)]);
+        for (let n = 1; n < 20; n++)
+            announcer.take([alarm(n, n === 7 ? 1 : 3)]);
+        assert.equal(said.length, 1, 'one text while the first one is read');
+        for (let n = 0; n < 5; n++)
+            mock.timers.tick(3000);
+        assert.equal(said.length, 2, said.join('\n'));
+        assert.match(said[0], /^T-0 /);
+        assert.match(said[1], /^T-7 .*; T-1 .*; T-2 .*; .*\b16\b/);
+        announcer.take([alarm(20)]);
+        assert.match(said[2], /^T-20 /, 'at once when none is being read');
+    } finally {
+        delete globalThis.document;
+        mock.timers.reset();
+    }
+});
