@@ -14,7 +14,7 @@ int64_t clock_utc_ns(void);  /* Returns UTC since 1970, for stored times and for
 /* Returns the plant's UTC: the core's clock on a node that follows a core, else clock_utc_ns(). Readings, alarms, notes and the actions
    of users have times of this clock. */
 int64_t clock_plant_ns(void);
-/* Returns true if NTP or PTP synchronises the system clock, according to the kernel. */
+/* Sets how many nanoseconds the plant's clock is ahead of this machine's UTC clock; 0: clock_plant_ns() equals clock_utc_ns(). */
 void clock_follow(int64_t ahead_ns);
 bool clock_utc_is_set(void);                /* Returns true if NTP or PTP synchronises the clock, according to the kernel. */
 void clock_cond_init(pthread_cond_t *cond); /* Initialises a condition variable whose timed waits use clock_mono_ns(). */

@@ -20,7 +20,7 @@ struct thread {
 void thread_init(struct thread *thread);
 /* Starts run(arg). Returns false if the thread cannot be created, logged as `NAME: no thread`. */
 bool thread_start(struct thread *thread, struct log *log, const char *name, void *(*run)(void *arg), void *arg);
-/* Sets `stopping`, wakes the thread and waits until it has ended. If no thread was started, only sets `stopping`. */
+/* Sets `stopping`, wakes the thread and waits until it has ended. If the thread was never started, only sets `stopping`. */
 void thread_stop(struct thread *thread);
 void thread_finish(struct thread *thread);
 /* Returns true if the thread must end. Takes the lock. */

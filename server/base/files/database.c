@@ -184,7 +184,7 @@ static int open_handle(struct database *database, const char *name, int flags)
 
 static int open_to_write(struct database *database, int *version)
 {
-    /* synchronous = FULL: a committed transaction survives a loss of power. */
+    /* synchronous = FULL: a committed transaction survives a loss of power */
     static const char set_up[] = "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL";
     int code = open_handle(database, database->path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
     if (code == SQLITE_OK) /* must run the format's pragmas first: some apply only to a file without pages */
@@ -237,7 +237,7 @@ int database_open_to_read(struct database *database)
     int code = open_handle(database, database->path, SQLITE_OPEN_READONLY);
     if (code == SQLITE_OK)
         code = read_version(database, &version);
-    /* immutable only on a read-only disk: on a writable one, another process may change the file meanwhile */
+    /* opens as immutable only on a read-only disk: on a writable one, another process may change the file meanwhile */
     if ((code & 0xff) == SQLITE_CANTOPEN && !has_log(database) && is_on_read_only_disk(database)) {
         code = open_unchanging(database);
         if (code == SQLITE_OK)

@@ -11,7 +11,7 @@
 
 #include "base/log/log.h"
 
-struct database_format { /* array of `version` SQL scripts; each converts a file from the previous version */
+struct database_format { /* one of our file formats: SQLite's application id and version, schema, and prepared statements */
     int application_id, version;
     const char *set_up;            /* pragmas for connections that write */
     const char *const *schemas;    /* array of `version` SQL scripts; each converts a file from the version before */
@@ -37,8 +37,9 @@ int database_open(struct database *database, bool *renewed);
 /* Opens the file for reading, even on a read-only disk. Returns -ENOENT, not logged, if the file is missing or nothing has been written
    to it yet. The file may have any version up to this program's. */
 int database_open_to_read(struct database *database);
-/* Opens a file that another handle already writes, to write to it as well: does not create, convert or rename the file. Commits are
-   atomic, but the newest may be lost when the power fails. Returns -ENOENT, not logged, if there is no file, or one of a newer version. */
+/* Opens a file that another handle of this program already writes, so that both can write. Does not create, convert or rename the file.
+   Commits are atomic, but the newest may be lost when the power fails. Returns -ENOENT, not logged, if there is no file, or one of a newer
+   version. */
 int database_open_beside(struct database *database);
 /* Closes the file and renames NAME.sqlite and SQLite's companion files to NAME.damaged-TIME.sqlite, for later analysis. Returns false if
    it cannot be renamed. Logged in both cases. */

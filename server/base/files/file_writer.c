@@ -7,7 +7,8 @@
 #include "base/mem.h"
 #include "base/thread.h"
 
-/* MAX_QUEUED: jobs that may wait for a disk that hangs. RESULTS: results that are remembered; a ticket is settled after a second */
+/* MAX_QUEUED: maximum number of queued jobs, reached only if the disk hangs. RESULTS: number of newest jobs whose results are remembered;
+   enough, because a ticket (settling_ticket) is settled after a second */
 enum { MAX_QUEUED = 64, RESULTS = 1024 };
 
 struct file_writer {
@@ -18,8 +19,9 @@ struct file_writer {
     struct file_job *queued, *running, *done;
     int queued_count;
     /* --- used by the event loop only */
-    uint64_t count;       /* number of the newest job */
-    int results[RESULTS]; /* by number modulo RESULTS: -EINPROGRESS, 0 or the error */
+    uint64_t count; /* number of the newest job */
+    /* results of the newest jobs, each at its number modulo RESULTS: 0, -errno, or -EINPROGRESS while the job is not finished */
+    int results[RESULTS];
 };
 
 static void append(struct file_job **list, struct file_job *job)
@@ -30,7 +32,8 @@ static void append(struct file_job **list, struct file_job *job)
     *list = job;
 }
 
-/* Adds a job to the written ones. Call it with the lock held. If the job failed, those of the same owner that wait behind it fail, too. */
+/* Moves a job that was written to the list `done`. If it failed, queued jobs of the same owner fail with the same error. The caller holds
+   the lock. */
 static void put_done(struct file_writer *writer, struct file_job *job, int error)
 {
     job->error = error;
@@ -105,7 +108,7 @@ void file_writer_destroy(struct file_writer **pointer)
     *pointer = NULL;
 }
 
-/* Returns the error of a written job of that owner which the event loop has not collected yet; 0: there is none. */
+/* Returns the error of a job of that owner that has failed and that the event loop has not collected yet; 0: there is none. */
 static int failed_before(const struct file_writer *writer, const void *owner)
 {
     int error = 0;

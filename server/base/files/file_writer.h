@@ -8,25 +8,26 @@
 #include "base/files/settling.h"
 #include "base/log/log.h"
 
-/* First member of a larger struct. The caller sets the first three members. */
+/* A job of the file writer. Make it the first member of a struct with the job's data, and set `write`, `finish` and `owner`. */
 struct file_job {
     int (*write)(struct file_job *job); /* writes the file; returns 0 or -errno. Thread: the writer's */
-    /* Puts the change in force if `error` is 0, otherwise drops it; frees the job. owner NULL: only frees it. */
+    /* Ends the job on the event loop: if `error` is 0, makes the saved change take effect, else discards it; then frees the job. If `owner`
+       is NULL (file_writer_forget()), only frees the job. */
     void (*finish)(struct file_job *job, int error);
-    const void *owner; /* jobs of one owner build on each other: after one failed, those that were queued behind it fail, too */
+    const void *owner; /* jobs of one owner build on each other: if one fails, jobs of that owner that were queued after it fail, too */
     uint64_t number;
     int error;
     struct file_job *next;
 };
 
 struct file_writer;
-/* Starts the thread. notify(arg) is called by the thread after each job: call file_writer_collect() then. Returns NULL if the thread cannot
-   start (logged). */
+/* Starts the thread. After each job the thread calls notify(arg), which must make the event loop call file_writer_collect(). Returns NULL
+   if the thread cannot start (logged). */
 struct file_writer *file_writer_start(struct log *log, void (*notify)(void *arg), void *arg);
 /* Writes what is queued, finishes all jobs and ends the thread. Owners of jobs may still call file_writer_forget() afterwards. NULL is
    allowed. */
 void file_writer_stop(struct file_writer *writer);
-/* Stops and frees the writer, after the owners of its jobs. &NULL is allowed; sets *writer to NULL. */
+/* Stops and frees the writer; free the owners of its jobs before. &NULL is allowed; sets *writer to NULL. */
 void file_writer_destroy(struct file_writer **writer);
 /* Queues a job. writer NULL: writes and finishes the job at once. Returns 0 or -errno; on an error the job is finished already. */
 int file_writer_queue(struct file_writer *writer, struct file_job *job);
@@ -34,10 +35,10 @@ int file_writer_queue(struct file_writer *writer, struct file_job *job);
 bool file_writer_collect(struct file_writer *writer);
 /* Waits until no job is left to write, for timeout_ns at most. Returns whether none is left. Any thread. */
 bool file_writer_wait(struct file_writer *writer, int64_t timeout_ns);
-/* Makes the unfinished jobs of an owner, which is about to be freed, forget it: their files are still written. */
+/* Detaches the unfinished jobs of an owner that is about to be freed: their files are still written, but `finish` then only frees them. */
 void file_writer_forget(struct file_writer *writer, const void *owner);
-/* Tell whether the jobs that are queued between file_writer_begin() and file_writer_end() are on disk (base/files/settling.h). writer NULL:
-   they are. */
+/* file_writer_begin(), file_writer_end() and file_writer_settled() tell whether the jobs queued between `begin` and `end` are on disk
+   (base/files/settling.h). writer NULL: they count as on disk. */
 struct settling_ticket file_writer_begin(const struct file_writer *writer);
 void file_writer_end(const struct file_writer *writer, struct settling_ticket *ticket);
 int file_writer_settled(const struct file_writer *writer, const struct settling_ticket *ticket);

@@ -9,7 +9,7 @@
 /* Appends an array with its length. */
 void pack_array(struct text *to, const void *array, size_t count, size_t bytes_each);
 
-struct unpack { /* the bytes that are not read yet, which belong to the caller */
+struct unpack { /* bytes of packed arrays that are not read yet; the caller owns them */
     const char *at;
     size_t left;
     bool bad; /* true: a read has failed, so all further reads fail too */

@@ -73,7 +73,7 @@ static bool shrink(struct image *image, uint32_t max_px, char *why)
     return good;
 }
 
-/* Decodes by the module. Its errors begin with the format. */
+/* Decodes an image by plantcast-images.so. If the module cannot be loaded, `why` begins with the image's format. */
 static bool decode_by_module(struct image *image, const void *bytes, size_t size, uint32_t max_px, const char *format, char *why)
 {
     bool (*decode)(struct image *, const void *, size_t, uint32_t, char[IMAGE_WHY_BYTES]);
@@ -104,7 +104,7 @@ bool image_decode(struct image *image, const void *bytes, size_t size, uint32_t 
     return cmyk && decode_by_module(image, bytes, size, max_px, "jpeg in CMYK", why);
 }
 
-/* Reads a PNG or JPEG file. Returns false with an empty `why` for other formats, which the module has to read. */
+/* Reads a PNG or JPEG file. Returns false with an empty `why` for other formats, which plantcast-images.so must read. */
 static bool load_here(struct image *image, const char *path, uint32_t max_px, char *why)
 {
     unsigned char head[12];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared by image.c, which decides who decodes an image, and the decoders. Thread: any. */
+/* Shared by the decoders and by image.c, which chooses the decoder of an image. Thread: any. */
 #ifndef BASE_IMAGE_IMAGE_IMPL_H
 #define BASE_IMAGE_IMAGE_IMPL_H
 #include "base/image/image.h"
@@ -9,7 +9,7 @@ extern "C" {
 #endif
 
 #define IMAGE_MAX_SIDE_PX (1u << 15)
-#define IMAGE_MAX_PIXELS (1u << 26) /* 8192 x 8192: no texture is drawn with more */
+#define IMAGE_MAX_PIXELS (1u << 26) /* 8192 x 8192: larger textures are never drawn */
 /* Limits against files that decode to far more than their size. VALUES_PER_BYTE: most decoded values per byte of file; zlib shrinks data
    to a thousandth at best, JPEG to less. FREE_VALUES: number of values that a file of any size may have. */
 #define IMAGE_VALUES_PER_BYTE 2000u
@@ -22,7 +22,8 @@ bool image_allocate(struct image *image, uint32_t width_px, uint32_t height_px, 
 bool image_read_png(struct image *image, const void *bytes, size_t size, char why[IMAGE_WHY_BYTES]);
 bool image_read_jpeg(struct image *image, const void *bytes, size_t size, bool *cmyk, char why[IMAGE_WHY_BYTES]);
 
-/* Functions of plantcast-images.so, for all other formats: like image_decode(), image_load() and image_load_float(). */
+/* Functions of plantcast-images.so for formats other than PNG and JPEG; they work like image_decode(), image_load() and
+   image_load_float(). */
 bool images_decode(struct image *image, const void *bytes, size_t size, uint32_t max_px, char why[IMAGE_WHY_BYTES]);
 bool images_load(struct image *image, const char *path, uint32_t max_px, char why[IMAGE_WHY_BYTES]);
 bool images_load_float(struct image_float *image, const char *path, uint32_t max_px, char why[IMAGE_WHY_BYTES]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* plantcast-images.so: decodes by OpenImageIO what image.c does not decode itself. */
+/* plantcast-images.so: decodes, by OpenImageIO, the image formats that image.c does not decode itself. */
 #include "base/image/image_impl.h"
 
 #include <OpenImageIO/filesystem.h>

@@ -4,8 +4,8 @@
 #define BASE_MATH_VEC_H
 #include <math.h>
 
-/* Minimum of two numbers that are not NaN. The library's fmin and fmax handle NaN, and their calls would take half of the time of a ray
-   query. */
+/* Returns the smaller of two numbers that are not NaN. The C library's fmin() and fmax() also handle NaN, and calling them would take half
+   of the time of a ray query. */
 static inline double min_of(double a, double b)
 {
     return a < b ? a : b;

@@ -19,7 +19,7 @@
 enum { REMOVE_TRIES = 50, REMOVE_PAUSE_MS = 20 };
 static const char daemon_name[] = "/daemon";
 
-/* Finds the mount point of cgroup v2, which may be mounted together with cgroup v1. */
+/* Finds where cgroup v2 is mounted; cgroup v1 may be mounted next to it. */
 static bool find_mount(char out[PATH_MAX])
 {
     char line[2 * PATH_MAX], kind[32];

@@ -143,7 +143,7 @@ static int restrict_paths(const struct confine_params *params, int abi)
 {
     const struct confine_ruleset attributes = confine_ruleset_of(abi);
     uint64_t known = attributes.files;
-    /* the structure may be larger than an older kernel's: the kernel accepts that if the excess is zero */
+    /* the kernel accepts a structure that is larger than its own, as on older kernels, if the excess bytes are zero */
     int ruleset = (int)syscall(SYS_landlock_create_ruleset, &attributes, sizeof(attributes), 0);
     int status = ruleset < 0 ? -errno : permit(ruleset, "/dev/null", (READ_FILE | WRITE_FILE | TRUNCATE) & known);
     for (size_t i = 0; i < sizeof(system_paths) / sizeof(system_paths[0]) && status == 0; i++)
@@ -198,8 +198,9 @@ int confine(const struct confine_params *params)
     drop_capabilities(params->role);
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
         return -errno;
-    bool moves_files = params->role != CONFINE_READER; /* commands also move files between folders, which Landlock ABI 1 forbids every
-                                                          confined process: under ABI 1 their paths are not restricted */
+    /* commands also move files between folders, which Landlock ABI 1 forbids to every confined process; under ABI 1, paths of commands are
+       therefore not restricted */
+    bool moves_files = params->role != CONFINE_READER;
     int status = abi < 1 || (abi < ABI_RENAME && moves_files) ? 0 : restrict_paths(params, abi);
     if (status != 0)
         return status;
@@ -214,7 +215,8 @@ bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES])
         int abi;
         const char *missing;
     } parts[] = {
-        /* access that stays possible without that Landlock ABI; seccomp still blocks TCP and devices, and for readers all of these */
+        /* abi: the Landlock ABI that first restricts an access; missing: the access that commands under `convert` have without it. Readers
+           do not have it, because seccomp blocks it. TCP and devices are blocked by seccomp for both. */
         { ABI_RENAME, "read and write all files of this user" },
         { ABI_TRUNCATE, "empty all files that this user may write" },
         { ABI_SCOPES, "signal other processes of this user" },
@@ -250,8 +252,8 @@ void confine_hide_memory(void)
 }
 
 #ifdef __SANITIZE_ADDRESS__
-/* LeakSanitizer calls this function before it looks for leaks. It inspects the process by ptrace(), which confined processes and those
-   with hidden memory deny. */
+/* LeakSanitizer calls this function before it looks for leaks, and skips the search if it returns true. It would inspect the process by
+   ptrace(), which confined processes and those with hidden memory deny. */
 int __lsan_is_turned_off(void);
 int __lsan_is_turned_off(void)
 {

@@ -24,7 +24,8 @@
 #endif
 
 #ifdef OWN_ARCH
-/* FIRST_NEWER_CALL: system call number of cachestat (Linux 6.5). This and higher numbers, also those of x32, are newer than the list */
+/* FIRST_NEWER_CALL: system call number of cachestat (Linux 6.5). The list was made before; this and higher numbers, which include those of
+   the x32 ABI, are unknown to it */
 enum { MAX_INSTRUCTIONS = 1024, FIRST_NEWER_CALL = 451 };
 #define NAMESPACES (CLONE_NEWNS | CLONE_NEWCGROUP | CLONE_NEWUTS | CLONE_NEWIPC | CLONE_NEWUSER | CLONE_NEWPID | CLONE_NEWNET)
 #ifndef PR_SET_VMA
@@ -69,7 +70,8 @@ static const int reader_calls[] = {
 #endif
 };
 
-/* Further calls that the site's own programs need, in the folder that they may write. */
+/* Additional system calls for commands of the site (its own programs, which the plant file names): they may start programs and change files
+   in the folder that they may write. */
 static const int command_calls[] = {
     SYS_kill, SYS_tgkill, SYS_pidfd_open, SYS_pidfd_send_signal, SYS_setpgid, SYS_prctl, SYS_seccomp, SYS_capset, SYS_fchmod, SYS_fchown,
     SYS_landlock_create_ruleset, SYS_landlock_add_rule, SYS_landlock_restrict_self, SYS_sched_setaffinity,
@@ -143,7 +145,7 @@ static void decide_by_arguments(struct filter_program *program, enum confine_rol
     static const struct values namespaces = { { (uint32_t)NAMESPACES }, 1 };
     const struct values own = { { (uint32_t)getpid() }, 1 }, self = { { 0, (uint32_t)getpid() }, 2 };
     decide(program, SYS_fcntl, 1, BPF_JEQ, &owners, false);
-    /* the process may change its own limits, but not the daemon's */
+    /* a process may change its own limits (pid 0 or its own pid), but not the daemon's */
     decide(program, SYS_prlimit64, 0, BPF_JEQ, role == CONFINE_READER ? &self : &itself, true);
     if (role == CONFINE_READER) {
         decide(program, SYS_kill, 0, BPF_JEQ, &own, true);
@@ -171,7 +173,7 @@ int confine_calls(enum confine_role role, bool notifies)
     add(&program, BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr), 0, 0);
     add(&program, BPF_JMP | BPF_JGE | BPF_K, FIRST_NEWER_CALL, 0, 1);
     answer(&program, SECCOMP_RET_ERRNO | ENOSYS);
-    /* clone3() and openat2() are refused, because a filter cannot see their flags, which are in memory */
+    /* refuses clone3() and openat2(), because a filter cannot see their flags, which are in memory */
     add(&program, BPF_JMP | BPF_JEQ | BPF_K, SYS_clone3, 1, 0);
     add(&program, BPF_JMP | BPF_JEQ | BPF_K, SYS_openat2, 0, 1);
     answer(&program, SECCOMP_RET_ERRNO | ENOSYS);

@@ -5,8 +5,9 @@
 #include <stdbool.h>
 
 enum confine_role {
-    CONFINE_READER, /* parses untrusted files: has threads, but starts no process and sends signals only to itself */
-    CONFINE_COMMAND /* command of the site: starts programs, and in the folder that it may write makes links and changes modes */
+    CONFINE_READER, /* process that parses untrusted files: has threads, but starts no process and sends signals only to itself */
+    /* command of the site (its own program): starts programs, and in the folder that it may write makes links and changes modes */
+    CONFINE_COMMAND
 };
 
 /* Installs the filter of system calls for the calling thread, which must have no_new_privs. notifies: also allow messages to the service

@@ -24,8 +24,8 @@ enum {
     FIRST_SOCKET = 3 /* number of the first descriptor that systemd passes: sd_listen_fds(3) */,
     EXTENSION_S = 60,
     EXTENSION_INTERVAL_S = 5,
-    MIN_EXTENSIONS = 60 /* minimum number of requests for more time within limit_s seconds; with a short limit, the requests come more
-                           often */
+    /* minimum number of requests for more time within limit_s seconds: if limit_s is short, requests follow at shorter intervals */
+    MIN_EXTENSIONS = 60
 };
 static const int64_t AT_WORK_NS = 20 * NS_PER_MS; /* processes that used less CPU time than this between two checks count as idle */
 
@@ -83,8 +83,8 @@ int service_take_socket(void)
     if (!pid || !count || strtol(pid, NULL, 10) != (long)getpid() || strtol(count, NULL, 10) < 1)
         return -1;
     bool one = strtol(count, NULL, 10) == 1;
-    unsetenv("LISTEN_PID"); /* removed, because plantcast-prep, which a reload starts with this environment, must not take the socket for
-                               its own */
+    /* removes LISTEN_PID from the environment: plantcast-prep, which a reload starts, would otherwise take the socket for its own */
+    unsetenv("LISTEN_PID");
     unsetenv("LISTEN_FDS");
     fcntl(FIRST_SOCKET, F_SETFD, FD_CLOEXEC);
     return one ? FIRST_SOCKET : -EINVAL;
@@ -137,8 +137,8 @@ static bool is_at_work(struct service_patience *patience)
     return works;
 }
 
-/* Main function of the thread that asks the service manager for more time to start, at each interval. It asks no more while the
-   processes use no CPU time, or once the status is too old, so that a hanging start is ended. */
+/* Main function of the thread that asks the service manager, at intervals, for more time to start. It stops asking while the processes use
+   no CPU time, or once the status is too old, so that the manager ends a hanging start. */
 static void *extend_start(void *arg)
 {
     struct service_patience *patience = arg;
@@ -149,7 +149,8 @@ static void *extend_start(void *arg)
         int64_t now_ns = clock_mono_ns();
         if (works && now_ns - patience->since_ns < patience->limit_ns)
             service_notify("EXTEND_TIMEOUT_USEC=%lld\nSTATUS=%s", EXTENSION_S * 1000000ll, patience->status);
-        if (now_ns - logged_ns > EXTENSION_INTERVAL_S * NS_PER_S * 9 / 10) { /* in the journal, also of a start that hangs */
+        /* writes the status to the journal, also while a start hangs */
+        if (now_ns - logged_ns > EXTENSION_INTERVAL_S * NS_PER_S * 9 / 10) {
             fprintf(stderr, "%s: %s, for %.0f s so far\n", program_invocation_short_name, patience->status,
                     (double)(now_ns - begin_ns) / 1e9);
             logged_ns = now_ns;

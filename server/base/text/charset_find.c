@@ -56,8 +56,8 @@ static const char korean[] =
 struct wide_model {
     const char *name, *frequent;
     double prior;
-    /* Returns the logarithm of the probability of the character with these two bytes (second 0: of one byte), if it is not in
-       `frequent`; 0: no such character. */
+    /* Returns the logarithm of the probability of the character with these two bytes, if it is not in `frequent`; 0: there is no such
+       character. second 0: the character has one byte. */
     double (*rate)(unsigned first, unsigned second);
 };
 
@@ -242,7 +242,7 @@ static bool is_letter(enum byte_kind kind)
     return kind != ASCII_OTHER && kind != HIGH_SIGN && kind != HIGH_NONE;
 }
 
-/* Returns what the bytes before and after a high byte (0x80 and above) add to the score. */
+/* Returns how much the bytes before and after a high byte (0x80 and above) add to the score of an encoding. */
 static double rate_around(const struct narrow_table *table, bool latin, const unsigned char *at, const unsigned char *from,
                           const unsigned char *to)
 {
@@ -332,7 +332,7 @@ static double score_wide(const struct wide_model *model, const unsigned char *at
         if (length == 2 && set->pairs[pair / 64] >> pair % 64 & 1)
             rate = frequent;
         if (length == 2 && second < 0x80)
-            rate += 3; /* makes up for an ASCII second byte, which the one-byte models do not score */
+            rate += 3; /* compensates for a second byte that is ASCII, because the one-byte models do not score ASCII bytes */
         if (length == 1 && rate >= 0 && model->rate == rate_gb && in(second, 0x30, 0x39) && at + 3 < to && in(at[3], 0x30, 0x39)) {
             length = 4; /* a four-byte character of GB 18030 that GBK lacks */
             rate = -14;
