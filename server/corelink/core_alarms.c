@@ -121,8 +121,8 @@ static bool read_row(const json_t *one, struct journal_entry *out)
     return good;
 }
 
-/* Writes the core's alarm changes (`rows`) to the journal. The alarm states that result from them are written to the same file
-   afterwards. Returns NULL, or what is wrong with the rows (static). */
+/* Writes the journal rows of the core's alarm changes (`rows`). Call it before the alarm states that result from these changes are stored
+   in the same file. Returns NULL, or what is wrong with the rows (static). */
 static const char *take_rows(struct alarm_service *service, const json_t *rows)
 {
     const json_t *one;

@@ -17,7 +17,8 @@ struct core_history {
     struct core_link *link;
     const _Atomic bool *stop;
     struct http_request request;
-    char said[CURL_ERROR_SIZE + 100]; /* text of the last error that was logged; empty: the last query succeeded */
+    /* text of the last error that was logged, so that a repeated error is not logged again; empty: the last query succeeded */
+    char said[CURL_ERROR_SIZE + 100];
 };
 
 struct core_history *core_history_create(struct log *log, struct core_link *link, const _Atomic bool *stop)
@@ -83,7 +84,7 @@ bool core_history_get(struct core_history *history, const char *path, struct tex
     curl_easy_setopt(request->handle, CURLOPT_URL, url);
     if (peer.ca_path)
         curl_easy_setopt(request->handle, CURLOPT_CAINFO, peer.ca_path);
-    size_t begin = out->length; /* the HTTP answer is appended to the text in *out */
+    size_t begin = out->length; /* the HTTP answer is appended behind the present text of *out */
     request->answer = *out;
     request->most_bytes = begin + MAX_ANSWER_BYTES;
     request->error[0] = 0;

@@ -41,7 +41,7 @@ struct pending_request {
 
 struct core_link {
     struct core_link_params params;
-    char authorization[TOKEN_BYTES + 16]; /* value of the HTTP authorization header; empty: none */
+    char authorization[TOKEN_BYTES + 16]; /* value of the HTTP header `Authorization`; empty: none */
     int stop_fd;
     counter *up[CORE_URLS], *connects, *refused, *behind;
     /* --- below: used only by the link's thread */
@@ -54,8 +54,9 @@ struct core_link {
         char said[ADDRESSES][WHY_BYTES]; /* for each address: the reason logged last why there was no connection */
     } hosts[CORE_URLS];
     int address;                                       /* index of the address that is being tried */
-    int64_t heard_ns, begun_ns, least_ns, readings_ns; /* heard_ns: time of the newest message; least_ns, readings_ns: kept between
-                                                          messages for struct core_readings (least_ns, at_ns) */
+    /* heard_ns: time of the newest message; least_ns, readings_ns: values that struct core_readings keeps from message to message (its
+       least_ns and at_ns) */
+    int64_t heard_ns, begun_ns, least_ns, readings_ns;
     bool ended, taken, votes, introduced, clock_said;  /* votes: this connection is used only for lease promises and gets no readings */
     bool at_fault;       /* true: the connection failed because this node or the core is configured wrongly; false: the connection was
                             lost */
@@ -176,7 +177,7 @@ static void end(struct core_link *link, const char *why)
     link->ended = true;
 }
 
-/* Ends the connection because of a fault that the core reported, or that was found in its messages. */
+/* Ends the connection because of a fault that the core reported, or because the core's messages are faulty. */
 static void refuse(struct core_link *link, const char *why)
 {
     counter_inc(link->refused, 1);
@@ -478,7 +479,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
     case LWS_CALLBACK_CLIENT_CONNECTION_ERROR: on_failure(link, in); break;
     case LWS_CALLBACK_CLIENT_RECEIVE: on_receive(link, in, len); return link->ended ? -1 : 0;
     case LWS_CALLBACK_CLIENT_WRITEABLE: return send_next(link);
-    case LWS_CALLBACK_EVENT_WAIT_CANCELLED: /* another thread woke the loop: a message is queued, or this thread must end */
+    case LWS_CALLBACK_EVENT_WAIT_CANCELLED: /* another thread interrupted lws_service(): a message is queued, or this thread must end */
         if (link->wsi)
             lws_callback_on_writable(link->wsi);
         break;
@@ -499,7 +500,7 @@ struct link_wakeup {
     struct core_link *link;
 };
 
-/* Callback of a timer that does nothing else than make lws_service() return regularly. */
+/* Callback of a timer that does nothing: the timer only makes lws_service() return regularly. */
 static void on_look(lws_sorted_usec_list_t *sul)
 {
     struct link_wakeup *look = lws_container_of(sul, struct link_wakeup, sul);

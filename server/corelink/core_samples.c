@@ -39,7 +39,8 @@ struct core_samples *core_samples_listen(struct store *store)
     struct core_samples *samples = mem_new(sizeof(*samples));
     samples->store = store;
     pthread_mutex_init(&samples->lock, NULL);
-    store_listen_all(store, on_sample, samples); /* a standby records the same points as the historian here */
+    /* queues the same samples that this daemon's historian gets, so that the standby records the same points */
+    store_listen_all(store, on_sample, samples);
     return samples;
 }
 

@@ -43,7 +43,8 @@ void lease_saw(struct lease *lease, const struct lease_row *row, int64_t now_ns)
                                                                      bid was lost */
         lead(lease);
     else if (!same)
-        lease->bids = false; /* the row has changed, so this node's bid, if it still arrives late, can no longer succeed */
+        /* the row has changed since this node sent its bid, so the bid, if it still arrives late, can no longer succeed */
+        lease->bids = false;
     if (!same)
         lease->seen_ns = now_ns;
     lease->row = *row;

@@ -33,7 +33,7 @@ struct lease {
     char node[LEASE_NODE_BYTES]; /* name of this node */
     int64_t instance;
     struct lease_row row; /* the row as this node last read or wrote it */
-    bool known;           /* `row` is valid */
+    bool known;           /* true: `row` is valid */
     bool leads;
     bool lost;                     /* true: this node was the leader, and another node leads now */
     bool bids;                     /* true: a bid of this node is being sent, or its outcome is unknown */

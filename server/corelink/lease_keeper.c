@@ -18,7 +18,7 @@
 
 enum { ASKED = 32, NUMBER_BYTES = 24 };
 static const int64_t MAX_TIMEOUT_NS = NS_PER_S, MIN_TIMEOUT_NS = 50 * NS_PER_MS;
-/* a standby stays named in the lease's row for this long after its connection ends, as during a reload */
+/* time for which the lease's row still names a standby after its connection ended, because a reload only interrupts it */
 static const int64_t STANDBY_GRACE_NS = 10 * NS_PER_S;
 static const int64_t SHUTDOWN_NS = 300 * NS_PER_MS; /* time before the kernel ends the process in which it can log the reason and shut
                                                        down in order */
@@ -358,7 +358,7 @@ static int64_t take_turn(struct lease_keeper *keeper)
         else if (keeper->link && !leads)
             bid(keeper);
     }
-    promise_itself(keeper); /* connecting may have taken a second */
+    promise_itself(keeper); /* again, because connecting to the database may have taken a second */
     tell(keeper);
     pthread_mutex_lock(&keeper->thread.lock);
     int64_t next_ns = began_ns + (leads ? LEASE_RENEW_NS : LEASE_LOOK_NS), last_ns = keeper->lease.until_ns - SHUTDOWN_NS + 1;

@@ -10,7 +10,7 @@
 
 /* help text of the metric plantcast_core_up, which a link and the keeper set */
 #define CORE_UP_HELP "1 while this core leads: it sends readings to this daemon, or (core=\"this\") it is this daemon."
-#define LEASE_MAINTENANCE_FILE "standby-maintenance" /* in the folder of the history; `plantcast standby` makes it */
+#define LEASE_MAINTENANCE_FILE "standby-maintenance" /* maintenance file in the folder of the history; `plantcast standby` creates it */
 
 struct lease_keeper_params {
     struct log *log;
@@ -48,8 +48,8 @@ bool lease_keeper_is_alone(struct lease_keeper *keeper); /* Returns whether this
 void lease_keeper_set_standby(struct lease_keeper *keeper, const char *node, bool follows);
 /* Returns a new sequence number for a question to the standby, which the caller must send now; notes the time. */
 uint64_t lease_keeper_ask(struct lease_keeper *keeper);
-/* Returns how long ago the newest request was sent that the database or the standby has confirmed: this node was certainly the leader
-   then. */
+/* Returns the time since the newest request that the database or the standby has confirmed was sent: this node was certainly the leader at
+   that time. */
 int64_t lease_keeper_confirmed_age_ns(struct lease_keeper *keeper);
 /* Processes the standby's promise in answer to the question with that number. */
 void lease_keeper_promised(struct lease_keeper *keeper, const char *node, uint64_t number);
