@@ -7,8 +7,8 @@
 
 #include "base/mem.h"
 
-static const long PART_COST_PX = 4096; /* cost of one more rectangle (its header and tables), as the number of pixels whose encoding
-                                          takes as many bytes */
+/* cost of one additional rectangle (its header and tables), expressed as the number of pixels whose encoding takes as many bytes */
+static const long PART_COST_PX = 4096;
 
 static const uint8_t *row(const struct frame *frame, int x_px, int y_px)
 {
@@ -63,7 +63,8 @@ static bool overlap(const struct dirty_rect *a, const struct dirty_rect *b)
            b->y_px < a->y_px + a->height_px;
 }
 
-/* Returns the cost, in pixels, of replacing two rectangles by one that encloses both; negative: one rectangle is cheaper. */
+/* Returns how many more pixels, as a cost, one enclosing rectangle takes than the two rectangles that it replaces; negative: one rectangle
+   is cheaper. */
 static long growth(const struct dirty_rect *a, const struct dirty_rect *b)
 {
     struct dirty_rect all = around(a, b);

@@ -19,7 +19,7 @@ struct encoder_impl {
 struct encoder { /* first member of each codec's struct */
     const struct encoder_impl *impl;
     struct log *log;
-    struct packet *ready; /* packet that send() made and that encoder_receive() has not returned yet; NULL: none */
+    struct packet *ready; /* packet that send() made and encoder_receive() has not returned yet; NULL: none */
 };
 
 extern const struct encoder_impl jpeg_impl, png_impl;

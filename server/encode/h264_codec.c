@@ -15,7 +15,8 @@
    frames no finer than others, since finer ones would only cause a peak of the bit rate. */
 struct library {
     const char *name, *options;
-    bool has_crf; /* true: quality can change with each frame; false: the encoder has the constant quality in `options` */
+    /* true: quality can change with each frame (constant rate factor); false: the encoder has the constant quality in `options` */
+    bool has_crf;
 };
 static const struct library libraries[] = {
     { "libx264",

@@ -23,7 +23,7 @@ static int least(int a, int b)
     return a < b ? a : b;
 }
 
-/* Returns true if a tile contains both a colour and a grey, so that the weighted mean is needed. Between two colours the plain mean is
+/* Returns true if a tile contains both coloured and grey pixels, so that the weighted mean is needed. Between two colours the plain mean is
    as good. */
 static bool has_rim(uint8_t *const at[2], const int pitch[2], int width, int height)
 {

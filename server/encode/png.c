@@ -35,7 +35,7 @@ static uint8_t *pack_rgb(const struct frame *frame)
     return packed;
 }
 
-/* Hashes the pixels. `out` becomes all zero, which is no frame's hash, if the library fails. */
+/* Computes the SHA-256 of the pixels. If the library fails, `out` becomes all zero, which is no frame's hash. */
 static void hash_pixels(const struct frame *frame, const uint8_t *packed, uint8_t out[PACKET_SHA256_BYTES])
 {
     size_t bytes = 3 * (size_t)frame->width_px * (size_t)frame->height_px;
