@@ -47,8 +47,8 @@ static void egl_lose(struct gl *gl)
 }
 
 /* Destroys a context, but does not unload its driver: the leak checker suppresses leaks by the driver's name (tests/leaks.txt) and could
-   not name an unloaded one. The display stays open after the loss of a context. If the display is lost as well, the next attempt to
-   create a context fails and closes it, and the attempt after that opens it again. */
+   not name an unloaded one. The display stays open after the loss of a context, for the next context. If the display is lost as well, the
+   next attempt to create a context fails and closes the display, and the attempt after that opens it again. */
 static void egl_destroy(struct gl *gl)
 {
     struct egl *egl = (struct egl *)gl;
@@ -57,7 +57,7 @@ static void egl_destroy(struct gl *gl)
         egl_lose(gl);
     if (egl->display && !used && !gl_others())
         eglTerminate(egl->display);
-    if (egl->display && eglReleaseThread) /* not loaded if the display could not be initialised: a function of EGL 1.2 */
+    if (egl->display && eglReleaseThread) /* eglReleaseThread, a function of EGL 1.2, is NULL if the display could not be initialised */
         eglReleaseThread();
     if (!used && !gl_others())
         gladLoaderUnloadEGL();

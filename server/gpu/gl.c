@@ -12,8 +12,8 @@
 
 struct attempt {
     const struct gl_impl *impl;
-    /* software: may use a software device if no device is requested; again: the same as an earlier attempt, except that a software
-       device may be used */
+    /* software: may use a software device if no device is requested; again: repeats an earlier attempt, but now with software devices
+       allowed */
     bool software, again;
 };
 static const struct attempt attempts[] = {

@@ -95,7 +95,7 @@ static int16_t to_short(float part)
     return (int16_t)lrintf(32767 * part);
 }
 
-/* Packs a normal into two 16-bit numbers (octahedral mapping). A zero normal, which has no direction, is packed as "up". */
+/* Packs a normal into two 16-bit numbers (octahedral mapping). A zero normal, which has no direction, becomes "up". */
 static void fold(const float n[3], int16_t out[2])
 {
     float sum = fabsf(n[0]) + fabsf(n[1]) + fabsf(n[2]);

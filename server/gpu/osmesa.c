@@ -27,8 +27,8 @@ struct osmesa {
     unsigned char (*make_current)(void *context, void *buffer, unsigned type, int width, int height);
     GLADapiproc (*get_proc)(const char *name);
     void *(*get_current)(void);
-    unsigned char buffer[4 * 4 * 4]; /* OSMesa cannot make a context current without a buffer; frames are drawn to framebuffers, not to
-                                        this one */
+    /* OSMesa needs a buffer to make a context current; this one is never drawn to, because frames are drawn to framebuffers */
+    unsigned char buffer[4 * 4 * 4];
 };
 
 static bool osmesa_current(const struct gl *gl)

@@ -11,7 +11,8 @@ struct pool {
     GLenum format;
     size_t texel_bytes, max_texels; /* max_texels: capacity of a page */
     GLbitfield flags;
-    size_t expected, texels; /* expected: number of texels announced for the next page; texels: sum of the sizes of all pages */
+    /* expected: number of texels announced for the next page (pool_expect()); texels: sum of the sizes of all pages */
+    size_t expected, texels;
     struct pool_page **pages;
     size_t page_count, page_capacity;
 };
