@@ -72,7 +72,7 @@ const struct colormap *colormap_at(size_t index)
     return &maps[index];
 }
 
-/* Chooses the out-of-range colour among the candidates: the one farthest from all colours of the map. */
+/* Chooses the out-of-range colour: the candidate that is farthest from all colours of the map. */
 static void choose_outside(const struct colormap *map, const uint8_t candidates[][3], int count, uint8_t out[3])
 {
     double farthest = -1;

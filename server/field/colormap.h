@@ -19,7 +19,7 @@ struct colormap {
     double shading;
     /* true if 95 of 100 shaded pixels are read correctly to within 3 % of the range, also after JPEG compression and by deuteranopes */
     bool safe;
-    uint8_t below[3], above[3]; /* colours for values below MIN and above MAX; none of the map's colours is like them */
+    uint8_t below[3], above[3]; /* colours for values below MIN and above MAX; they differ clearly from all colours of the map */
 };
 
 /* Adds a map, or replaces an added map of the same name. Computes its `shading` and `safe` and chooses its out-of-range colours. Returns

@@ -23,8 +23,8 @@ enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 #define PAPER_ACCEPTED 0.015f /* for paper: largest side of triangles that need no samples, as a fraction of the distance to the nearest
                                  sensor and of the radius R */
 #define STEP_OF_COLOR (1 / 255.0f)
-#define BORDER_SLACK 4  /* tolerated displacement of the border between data and no data, in units of struct scalar's `lacking` */
-#define MARK_ALL 0.75   /* fraction of a level's area that errs from which on the whole level is marked */
+#define BORDER_SLACK 4  /* tolerated displacement of the border between data and no data, in steps of struct scalar's `lacking` */
+#define MARK_ALL 0.75   /* if at least this fraction of a level's area has interpolation errors, the whole level is marked */
 #define MIN_ERROR 1e-4f /* interpolation errors smaller than this are stored as 0 */
 
 struct triangle_piece {  /* part of a triangle; the error is sampled at the middle of the piece's longest side */
@@ -159,7 +159,8 @@ static void split(struct sampler *sampler, const struct triangle_piece *piece, i
     enqueue(sampler, &half);
 }
 
-/* Returns true if frames are wrong at this point: the field has no data here, but interpolation from the triangle's corners draws data. */
+/* Returns true if a frame would show data at this point although the field has none there, because it interpolates from the triangle's
+   corners. */
 static bool hides_rim(const struct sampler *sampler, size_t point, const struct triangle_piece *piece, const float parts[3], bool *shown)
 {
     const uint32_t *corners = sampler->tris[piece->tri];
@@ -368,7 +369,7 @@ static bool is_as_prepared(const struct weights *weights, const struct field_par
     const struct plant_group *group = layout->group;
     if (layout->trial || params->override_count > 0 || params->distance == DISTANCE_HEAT || params->reach_m != group->reach_m)
         return false;
-    if (plant_group_is_exact(group)) /* preparation subdivided no triangle for the group */
+    if (plant_group_is_exact(group)) /* each pixel evaluates this group's field, so preparation subdivided no triangle for it */
         return false;
     for (size_t i = 0; i < layout->sensor_count; i++)
         if (weights->configured[i] && !weights->takes_part[i])
@@ -388,8 +389,8 @@ void drawn_error_measure(struct weights *weights, const struct field_params *par
     while (number + 1 < file->header->level_count && file->levels[number + 1].vertex_count >= vertices)
         number++;
     uint64_t bit = (uint64_t)1 << (number < 63 ? number : 63);
-    if (layout_is_exact(layout, weights->interpolation, weights->distance)) /* pictures do not interpolate these weights, so they have no
-                                                                               error */
+    /* frames do not interpolate these weights within triangles, so there is no error */
+    if (layout_is_exact(layout, weights->interpolation, weights->distance))
         return;
     if (weights->measured_levels & bit || weights->prepared || layout->assumed || weights->member_count == 0 ||
         (weights->member_count == 1 && weights->interpolation == INTERPOLATION_SHEPARD))

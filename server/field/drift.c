@@ -17,7 +17,7 @@ static const double FAST_FACTOR = 2;  /* an hour in which the plant changes by t
 static const double STILL_PART = 0.1; /* a change per hour below this multiple of the noise counts as no change */
 static const double MEAN_PART = 0.25; /* noise of an hourly mean relative to the noise of one reading: 1/4 if the mean has at least 16
                                          independent readings */
-/* number of hours averaged on each side of a possible jump; number of hours left out between the two averages */
+/* numbers of hours: averaged on each side of a possible jump; left out between the two averages */
 enum { BESIDE = 3, WITHIN = 2 };
 static const double MIN_JUMP_FACTOR = 6;     /* smallest jump, relative to the usual change of residuals over the same number of hours */
 static const double LAG_HOURS = 12;          /* time constant of the low-pass filter that models how long heat takes from the other
@@ -32,7 +32,8 @@ struct week {                                   /* hourly data of one sensor */
     double noise, root[DRIFT_HOURS]; /* root: square root of each hour's weight in the fit */
 };
 
-struct drift_rows { /* one equation per hour with values of all sensors, multiplied by the square root of the hour's weight */
+/* the equations of the fit, one per hour in which all needed values exist; each is multiplied by the square root of the hour's weight */
+struct drift_rows {
     double at[COLUMNS][DRIFT_HOURS], time[DRIFT_HOURS], value[DRIFT_HOURS];
     double counted; /* sum of the hours' weights */
     int hour[DRIFT_HOURS], count, columns;
@@ -361,7 +362,8 @@ void drift_find(const struct neighbours *neighbours, const double *values, int h
             break;
         out[clearest].verdict = DRIFT_FOUND;
     }
-    /* the search stopped because too few sensors remain that do not drift: the verdicts about them depend on drifting sensors */
+    /* The search stopped because too few sensors without drift remain. Verdicts about these depend on drifting sensors, so they become
+       DRIFT_UNKNOWN. */
     for (size_t i = 0; i < count && clearest < count; i++)
         if (out[i].verdict == DRIFT_NONE)
             out[i].verdict = DRIFT_UNKNOWN;

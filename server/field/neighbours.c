@@ -104,8 +104,7 @@ static void predict_by_distance(const struct neighbours *neighbours, const uint8
             if (j == i || !used[j] || !(away_m <= layout->group->reach_m) || !isfinite(away_m) || other->strength <= 0)
                 continue;
             away_m = fmax(away_m, AT_ONE_PLACE);
-            double near = least_m / away_m; /* distances are divided by the least distance so far, so that no power of the quotient
-                                               overflows */
+            double near = least_m / away_m; /* divides by the least distance so far, so that no power of the quotient overflows */
             if (away_m < least_m) {
                 double scale = isfinite(least_m) ? pow(away_m / least_m, layout->group->power) : 0;
                 sum *= scale;

@@ -55,8 +55,8 @@ const struct neighbours_kept *neighbours_look(struct neighbours_cache *cache, co
                                               const struct snapshot *snapshot);
 /* Frees the cached predictions and empties the cache. */
 void neighbours_cache_finish(struct neighbours_cache *cache);
-/* Returns the difference between reading and prediction in standard deviations; if the deviation is unknown, in twentieths of the
-   group's range. NaN: reading or prediction is unknown. */
+/* Returns the difference between reading and prediction, in standard deviations. If the deviation is unknown, the unit is a twentieth of
+   the group's range. NaN: reading or prediction is unknown. */
 double neighbour_off(const struct plant *plant, const struct neighbour *neighbour);
 
 #endif

@@ -28,7 +28,8 @@ struct field_state {
     unsigned added;          /* number of updates since the sums were last recomputed in full */
     struct state_input *now, *shown; /* by sensor of the layout: inputs that are requested now, and inputs that the scalars contain */
     uint8_t *usable;                 /* enum sensor_use of `now`, by sensor of the layout */
-    struct state_list {              /* storage for struct weights_terms: [0] the members of the sum whose input changed, [1] all members */
+    /* storage for struct weights_terms. Element 0: the sensors whose input changed; element 1: all sensors in the sum */
+    struct state_list {
         uint32_t *members;
         double *factors;
         uint8_t *marked;

@@ -14,7 +14,7 @@ struct trial_reach {
 };
 
 struct kept_trial {
-    struct trial trial; /* first member, so that a pointer to either can be cast to the other */
+    struct trial trial; /* first member, so that pointers to struct trial and struct kept_trial can be cast to each other */
     int users;
     bool dropped;
     struct kept_trial *next;

@@ -96,7 +96,8 @@ void update_rule(const struct field_state *state, const struct state_input *inpu
             .scale = scale, .offset = offset, .low = difference ? -scale : offset, .high = difference ? scale : (float)group->max
         };
     } else {
-        /* fin sums differences from ambient, which the rule adds again; a sum of 0 is the valid value ambient */
+        /* The interpolation fin sums differences from the ambient value, and `offset` adds ambient again. A sum of 0 is therefore valid and
+           means ambient. */
         bool around = state->params.interpolation == INTERPOLATION_FIN;
         float offset = around && !difference && !places ? (float)group->ambient : 0;
         *rule = (struct kernel_value){ .scale = 1, .offset = offset, .low = around ? offset : FLT_MAX, .high = around ? offset : -FLT_MAX };
@@ -358,9 +359,9 @@ void update_run(struct field_state *state)
     update->next = update->end;
 }
 
-/* Legends state an error bound only if more than this part of an asset's surface errs by more than 1/255 of the range. Preparation does not
-   subdivide triangles that nobody sees: inside bodies, and at jumps of distance; on the demo's machines up to a quarter of the surface.
-   They are marked and picks report them, but a number in the legend would warn of errors that no frame shows. */
+/* A legend states an error bound only if more than this part of an asset's surface errs by more than 1/255 of the range. Preparation does
+   not subdivide triangles that nobody sees (inside bodies, and at jumps of distance), up to a quarter of the surface of the demo's
+   machines. These triangles are marked and picks report them, but a number in the legend would warn of errors that no frame shows. */
 static const float MIN_LEGEND_SHARE = 0.3f;
 
 static double drawn_error(const struct field_state *state)

@@ -26,7 +26,7 @@ struct key_head { /* bytes of the key that are the same for all sensors. Must ha
     const struct asset *file;
     uint32_t interpolation, distance;
     float power, reach_m, radius_m;
-    uint32_t trial; /* id of the layout's trial. The number of sensors is not stored, because the key's length gives it */
+    uint32_t trial; /* id of the layout's trial. The key does not contain the number of sensors, because the key's length determines it */
 };
 struct key_sensor {
     uint32_t column, usable;
@@ -237,8 +237,8 @@ void weights_copy_known(struct weights *weights, const struct weights *from)
     if (!same_sensors(weights, from))
         return;
     unsigned shared = KNOWN_NEAR;
-    if (same_strengths(weights, from)) /* the weights of `paper` do not depend on decay, which alone may still differ: their totals are
-                                          equal, too */
+    /* At this point only decay may differ. The weights of `paper` do not depend on decay, so their totals are equal, too. */
+    if (same_strengths(weights, from))
         shared |= KNOWN_TOP | (weights->interpolation == INTERPOLATION_PAPER ? KNOWN_TOTAL : 0);
     for (size_t block = 0, at = 0; at < weights->layout->vertex_count; block++, at += KERNEL_BLOCK) {
         size_t left = weights->layout->vertex_count - at, count = left < KERNEL_BLOCK ? left : KERNEL_BLOCK;
