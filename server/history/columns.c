@@ -6,7 +6,8 @@
 
 #include "base/mem.h"
 
-/* zstd's levels: a plant of some hundred tags has small rows once a second, which may take a millisecond; larger ones must be quick */
+/* Levels of zstd. Inputs of up to SMALL_BYTES, such as one second of some hundred tags, get SMALL_LEVEL, which may take a millisecond;
+   larger inputs get the faster LEVEL */
 enum { SMALL_BYTES = 1 << 16, SMALL_LEVEL = 9, LEVEL = 3 };
 static const unsigned long long BYTES_MAX = 1ULL << 30;
 
@@ -18,7 +19,7 @@ uint8_t *columns_pack(const uint64_t *rows, size_t width, size_t count, size_t *
         for (size_t i = 0; i < count; i++)
             for (size_t byte = 0; byte < 8; byte++)
                 planes[(column * 8 + byte) * count + i] = (uint8_t)(rows[i * width + column] >> (8 * byte));
-    /* cannot fail: the target has the bound's size */
+    /* cannot fail: the target has the size of ZSTD_compressBound() */
     *bytes = ZSTD_compress(packed, bound, planes, words * 8, words * 8 <= SMALL_BYTES ? SMALL_LEVEL : LEVEL);
     mem_free(planes);
     return packed;

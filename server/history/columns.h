@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compresses rows of 64-bit numbers: the bytes are sorted by their place in the row, then compressed with zstd. Rows whose numbers differ
+/* Compresses rows of 64-bit numbers: groups their bytes by position in the row, then compresses them with zstd. Rows whose numbers differ
    little from those of a typical row (differences, XOR of successive values) become small. Thread: any. */
 #ifndef HISTORY_COLUMNS_H
 #define HISTORY_COLUMNS_H
@@ -14,8 +14,8 @@ uint8_t *columns_pack(const uint64_t *rows, size_t width, size_t count, size_t *
    data is damaged or memory is short. */
 uint64_t *columns_unpack(const void *data, size_t bytes, size_t width, size_t *count);
 
-/* Convert a value to a number and back. The bits are rotated so that the mantissa of a 32-bit value, which most devices send, fills whole
-   bytes. Every NaN becomes the same NaN. */
+/* columns_of_double() converts a value to a number, columns_to_double() converts it back. The bits are rotated so that the mantissa of a
+   32-bit value, which most devices send, fills whole bytes. Every NaN becomes the same NaN. */
 static inline uint64_t columns_of_double(double value)
 {
     uint64_t bits;

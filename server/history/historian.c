@@ -26,7 +26,8 @@
 enum {
     QUEUE_MAX = 4000000,   /* maximum number of queued samples; the queue is emptied once a second */
     WAITING_MAX = 4000000, /* maximum number of rows held in memory while the disk cannot be written */
-    TIDY_ROWS = 1000000, /* recorded points that wait for month_file_tidy() at most; readers keep them in memory */
+    /* maximum number of recorded points that wait for month_file_tidy(), which compresses them; readers hold these points in memory */
+    TIDY_ROWS = 1000000,
     TAG_LEADS = -1,   /* marker in the queue, in place of a tag's index: the samples after it come from this daemon's own store */
     TAG_FOLLOWS = -2, /* marker in the queue, in place of a tag's index: the samples after it come over a new connection to the leading
                          daemon */
@@ -52,7 +53,7 @@ struct historian {
         counter *samples, *points, *lost, *waiting, *good, *bytes, *free, *backup;
     } counters;
     struct postgres *postgres; /* sender of history to PostgreSQL; NULL: history is not sent to a database */
-    atomic_bool restored;      /* set once points that this machine lacked have been read from PostgreSQL into the files */
+    atomic_bool restored;      /* set once points that were missing on this machine have been read from PostgreSQL into the files */
     /* --- below: used by the historian's thread only */
     struct history_tag *tags;
     struct recorder *recorder;
@@ -63,7 +64,7 @@ struct historian {
     struct month_file *file;
     struct historian_queue taken;
     bool recovered, failing, stands_by, fills;
-    int64_t fill_us;     /* with `fills`: UTC time from which points are missing here and must be read from PostgreSQL */
+    int64_t fill_us;     /* if `fills` is true: UTC time from which points are missing on this machine and must be read from PostgreSQL */
     int64_t mirrored_us; /* UTC time of the newest sample mirrored from the leading daemon; 0: none */
     int64_t retry_ns, retry_after_ns, tidied_ns, kept_ns, utc_ahead_ns;
     struct thread thread;
@@ -183,8 +184,8 @@ static void take_mirrored(struct historian *historian, int64_t t_us)
         historian->mirrored_us = t_us;
 }
 
-/* Handles that this daemon takes the lead. The former leader may have recorded more after the connection was lost, and sent that to
-   PostgreSQL. */
+/* Ends the following of the leading daemon, because this daemon takes the lead at t_us. The former leader may have recorded more after the
+   connection was lost, and sent that to PostgreSQL. */
 static void begin_to_lead(struct historian *historian, int64_t t_us)
 {
     if (historian->mirrored_us)
@@ -344,7 +345,7 @@ static int write_rows(struct historian *historian, struct recorder_rows *rows, b
     return error;
 }
 
-/* Writes the rows that one second brought: usually all to one month's file, in one transaction. */
+/* Writes the rows of the last second: usually all to one month's file, in one transaction. */
 static int write_second(struct historian *historian)
 {
     struct recorder_rows *rows = &historian->waiting, *held = &historian->held;
@@ -527,8 +528,8 @@ static void tick(struct historian *historian, bool last)
 {
     const struct now now = look_at_clocks();
     int64_t mono_ns = now.mono_ns, utc_ns = now.utc_ns, step_ns = watch_clock(historian, &now);
-    step_ns = historian->stands_by ? 0 : step_ns; /* a standby's samples have the times of the leading daemon, so its own clock's steps
-                                                     do not matter */
+    /* a standby's samples have the times of the leading daemon, so steps of the standby's own clock do not matter */
+    step_ns = historian->stands_by ? 0 : step_ns;
     take_events(historian, &now, step_ns);
     if (!historian->stands_by)
         take_qualities(historian, mono_ns, utc_ns);

@@ -31,7 +31,8 @@ struct historian *historian_start(const struct historian_params *params);
 void historian_follow(struct historian *historian);
 /* Records samples that another daemon recorded, in that daemon's order. Call it only while this daemon is a standby. Thread: one. */
 void historian_mirror(struct historian *historian, const struct sample_event *samples, size_t count);
-/* Makes this daemon record its own store's samples from now on. Values between the last mirrored sample and now are recorded as unknown. */
+/* Ends mirroring: from now on this daemon records the samples of its own store. Values between the last mirrored sample and now are
+   recorded as unknown. */
 void historian_lead(struct historian *historian);
 /* Call it when a standby connects. The standby may be the former leader, and may have sent its remaining points to PostgreSQL since;
    these points are then read from there. */

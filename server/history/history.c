@@ -14,7 +14,7 @@ enum { OPEN_MONTHS = 4 };
 struct history_reader {
     struct log *log;
     char *folder;
-    const struct plant *plant; /* plant whose units values are converted to; NULL: values keep the units of the time of recording */
+    const struct plant *plant; /* plant to whose units values are converted; NULL: values keep the units of the time of recording */
     struct month_file *files[OPEN_MONTHS];
     int next; /* index in the array of open files of the file to close next */
 };
@@ -216,8 +216,8 @@ int history_series(struct history_reader *reader, const char *tag, int64_t from_
     *out = (struct history_series){ .bucket_us = level < 0 ? 0 : bucket_length(stretch_us, level) };
     struct gather gather = { .out = out, .length_us = level < 0 ? 0 : history_level_us[level] };
     for (size_t i = 0; i < count && !error; i++) {
-        /* leads: also reads one month before the range, because the line that enters the range may begin there; follows: one month after
-           it */
+        /* leads: also reads the newest file before the range, because the line that enters the range may begin there; follows: also reads
+           the oldest file after it */
         bool leads = i + 1 < count && months[i] < first && months[i + 1] >= first;
         bool follows = i > 0 && months[i] > last && months[i - 1] <= last;
         if ((months[i] >= first && months[i] <= last) || leads || (level < 0 && follows))
@@ -343,7 +343,7 @@ static void tidy_gaps(struct history_gaps *gaps, int64_t from_us, int64_t to_us)
     gaps->count = kept;
 }
 
-/* also reads the newest file before from_us, because a gap may have begun before from_us */
+/* first reads the newest file before from_us too, because a gap may have begun before from_us */
 int history_gaps(struct history_reader *reader, int64_t from_us, int64_t to_us, struct history_gaps *out)
 {
     size_t count;

@@ -18,7 +18,7 @@ struct history_reader *history_reader_create(struct log *log, const char *folder
 /* Makes the reader convert all series to the units in which this plant shows its tags; without this call, values have the units of the
    time of recording. (history_at() converts by its own `tags`.) `plant` must outlive the reader. */
 void history_reader_show_by(struct history_reader *reader, const struct plant *plant);
-void history_reader_destroy(struct history_reader **reader); /* Frees the reader. &NULL is fine; leaves NULL. */
+void history_reader_destroy(struct history_reader **reader); /* Frees the reader. &NULL is fine; sets it to NULL. */
 
 /* A series of one tag: its points or, if there are more points than requested, buckets of equal length. Both show spikes in full. */
 struct history_series {
@@ -26,7 +26,7 @@ struct history_series {
     struct history_points points; /* points, ascending; including the last one before and the first one after the requested time span */
     int64_t bucket_us;            /* length of a bucket; 0: the series consists of points, not buckets */
     /* buckets, ascending; the first one begins at or before the requested time span if there is such a bucket. Between two buckets that do
-       not adjoin, the line is straight (of a step tag, the value holds) */
+       not adjoin, the line is straight; if the tag is a switch, the value holds instead */
     struct history_buckets buckets;
 };
 /* Reads the series of a tag between two times: its points if they are at most max_points, else buckets. */

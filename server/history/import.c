@@ -36,7 +36,7 @@ struct import_series {
     bool seen;      /* true: the first pass found samples of this tag */
     int64_t first_us, last_us;
     struct spacing spacing;
-    int64_t longest_us; /* longest time between two samples that does not count as a gap in the data */
+    int64_t longest_us; /* longest time between two samples of this tag that is not a gap in the data */
     bool has_pending;   /* in the second pass: true: the tag's newest sample waits, and is recorded once the next one has a later time */
     struct history_point pending;
     struct history_points before; /* points that the history had in the time span of the series before the import */
@@ -98,8 +98,9 @@ static bool find_columns(struct history_import *import)
     }
     if (import->tag >= 0 && import->value >= 0) {
         import->unit = csv_find(&import->csv, "Unit");
+        /* true: the columns are those that series_text_csv_head() writes */
         import->counts->exported = import->csv.header.count == 5 && import->tag == 0 && import->time == 1 && import->value == 2 &&
-                                   import->quality == 3 && import->unit == 4; /* the same columns as series_text_csv_head() writes */
+                                   import->quality == 3 && import->unit == 4;
         return true;
     }
     import->tag = -1;
@@ -251,8 +252,7 @@ static bool check_sample(struct history_import *import, void *arg, int tag, cons
     if (series->seen && point->t_us < series->last_us) {
         char text[TIMESTAMP_BYTES];
         timestamp_print(series->last_us, text);
-        csv_error(&import->csv, column, "%s: expected a time not before its last sample, %s", import->params->plant->tags[tag].name,
-                  text);
+        csv_error(&import->csv, column, "%s: expected a time not before its last sample, %s", import->params->plant->tags[tag].name, text);
         return false;
     }
     if (!counts->samples || point->t_us < counts->from_us)
@@ -519,7 +519,8 @@ static bool fill(const struct import_params *params, struct import_series *serie
         .series = series,
         .counts = counts,
     };
-    struct diag again = { 0 };   /* discards the second pass's findings, which repeat those that `diag` already has */
+    /* the second pass writes its findings here, where they are discarded, because `diag` already has them from the first pass */
+    struct diag again = { 0 };
     mkdir(params->folder, 0777); /* result ignored: if the folder cannot be created, opening a month reports the error */
     bool good = read_before(&filling) && read_file(params, &again, counts, series, fill_sample, &filling);
     diag_finish(&again);

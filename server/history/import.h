@@ -18,9 +18,9 @@ struct import_params {
 };
 
 struct import_counts {
-    long long samples, points;       /* samples read; points recorded */
-    long long bad, duplicates, gaps; /* number of samples without a usable value, of samples replaced by a later row with the same time,
-                                        and of gaps */
+    long long samples, points; /* samples read; points recorded */
+    /* numbers of samples without a usable value, of samples replaced by a later row with the same time, and of gaps */
+    long long bad, duplicates, gaps;
     int tags;
     struct charset_choice encoding;
     bool exported; /* true: the file has the columns of `plantcast history export` */

@@ -8,7 +8,8 @@
 #include "base/mem.h"
 #include "history/columns.h"
 
-/* SHARED_TIMES: most times of a chunk, because a reader of one block decompresses all times of its chunk */
+/* SHARED_TIMES: maximum number of times in a chunk (times that several blocks share); limited because a reader of one block decompresses
+   all times of its chunk */
 enum { BLOCK_POINTS = 2048, SHARED_TIMES = 32768, BLOCK_COLUMNS = 3 };
 
 static int damaged(struct month_file *file)
@@ -41,7 +42,7 @@ int month_chunk_store(struct month_file *file, struct month_chunk *chunk)
     return error;
 }
 
-/* Reads a chunk into file->chunk, which keeps it for the next blocks. */
+/* Reads a chunk (times that several blocks share) into file->chunk, which keeps it for the next blocks. */
 static int load_chunk(struct month_file *file, int64_t id)
 {
     if (id == file->chunk->id)

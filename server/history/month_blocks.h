@@ -16,14 +16,14 @@ struct month_chunk {
 int month_blocks_read(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out);
 /* Stores ascending times. Returns chunk->id 0 if there are too many to share. */
 int month_chunk_store(struct month_file *file, struct month_chunk *chunk);
-/* Writes ascending points of a tag, whose times must be in the chunk if it has an id. Merges them with blocks that they overlap: of two
-   points of one time the new one stays. */
+/* Writes ascending points of a tag, whose times must be in the chunk if it has an id. Merges them with blocks that they overlap; a new
+   point replaces an old one of the same time. */
 int month_blocks_write(struct month_file *file, int64_t id, const struct month_chunk *chunk, const struct history_point *points,
                        size_t count);
 /* Calls `edit` with the points of each block of a tag that overlaps from_us..to_us, and writes the block again if `edit` returns true. */
 typedef bool month_block_edit(void *arg, struct history_points *points);
 int month_blocks_edit(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, month_block_edit *edit, void *arg);
-/* Merges two ascending lists into `out`: of two points of one time that of `b` stays. */
+/* Merges two ascending lists into `out`. If both have a point of the same time, the one of `b` stays. */
 void month_points_merge(const struct history_points *a, const struct history_points *b, struct history_points *out);
 
 #endif

@@ -26,19 +26,20 @@ struct month_rollups {
 struct month_file {
     struct database db;
     int month;
-    bool has_outbox; /* true: recorded points are copied to the outbox */
+    bool has_outbox; /* true: recorded points are copied to the outbox (points to send to PostgreSQL) */
     bool has_blocks; /* true: the file is known to be of version 3 or later */
-    bool writes;     /* true: this handle has written a row of seconds */
+    bool writes;     /* true: this handle has written the newest points at least once (month_seconds.h) */
     ino_t inode;
-    const struct plant *shown_by; /* plant whose units values are converted to; NULL: not converted */
+    const struct plant *shown_by; /* plant to whose units values are converted; NULL: not converted */
     const struct history_tag *tags;
     size_t tag_count, waiting;
     int64_t *ids;                  /* id in the file of each tag, by index of the tag; 0: not known yet */
     struct month_rollups *rollups; /* rollups in progress, by tag */
-    struct month_chunk *chunk;     /* the chunk that was read last */
+    struct month_chunk *chunk;     /* the chunk (times that several blocks share) that was read last */
     struct month_seconds *seconds; /* the newest points that this handle has read */
-    int64_t slot, stamp;           /* number and stamp of the row of seconds that was written last */
-    int64_t slot_before, stamp_before; /* the same at the beginning of the transaction */
+    /* number and stamp (increases with each write) of the row of the table `second` that was written last */
+    int64_t slot, stamp;
+    int64_t slot_before, stamp_before; /* slot and stamp at the beginning of the transaction; a rollback restores them */
 };
 
 /* Returns a prepared statement of enum month_statement, ready to bind and step (base/files/database.h). */

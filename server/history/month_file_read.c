@@ -79,7 +79,7 @@ static int by_time(const void *a, const void *b)
     return (x->t_us > y->t_us) - (x->t_us < y->t_us);
 }
 
-/* Adds the newest points of a tag, which are not in blocks yet, with its newest sample, ascending. */
+/* Adds the newest points of a tag, which are not in blocks yet, and its newest sample; ascending. */
 static int add_recent(struct month_file *file, int64_t id, struct history_points *out)
 {
     const struct month_seconds *seconds = file->seconds;
@@ -101,7 +101,7 @@ static int add_recent(struct month_file *file, int64_t id, struct history_points
     return error;
 }
 
-/* Adds points that versions 1 and 2 recorded. */
+/* Adds points that versions 1 and 2 of the file format recorded, which are in the table `sample`. */
 static int add_samples(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out)
 {
     struct history_point edge;
@@ -248,7 +248,7 @@ static void take_of(const int *index, int64_t most, int64_t id, const struct his
         take(&pairs[index[id]], point, t_us);
 }
 
-/* Takes the newest points, which are not in blocks yet, and the newest samples. */
+/* Searches the newest points, which are not in blocks yet, and the newest samples for the points around t_us. */
 static int take_recent(struct month_file *file, int64_t t_us, const int *index, int64_t most, struct history_pair *pairs)
 {
     const struct month_seconds *seconds = file->seconds;

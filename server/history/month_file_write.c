@@ -63,7 +63,8 @@ static int convert_unit(struct month_file *file, int tag)
     static const char *const columns[][2] = { { "sample", "v" },     { "recent", "v" },    { "held", "v" },
                                               { "rollup", "low" },   { "rollup", "high" }, { "rollup", "mean" },
                                               { "rollup", "first" }, { "rollup", "last" }, { "outbox", "v" } };
-    bool has_outbox; /* true: uses an outbox, which may exist because an earlier run had a database configured; none is created */
+    /* true: the file has an outbox, which an earlier run may have made because a database was configured then; none is created here */
+    bool has_outbox;
     int error = month_has_outbox(file, &has_outbox);
     size_t count = sizeof(columns) / sizeof(columns[0]) - !has_outbox;
     for (size_t i = 0; i < count && !error; i++) {
@@ -135,7 +136,7 @@ int month_file_write(struct month_file *file, const struct history_row *rows, si
                      size_t held_count)
 {
     struct month_row *recorded = NULL, *newest = NULL;
-    int error = file->writes ? 0 : month_file_tidy(file); /* moves the points that an earlier handle left */
+    int error = file->writes ? 0 : month_file_tidy(file); /* moves points that an earlier handle left in the table `second` to blocks */
     if (error || (error = begin(file)))
         return error;
     error = find_ids(file, rows, count, &recorded);
@@ -268,7 +269,7 @@ static int by_time(const void *a, const void *b)
     return (*x > *y) - (*x < *y);
 }
 
-/* Stores the times of all rows once. chunk->times is freed by the caller. */
+/* Stores the times of all rows once, as a chunk that their blocks share. The caller frees chunk->times. */
 static int share_times(struct month_file *file, const struct month_row *rows, size_t count, struct month_chunk *chunk)
 {
     chunk->times = mem_array(count + 1, sizeof(*chunk->times));

@@ -15,7 +15,7 @@ enum { SECOND_COLUMNS = 4, ROW_BYTES = 930, PAGE_BYTES = 1020, ID_MAX = 1 << 22 
 
 /* --- writing ------------------------------------------------------------------------------------------------------------------ */
 
-/* The stamp of row 0 is that of the newest row that was moved to blocks. */
+/* Reads the mark, which is the stamp of row 0: that of the newest row that was moved to blocks. */
 static int read_mark(struct month_file *file, int64_t *mark)
 {
     sqlite3_stmt *find = month_sql(file, SQL_MARK);
@@ -26,7 +26,7 @@ static int read_mark(struct month_file *file, int64_t *mark)
     return database_fail(&file->db, code, "cannot be read");
 }
 
-/* Sorts by time and tag, so that the differences between rows are small. */
+/* Orders rows by time and tag, so that the differences between successive rows are small. */
 static int by_time_and_tag(const void *a, const void *b)
 {
     const struct month_row *x = a, *y = b;
@@ -37,7 +37,7 @@ static int by_time_and_tag(const void *a, const void *b)
     return x->order < y->order ? -1 : x->order > y->order;
 }
 
-/* Appends rows as numbers: tag and whether the row is recorded or held, time, value, quality. Sorts the rows. */
+/* Sorts the rows and appends each as four numbers: tag (with one bit for recorded or held), time, value, quality. */
 static uint64_t *put_rows(uint64_t *at, struct month_row *rows, size_t count, bool held)
 {
     uint64_t last_tag = 0, last_t = 0;
@@ -71,7 +71,7 @@ int month_seconds_write(struct month_file *file, struct month_row *rows, size_t 
     int error = read_mark(file, &mark);
     if (error || count + held_count == 0)
         return error;
-    if (mark >= file->stamp) { /* all rows were moved to blocks, maybe through another handle: the next row is the first again */
+    if (mark >= file->stamp) { /* all rows were moved to blocks, maybe through another handle: starts again with the first row */
         file->stamp = mark;
         file->slot = 0;
     }
@@ -112,7 +112,7 @@ static void add_held(struct month_seconds *seconds, const struct month_row *row)
 
 static void add_rows(struct month_seconds *seconds, const uint64_t *packed, size_t count)
 {
-    uint64_t tag[2] = { 0 }, t[2] = { 0 }; /* 0: recorded rows, 1: held rows */
+    uint64_t tag[2] = { 0 }, t[2] = { 0 }; /* index 0: recorded rows; index 1: held rows (newest samples) */
     mem_grow(&seconds->rows, &seconds->capacity, seconds->count + count + 1, sizeof(*seconds->rows));
     for (const uint64_t *at = packed; at < packed + count * SECOND_COLUMNS; at += SECOND_COLUMNS) {
         bool held = at[0] & 1;

@@ -13,19 +13,20 @@ struct month_row {
     struct history_point point;
 };
 
-/* Rows of the seconds that a handle has read. */
+/* The newest points, as a handle has read them from the table `second`. */
 struct month_seconds {
-    int64_t mark, stamp, slot; /* stamp of the newest row that was moved to blocks; stamp and number of the newest row read */
-    struct month_row *rows;    /* recorded points */
-    struct month_row *held;    /* newest samples, by id; id 0: none */
+    /* mark: stamp of the newest row that was moved to blocks; stamp, slot: stamp and number of the newest row read */
+    int64_t mark, stamp, slot;
+    struct month_row *rows; /* recorded points */
+    struct month_row *held; /* newest samples, by id; id 0: none */
     size_t count, capacity, held_count, held_capacity;
 };
 
 /* Writes recorded rows and newest samples as one row of the table, inside a transaction. Sorts the arrays. */
 int month_seconds_write(struct month_file *file, struct month_row *rows, size_t count, struct month_row *held, size_t held_count);
-/* Updates file->seconds to what the table has now. */
+/* Updates file->seconds from the present rows of the table. */
 int month_seconds_read(struct month_file *file);
-/* Marks all rows read as moved to blocks, inside a transaction. */
+/* Marks all rows that were read as moved to blocks, inside a transaction. */
 int month_seconds_clear(struct month_file *file);
 /* Frees the content of file->seconds. */
 static inline void month_seconds_finish(struct month_file *file)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Implements the recorder: one swinging-door filter for each tag selects the samples to record. */
+/* The recorder: one swinging-door filter for each tag selects the samples to record. */
 #include "history/recorder.h"
 
 #include "base/mem.h"
@@ -57,7 +57,7 @@ struct recorder *recorder_create(const struct plant *plant)
         const struct history_tag *tag = &recorder->tags[i];
         recorder->lanes[i].quality = QUALITY_BAD_WAITING;
         recorder->lanes[i].params = (struct swinging_door_params){
-            /* permits a recorded line to deviate by `within`: the bound in swinging_door.h is 2 deadband + deviation = 2 within/4 +
+            /* lets a recorded line deviate by `within`: the bound of swinging_door.h is 2 deadband + deviation, here 2 within/4 +
                within/2 */
             .deadband = tag->step ? 0 : tag->within / 4,
             .deviation = tag->step ? 0 : tag->within / 2,

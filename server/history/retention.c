@@ -15,7 +15,7 @@
 #include "history/month_outbox.h"
 
 static const char *const parts[] = { "", "-wal", "-shm" };
-/* CUT_BYTES: most bytes deleted from a month in one call, because the recording thread waits for the call */
+/* CUT_BYTES: maximum number of bytes deleted from a month in one call, because the recording thread waits for the call */
 enum { PARTS = sizeof(parts) / sizeof(parts[0]), CUT_BYTES = 16000000 };
 static const int64_t NEWEST_US = 600 * US_PER_S; /* the last ten minutes of history are never deleted by the size limit */
 #define CUT_BELOW 0.01 /* fraction of the size limit that is freed in addition, so that the limit is not reached again soon */

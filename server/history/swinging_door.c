@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Deadband, then swinging door. */
+/* Swinging-door filter: a deadband, then the swinging door. */
 #include "history/swinging_door.h"
 
 static void begin(struct swinging_door *door, const struct history_point *at)
@@ -76,7 +76,8 @@ int swinging_door_put(struct swinging_door *door, const struct swinging_door_par
     bool usable = history_point_usable(sample), due = sample->t_us - door->anchor.t_us >= params->override_us;
     const struct history_point *passed = door->has_held ? &door->held : &door->anchor;
     if (!usable || fabs(sample->value - passed->value) <= params->deadband) {
-        /* the sample is outside the door: records the held point, or a reader of the current state would see a ramp instead of a step */
+        /* the sample is outside the door: records the held point (newest sample that passed the deadband), or a reader of the current state
+           would see a ramp instead of a step */
         if (usable && door->has_held && !passes(door, sample)) {
             struct history_point held = door->held;
             count = keep(door, &held, kept, count);
@@ -85,7 +86,8 @@ int swinging_door_put(struct swinging_door *door, const struct swinging_door_par
         door->has_skipped = true;
         return due ? keep_last(door, params, kept, count) : count;
     }
-    if (door->has_skipped) { /* passes the skipped sample first, so that the recorded line does not rise before the values did */
+    /* passes the skipped sample (the last one within the deadband) first, so that the recorded line does not rise before the values did */
+    if (door->has_skipped) {
         struct history_point skipped = door->skipped;
         count = params->step ? 0 : swing(door, params, &skipped, kept, count);
     }

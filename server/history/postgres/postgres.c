@@ -20,11 +20,11 @@
 
 enum { BATCH_ROWS = 20000, ROUND_MS = 1000 };
 enum { NOTES = 128, SPANS = POSTGRES_SPANS };
-/* if the last mirrored sample is unknown, points are read from the database from this long before the newest end of a recorded line on,
-   because the lines of tags end at different times */
+/* Lines of tags end at different times, up to this far apart. If the last mirrored sample is unknown, points are read from the database
+   from this long before the newest end of a recorded line on */
 static const int64_t LINE_END_SPREAD_US = 60 * INT64_C(1000000);
-/* longer than a sample takes until its point is in the file of leader or standby. Waited before points are deleted as sent, and before
-   missing points are read from the database */
+/* longer than a sample takes until its point is in the file of the leader or of the standby. This time passes before sent points are
+   deleted, and before missing points are read from the database */
 static const int64_t OVERLAP_NS = 10 * NS_PER_S;
 static const int64_t LOOK_NS = 30 * NS_PER_S, NEWEST_NS = 5 * NS_PER_S, SAY_LOST_NS = 60 * NS_PER_S;
 
@@ -33,8 +33,8 @@ struct waiting_month {
     int64_t count;
 };
 
-/* For a standby: the newest sequence number in a month's outbox at a certain time. When the leader has sent that time, the standby
-   deletes up to this number. */
+/* On a standby: the newest sequence number in a month's outbox at a certain time. Once the leader has sent everything up to that time, the
+   standby deletes the points up to this number. */
 struct outbox_note {
     int64_t at_ns, seq;
     int month;
@@ -119,7 +119,7 @@ static void connect_now(struct postgres *postgres)
     postgres->newest_ns = 0;
 }
 
-/* Resets the error state. Call it only after a successful write: a mere connection proves nothing, since a server with a full disk
+/* Resets the error state. Call it only after a successful write: a connection alone proves nothing, because a server with a full disk
    accepts connections. */
 static void is_well(struct postgres *postgres)
 {
