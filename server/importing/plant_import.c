@@ -24,7 +24,7 @@ struct plant_import {
     pthread_mutex_t lock;
     /* --- below: under `lock` */
     struct import_order order; /* the order in progress; if there is none, the last one */
-    struct import_order read;  /* the last successful order that read models, of which units, axis and encoding are used */
+    struct import_order read;  /* the last successful order that read models; its units, axis and encoding are in use */
     bool ordered, busy, cancelled;
     enum import_phase phase;
     unsigned number; /* number of orders so far */

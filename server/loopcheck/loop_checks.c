@@ -196,7 +196,7 @@ void loop_checks_close(struct loop_checks **pointer)
 }
 
 struct row_job {
-    struct file_job job; /* first member; its owner is `loop_checks` */
+    struct file_job job; /* first member, as struct file_job requires; its `owner` is the struct loop_checks */
     struct loop_checks *loop_checks;
     struct log *log;
     char *folder, *path;

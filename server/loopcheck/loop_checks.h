@@ -44,7 +44,7 @@ bool loop_checks_begun(
 uint64_t loop_checks_number(const struct loop_checks *loop_checks); /* returns a sequence number that increases with each record */
 /* Returns the sequence number of the newest record of this tag; 0: it is from before the start of the daemon. */
 uint64_t loop_checks_number_of(const struct loop_checks *loop_checks, int tag);
-/* Appends a line of CSV with the newest check of every tag that has a source. */
+/* Appends CSV: a header line, then the newest check of every tag that has a source. */
 void loop_checks_print(const struct loop_checks *loop_checks, struct text *out);
 /* Returns true if the tag must be marked as unproven: other tags have been checked, and this one has not passed. Derived tags are never
    marked. Thread: any. */
