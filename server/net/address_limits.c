@@ -12,7 +12,7 @@ struct address_limits {
     const struct quotas *quotas;
     struct address_usage **all; /* the addresses known now: a few thousand at most; searched only when a connection opens */
     size_t count, capacity;
-    uint64_t payers; /* address id (address_share.account) given out last; ids count up from 1 */
+    uint64_t payers; /* newest address id (address_share.account) that was given out; ids count up from 1 */
     bool exempt;
 };
 

@@ -149,7 +149,7 @@ static bool has_forwarding(struct lws *wsi)
     return false;
 }
 
-/* Finds the client's address; for a trusted proxy, the address that the proxy forwards. Returns false with *refusal set. */
+/* Finds the client's address; behind a trusted proxy, the client's address that the proxy forwards. Returns false with *refusal set. */
 static bool find_client(struct server_context *server, struct lws *wsi, struct connection *connection, struct http_refusal *refusal)
 {
     char list[512] = "", *address = connection->address;

@@ -29,8 +29,9 @@ struct connection *connection_of(struct lws *wsi);
 
 struct http_refusal {
     int status;
-    const char *text;       /* body of the answer, static text; NULL: the words of `code` */
-    enum refusal_code code; /* REFUSAL_NONE: only operators of the server or a proxy can cause this */
+    const char *text; /* body of the answer, static text; NULL: the words of `code` */
+    /* REFUSAL_NONE: an error of the server's operator or of a proxy, which pages do not translate; `text` describes it */
+    enum refusal_code code;
 };
 /* Reads the headers of a request and sets the connection's role, client and holder. Returns false if the request must be refused, with the
    answer in *refusal. */

@@ -72,8 +72,8 @@ static void look_at_files(struct net *net, int64_t now_ns)
         tls_look(server->tls);
     if (server->logins.tokens) {
         tokens_look(server->logins.tokens);
-        /* also ends sessions of signed-in users whose rights ended. Sign-in with OpenID Connect requires tokens, so this branch covers all
-           users */
+        /* also ends sessions of signed-in users who lost their rights. The branch covers all such users, because sign-in with OpenID
+           Connect requires a token file */
         streams_check_tokens(server, clock_utc_ns());
     }
 }

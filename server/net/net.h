@@ -18,7 +18,7 @@ void net_destroy(struct net **net);
 int net_port(const struct net *net);
 /* Serves until net_stop() is called, then closes the clients' connections. */
 void net_run(struct net *net);
-/* Makes the event loop collect frames and answers that other threads have finished. Any thread. */
+/* Wakes the event loop to collect frames and answers that other threads have finished. Any thread. */
 void net_wake(struct net *net);
 /* Ends net_run. Any thread; safe in a signal handler. */
 void net_stop(struct net *net);

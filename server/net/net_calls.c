@@ -44,7 +44,8 @@ void net_calls_run(struct net *net)
     pthread_mutex_unlock(&net->call.lock);
     if (!what)
         return;
-    /* the lock is not held during the call. `call` cannot change meanwhile, because the thread that asked for this call waits for it */
+    /* Calls the function without holding the lock. The request cannot be replaced meanwhile, because the thread that made it waits for its
+       end. */
     what(arg);
     pthread_mutex_lock(&net->call.lock);
     net->call.what = NULL;

@@ -27,7 +27,7 @@ struct net_status { /* state of the event loop, passed to the callback at each t
     size_t sessions;
     int busy_percent;           /* percentage of the render thread's time spent on frames that a client waits for */
     bool has_core;              /* true: readings arrive from the core; always true without --role render */
-    const char *core;           /* part of this core in a pair of cores (static text); NULL: there is no pair */
+    const char *core;           /* role of this core in a pair of cores (static text); NULL: there is no pair */
     bool drains;                /* true: sessions are being closed so that their clients move to other daemons (drain) */
     int64_t certificate_ends_s; /* expiry of the certificate in force, seconds of UTC since 1970; 0: no certificate */
 };
@@ -60,7 +60,7 @@ struct net_params {
     void (*import_ordered)(void *arg, const char *who);
     /* callback of the main program, called in the event loop once a second or more often; NULL: not needed */
     void (*tick)(void *arg, const struct net_status *status);
-    void *reload_arg; /* argument of the four callbacks above */
+    void *reload_arg; /* first argument of `reload`, `save`, `import_ordered` and `tick` */
 };
 
 #endif

@@ -165,7 +165,7 @@ void picture_signer_settle(struct picture_signer *signer)
     signer->waiting = NULL;
     while (signer->busy)
         pthread_cond_wait(&signer->settled, &signer->thread.lock);
-    forget_last(signer); /* safe: the thread is idle, so it does not use last_signed now */
+    forget_last(signer); /* safe, because the thread is idle and does not use last_signed now */
     free_all(signer->done);
     signer->done = NULL;
     pthread_mutex_unlock(&signer->thread.lock);

@@ -220,7 +220,8 @@ void renderers_close(struct server_context *server, const char *why)
 {
     for (struct renderer_peer *renderer = server->core.renderers; renderer; renderer = renderer->next) {
         renderer->close_text = why;
-        core_samples_end(&renderer->samples); /* the store from which these samples come is about to be destroyed */
+        /* ends this queue of samples, because the store from which they come is about to be destroyed */
+        core_samples_end(&renderer->samples);
         lws_callback_on_writable(renderer->wsi);
     }
 }
@@ -234,7 +235,8 @@ static void begin(struct renderer_peer *renderer)
     text_add_bytes(&renderer->out, room, sizeof(room));
 }
 
-/* libwebsockets buffers what the socket does not accept, and calls back only once that is sent. Returns false if the connection is gone. */
+/* Sends the message in renderer->out. libwebsockets stores what the socket does not accept, and calls back only once that is sent. Returns
+   false if the connection is gone. */
 static bool send_out(struct renderer_peer *renderer, enum lws_write_protocol how)
 {
     size_t count = renderer->out.length - LWS_PRE;
@@ -280,7 +282,8 @@ static bool send_refusal(struct renderer_peer *renderer)
     return send_message(renderer, json_pack("{s:s,s:s,s:b}", "type", "refused", "why", renderer->refusal, "votes", votes));
 }
 
-/* A voting core is sent only its refusal and the questions about its lease promise. Returns false if the connection is gone. */
+/* Sends the next message to a core that only votes: its refusal, then questions about its lease promise, and nothing else. Returns false if
+   the connection is gone. */
 static bool send_to_voter(const struct server_context *server, struct renderer_peer *renderer)
 {
     return !renderer->refusal_sent ? send_refusal(renderer) : !renderer->asks || send_question(server, renderer);
@@ -401,8 +404,8 @@ static bool standby_lacks(const struct server_context *server)
     return false;
 }
 
-/* Returns whether the next answer may be sent. If the lease was not confirmed after the action, a core that is cut off from standby and
-   database would tell clients that an action is done which the next leader never receives. */
+/* Returns whether the next answer may be sent: the lease must have been confirmed after the action. Otherwise a core that is cut off from
+   standby and database would confirm actions to clients which the next leader never receives. */
 static bool may_answer(const struct server_context *server, const struct renderer_peer *renderer)
 {
     const json_t *acted = json_object_get(json_array_get(renderer->answers, 0), ACTED);

@@ -31,8 +31,8 @@ struct wall_displays {
     struct wall_seen {
         char wall[NAMED_VIEW_ID_BYTES];
         int display;
-        /* connected_ns: monotonic time up to which the connected display is current, 0: not connected; fresh_ns: the last such time, kept
-           after it disconnects */
+        /* connected_ns: monotonic time as of which the connected display's oldest picture is current, 0: not connected; fresh_ns: the last
+           such time, kept after the display disconnects */
         int64_t connected_ns, fresh_ns;
         counter *age;
     } at[WALL_DISPLAYS_SEEN];
@@ -44,7 +44,7 @@ struct tile_wall {
     char wall[NAMED_VIEW_ID_BYTES]; /* id of the wall; "": entry is free */
     uint64_t leader;                /* id of the leading session; 0: none */
     uint64_t asked, presented;      /* ids of the wall's pictures: of the one requested last, and of the one presented last */
-    struct quality_ladder made;     /* ladder of the wall; its picture size follows how long the server takes to make pictures */
+    struct quality_ladder made;     /* quality ladder of the wall: its picture size follows how long the server takes to draw and encode */
 };
 
 enum { UPGRADE_REFUSALS = 16 };
@@ -68,7 +68,7 @@ struct server_context {
     } signing;
     struct {                   /* connections to /stream */
         struct stream *first;  /* linked list of all */
-        struct stream **by_client; /* array of the same, sorted by session id, ascending */
+        struct stream **by_client; /* array of all connections to /stream, sorted by session id, ascending */
         size_t by_client_capacity;
         int count;
         uint64_t next_client;
@@ -105,7 +105,7 @@ struct server_context {
         struct login_throttle *throttle;
         char *notice;                    /* text shown before users sign in; NULL: none */
         int64_t held;      /* number of tokens not checked because of throttling and not recorded yet */
-        int64_t held_ns;   /* monotonic time of the last record about them */
+        int64_t held_ns;   /* monotonic time when unchecked tokens were last recorded in the audit trail */
         int64_t unasked;   /* number of unrecorded answers of the identity provider that belonged to no log-in or failed */
         int64_t looked_ns; /* monotonic: when the files of tokens and certificate were last checked */
     } logins;
@@ -119,7 +119,7 @@ struct server_context {
         struct tag_text_cache tags;
         char *lists[LISTS];
         struct alarm_text_cache alarms;
-        uint64_t alarms_number;           /* sequence number of the last change of alarms that was sent to sessions */
+        uint64_t alarms_number;           /* sequence number of the newest change of alarms that was sent to sessions */
         struct marker_text_cache markers; /* alarm markers of the frame that was sent last */
         struct neighbour_text_cache neighbours;
     } texts;
@@ -166,13 +166,15 @@ void net_refresh_readings(struct server_context *server);
 int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
 /* Returns whether the client with that id is a connected stream and not an HTTP request. */
 bool stream_owns(const struct server_context *server, uint64_t client);
-/* Pass an answer to the stream whose client asked; the stream must be connected. stream_on_frame() takes ownership of the frame. */
+/* The functions stream_on_...() pass an answer to the stream whose client asked for it; the stream must be connected. stream_on_frame()
+   takes ownership of the frame. */
 void stream_on_frame(struct server_context *server, struct encoded_frame *encoded);
 void stream_on_pick(struct server_context *server, const struct pick_answer *answer);
 /* Sends a frame, signed if that was possible; takes ownership of signing->encoded; the caller frees the rest of the struct. */
 void stream_on_signed(struct server_context *server, struct signing *signing);
 void stream_on_historical_snapshot(struct server_context *server, const struct history_loader_answer *answer);
-/* Pass a copy of the sensor coverage, or of a text, to the stream whose client asked for it. They do nothing if the stream has gone. */
+/* stream_on_coverage() and stream_say() pass a copy of the sensor coverage, or of a text, to the stream whose client asked for it. They do
+   nothing if the stream has gone. */
 void stream_on_coverage(struct server_context *server, const struct sensor_coverage_answer *answer);
 void stream_say(struct server_context *server, uint64_t client, const char *text);
 /* Tells sessions with trial sensor positions that distances were computed. */
@@ -197,8 +199,8 @@ int stream_check_upgrade(struct server_context *server, struct lws *wsi);
 
 /* Handles the events of an HTTP connection, for libwebsockets. */
 int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
-/* Pass an answer to the HTTP request that waits for it; do nothing if it no longer waits. http_on_frame() takes ownership of the frame;
-   http_on_history_answer() may take the text. */
+/* The functions http_on_...() pass an answer to the HTTP request that waits for it; they do nothing if it no longer waits. http_on_frame()
+   takes ownership of the frame; http_on_history_answer() may take the text. */
 void http_on_frame(struct server_context *server, struct encoded_frame *encoded);
 void http_on_signed(struct server_context *server, struct signing *signing);
 void http_on_pick(struct server_context *server, const struct pick_answer *answer);

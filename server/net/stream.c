@@ -251,7 +251,7 @@ void streams_on_readings(struct server_context *server, bool data_changed, bool 
    different instants, because their pages reconnect to other nodes immediately. */
 static bool is_drained(const struct server_context *server, const struct stream *stream, int64_t now_ns)
 {
-    /* multiplying ids by 2^64 / golden ratio (Fibonacci hashing) spreads consecutive ids evenly */
+    /* Fibonacci hashing: multiplying ids by 2^64 / golden ratio spreads consecutive ids evenly */
     uint64_t spread = (stream->session->id + 1) * 0x9E3779B97F4A7C15u >> 32;
     return server->life.drain_ns && now_ns - server->life.drain_ns > DRAIN_DELAY_NS + (int64_t)(spread % 1000) * (DRAIN_NS / 1000);
 }
@@ -408,7 +408,7 @@ static void note_login(struct server_context *server, struct stream *stream, boo
         return;
     if (good)
         holder.role = session->identity.role;
-    if (!good) /* pump() counts streams that are refused with 1013 (try again later) */
+    if (!good) /* does not count refusals with close code 1013 (try again later), because pump() counts these */
         counter_inc(server->counters.refused, session->identity.login != LOGIN_HELD);
     if (!good || session->identity.role > ROLE_OPEN || holder.name[0])
         connection_log_login(server, stream->wsi, "stream", &holder, good ? LOGIN_GOOD_NEW : session->identity.login);

@@ -23,11 +23,9 @@ struct stream {
     bool cut;              /* the frame was cut short: only the end of its message is still to be sent */
     uint64_t ping, pong;   /* sequence numbers of the last ping sent and of the last pong received */
     int64_t ping_ns;       /* monotonic: when the last ping was sent */
-    enum {
-        FIRST_TEXTS,
-        FIRST_PING,
-        FIRST_DONE
-    } first; /* true: the first bandwidth measurement runs, by the time from the first text to the pong of a ping after the texts */
+    /* progress of the first bandwidth measurement, which takes the time from sending the first text until the pong of a ping that
+       follows the first texts */
+    enum { FIRST_TEXTS, FIRST_PING, FIRST_DONE } first;
     size_t first_bytes;
     int64_t first_ns; /* monotonic: when the first text before the first frame was sent */
     struct known_markers known;
@@ -38,7 +36,7 @@ struct stream {
     int64_t silent_ns;
     int close_code; /* WebSocket close code; 0: the connection stays open */
     const char *close_text;
-    int64_t messages, errors, dropped; /* the session's counts (log and metrics) as last added to the metrics */
+    int64_t messages, errors, dropped; /* the session counters with these names, as last added to the metrics */
 };
 
 /* --- stream_table.c --- */

@@ -61,7 +61,7 @@ static struct session *choose(struct server_context *server, const struct tile_w
 static void take_lead(const struct server_context *server, struct tile_wall *wall, struct session *leader, const struct stream *leaving)
 {
     const struct stream *before = wall->leader ? stream_find(server, wall->leader) : NULL;
-    /* stream_find() cannot find the leaving stream, which was already removed from the table */
+    /* stream_find() would not find the leaving stream, because it was already removed from the table */
     if (leaving && leaving->session->id == wall->leader)
         before = leaving;
     if (before)

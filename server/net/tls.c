@@ -153,8 +153,8 @@ static int write_chain(const SSL_CTX *context, const char *path)
     return error;
 }
 
-/* Puts the certificate in force into the service's folder in /run, where Prometheus and other programs of this machine find the one to
-   trust. */
+/* Writes the certificate that is in force to the service's folder in /run, where Prometheus and other programs of this machine find the one
+   to trust. */
 static void publish(const struct tls *tls)
 {
     const char *runtime = getenv("RUNTIME_DIRECTORY");

@@ -20,7 +20,7 @@ static int alive(struct server_context *server, struct http_exchange *request)
     return request_answer_text(request, HTTP_STATUS_OK, "ok\n");
 }
 
-/* Returns whether a load balancer asks whether this daemon may draw for a core (/readyz?role=render). */
+/* Returns whether a load balancer checks with this request whether the daemon may draw for a core (/readyz?role=render). */
 static bool is_asked_as_renderer(struct http_exchange *request)
 {
     char argument[16];
@@ -231,7 +231,8 @@ static int serve(struct server_context *server, struct http_exchange *request, c
     bool get = lws_hdr_total_length(request->wsi, WSI_TOKEN_GET_URI) > 0;
     struct http_refusal refusal;
     request->head = lws_hdr_total_length(request->wsi, WSI_TOKEN_HEAD_URI) > 0;
-    request->sandboxed = false; /* libwebsockets reuses this struct for all requests of a connection, so it is cleared */
+    /* clears the value of the previous request: libwebsockets reuses this struct for all requests of a connection */
+    request->sandboxed = false;
     counter_inc(server->counters.requests, 1);
     connection_set_answered(server, request->wsi, false);
     stuck_head_arrived(request->wsi);

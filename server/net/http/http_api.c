@@ -234,7 +234,8 @@ int api_views(struct server_context *server, struct http_exchange *request)
     return request_answer_json(request, reply_views_text(&server->session_context, args.count ? args.list[0] + 3 : NULL));
 }
 
-/* Returns the view of a short link. A renderer that has not heard from the core cannot say that a link does not exist. */
+/* Returns the view of a short link. Without a connection to the core, or before the core has sent its lists, a renderer answers 503 for an
+   unknown link, which may exist. */
 int api_link(struct server_context *server, struct http_exchange *request)
 {
     struct message_error error = { 0 };

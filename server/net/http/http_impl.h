@@ -20,9 +20,9 @@ struct http_exchange {
     /* usage of the client's address while the request waits; no reference of its own: the connection holds one */
     struct address_usage *usage;
     bool head;              /* the request is HEAD: the answer has no body */
-    bool close;             /* close the connection after this answer */
+    bool close;             /* true: the connection is closed after this answer */
     bool sandboxed;         /* the answer belongs to a sandboxed document (opaque origin), which Chromium runs in a process of its own */
-    char *set_cookie;       /* value of the header Set-Cookie of the next answer; NULL: none */
+    char *set_cookie;       /* value of the header Set-Cookie of the next answer; NULL: the answer sets no cookie */
     struct refusal refusal; /* sent in the next answer's header Plantcast-Refusal; REFUSAL_NONE: none */
     char *body;
     size_t count, sent;
@@ -95,7 +95,7 @@ const char *arg_of(const struct args *args, const char *name);
 
 /* Makes the request wait and sets request->client. The answer is given later, outside of the request's own libwebsockets callback. */
 void request_await(struct server_context *server, struct http_exchange *request);
-/* Frees the data about the picture or pick that a request asked for. &NULL is allowed; sets *asked to NULL. */
+/* Frees the data about the frame or pick for which a request waits. &NULL is allowed; sets *asked to NULL. */
 void asked_free(struct asked **asked);
 /* Returns the request that waits under that id; NULL: none. */
 struct http_exchange *request_find(const struct server_context *server, uint64_t client);

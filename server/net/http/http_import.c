@@ -110,7 +110,7 @@ int api_import(struct server_context *server, struct http_exchange *request)
     return request_answer_json(request, plant_import_text(server->params.import, &source));
 }
 
-/* Answers with the content of a file. path NULL: no import has been made. missing: text of the answer if the file does not exist. */
+/* Answers with the content of a file. path NULL: no plant has been imported yet. missing: text of the answer if the file does not exist. */
 static int answer_file(struct http_exchange *request, const char *path, const char *type, const char *missing)
 {
     size_t bytes;
