@@ -58,7 +58,7 @@ enum signed_frames { SIGNED_NONE, SIGNED_REFINED, SIGNED_ALL }; /* which frames 
    with a view */
 enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32, RESUME_MOST_CHARS = 8191 };
 
-enum params_given { /* bits: which members a params message has */
+enum params_given { /* bits of struct params_change: which members a params message has */
                     GIVEN_GROUP = 1 << 0,
                     GIVEN_INTERPOLATION = 1 << 1,
                     GIVEN_DISTANCE = 1 << 2,
@@ -215,7 +215,7 @@ struct message {
     struct camera camera;            /* camera, hello */
     uint32_t seq;                    /* sequence number in camera, ack, fit, pick and look; in hello that of its camera */
     struct params_change params;     /* params, hello */
-    struct split_change split;       /* params, hello; applied after `params` */
+    struct split_change split;       /* in params and hello; applied after `params` */
     struct fit_message fit;
     struct pick_request pick;
     bool visible;
@@ -235,7 +235,7 @@ struct message {
     struct named_view_edit view_edit; /* save_view sets all members; remove_view only the id; share_view only the address;
                                          send_to_wall only view and title */
     struct note_request note;         /* note, remove_note */
-    struct wall_request wall;         /* display, send_to_wall, point */
+    struct wall_request wall;         /* in display, send_to_wall and point */
     struct pair_request pair;         /* pair, unpair */
     enum signed_frames signed_frames; /* hello, sign */
 };
@@ -257,13 +257,15 @@ struct params_context {
 /* Applies a change to a view. If part of the change is wrong, returns false with *error and leaves the view unchanged. If the group
    changes, the view first gets that group's settings. */
 bool params_apply(const struct params_context *context, const struct params_change *change, struct view *view, struct message_error *error);
-/* For params_parse() and params_apply(): handle the members `show`, `sensor`, `baseline` and `sensors` (params_show.c). */
+/* params_parse_show() and params_apply_show(), for params_parse() and params_apply(): the members `show`, `sensor`, `baseline` and
+   `sensors` (params_show.c). */
 bool params_parse_show(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error);
 bool params_apply_show(const struct params_context *context, const struct params_change *change, const struct view *before,
                        struct view *view, struct message_error *error);
 /* Stores or removes the baseline that a change names. Call it last, after all checks of the change, because it cannot be undone. */
 void params_apply_baseline(const struct params_context *context, const struct params_change *change, struct view *view);
-/* For params_parse() and params_apply(): handle the members `scale`, `breaks` and `isolines` (params_paint.c). */
+/* params_parse_paint() and params_apply_paint(), for params_parse() and params_apply(): the members `scale`, `breaks` and `isolines`
+   (params_paint.c). */
 bool params_parse_paint(const json_t *o, struct params_change *out, struct message_error *error);
 bool params_apply_paint(const struct plant *plant, const struct params_change *change, struct view *view, struct message_error *error);
 /* split_parse() and split_apply() handle the member `split`, which describes the right half of a split view (params_split.c). */

@@ -5,8 +5,8 @@
 #include "message/message.h"
 #include "placing/tag_file.h"
 
-/* The functions parse messages into out->place, out->coverage, out->confirm, out->accept and out->kept. They return false with *error
-   saying what is wrong. */
+/* place_parse() and its siblings parse messages into out->place, out->coverage, out->confirm, out->accept and out->kept. They return false
+   with *error saying what is wrong. */
 bool place_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool coverage_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool save_tags_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);

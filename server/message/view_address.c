@@ -12,7 +12,7 @@
 enum { CAMERA_NUMBERS = 11 };
 
 static const struct {
-    const char *name, *of_query; /* name in the address; name in a query, NULL: the field is dropped */
+    const char *name, *of_query; /* name in the address; name in a query, NULL: queries have no such field, so it is dropped */
 } names[] = {
     { "group", "group" },
     { "interpolation", "interpolation" },

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Wall messages name a pane by wall, display and area, as in the plant file. */
+/* Parses messages about wall displays, and sends views to panes. Messages name a pane by wall, display and area, as in the plant file. */
 #include "message/wall_message.h"
 
 #include <string.h>
