@@ -11,7 +11,7 @@ static inline bool plant_is_exact(enum interpolation interpolation, enum distanc
 {
     return (interpolation == INTERPOLATION_SHEPARD || interpolation == INTERPOLATION_PAPER) && distance == DISTANCE_EUCLIDEAN;
 }
-/* Returns whether plantcast-prep need not subdivide triangles for this group. */
+/* Returns whether plantcast-prep need not subdivide triangles for this group, because its field is evaluated at each pixel. */
 static inline bool plant_group_is_exact(const struct plant_group *group)
 {
     return plant_is_exact(group->interpolation, group->distance) && !plant_prepares_any(group);

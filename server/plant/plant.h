@@ -22,7 +22,7 @@ enum interpolation {
 };
 /* DISTANCE_HEAT: geodesic distances by the heat method (Crane et al., 2013), as in Kim & Suh, Electronics 2025, 14(15), 2938 */
 enum distance_mode { DISTANCE_GEODESIC, DISTANCE_EUCLIDEAN, DISTANCE_HEAT, DISTANCES };
-enum fill_mode { FILL_NONE, FILL_NEIGHBOURS }; /* whether a sensor without usable reading gets an estimate from its neighbours' readings */
+enum fill_mode { FILL_NONE, FILL_NEIGHBOURS }; /* whether neighbouring sensors colour the area around a sensor whose reading is Bad */
 /* display with which a client begins: values, or values relative to their alarm limits */
 enum plant_show { PLANT_SHOW_VALUE, PLANT_SHOW_OPERATOR };
 enum plant_start { PLANT_START_SHOWN, PLANT_START_GHOST, PLANT_START_HIDDEN }; /* initial display state of an asset */
@@ -97,7 +97,7 @@ struct plant_alarm_settings { /* how and when alarms of this group or tag are ra
 
 struct plant_mirror {  /* meaning of a tag that is an alarm bit of another system */
     int tag;           /* index of the tag that has the alarm, or -1 */
-    int limit;         /* enum limit at which the alarm is; LIMIT_COUNT: an alarm without a limit */
+    int limit;         /* enum limit: the limit whose alarm the bit reports; LIMIT_COUNT: an alarm without a limit */
     bool acknowledged; /* the bit means "acknowledged" rather than "alarm present" */
 };
 

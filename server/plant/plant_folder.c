@@ -20,7 +20,7 @@
 #include "base/text/text.h"
 
 enum { LOOK_MS = 50 };
-/* name of the record of a revision whose undoing is complete; the next program that locks the folder removes the rest */
+/* name to which the record of a revision is renamed once its undoing is complete; the next program that locks the folder removes it */
 static const char undone[] = ".import-undone";
 static const size_t max_text_bytes = (size_t)64 << 20;
 
@@ -310,7 +310,7 @@ bool plant_folder_settle(const struct plant_folder_params *params, char **why)
     int lock = plant_folder_lock(&at_once, why);
     if (lock >= 0)
         close(lock);
-    if (!killed) { /* either an import is running and has not begun to replace files, or this program may not remove the remains */
+    if (!killed) { /* an import is running and has not begun to replace files, or this program may not remove what a killed program left */
         mem_free(*why);
         *why = NULL;
         return true;

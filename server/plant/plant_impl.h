@@ -62,7 +62,7 @@ void plant_publish_free(struct plant_publish **publish); /* Frees the settings a
 /* Reads the list `sources`. */
 void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
 
-/* Reads a source's `tls`. */
+/* Reads the key `tls` of a source. */
 void plant_mqtt_read_tls(struct yaml_reader *reader, yaml_node_t *node, void *source);
 /* Checks the keys of an MQTT source, and sets defaults. */
 void plant_mqtt_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_source *source);

@@ -138,7 +138,7 @@ static bool is_one_place(const struct plant_models_check *check, const struct pl
     for (size_t i = 1; i < *count; i++) {
         place_of(&check->header, check->found[i], other);
         for (int axis = 0; axis < 3; axis++)
-            /* the comparison is false if a coordinate is unknown (NaN) */
+            /* an unknown coordinate (NaN) makes the comparison false, so it counts as equal */
             if (fabs(other[axis] - first[axis]) * asset->unit_m > SAME_PLACE_M)
                 return false;
     }

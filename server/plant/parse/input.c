@@ -13,7 +13,7 @@
 
 enum {
     REPORTED_LINES = 10,
-    TEXT_AT_LEAST = 10 /* TEXT_AT_LEAST: a file counts as text if it has at least this many characters for each invalid byte */
+    TEXT_AT_LEAST = 10 /* TEXT_AT_LEAST: minimum number of valid characters for each invalid byte, so that a file counts as text */
 };
 
 /* Reports invalid bytes. Returns false if the bytes are not text at all; nothing is then reported. */

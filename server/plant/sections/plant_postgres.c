@@ -17,7 +17,7 @@ static bool is_schema(const char *name)
            strncmp(name, "pg_", 3) != 0;
 }
 
-/* Returns whether the URL contains a password, which everybody could see who may read the plant file. */
+/* Returns whether the URL contains a password, which every reader of the plant file could see. */
 static bool has_password(const char *url)
 {
     const char *host = strstr(url, "://") + 3, *at = memchr(host, '@', strcspn(host, "/?"));

@@ -90,7 +90,7 @@ void tag_derived_resolve(const struct tag_links *derived, struct plant *plant, s
             continue;
         diag_error(diag, plant->files.tags_path, link->line, link->column, "Address: '%.60s' is computed from itself",
                    plant->tags[link->tag].name);
-        break; /* reports the cycle for one tag only: otherwise each tag of the cycle would be reported */
+        break; /* reports a cycle for one tag only: visiting the other tags of the cycle would report it again */
     }
     mem_free(walk.marks);
 }

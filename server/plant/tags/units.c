@@ -343,7 +343,8 @@ static bool find_pressure(const char *name, struct unit_entry *out)
     return false;
 }
 
-/* Finds a temperature difference, such as deltaK: the zero point of the scale does not matter. Returns false if there is no such unit. */
+/* Finds the unit of a temperature difference, such as deltaK; the zero point of the scale does not matter. Returns false if there is no
+   such unit. */
 static bool find_difference(const char *name, struct unit_entry *out)
 {
     const struct unit_entry *unit = strncasecmp(name, "delta", 5) == 0 ? look_up(name + 5) : NULL;

@@ -401,8 +401,7 @@ static void check_items(const struct plant *plant, const struct wall_pane *pane,
     }
 }
 
-/* Returns how many displays of the tiled picture a check may skip. All displays of the picture have the same panes, so checking one
-   suffices. */
+/* Returns how many displays of the tiled picture a check may skip: all but one, because all displays of the picture have the same panes. */
 static size_t tiles_but_one(const struct wall *wall)
 {
     int count = wall->tile.columns * wall->tile.rows;
