@@ -62,7 +62,7 @@ static void bounds_of(const struct asset_parts *parts, struct asset_header *h)
         }
 }
 
-/* Makes one cluster per primitive (run of triangles with one material). Returns NULL if out of memory. */
+/* Makes one cluster per primitive (a primitive is a range of triangles with one material). Returns NULL if out of memory. */
 static struct asset_cluster *plain_clusters(const struct asset_parts *parts, uint32_t *count)
 {
     struct asset_cluster *clusters = calloc(parts->primitive_count + 1u, sizeof(*clusters));

@@ -82,7 +82,7 @@ static bool counts_good(struct format_check *c)
     return true;
 }
 
-/* Returns the number of blocks of vertices whose distances are stored together. */
+/* Returns the number of blocks of vertices; the distances of one block are stored together. */
 static size_t block_count(const struct asset_header *h)
 {
     return (h->vertex_count + ASSET_DISTANCE_BLOCK - 1) / ASSET_DISTANCE_BLOCK;

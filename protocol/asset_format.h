@@ -40,10 +40,11 @@ struct asset_header {
     char magic[8];
     uint32_t version, header_bytes;
     uint64_t file_bytes;
-    uint64_t checksum;  /* XXH3-64 of the file computed with this field set to 0 */
-    uint64_t key;       /* XXH3-64 of everything that the file was made from: model bytes, node pattern, units, sensor positions, the
-                           program's format version */
-    double origin_m[3]; /* in the asset frame */
+    uint64_t checksum; /* XXH3-64 of the file computed with this field set to 0 */
+    /* XXH3-64 of everything from which the file was made: model bytes, node pattern, units, sensor positions, and the format version of
+       plantcast-prep */
+    uint64_t key;
+    double origin_m[3];                     /* in the asset frame */
     float bounds_min_m[3], bounds_max_m[3]; /* bounding box of all positions, relative to origin_m */
     uint32_t vertex_count, index_count, primitive_count, level_count, material_count, texture_count, sensor_count, cluster_count;
     struct asset_section_entry sections[ASSET_SECTION_COUNT];
@@ -57,8 +58,8 @@ struct asset_primitive {               /* a range of triangles with one material
 
 struct asset_level { /* a level of detail: its primitives and its number of vertices, which are the first vertices of the file */
     uint32_t first_primitive, primitive_count, vertex_count;
-    /* number of vertices that preparation added by subdivision: the last ones of those vertices that this level uses and the next
-       coarser level does not */
+    /* number of vertices that preparation added by subdivision; they are the last vertices of this level that the next coarser level does
+       not use */
     uint32_t added_count;
     float error_m; /* largest distance in metres of the level's surface from that of the finest level; 0 for the finest level */
 };
@@ -80,7 +81,8 @@ struct asset_material { /* glTF 2.0 metallic-roughness; factors linear */
     float emissive[3], alpha_cutoff;
     uint32_t base_color_texture, metallic_roughness_texture, normal_texture, occlusion_texture, emissive_texture; /* or ASSET_NO_TEXTURE */
     uint32_t alpha, double_sided, name;
-    /* bit n set: the n-th of the five textures above (0: base colour) uses the second texture coordinates; bit 0 is never set */
+    /* bit n is set if the material's texture n uses the second texture coordinates (n: 0 base colour, 1 metallic-roughness, 2 normal, 3
+       occlusion, 4 emissive); bit 0 is never set */
     uint32_t second;
 };
 
@@ -92,7 +94,7 @@ struct asset_texture {
 struct asset_sensor {
     float position_m[3];      /* position as configured, or that of the configured model node; relative to header.origin_m */
     float surface_m[3];       /* point of the surface nearest to position_m, relative to header.origin_m */
-    float surface_distance_m; /* distance between both */
+    float surface_distance_m; /* distance between position_m and surface_m */
     uint32_t nearest_vertex;
     uint64_t node_hash; /* XXH3-64 of the name of the model node that gave the position; 0: the position was configured as X, Y, Z */
 };

@@ -10,14 +10,14 @@
 #include "protocol/distance_code.h"
 
 #define BLOCK ASSET_DISTANCE_BLOCK
-#define LANES 8u /* a code is predicted from the code LANES vertices before, so that LANES vertices are computed at a time */
+#define LANES 8u /* number of vertices computed at a time: each code is predicted from the code LANES vertices before */
 #define GROUP 128u
 #define GROUPS (BLOCK / GROUP)
-#define NO_PARENT 0xffffu /* predicted from the same sensor's distances only */
-#define PLAIN 0xfffeu     /* not predicted: some vertices have no path to the sensor */
-#define SAMPLES 16u       /* vertices at which the distances of two sensors are compared */
+#define NO_PARENT 0xffffu /* value of `parent`: codes are predicted from distances of the same sensor only */
+#define PLAIN 0xfffeu     /* value of `parent`: codes are not predicted, because some vertices have no path to the sensor */
+#define SAMPLES 16u       /* number of vertices at which the distances of two sensors are compared */
 
-struct packed_row { /* how one sensor's codes of a block are packed */
+struct packed_row { /* how one sensor's codes of a block are packed; `parent`: the similar sensor used for predictions */
     uint16_t parent;
     uint8_t width[GROUPS]; /* bits per code */
 };
@@ -28,7 +28,7 @@ static size_t rows_bytes(size_t sensor_count)
     return (sensor_count * sizeof(struct packed_row) + 15) / 16 * 16;
 }
 
-/* Returns the bytes of a row after its first LANES codes. */
+/* Returns the number of bytes of a row (one sensor's packed codes), not counting its first LANES codes. */
 static size_t row_bytes(const struct packed_row *row)
 {
     size_t bytes = 0;
@@ -211,7 +211,7 @@ static const uint8_t *unpack_group(const uint8_t *from, unsigned width, uint16_t
     return from + width * GROUP / 8;
 }
 
-/* Turns differences into codes, in place. The first LANES codes are known. */
+/* Turns differences between codes and predictions into codes, in place. The first LANES codes are known. */
 static void add_predictions(uint16_t *codes, const uint16_t *parent)
 {
     float m[BLOCK], parent_m[BLOCK] = { 0 };

@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #define DISTANCE_PACK_MIN_SENSORS 64u /* assets with fewer sensors have plain codes, which readers use without a copy */
-#define DISTANCE_PACK_NEAR 12u        /* number of possible parents of a sensor */
+#define DISTANCE_PACK_NEAR 12u        /* maximum number of candidates for a sensor's parent */
 
 /* Returns the largest size in bytes of a packed block. */
 size_t distance_pack_bound(size_t sensor_count);
@@ -16,7 +16,7 @@ size_t distance_pack_bound(size_t sensor_count);
    similar to those of s, from which the packer selects the parent; unused entries are s. out: distance_pack_bound() bytes. Returns the
    number of bytes used, a multiple of 16, or 0 if out of memory. */
 size_t distance_pack(const uint16_t *codes, size_t sensor_count, const uint16_t (*near)[DISTANCE_PACK_NEAR], uint8_t *out);
-/* Returns whether `bytes` bytes from `block` on are a block that distance_unpack() can read without leaving them. */
+/* Returns whether the memory of `bytes` bytes from `block` on holds a valid block, so that distance_unpack() reads nothing beyond it. */
 bool distance_pack_good(const uint8_t *block, size_t bytes, size_t sensor_count);
 /* Unpacks a block for which distance_pack_good() returned true. codes: [sensor][ASSET_DISTANCE_BLOCK]. */
 void distance_unpack(const uint8_t *block, size_t sensor_count, uint16_t *codes);

@@ -167,7 +167,7 @@ static float get_float(const uint8_t *from)
     return value;
 }
 
-/* Copies as much of the text as fits into `room` bytes, in whole UTF-8 characters. */
+/* Copies as many whole UTF-8 characters of the text as fit into `room` bytes. */
 static void put_text(uint8_t *to, int room, const char *text)
 {
     int length = (int)strnlen(text, (size_t)room + 1);

@@ -48,12 +48,13 @@ struct wire_frame { /* header of a frame; the members are in the order of the by
 struct wire_depth { /* header of a depth grid; the members are in the order of the bytes on the wire, after type and encoding */
     uint16_t flags;
     uint32_t payload_bytes, seq;
-    uint16_t x_px, y_px, width_px, height_px; /* part of the picture that the grid covers */
+    uint16_t x_px, y_px, width_px, height_px; /* rectangle of the picture that the grid covers */
     uint16_t full_width_px, full_height_px;
     uint16_t columns, rows; /* of cells */
     uint8_t cell_px, mask_side;
-    uint16_t levels;     /* largest code */
-    float base, unit;    /* depth of the code 1, and difference between two codes: 1/m (perspective) or m (orthographic) */
+    uint16_t levels; /* largest code */
+    /* base: depth of the code 1; unit: difference between two successive codes; both in 1/m (perspective) or m (orthographic) */
+    float base, unit;
     uint32_t data_bytes; /* size of the inflated payload */
 };
 
