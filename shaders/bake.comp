@@ -11,7 +11,8 @@ layout(std430, binding = 1) readonly buffer Directions {
     mat4 map_from_plant[32];
     vec4 direction[32]; // unit vector towards the light; w: brightness of the light
 };
-layout(location = 0) uniform mat4 plant_from_here; // to plant axes, relative to the centre of the scene
+// matrix from the coordinates of the vertices to plant axes, relative to the centre of the scene
+layout(location = 0) uniform mat4 plant_from_here;
 layout(location = 1) uniform mat4 sun_from_plant;
 layout(location = 4) uniform mat3 plant_from_normal;
 layout(location = 8) uniform vec4 sun;             // unit vector towards the sun; w: texel size of the sun's depth map in metres
@@ -19,7 +20,7 @@ layout(location = 9) uniform float sky_texel_m;
 layout(location = 10) uniform ivec2 range; // range of vertices or points: first index, and one beyond the last
 #ifdef GROUND
 const int TAPS = 16;
-const float SPREAD = 0.05;  // relative to the map's width
+const float SPREAD = 0.05;  // radius of the disc of samples, relative to the width of a sky map
 layout(rg8, binding = 0) uniform image2D ground; // sun, openness
 layout(location = 11) uniform vec3 ground_up;
 #else
@@ -27,8 +28,9 @@ const int TAPS = 4;
 const float SPREAD = 0.004;
 layout(std430, binding = 2) readonly buffer Positions { float positions_m[]; };
 layout(std430, binding = 3) readonly buffer Normals { uint normals[]; }; // packed as in normal.glsl
-layout(std430, binding = 4) buffer Light { uint baked[]; }; // bytes: light, ambient, openness (visible part of the sky), cosine to the sun
-layout(std430, binding = 5) readonly buffer Corners { uint corners[]; }; // three per large triangle: render/light/bake_faces.h
+// four bytes per vertex: light, ambient, openness (visible part of the sky), cosine to the sun
+layout(std430, binding = 4) buffer Light { uint baked[]; };
+layout(std430, binding = 5) readonly buffer Corners { uint corners[]; }; // three corners per large triangle: render/light/bake_faces.h
 layout(std430, binding = 6) buffer Sums { uint sums[]; }; // per vertex, sums over samples in large triangles: weight, openness, sun
 layout(location = 12) uniform float large_m;
 layout(location = 13) uniform bool has_faces;
@@ -40,8 +42,8 @@ const vec2 disc[16] = vec2[](vec2(0.177, 0.000), vec2(-0.226, 0.207), vec2(0.035
                              vec2(0.343, -0.734), vec2(0.255, 0.808), vec2(-0.764, -0.443), vec2(0.897, -0.197), vec2(-0.548, 0.779),
                              vec2(-0.126, -0.976));
 
-// Returns the open fraction of a cone around one direction of the sky maps: with only 32 directions, a single ray for each would be too
-// coarse. slope: slope of the surface in the depth map, so that the surface does not occlude itself.
+// Returns the open fraction of a cone around one direction of the sky maps; with only 32 directions, a single ray per direction would be
+// too coarse. slope: slope of the surface in the depth map, so that the surface does not occlude itself.
 float opening(vec3 p, vec2 slope, int i)
 {
     float sum = 0.0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Clips vertices against the section planes of a view. The planes are in clip space, so they apply however a vertex was transformed.
+// Clips vertices against the section planes of a view. The planes are in clip space, so that they do not depend on how a vertex was
+// transformed.
 #ifdef CLIP
 out float gl_ClipDistance[6];
 

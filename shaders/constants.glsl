@@ -22,9 +22,10 @@
 #define GREY_RED 0.30
 #define GREY_GREEN 0.59
 #define GREY_BLUE 0.11
-// A normal is flipped if its cosine to the viewer is less than this: slightly negative values occur at smoothed rims.
+// A normal is flipped towards the viewer if its cosine to the viewer is less than this. At smoothed rims, slightly negative cosines are
+// expected.
 #define MOST_AWAY -0.3
-// Minimum openness of surfaces seen from behind, since the baked value belongs to the other side.
+// Minimum openness of surfaces seen from behind, because the baked openness is that of the front side.
 #define OPEN_BEHIND 0.7
 // Glossy frames use softer light, so that colours in shadow can still be named.
 #define GLOSSY_OPEN 0.3

@@ -3,10 +3,10 @@
 layout(local_size_x = 64) in;
 struct Cell {
     float near, far;
-    uint upper, lower; // bits of the mask
+    uint upper, lower; // 64-bit mask: bit i is set if pixel i of the cell belongs to the nearer of the two depths
 };
 layout(std430, binding = 0) buffer Cells { Cell cells[]; };
-layout(location = 0) uniform ivec2 grid; // columns and rows
+layout(location = 0) uniform ivec2 grid; // columns and rows of the depth grid
 layout(location = 1) uniform vec2 steps; // a difference of depth counts as a step above x * depth + y
 layout(binding = 0) uniform sampler2D depth;
 const int SIDE = 8;

@@ -3,14 +3,15 @@
 // distances are interpolated over the triangle, straight-line ones computed from the fragment's position. PIXEL_FIELD: straight-line
 // distances only (field/pixel_field.h).
 struct Sensor {
-    vec4 place_m;  // file coordinates; w: strength
+    vec4 place_m;  // position in file coordinates; w: strength
     float decay, value;
     uint column, state; // bits: 1: configured, 2: usable, 4: uncertain, 8: without limits
 };
 layout(std430, binding = 5) readonly buffer Sensors {
     vec4 numbers; // power, radius, reach, MIN of the group's range
-    vec4 more;    // x: MAX - MIN of the range, by which Algorithm 1 scales its sum to a value, or 0; y: vertex count of the asset;
-                  // z, w: size of a hot spot and the value at which it is seen, for show 5
+    // x: MAX - MIN of the range, by which Algorithm 1 scales its sum to a value, or 0; y: vertex count of the asset; z, w (only if the
+    // smallest visible hot spot is shown): size of a hot spot and the value at which it is seen
+    vec4 more;
     ivec4 choice; // enums of struct sensors_head: paper, geodesic, fill, show (1: distance, 5: hot spot)
     Sensor sensors[];
 };

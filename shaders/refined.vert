@@ -35,7 +35,7 @@ void main()
     uv = vec4(texcoord, second_texcoord);
     tint = vertex_color;
     vec4 baked = light_here();
-    // z is always 1 (the condition is never true), but the compiler must not see this, because it would not interpolate a constant
+    // z is always 1, because baked.w is never negative. The compiler must not know this: it would not interpolate a constant
     sky = vec3(baked.yz, baked.w < 0.0 ? 0.0 : 1.0);
     field = scalar_here();
 }

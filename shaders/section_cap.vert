@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Transforms positions and clips them by the section planes.
+// Transforms the vertices of closed bodies, and clips them by the section planes.
 #include "frame.glsl"
 #include "clip.glsl"
 layout(location = 0) in vec3 position_m;
