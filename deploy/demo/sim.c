@@ -109,7 +109,7 @@ static bool take_option(struct sim_options *options, int option, const char *tex
     }
 }
 
-/* Returns EXIT_SUCCESS to go on; EXIT_USAGE after an error message; -1 if only help was wanted. */
+/* Reads the command line. Returns EXIT_SUCCESS to continue; EXIT_USAGE after an error message; -1 if only help was wanted. */
 static int read_options(struct sim_options *options, int argc, char **argv)
 {
     static const struct option known[] = {
@@ -171,7 +171,8 @@ static void on_signal(int number)
     errno = cause;
 }
 
-/* Handles signals by a handler instead of a mask and a signalfd: threads that libraries start before main() do not have our mask. */
+/* Installs a signal handler. A blocked signal mask with a signalfd would not suffice, because threads that libraries start before main() do
+   not have our mask. */
 static bool await_signals(void)
 {
     struct sigaction action = { .sa_handler = on_signal, .sa_flags = SA_RESTART };

@@ -8,7 +8,7 @@
 
 struct sim_device {
     struct sim_modbus modbus;
-    int port;        /* port in the plant file */
+    int port;        /* number of the port in the plant file */
     int listen_port; /* port on which it listens */
     size_t tag_count;
 };

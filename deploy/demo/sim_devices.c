@@ -7,7 +7,7 @@
 
 #include "base/mem.h"
 
-/* RTU is not simulated. */
+/* Returns whether the source is simulated as a Modbus TCP server; RTU is not simulated. */
 static bool is_served(const struct plant_source *source)
 {
     return !strcmp(source->kind, "modbus") && source->transport == TRANSPORT_TCP;

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Byte of the value at each place on the wire (A the most significant), by byte order. */
+/* For each byte order: which byte of the value (A the most significant) is at each position on the wire. */
 static const char *const places_16[] = { "AB", "AB", "AB", "BA", "BA" };
 static const char *const places_32[] = { "ABCD", "ABCD", "CDAB", "BADC", "DCBA" };
 static const char *const places_64[] = { "ABCDEFGH", "ABCDEFGH", "GHEFCDAB", "BADCFEHG", "HGFEDCBA" };

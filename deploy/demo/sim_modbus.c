@@ -6,7 +6,8 @@ enum { HEADER_BYTES = 7, LENGTH_AT = 4, UNIT_AT = 6, FUNCTION_AT = 7, FIRST_AT =
 
 bool sim_modbus_init(struct sim_modbus *device)
 {
-    *device = (struct sim_modbus){ .modbus = modbus_new_tcp("127.0.0.1", MODBUS_TCP_DEFAULT_PORT) }; /* the context never connects */
+    /* this context only makes replies and never connects */
+    *device = (struct sim_modbus){ .modbus = modbus_new_tcp("127.0.0.1", MODBUS_TCP_DEFAULT_PORT) };
     return device->modbus != NULL;
 }
 

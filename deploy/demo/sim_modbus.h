@@ -7,12 +7,12 @@
 
 struct sim_modbus {
     struct sim_image image;
-    modbus_t *modbus; /* used to make replies */
+    modbus_t *modbus; /* libmodbus context that makes the replies */
     bool paused;      /* requests are received but not answered */
     long reads, refusals, writes_refused;
 };
 
-/* Returns false if out of memory. */
+/* Initialises a device. Returns false if out of memory. */
 bool sim_modbus_init(struct sim_modbus *device);
 void sim_modbus_finish(struct sim_modbus *device);
 sim_take sim_modbus_take; /* Answers a request; arg: struct sim_modbus. */

@@ -185,7 +185,8 @@ static void put(json_t **root, const char *path, json_t *value)
         json_array_set_new(*root, (size_t)at, made);
 }
 
-/* Puts a value at a path of the source. A path that begins with `@` starts in the object that contains the value at `of`. */
+/* Puts a value at a path that the source states (value, time or quality). A path that begins with `@` starts in the object that contains
+   the value at the path `of`. */
 static void put_stated(json_t **root, const char *path, const char *of, json_t *value)
 {
     struct json_path_step step;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Upsets are a table of effects on loops; each tag is a first-order lag behind its loop. The shares match the limits of the demo plant:
-   an upset drives few tags beyond their limits and moves many within them. */
+/* The simulated process. A table lists upsets (disturbances) and their effects on loops; each tag follows its loop with a first-order lag.
+   The effects fit the limits of the demo plant: an upset drives few tags beyond their limits and moves many within them. */
 #include "sim_process.h"
 
 #include <math.h>
@@ -17,15 +17,15 @@ static const double MAX_STEP_S = 1.0, TAU = 6.283185307179586;
 #define MACHINE "machine" /* pseudo loop name: the effect applies to one machine per cycle, each in turn */
 
 struct effect {
-    const char *word; /* word in the name of the loop */
+    const char *word; /* the effect applies to loops whose names contain this word; or MACHINE */
     enum process_kind kind;
-    double share;  /* fraction of the tag's span, at the peak of the upset */
+    double share;  /* size of the effect at the peak of the upset, as a fraction of the tag's span */
     double dead_s; /* seconds before the effect begins */
 };
 
 struct upset {
     const char *name;
-    double start_s, rise_s, hold_s, fall_s; /* times in seconds within the cycle */
+    double start_s, rise_s, hold_s, fall_s; /* times in seconds: start within the cycle, then durations */
     struct effect effects[MAX_EFFECTS];
 };
 
@@ -57,7 +57,7 @@ struct process_state {
     double normal, span;
     double shares[UPSETS], dead_s[UPSETS];
     uint32_t loop; /* hash of the loop's name; sets the phase of its drift */
-    int machine;   /* number of its machine, or -1 */
+    int machine;   /* number of the tag's machine, or -1 */
     double dead_own_s, lag_s;
     double lagged, drift, noise, value;
     uint64_t random;

@@ -11,8 +11,8 @@ enum process_kind { PROCESS_TEMPERATURE, PROCESS_PRESSURE, PROCESS_VIBRATION, PR
 struct process_tag {
     enum process_kind kind;
     double normal;    /* operating value */
-    double span;      /* width of its range; unit of drifts and upsets */
-    const char *name; /* name and loop need to live only during the call */
+    double span;      /* width of the tag's range; drifts and upsets are stated as fractions of this width */
+    const char *name; /* name and loop may be freed after the call */
     const char *loop; /* any word: upsets affect the loops that --help lists; others drift with a phase derived from the word */
 };
 
