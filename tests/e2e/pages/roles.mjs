@@ -108,6 +108,39 @@ test('where alarms are this site\'s own, operators and engineers act on them, vi
     });
 });
 
+test('operators change and end the notes of their own account, engineers end all; a changed note keeps its end', options, async () => {
+    const post = (page, text, more) => page.evaluate(([words, rest]) => {
+        const { session } = globalThis.plantcast;
+        session.post({ type: 'note', seq: 1, text: words, ...rest });
+    }, [text, more]);
+    const untilUs = (Date.now() + 5 * 3600e3) * 1000;
+    await post(pages.operator, 'of the operator', { until_us: untilUs });
+    await post(pages.engineer, 'of the engineer', {});
+    const offers = { viewer: [[], []], operator: [['edit', 'end'], []], engineer: [['end'], ['edit', 'end']] };
+    await everyRole(async (page, role) => {
+        await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 2);
+        await page.locator('#views-toggle').tap();
+        for (const [i, text] of ['of the operator', 'of the engineer'].entries()) {
+            const row = page.locator('#notes-list li', { hasText: text });
+            await row.waitFor();
+            for (const action of ['edit', 'end'])
+                await row.locator(`.${action}`).waitFor({ state: offers[role][i].includes(action) ? 'visible' : 'detached' });
+        }
+    });
+    const { operator, engineer } = pages;
+    await operator.locator('#notes-list .edit').tap();
+    await operator.locator('#note-text').fill('of the operator, changed');
+    await operator.locator('#note-form button[type="submit"]').tap();
+    await engineer.waitForFunction((us) => globalThis.plantcast.session.notes.some(({ text, until_us: until }) =>
+        text === 'of the operator, changed' && until === us), untilUs);
+    for (const text of ['of the operator', 'of the engineer'])
+        await engineer.locator('#notes-list li', { hasText: text }).locator('.end').tap();
+    await everyRole(async (page) => {
+        await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 0);
+        await page.locator('#views-toggle').tap();
+    });
+});
+
 for (const mode of ['display', 'mirror']) {
     test(`where the control system has them (${mode}), nobody acts on them here`, options, async () => {
         setMode(mode);

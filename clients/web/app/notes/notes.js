@@ -25,7 +25,6 @@ export class Notes {
         this.text = make('input', { maxlength: LONGEST, placeholder: say('notes.text'), 'aria-label': say('notes.text'), id: 'note-text' });
         this.at = make('select', { id: 'note-at', 'aria-label': say('notes.at') });
         this.until = make('select', { id: 'note-until', 'aria-label': say('notes.until') });
-        fillSelect(this.until, UNTIL.map((name) => [name, say(`until.${name}`)]), 'shift');
         this.button = make('button', { type: 'submit' }, say('notes.save'));
         this.cancel = make('button', { type: 'button', hidden: true, onclick: () => this.edit(null) }, say('notes.cancel'));
         this.form = make('form', { id: 'note-form', onsubmit: (event) => this.onSave(event) }, this.text,
@@ -43,6 +42,7 @@ export class Notes {
         setInterval(() => this.tick(), TICK_MS);
         this.hear();
         this.offer();
+        this.offerEnds();
         this.point();
     }
 
@@ -83,6 +83,21 @@ export class Notes {
         this.at.disabled = Boolean(this.edited);
     }
 
+    // Offers ends: those from now on and, first, the end of the note that is edited.
+    offerEnds() {
+        const { edited } = this, kept = edited && endText(this.session.model, edited);
+        fillSelect(this.until, [...(kept ? [['kept', kept]] : []), ...UNTIL.map((name) => [name, say(`until.${name}`)])],
+            kept ? 'kept' : edited ? 'ever' : 'shift');
+    }
+
+    // Returns the chosen end in microseconds; null: the note does not end by itself.
+    get untilUs() {
+        const hours = HOURS[this.until.value];
+        if (this.until.value === 'kept')
+            return this.edited.until_us;
+        return hours ? Math.round(this.session.clockUs() + hours * 3600e6) : null;
+    }
+
     // Fills the form with the note that the user wants to change; null: empties the form.
     edit(note) {
         this.edited = note;
@@ -90,6 +105,7 @@ export class Notes {
         this.cancel.hidden = !note;
         setText(this.button, say(note ? 'notes.change' : 'notes.save'));
         this.offer();
+        this.offerEnds();
         if (note)
             this.text.focus();
     }
@@ -100,7 +116,7 @@ export class Notes {
         const place = edited ? { replaces: edited.id } : this.places.find(([name]) => name === this.at.value)?.[1];
         if (!text || !place)
             return;
-        const hours = HOURS[this.until.value], until = hours ? { until_us: Math.round(session.clockUs() + hours * 3600e6) } : {};
+        const { untilUs } = this, until = untilUs === null ? {} : { until_us: untilUs };
         session.post({ type: 'note', seq: ++session.toldSeq, text, ...place, ...until });
     }
 
@@ -164,8 +180,13 @@ export class Notes {
     rowOf(note) {
         const button = (name, f) => make('button', { type: 'button', class: name, onclick: f }, say(`notes.${name}`));
         return make('li', { 'data-id': note.id }, make('b', {}, note.text), make('small', {}, aboutText(this.session.model, note)),
-            this.may && note.by === this.name ? button('edit', () => this.edit(note)) : null,
-            this.may ? button('end', () => this.remove(note.id)) : null);
+            this.isOwn(note) ? button('edit', () => this.edit(note)) : null,
+            this.isOwn(note) || (this.may && this.session.role === 'engineer') ? button('end', () => this.remove(note.id)) : null);
+    }
+
+    // Returns true if the user's account wrote the note and may still change it.
+    isOwn(note) {
+        return this.may && note.by === this.name;
     }
 
     lookAt({ tag, asset }) {
