@@ -250,6 +250,83 @@ test('phones: sheets of at most 40 % beside the picture, the legend a strip', op
     }
 }));
 
+const heightOf = (page, selector) => page.evaluate((one) => document.querySelector(one).getBoundingClientRect().height, selector);
+const visible = (page, selector) => page.locator(selector).waitFor();
+const hidden = (page, selector) => page.locator(selector).waitFor({ state: 'hidden' });
+const ask = (page, name) => page.evaluate((f) => {
+    const { plantcast } = globalThis, { model } = plantcast.session;
+    plantcast[f](model.tags.find(({ group, position }) => group && position));
+}, name);
+
+test('phones: the button of a list that something covers shows the list', options, () => withPage(PHONE, async (page) => {
+    for (const [width, height] of PHONES) {
+        await page.setViewportSize({ width, height });
+        for (const [button, list] of [['#alarm-strip', '#alarms'], ['#assets-toggle', '#assets']])
+            for (const [call, cover] of [['selectTag', '#card'], ['showTrend', '#trends']]) {
+                await page.locator(button).tap();
+                await visible(page, list);
+                await ask(page, call);
+                await visible(page, cover);
+                await hidden(page, list);
+                await page.locator(button).tap();
+                await visible(page, list);
+                await hidden(page, cover);
+                await page.locator(button).tap();
+                await hidden(page, list);
+            }
+    }
+}));
+
+test('phones: sheets, time bar and trends leave a picture; a grip has two heights', options, () => withPage(PHONE, async (page) => {
+    await page.waitForFunction(() => globalThis.plantcast.session.recorded);
+    for (const [width, height] of PHONES.filter(([w, h]) => h > w)) {
+        const name = `${width}x${height}`, low = height < 700;
+        const leaves = async (what, part) => {
+            const tall = await heightOf(page, '#viewport');
+            await shoot(page, `phone-${name}-${what}`);
+            assert.ok(tall >= part * height, `${name} ${what}: a picture of ${tall.toFixed(0)} px`);
+        };
+        await page.setViewportSize({ width, height });
+        await ask(page, 'selectTag');
+        await visible(page, '#card');
+        await leaves('card', 0.3);
+        await page.locator('#time-toggle').tap();
+        await visible(page, '#time-slider');
+        await leaves('card-time', 0.2);
+        await page.locator('#alarm-strip').tap();
+        await visible(page, '#alarms');
+        await leaves('alarms-time', 0.2);
+        const [stage, list] = await Promise.all(['.stage', '#alarms'].map((one) => boxOf(page, one)));
+        assert.ok(Math.abs(stage.y + stage.height - list.y - list.height) < 1, `${name}: nothing below the list`);
+
+        const isAt = (part) => page.waitForFunction((px) => Math.abs(document.getElementById('alarms').offsetHeight - px) < 2,
+            part * height);
+        const usual = low ? 0.22 : 0.4, other = low ? 0.4 : 0.2, hand = await touches(page);
+        const drag = async (px) => {
+            const { x, y } = await boxOf(page, '#alarms'), at = [[x + width / 2, y + 8]];
+            await hand.drag(at, [[at[0][0], at[0][1] + px]]);
+        };
+        await isAt(usual);
+        const least = Math.min(usual, other);
+        for (const [px, part] of [[0, other], [0, usual], [-40, 0.4], [-40, 0.4], [40, least], [40, least]]) {
+            await drag(px);
+            await isAt(part);
+        }
+        await page.locator('#time-toggle').tap();
+        await isAt(0.4);
+        await ask(page, 'showTrend');
+        await visible(page, '#trends');
+        await leaves('trend', 0.2);
+        await ask(page, 'selectTag');
+        await visible(page, '#card');
+        await leaves('trend-card', 0.2);
+        await page.locator('#trend-close').tap();
+        await page.evaluate(() => globalThis.plantcast.selectTag(null));
+        await page.locator('#alarm-strip').tap();
+        await hidden(page, '#alarms');
+    }
+}));
+
 test('phone: pinch, twist and two fingers that pan', options, () => withPage(PHONE, async (page) => {
     const box = await boxOf(page, '#viewport'), [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
     const hand = await touches(page), azimuth = ({ camera: { eye, target } }) => Math.atan2(eye[1] - target[1], eye[0] - target[0]);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sheets: on a phone, panels and cards stand below the picture, or at its side, instead of covering it (common/sheet.css). A sheet has two
-// heights, between which a tap or a drag on its grip changes. Also opens the legend's strip by a tap.
-import { byId, phone, setVariable } from './dom.js';
+// heights, between which a tap or a drag on its grip changes: the style sheet has both, the class `other-sheet` chooses the second. Also
+// opens the legend's strip by a tap.
+import { byId, phone } from './dom.js';
 
-const STOPS = ['20dvh', '40dvh'], GRIP_PX = 24, SLOP_PX = 8;
+const GRIP_PX = 24, SLOP_PX = 8;
 const SHEETS = '.panel.open, .display.open, .alarms, .engineer, .assets, .stage > .card', CARDS = ['card', 'place'].map(byId);
 
-let stop = 1, drag = null; // drag: { y (where the drag began), moved (pixels so far, downwards) }; null: no drag
+let drag = null; // drag: { y (where the drag began), moved (pixels so far, downwards) }; null: no drag
 
 function stand() {
     const parent = phone.matches ? document.querySelector('.stage') : byId('viewport');
@@ -15,9 +16,15 @@ function stand() {
         ['legend', 'legend-right'].forEach((id) => byId(id).classList.remove('whole'));
 }
 
-function setStop(number) {
-    stop = Math.max(0, Math.min(STOPS.length - 1, number));
-    setVariable(document.documentElement, '--sheet', STOPS[stop]);
+const { documentElement: root } = document;
+const sheetHeight = () => parseFloat(getComputedStyle(root).getPropertyValue('--sheet'));
+
+// Changes to the other height; after a drag, only if that is higher (`grows`) or lower.
+function changeHeight(grows = null) {
+    const before = sheetHeight();
+    root.classList.toggle('other-sheet');
+    if (grows !== null && grows !== sheetHeight() > before)
+        root.classList.toggle('other-sheet');
 }
 
 // Returns true if a press is on the grip of a sheet. The event's target does not tell: browsers move a touch to a control nearby.
@@ -41,12 +48,15 @@ document.addEventListener('touchmove', (event) => drag && event.preventDefault()
 document.addEventListener('pointerup', (event) => {
     if (!drag)
         return;
-    setStop(Math.abs(drag.moved) < SLOP_PX ? 1 - stop : stop - Math.sign(drag.moved));
+    changeHeight(Math.abs(drag.moved) < SLOP_PX ? null : drag.moved < 0);
     drag = null;
     event.stopPropagation();
 }, true);
 document.addEventListener('pointercancel', () => { drag = null; });
 for (const id of ['legend', 'legend-right'])
     byId(id).addEventListener('click', () => byId(id).classList.toggle('whole', phone.matches && !byId(id).classList.contains('whole')));
+// The time bar leaves less room, so that sheets have their usual height again when it opens or closes.
+new MutationObserver(() => root.classList.remove('other-sheet'))
+    .observe(byId('timeline'), { attributes: true, attributeFilter: ['hidden'] });
 phone.addEventListener('change', stand);
 stand();

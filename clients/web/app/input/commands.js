@@ -2,7 +2,7 @@
 // Commands that clicks, keys and buttons trigger: selecting, flying to the selection, and opening parts of the page. Loaded on first use.
 import { nearestMarker } from '../../core/nearest.js';
 import { travel } from '../../core/requests.js';
-import { byId } from '../common/dom.js';
+import { byId, phone } from '../common/dom.js';
 import { store } from '../common/storage.js';
 import { wear } from '../common/theme.js';
 import { bandsOf } from '../toolbar/toolbar.js';
@@ -90,6 +90,24 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
     }
 
     const opens = (name) => (event) => modules.use(name, (part) => part.toggle(event), 'toggle');
+
+    // Closes the parts that would cover the alarm list or the equipment list of a phone.
+    function closeSheetsBut(name) {
+        const parts = ['alarms', 'assets', 'engineer', 'import', 'place', 'views', 'picture', 'trends'].filter((one) => one !== name)
+            .map((one) => modules.there(one)).filter((part) => part && part.open !== false);
+        parts.forEach((part) => (part.close ? part.close() : part.setOpen(false)));
+        modules.there('toolbarOverflow')?.display.set(false);
+        selectTag(null);
+    }
+
+    // Opens or closes a list. On a phone, another part may cover an open list; then the list is shown instead of closed.
+    const opensList = (name) => () => modules.use(name, (list) => {
+        const opens = !list.open || !byId(name).checkVisibility();
+        if (opens && phone.matches)
+            closeSheetsBut(name);
+        if (opens !== list.open)
+            list.setOpen(opens);
+    }, 'toggle');
     const ofViews = (f) => () => modules.use('views', f);
 
     const tagAt = (x, y, kind) =>
@@ -161,11 +179,13 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
         account: () => modules.use('account', (account) => account.open()),
         help: () => modules.use('help', (help) => help.open()),
         timings: opens('timings'),
-        alarms: opens('alarms'),
+        alarms: opensList('alarms'),
         past: () => session.recorded && opens('timeline')(),
         live: () => session.time.atUs !== null && travel(session, null),
-        assets: () => modules.use('assets', (assets) => assets.setOpen(!assets.open), 'toggle'),
+        assets: opensList('assets'),
         search: () => modules.use('assets', (assets) => {
+            if (phone.matches)
+                closeSheetsBut('assets');
             assets.setOpen(true);
             assets.search.focus();
             assets.search.select();
