@@ -69,7 +69,7 @@ priority: Prio
 tag: Messstelle
 kind: Alarm
 area: Bereich
-about: Beschreibung
+about: Benennung
 us: Gekommen
 then: Damals
 now: Jetzt

@@ -96,3 +96,29 @@ for (const [lang, decimal, date] of READERS.slice(sweep(0, 1))) {
         }
     });
 }
+
+test('titles of the alarm list and the journal are whole, also when they say the order', options, async () => {
+    for (const lang of ['en', 'ko', 'de']) {
+        const { page, close } = await openPage(`${url}?lang=${lang}`, { viewport: { width: 1920, height: 900 } });
+        try {
+            await waitForPicture(page);
+            await page.locator('#alarm-strip').click();
+            for (const tab of ['alarms', 'journal']) {
+                await page.locator(`#${tab}-tab`).click();
+                await page.locator(`#${tab}-list tr`).first().waitFor();
+                for (const width of [1920, 1600, 1400, 1280, 1200]) {
+                    await page.setViewportSize({ width, height: 900 });
+                    const cut = await page.evaluate((name) => [...document.querySelectorAll(`#${name}-table thead th`)].filter((head) => {
+                        const title = head.querySelector('button') ?? head;
+                        head.querySelector('button')?.click();
+                        return title.clientWidth > 1 && title.scrollWidth > title.clientWidth;
+                    }).map(({ textContent }) => textContent), tab);
+                    assert.deepEqual(cut, [], `${lang}, ${tab}, ${width}`);
+                }
+                await page.setViewportSize({ width: 1920, height: 900 });
+            }
+        } finally {
+            await close();
+        }
+    }
+});
