@@ -43,6 +43,7 @@ export class AlarmList {
         for (const [id, f] of Object.entries(press))
             byId(id).addEventListener('click', f);
         byId('shelve-form').addEventListener('submit', (event) => this.shelve(event));
+        byId('shelve').addEventListener('close', () => this.focusRow(this.shelving[0]?.id));
         for (const tab of ['alarms-tab', 'journal-tab'])
             byId(tab).addEventListener('keydown', ({ key }) =>
                 ['ArrowLeft', 'ArrowRight'].includes(key) && this.turnTo(!this.journalOpen, true));
@@ -251,7 +252,7 @@ export class AlarmList {
         this.pickAll.disabled = can.length === 0;
         this.pickAll.checked = on.length > 0 && on.length === can.length;
         this.pickAll.indeterminate = on.length > 0 && on.length < can.length;
-        byId('alarms-many').hidden = on.length === 0 || this.journalOpen;
+        this.showMany(on.length > 0 && !this.journalOpen);
         setText(byId('alarms-chosen'), say('alarms.chosen', { count: on.length }));
         for (const action of ['acknowledge', 'shelve']) {
             const count = on.filter((row) => rowActions(row, this.alarms.mode, this.role).includes(action)).length;
@@ -260,6 +261,14 @@ export class AlarmList {
         }
         for (const box of byId('alarms-list').querySelectorAll('.choose'))
             box.checked = this.chosen.has(box.value);
+    }
+
+    // Shows or hides the actions on several alarms. If they had the keyboard focus, the first row gets it.
+    showMany(shown) {
+        const many = byId('alarms-many'), hadFocus = many.contains(document.activeElement);
+        many.hidden = !shown;
+        if (!shown && hadFocus)
+            this.focusRow(null);
     }
 
     actOnChosen(action) {
@@ -286,7 +295,16 @@ export class AlarmList {
             return;
         const next = document.querySelector(`#alarms-now tr[data-alarm="${CSS.escape(row.dataset.alarm)}"]`) ??
             [...document.querySelectorAll('#alarms-list tr, #alarms-aside tr')][place];
-        (held.isConnected ? held : next?.querySelector('.do button, button') ?? byId('alarms-close')).focus();
+        (held.isConnected ? held : next?.querySelector('[data-col=do] button, button') ?? byId('alarms-close')).focus();
+    }
+
+    // Gives the keyboard focus to the row of an alarm, or to the first row, unless something else has it.
+    focusRow(id) {
+        const { activeElement: held } = document;
+        if (held !== document.body && held.checkVisibility())
+            return;
+        const row = document.querySelector(`#alarms-now tr[data-alarm="${CSS.escape(id ?? '')}"]`) ?? byId('alarms-list').firstChild;
+        (row?.querySelector('button') ?? byId('alarms-close')).focus();
     }
 
     // --- rows
