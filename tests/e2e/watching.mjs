@@ -103,6 +103,9 @@ test('prometheus-add keeps the file\'s other jobs, and scraping survives the sit
         shell(`${add} one`);
         assert.equal(readFileSync(etc('prometheus/prometheus.yml'), 'utf8'), config, 'a second run changes nothing');
         assert.equal(statSync(etc('prometheus/plantcast-one.token')).mode & 0o077, 0);
+        rmSync(etc('prometheus/plantcast-one.token')); // as on a machine where the plant was restored
+        shell(`${add} one`);
+        assert.equal(readFileSync(etc('plantcast/one/tokens'), 'utf8').match(/prometheus/g).length, 1);
         const [, options] = readFileSync(etc('plantcast/one/options'), 'utf8').match(/^PLANTCAST_OPTIONS="(.*)"$/m);
         shell(`plantcast-prep -o prepared etc/plantcast/one/plant.yaml`);
         daemon = new Program('plantcastd', [etc('plantcast/one/plant.yaml'), '--prepared', join(root, 'prepared'),
