@@ -25,13 +25,14 @@ enum { MIN_MEMORY_MB = 128, MAX_MEMORY_MB = 1 << 20 };
 static void print_usage(FILE *out)
 {
     fputs("usage: plantcastd PLANT.yaml [OPTION ...]\n"
-          "       plantcastd --check PLANT.yaml [--prepared DIR]\n"
+          "       plantcastd --check PLANT.yaml [OPTION ...]\n"
           "       plantcastd --dump-plan PLANT.yaml\n"
           "       plantcastd --list-gl-devices | --version | --help\n"
           "\n"
           "Serves live pictures of a plant to browsers and other clients.\n"
           "\n"
-          "  --check          read all files, print every error and exit; no server is started\n"
+          "  --check          read all files, also those of --tokens, --openid, --notice, --tls-cert and\n"
+          "                   --signing-key, print every error and exit; no server is started\n"
           "  --dump-plan      print which requests field devices will get, with registers and load, and exit\n"
           "  --list-gl-devices  print the GPUs that --gl-device accepts, and exit\n"
           "\n"

@@ -37,6 +37,7 @@
 #include "value/series_check.h"
 #include "version.h"
 
+enum { TOKEN_FILE_BYTES = 1 << 24 };
 enum { SETTLE_MS = 3000 }; /* maximum wait in milliseconds for an import that is replacing files */
 
 struct server {
@@ -573,6 +574,37 @@ static void print_left_out(struct log *log, const struct plant *plant, const cha
     manifest_finish(&manifest);
 }
 
+/* Returns whether no line of the file of tokens is refused; net_access_good() logs refused lines. */
+static bool token_lines_good(const char *path)
+{
+    struct token_holder holder;
+    const char *why;
+    size_t bytes;
+    bool good = true;
+    char *text = text_read_file(path, TOKEN_FILE_BYTES, &bytes), *at = text;
+    for (char *line; at && (line = strsep(&at, "\n"));)
+        good &= tokens_parse_line(line, &holder, &why) >= 0;
+    mem_free(text);
+    return good;
+}
+
+/* Reads the files of the options, such as --tokens and --openid. Returns false, after logging each fault, if one has a fault. */
+static bool check_option_files(const struct server_params *params)
+{
+    struct server server = { .params = *params, .log = log_create(LOG_WARN) };
+    struct access_params *access = &server.params.access;
+    bool paired = !access->tls_cert_path == !access->tls_key_path;
+    if (!paired) {
+        log_err(server.log, "--tls-cert and --tls-key belong together");
+        access->tls_cert_path = NULL;
+    }
+    bool access_good = net_access_good(server.log, access), key_good = load_signing_key(&server);
+    bool lines_good = !access->tokens_path || token_lines_good(access->tokens_path);
+    signing_key_destroy(&server.signing_key);
+    log_destroy(&server.log);
+    return paired && access_good && key_good && lines_good;
+}
+
 static int check_prepared(const struct server_params *params, const struct plant *plant)
 {
     char *folder = plant_runtime_prepared_folder(params, plant), *manifest = mem_printf("%s/manifest.json", folder);
@@ -641,6 +673,8 @@ int server_check(const struct server_params *params)
     fflush(stdout);
     diag_print(&diag, stderr);
     int status = !plant || diag.errors || check_prepared(params, plant) ? 1 : 0;
+    if (!check_option_files(params))
+        status = 1;
     if (!plant)
         fprintf(stderr, "plantcastd: %s: %d error%s\n", params->plant_path, diag.errors, diag.errors == 1 ? "" : "s");
     else

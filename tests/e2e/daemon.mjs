@@ -71,6 +71,23 @@ test('--check names every fault with its place', { skip }, () => {
     assert.match(result.err, /bad\.yaml:8:\d+: error: /);
 });
 
+test('--check reads the files of options, and names the one that cannot be used', { skip }, () => {
+    const wrong = join(plant.folder, 'wrong');
+    writeFileSync(wrong, 'what is this?\n', { mode: 0o600 });
+    for (const option of ['--tokens', '--openid', '--signing-key']) {
+        const { code, err } = runProgram('plantcastd', ['--check', plant.file, option, wrong]);
+        assert.equal(code, 1, option);
+        assert.match(err, /\/wrong/, option);
+    }
+    const tls = runProgram('plantcastd', ['--check', plant.file, '--tls-cert', wrong, '--tls-key', wrong]);
+    assert.equal(tls.code, 1);
+    assert.match(tls.err, /\/wrong/);
+    const notice = runProgram('plantcastd', ['--check', plant.file, '--notice', join(plant.folder, 'missing')]);
+    assert.equal(notice.code, 1);
+    assert.match(notice.err, /\/missing/);
+    assert.match(runProgram('plantcastd', ['--check', plant.file, '--tls-cert', wrong]).err, /--tls-cert and --tls-key belong together/);
+});
+
 test('HTTP: what is there, what is not, and how it is said', { skip }, async () => {
     const { port } = plant;
     const there = {
