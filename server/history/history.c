@@ -79,6 +79,13 @@ static int level_for(int64_t stretch_us)
     return level;
 }
 
+/* Returns the shortest length, in microseconds, of which at most max_points fill the time span. */
+static int64_t wanted_length(int64_t span_us, int max_points)
+{
+    int64_t count = max_points > 1 ? max_points : 1, length_us = (span_us + count - 1) / count;
+    return length_us > 1 ? length_us : 1;
+}
+
 static int64_t bucket_length(int64_t stretch_us, int level)
 {
     int64_t unit_us = level < 0 ? 1 : history_level_us[level];
@@ -211,7 +218,7 @@ int history_series(struct history_reader *reader, const char *tag, int64_t from_
 {
     size_t count;
     int *months = month_list(reader->folder, &count), error = 0;
-    int64_t stretch_us = (to_us - from_us) / (max_points > 1 ? max_points : 1) + 1;
+    int64_t stretch_us = wanted_length(to_us - from_us, max_points);
     int level = level_for(stretch_us), first = month_of(from_us), last = month_of(to_us);
     *out = (struct history_series){ .bucket_us = level < 0 ? 0 : bucket_length(stretch_us, level) };
     struct gather gather = { .out = out, .length_us = level < 0 ? 0 : history_level_us[level] };
