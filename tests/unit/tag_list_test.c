@@ -294,6 +294,18 @@ CASE(numbers_have_ranges_and_limits_rise)
           { "tags.csv", 7, 27, "H: expected a number, found 'hot'" });
 }
 
+CASE(none_drops_a_limit_of_the_group)
+{
+    plant_case_load(c, yaml,
+                    "Tag Name,Address,Group,Asset,Node,L,H,HH\n"
+                    "A,40001,temp,E-101,N,,none,80\n"
+                    "B,40001,temp,E-101,N,None,,\n");
+    assert_non_null(c->plant);
+    const double *a = c->plant->tags[0].alarms.limits, *b = c->plant->tags[1].alarms.limits;
+    assert_true(a[LIMIT_L] == 10 && isnan(a[LIMIT_H]) && a[LIMIT_HH] == 80);
+    assert_true(isnan(b[LIMIT_L]) && b[LIMIT_H] == 90);
+}
+
 CASE(names_are_unique)
 {
     plant_case_load(c, yaml, "Address,Tag Name\n40001,A\n40002,B\n40003,A\n40004,\n40005,A\n");

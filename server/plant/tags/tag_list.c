@@ -137,7 +137,16 @@ static void read_unit(struct tag_list *list)
         report_unit(list, match, text);
 }
 
-/* Reads the limits of a row, which are in the row's own unit. */
+/* Reads one limit of a row, which is in the row's own unit; "none" drops the group's limit. Returns false if the cell is blank. */
+static bool read_limit(struct tag_list *list, enum tag_column column, double *limit)
+{
+    bool drops = !strcasecmp(cell_text(&list->columns, column), "none");
+    if (!drops && !cell_number(&list->columns, column, -PLANT_MAX_VALUE, PLANT_MAX_VALUE, limit))
+        return false;
+    *limit = drops ? (double)NAN : unit_change_value(&list->tag->scale.change, *limit);
+    return true;
+}
+
 static void read_limits(struct tag_list *list)
 {
     static const enum tag_column names[LIMIT_COUNT] = { [LIMIT_LL] = COL_LL, [LIMIT_L] = COL_L, [LIMIT_H] = COL_H, [LIMIT_HH] = COL_HH };
@@ -147,9 +156,7 @@ static void read_limits(struct tag_list *list)
     int lower, upper;
     for (int i = 0; i < LIMIT_COUNT; i++) {
         limits[i] = list->group ? list->group->limits[i] : NAN;
-        own[i] = cell_number(columns, names[i], -PLANT_MAX_VALUE, PLANT_MAX_VALUE, &limits[i]);
-        if (own[i])
-            limits[i] = unit_change_value(&list->tag->scale.change, limits[i]);
+        own[i] = read_limit(list, names[i], &limits[i]);
         any |= own[i];
     }
     if (any && plant_limits_wrong(limits, &lower, &upper))
