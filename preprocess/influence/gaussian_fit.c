@@ -9,6 +9,7 @@
 
 #include "base/math/vec.h"
 #include "base/mem.h"
+#include "plant/influence.h"
 #include "plant/parse/csv.h"
 #include "plant/parse/number.h"
 #include "preprocess/influence/gaussian_contrast.h"
@@ -21,7 +22,6 @@
 #define MAX_SHARE 3.0
 #define SAME 0.02      /* ranges whose logarithms differ by less than this count as equal, because readings cannot distinguish them */
 #define MIN_INSTANTS 8 /* minimum number of instants (lines of readings); fewer cannot determine three parameters */
-#define MIN_SENSORS 3
 
 /* --- the table --------------------------------------------------------------------------------------------------------------- */
 
@@ -317,9 +317,9 @@ bool gaussian_fit(struct gaussian_params *params, const struct gaussian_data *da
 {
     const size_t n = data->table->count;
     struct gaussian_fit fit;
-    if (n < MIN_SENSORS) {
+    if (n < PLANT_GP_FITTED) {
         snprintf(why, 300, "%zu sensors on one asset: a fit needs at least %d; state range_m, noise and deviation instead", n,
-                 MIN_SENSORS);
+                 PLANT_GP_FITTED);
         return false;
     }
     bool good = begin_fit(&fit, params, data);

@@ -79,6 +79,18 @@ static const char **names_of(const struct influence_input *input, int group)
     return names;
 }
 
+/* Sets the parameters that the plant file does not state to their defaults: an asset with so few sensors cannot be fitted. */
+static void take_defaults(const struct influence_making *making, const struct plant_group *of, size_t count, struct gaussian_params *gp)
+{
+    const double range = of->max - of->min;
+    gp->range_m = isnan(gp->range_m) ? PLANT_GP_RANGE * surface_report(making->input->surface)->size_m : gp->range_m;
+    gp->noise = isnan(gp->noise) ? PLANT_GP_NOISE * range : gp->noise;
+    gp->deviation = isnan(gp->deviation) ? PLANT_GP_DEVIATION * range : gp->deviation;
+    log_warn(making->log,
+             "asset %s, group %s: gp cannot be fitted to %zu sensors (at least %d): default range %.3g m, noise %.3g, deviation %.3g %s",
+             asset_of(making->input)->id, of->id, count, PLANT_GP_FITTED, gp->range_m, gp->noise, gp->deviation, of->unit);
+}
+
 /* Determines the parameters: those stated in the plant file, the others fitted to the readings file that it names. */
 static bool find_params(struct influence_making *making, int group, const double (*places_m)[3], size_t count, struct gaussian_params *gp)
 {
@@ -97,6 +109,10 @@ static bool find_params(struct influence_making *making, int group, const double
                  of->id, gp->range_m, size, LONGEST * size);
     if (!isnan(gp->range_m) && !isnan(gp->noise) && !isnan(gp->deviation))
         return true;
+    if (count < PLANT_GP_FITTED) {
+        take_defaults(making, of, count, gp);
+        return true;
+    }
     const char **names = names_of(input, group);
     double least_m = FIT_MIN * size, edge_m = (isnan(gp->range_m) ? least_m : min_of(gp->range_m, LONGEST * size)) / MIN_EDGES;
     bool good = readings_table_read(&table, of->gp.fit, names, count, why);

@@ -65,18 +65,35 @@ void plant_gp_check(struct yaml_reader *reader, const struct yaml_map *map, cons
             group->id ? group->id : "");
 }
 
-static bool has_sensor(const struct plant *plant, int group, int asset)
+static int count_sensors(const struct plant *plant, int group, int asset)
 {
+    int count = 0;
     for (size_t i = 0; i < plant->tag_count; i++)
-        if (plant->tags[i].group == group && plant->tags[i].asset == asset && !plant->tags[i].place.assumed)
-            return true;
-    return false;
+        count += plant->tags[i].group == group && plant->tags[i].asset == asset && !plant->tags[i].place.assumed;
+    return count;
+}
+
+/* Warns of assets with too few sensors for the fit of `gp` that a group asks for. */
+static void warn_of_fits(const struct plant *plant, int g, struct diag *diag)
+{
+    const struct plant_group *group = &plant->groups[g];
+    const struct plant_gp *gp = &group->gp;
+    if (!plant_prepares(group, INTERPOLATION_GP) || !gp->fit || !(isnan(gp->range_m) || isnan(gp->noise) || isnan(gp->deviation)))
+        return;
+    for (size_t a = 0; a < plant->asset_count; a++) {
+        int count = count_sensors(plant, g, (int)a);
+        if (count > 0 && count < PLANT_GP_FITTED)
+            diag_warning(diag, plant->files.path, group->line, 0,
+                         "group %s: gp cannot be fitted on asset %s, which has %d of at least %d sensors: it takes the default parameters",
+                         group->id, plant->assets[a].id, count, PLANT_GP_FITTED);
+    }
 }
 
 void plant_influence_check(const struct plant *plant, struct diag *diag)
 {
     for (size_t g = 0; g < plant->group_count; g++) {
         const struct plant_group *group = &plant->groups[g];
+        warn_of_fits(plant, (int)g, diag);
         if (!plant_prepares(group, INTERPOLATION_FIN))
             continue;
         if (isnan(group->ambient))
@@ -84,7 +101,7 @@ void plant_influence_check(const struct plant *plant, struct diag *diag)
                        "group %s: fin needs 'ambient', the value around the assets, in %s: far from sensors the wall cools to it",
                        group->id, *group->unit ? group->unit : "the group's unit");
         for (size_t a = 0; a < plant->asset_count; a++)
-            if (plant->assets[a].thickness_m <= 0 && has_sensor(plant, (int)g, (int)a))
+            if (plant->assets[a].thickness_m <= 0 && count_sensors(plant, (int)g, (int)a) > 0)
                 diag_error(diag, plant->files.path, plant->assets[a].line, 0,
                            "asset %s: fin, which group %s asks for, needs 'thickness_m', that of its wall", plant->assets[a].id, group->id);
     }

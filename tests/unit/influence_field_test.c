@@ -659,6 +659,26 @@ CASE(test_gp_fitted_to_readings)
     text_finish(&rows);
 }
 
+/* One or two sensors cannot be fitted: the asset takes the defaults, and the plant says so. */
+CASE(test_gp_of_few_sensors_takes_defaults)
+{
+    struct plant_in_use u;
+    write_model(c);
+    mem_free(temp_write_text(c->folder, "readings.csv", "T0,T1\n"));
+    for (int sensors = 1; sensors <= 2; sensors++) {
+        write_plant(c, "", ", prepare: [gp], gp: { fit: readings.csv }", sensors);
+        prep_case_expect(c, "$PLANT", 0);
+        prep_case_says(&c->err, "gp cannot be fitted");
+        assert_true(use(&u, c));
+        const struct influence_entry *entry = influence_find(&u.scene->assets[0].file->influence, 0, INTERPOLATION_GP);
+        const struct plant_group *group = &u.plant->groups[0];
+        assert_true(fabs(entry->deviation - PLANT_GP_DEVIATION * (group->max - group->min)) < 1e-9);
+        assert_true(fabs(entry->noise - PLANT_GP_NOISE * (group->max - group->min)) < 1e-9);
+        assert_true(entry->range_m > 0);
+        finish(&u);
+    }
+}
+
 CASE(test_what_is_missing_is_said)
 {
     write_model(c);
