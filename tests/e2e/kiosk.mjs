@@ -5,6 +5,7 @@ import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { chownSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:http';
+import { createServer as createSecureServer } from 'node:https';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
@@ -149,6 +150,42 @@ test('a browser that ends ends the service', options, async () => {
 
 const NOBODY = 65534, lacks = ['/usr/bin/cage', '/usr/bin/Xwayland'].filter((path) => !existsSync(path));
 const noCage = why || (lacks.length > 0 && `not here: ${lacks.join(', ')}`) || (process.getuid() !== 0 && 'needs root, to become nobody');
+// Makes an authority and a certificate for 127.0.0.1 that it signed: { ca, cert, key } as PEM.
+function authority(name) {
+    const script = `new='-newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes'
+        openssl req -x509 $new -keyout ca.key -out ca.pem -days 9 -subj "/CN=${name}"
+        openssl req $new -keyout key.pem -out new.csr -subj "/CN=127.0.0.1" -addext "subjectAltName=IP:127.0.0.1"
+        openssl x509 -req -in new.csr -CA ca.pem -CAkey ca.key -CAcreateserial -copy_extensions copy -days 9 -out cert.pem`;
+    const { status, stderr } = spawnSync('sh', ['-euc', script], { cwd: state, encoding: 'utf8' });
+    assert.equal(status, 0, stderr);
+    const [ca, cert, key] = ['ca', 'cert', 'key'].map((file) => readFileSync(join(state, `${file}.pem`), 'utf8'));
+    return { ca, cert, key };
+}
+
+const noCertutil = why || (spawnSync('certutil', ['-H']).error ? 'certutil is not installed (libnss3-tools)' : false);
+test('it shows a server whose certificate another authority signed than before', { ...options, skip: noCertutil }, async () => {
+    const file = join(state, 'kiosk.pem'), [former, present] = ['Former works', 'Present works'].map(authority);
+    const secure = createSecureServer({ cert: present.cert, key: present.key },
+        (request, response) => server.emit('request', request, response));
+    await new Promise((done) => secure.listen(0, '127.0.0.1', done));
+    try {
+        for (const pem of [former.ca, present.ca, former.ca + present.ca]) { // as one authority follows the other
+            writeFileSync(file, pem);
+            const env = { ...display.env, HOME: state };
+            const { status, stderr } = spawnSync('deploy/systemd/kiosk', ['--trust', file], { env, encoding: 'utf8' });
+            assert.equal(status, 0, stderr);
+        }
+        beats.length = 0;
+        startKiosk(`https://127.0.0.1:${secure.address().port}/`);
+        await until('its page', () => beats.length > 0);
+        kiosk.child.kill('SIGTERM');
+        assert.equal(await kiosk.ended, 0);
+    } finally {
+        secure.closeAllConnections();
+        secure.close();
+    }
+});
+
 test('in cage, which draws into memory here, as on a monitor', { ...options, skip: noCage }, async () => {
     const own = state;
     state = mkdtempSync(join(tmpdir(), 'plantcast-cage-'));
