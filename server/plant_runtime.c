@@ -303,6 +303,16 @@ void plant_runtime_hand_over(struct plant_runtime *runtime, const struct plant *
     alarm_service_halt(runtime->services.alarm_service);
 }
 
+void plant_runtime_end_leading(struct plant_runtime *runtime)
+{
+    stop_sources(runtime);
+    alarm_service_halt(runtime->services.alarm_service);
+    if (runtime->services.notifier)
+        notifier_halt(runtime->services.notifier);
+    publisher_stop(&runtime->publisher);
+    historian_stop(&runtime->services.historian);
+}
+
 void plant_runtime_destroy(struct plant_runtime **pointer)
 {
     struct plant_runtime *runtime = *pointer;

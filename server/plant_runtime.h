@@ -68,6 +68,10 @@ bool plant_runtime_start_render_service(struct plant_runtime *runtime, const str
    from before the call. */
 void plant_runtime_hand_over(struct plant_runtime *runtime, const struct plant *next);
 
+/* Ends everything that only the leader of two cores may do: polling, evaluation of alarms, recording, notifying. The last samples are
+   evaluated and recorded. The caller has dropped its pointer to the historian. */
+void plant_runtime_end_leading(struct plant_runtime *runtime);
+
 /* Returns the name of the libavcodec encoder for H.264; NULL: H.264 is off. */
 const char *plant_runtime_h264_library(const struct server_params *params);
 /* Returns the folder of prepared assets; the caller frees it with mem_free. */

@@ -37,8 +37,9 @@ struct reload {
     struct refusal refusal;        /* reason why the tag list was not saved; REFUSAL_NONE: it was saved */
     /* held while the runtime is replaced, or takes the lead (becomes the core that polls devices): the two must not overlap */
     pthread_mutex_t put_lock;
-    struct thread leader; /* thread that makes this core the leader without waiting for a running reload; its lock protects `leads` */
-    bool leads;
+    bool ended; /* protected by put_lock: this core's lead has ended, so no plant may be put in force */
+    struct thread leader; /* thread that makes this core the leader, and ends its lead, without waiting for a running reload */
+    bool leads, ends;     /* protected by leader.lock: what the thread must do */
     struct thread thread;
     /* --- below: protected by thread.lock */
     bool asked, imports;
@@ -209,7 +210,7 @@ static void put_in_force(struct reload *reload, struct plant_runtime *after, con
     struct swap both = { .net = reload->net, .after = after };
     char *hash = mem_strdup(before->plant->files.hash);
     pthread_mutex_lock(&reload->put_lock);
-    bool good = net_call(reload->net, release_recording, reload->net);
+    bool ended = reload->ended, good = !ended && net_call(reload->net, release_recording, reload->net);
     if (good) {
         plant_runtime_hand_over(before, after->plant);
         file_writer_wait(reload->context->file_writer, SETTLE_NS);
@@ -224,6 +225,8 @@ static void put_in_force(struct reload *reload, struct plant_runtime *after, con
         reload_count(reload->context->counters, hash, false);
         reload_count(reload->context->counters, after->plant->files.hash, true);
         say_difference(reload, diff, hash, (double)(clock_mono_ns() - begun_ns) / 1e9);
+    } else if (ended) {
+        plant_runtime_destroy(&after);
     } else {
         log_err(reload->context->log, "reload: the new plant cannot be activated; the daemon ends, and loads it at its next start");
         net_stop(reload->net);
@@ -456,17 +459,41 @@ static void lead_now(struct reload *reload, int64_t begun_ns)
     }
 }
 
+/* Runs in the event loop. */
+static void release_historian(void *arg)
+{
+    net_release_historian(arg);
+}
+
+static void end_leading_now(struct reload *reload)
+{
+    pthread_mutex_lock(&reload->put_lock);
+    if (net_call(reload->net, release_historian, reload->net))
+        plant_runtime_end_leading(*reload->runtime);
+    reload->ended = true;
+    pthread_mutex_unlock(&reload->put_lock);
+    net_on_lead_ended(reload->net);
+}
+
+/* Waits until *order is set. Returns false if the thread must end. */
+static bool wait_for_order(struct thread *thread, const bool *order)
+{
+    pthread_mutex_lock(&thread->lock);
+    while (!*order && !thread->stopping)
+        pthread_cond_wait(&thread->wake, &thread->lock);
+    bool good = !thread->stopping;
+    pthread_mutex_unlock(&thread->lock);
+    return good;
+}
+
 static void *run_leader(void *arg)
 {
     struct reload *reload = arg;
-    struct thread *thread = &reload->leader;
-    pthread_mutex_lock(&thread->lock);
-    while (!reload->leads && !thread->stopping)
-        pthread_cond_wait(&thread->wake, &thread->lock);
-    bool leads = !thread->stopping;
-    pthread_mutex_unlock(&thread->lock);
-    if (leads)
-        lead_now(reload, clock_mono_ns());
+    if (!wait_for_order(&reload->leader, &reload->leads))
+        return NULL;
+    lead_now(reload, clock_mono_ns());
+    if (wait_for_order(&reload->leader, &reload->ends))
+        end_leading_now(reload);
     return NULL;
 }
 
@@ -544,12 +571,22 @@ void reload_ask(struct reload *reload, const char *who)
     pthread_mutex_unlock(&reload->thread.lock);
 }
 
+static void order(struct thread *thread, bool *order)
+{
+    pthread_mutex_lock(&thread->lock);
+    *order = true;
+    pthread_cond_signal(&thread->wake);
+    pthread_mutex_unlock(&thread->lock);
+}
+
 void reload_lead(struct reload *reload)
 {
-    pthread_mutex_lock(&reload->leader.lock);
-    reload->leads = true;
-    pthread_cond_signal(&reload->leader.wake);
-    pthread_mutex_unlock(&reload->leader.lock);
+    order(&reload->leader, &reload->leads);
+}
+
+void reload_end_leading(struct reload *reload)
+{
+    order(&reload->leader, &reload->ends);
 }
 
 void reload_save(struct reload *reload, struct tag_save *save)

@@ -7,8 +7,8 @@
 #include "supervision.h"
 
 struct reload;
-/* Starts the reload thread, and a second thread that can make this core the leader. Each reload replaces *runtime. import NULL: imports
-   are off. Returns NULL if a thread cannot start, already logged. */
+/* Starts the reload thread, and a second thread that can make this core the leader, and end its lead. Each reload replaces *runtime. import
+   NULL: imports are off. Returns NULL if a thread cannot start, already logged. */
 struct reload *reload_create(const struct plant_runtime_context *context, struct plant_runtime **runtime, struct net *net,
                              struct supervision *supervision, struct plant_import *import);
 /* Ends the threads; the event loop must have ended. &NULL is allowed; sets *reload to NULL. */
@@ -17,6 +17,9 @@ void reload_destroy(struct reload **reload);
 void reload_ask(struct reload *reload, const char *who);
 /* Makes this core take the lead from the core that it followed, even while a reload is reading or preparing; does not wait. Thread: any. */
 void reload_lead(struct reload *reload);
+/* Ends everything that only the leader of two cores may do (plant_runtime_end_leading()), for ever, and then calls net_on_lead_ended();
+   does not wait. Thread: any. */
+void reload_end_leading(struct reload *reload);
 /* Saves another tag list: its file is replaced, plantcast-prep runs, and the plant is reloaded; if any of these steps fails, the old
    list is restored. Takes ownership of `save`; one save at a time. Thread: any. */
 void reload_save(struct reload *reload, struct tag_save *save);

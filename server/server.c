@@ -166,6 +166,11 @@ static void on_import_ordered(void *arg, const char *who)
     reload_import(((struct server *)arg)->reload, who);
 }
 
+static void end_leading(void *arg)
+{
+    reload_end_leading(((struct server *)arg)->reload);
+}
+
 static void on_tick(void *arg, const struct net_status *status)
 {
     struct server *server = arg;
@@ -195,6 +200,7 @@ static bool start_net(struct server *server)
         .is_core = server->params.role == SERVER_CORE,
         .node_name = server->params.node,
         .keeper = server->keeper,
+        .end_leading = end_leading,
         .reload = ask_reload,
         .save = server->params.role == SERVER_RENDER ? NULL : ask_save,
         .import = server->import,

@@ -37,6 +37,8 @@ static void lead(struct lease *lease)
 void lease_saw(struct lease *lease, const struct lease_row *row, int64_t now_ns)
 {
     bool same = lease->known && is_same(row, &lease->row);
+    if (!same) /* a row of another epoch may be old, from a restored database */
+        lease->offered = lease->known && row->epoch == lease->row.epoch && !row->leader[0] && !strcmp(row->standby, lease->node);
     if (lease->leads && (!is_ours(lease, row) || row->epoch != lease->row.epoch))
         lease->lost = true;
     else if (!lease->leads && lease->bids && is_ours(lease, row)) /* this node's bid changed the row, but the database's answer to the
@@ -62,10 +64,11 @@ static void take_until(struct lease *lease, int64_t sent_ns)
 bool lease_may_bid(const struct lease *lease, int64_t now_ns)
 {
     const struct lease_row *row = &lease->row;
-    if (!lease->known || lease->leads || lease->lost)
+    if (!lease->known || lease->leads || lease->lost || lease->gave)
         return false;
-    bool named = !row->standby[0] || !strcmp(row->standby, lease->node) || !strcmp(row->leader, lease->node);
-    return named && now_ns - lease->seen_ns >= LEASE_NS && now_ns >= lease->bound_ns;
+    bool named = !row->leader[0] || !row->standby[0] || !strcmp(row->standby, lease->node) || !strcmp(row->leader, lease->node);
+    return lease->offered ||
+           (named && now_ns - lease->seen_ns >= LEASE_NS && now_ns >= lease->bound_ns);
 }
 
 void lease_bid(struct lease *lease)
@@ -113,4 +116,10 @@ void lease_promised(struct lease *lease, const char *standby, int64_t sent_ns)
 {
     if (lease->leads && !lease->lost && standby[0] && !strcmp(lease->counts, standby))
         take_until(lease, sent_ns);
+}
+
+void lease_give(struct lease *lease)
+{
+    lease->leads = false;
+    lease->gave = true;
 }

@@ -6,10 +6,12 @@
    confirmed request: either a renewal of the row, or a question to the standby that was answered by a promise not to bid for LEASE_NS. A
    follower may bid for the row only if it has seen the row unchanged for LEASE_NS, no promise of its own binds it, and the row names it
    as standby or names no standby. A bid changes the row only if the row is still as the bidder saw it, so one of two bids wins, and a
-   leader that has renewed meanwhile stays. The leader counts only promises of the node that the row names as its standby, as confirmed
-   by a renewal: no other node may bid. A leader whose standby is in maintenance names itself as standby, and promises itself without a
-   message. LEASE_HOLD_NS is shorter than LEASE_NS by more than the clocks of two machines can drift apart in that time. Clocks of
-   different machines are never compared. */
+   leader that has renewed meanwhile stays. A leader that ends gives the lease: it stops acting, and then removes itself from the row and
+   names the node that may bid at once. A follower that saw the former leader in the row of the same epoch needs no wait, because its
+   promise bound it only to that leader. After LEASE_NS, any node may bid for a row that was given. The leader counts only promises of the
+   node that the row names as its standby, as confirmed by a renewal: no other node may bid. A leader whose standby is in maintenance
+   names itself as standby, and promises itself without a message. LEASE_HOLD_NS is shorter than LEASE_NS by more than the clocks of two
+   machines can drift apart in that time. Clocks of different machines are never compared. */
 #ifndef CORELINK_LEASE_H
 #define CORELINK_LEASE_H
 #include <stdbool.h>
@@ -25,7 +27,7 @@ struct lease_row {    /* the row in the database */
     int64_t epoch;    /* increases with each new leader */
     int64_t beat;     /* sequence number of the row; increases with each change of the row */
     int64_t instance; /* random number of the leader's process, which tells a restarted node from the old one */
-    /* unique names of nodes. leader empty: the lease was given back; standby empty: there is none */
+    /* unique names of nodes. leader empty: the lease was given, to `standby` if that is not empty; standby empty: there is none */
     char leader[LEASE_NODE_BYTES], standby[LEASE_NODE_BYTES];
 };
 
@@ -37,6 +39,8 @@ struct lease {
     bool leads;
     bool lost;                     /* true: this node was the leader, and another node leads now */
     bool bids;                     /* true: a bid of this node is being sent, or its outcome is unknown */
+    bool gave;                     /* true: this node was the leader and gave the lease; it never bids again */
+    bool offered;                  /* follower: the leader has just given the lease to this node by name */
     int64_t seen_ns;               /* follower: time since which the row has not changed */
     int64_t bound_ns;              /* follower: time until which its own promise forbids it to bid */
     int64_t until_ns;              /* leader: time until which it may act as leader */
@@ -69,5 +73,7 @@ void lease_renew(struct lease *lease, const char *standby);
 void lease_renewed(struct lease *lease, const char *standby, int64_t sent_ns);
 /* Processes a promise that the standby made in answer to a question sent at sent_ns. */
 void lease_promised(struct lease *lease, const char *standby, int64_t sent_ns);
+/* Ends this node's lead for ever. Call it before sending the row that gives the lease. */
+void lease_give(struct lease *lease);
 
 #endif

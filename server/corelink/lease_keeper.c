@@ -47,6 +47,7 @@ struct lease_keeper {
     char standby[LEASE_NODE_BYTES]; /* name of the standby that is connected, or was connected until gone_ns */
     int64_t gone_ns;                /* time when the standby disconnected; 0: it is connected */
     bool follows;                   /* true: the standby has our version and configuration */
+    bool gives;                     /* true: the row must still be changed, so that it gives the lease to `standby` */
     uint64_t asked;
     struct {
         uint64_t number;
@@ -190,8 +191,8 @@ static const char sql_bid[] = "UPDATE lease SET epoch = epoch + 1, beat = beat +
                               " renewed = now()" SEEN " RETURNING 1";
 static const char sql_renew[] =
     "UPDATE lease SET beat = beat + 1, standby = $5, renewed = now()" SEEN " AND instance = $4::bigint RETURNING 1";
-static const char sql_give_back[] =
-    "UPDATE lease SET beat = beat + 1, leader = $5, standby = '', renewed = now()" SEEN " AND instance = $4::bigint RETURNING 1";
+static const char sql_give[] =
+    "UPDATE lease SET beat = beat + 1, leader = '', standby = $5, renewed = now()" SEEN " AND instance = $4::bigint RETURNING 1";
 
 /* --- detects other cores with this node's name ---------------------------------------------------------------------------------- */
 
@@ -231,13 +232,14 @@ static void look(struct lease_keeper *keeper)
         return;
     pthread_mutex_lock(&keeper->thread.lock);
     lease_saw(&keeper->lease, &row, now_of_lease());
-    bool leads = keeper->lease.leads;
+    bool leads = keeper->lease.leads, gave = keeper->lease.gave;
+    keeper->gives &= row.instance == keeper->lease.instance;
     pthread_mutex_unlock(&keeper->thread.lock);
     keeper->looks = false;
     counter_set(keeper->counters.epoch, row.epoch);
     if (!leads && strcmp(keeper->led_by, row.leader) != 0 && row.leader[0])
-        log_info(keeper->params.log, "lease: %.*s leads, epoch %lld; this core stands by", name_bytes(row.leader), row.leader,
-                 (long long)row.epoch);
+        log_info(keeper->params.log, "lease: %.*s leads, epoch %lld%s", name_bytes(row.leader), row.leader, (long long)row.epoch,
+                 gave ? "" : "; this core stands by");
     if (!leads)
         look_for_namesake(keeper, &row);
     memcpy(keeper->led_by, row.leader, sizeof(keeper->led_by));
@@ -312,6 +314,26 @@ static void renew(struct lease_keeper *keeper)
     }
 }
 
+/* Changes the row so that it gives the lease to another core. If that fails, the next turn reads the row and tries again, because a renewal
+   whose answer was lost may have changed the row. */
+static void give(struct lease_keeper *keeper)
+{
+    char standby[LEASE_NODE_BYTES];
+    pthread_mutex_lock(&keeper->thread.lock);
+    struct lease_row seen = keeper->lease.row;
+    memcpy(standby, keeper->standby, sizeof(standby));
+    pthread_mutex_unlock(&keeper->thread.lock);
+    if (change_row(keeper, sql_give, &seen, standby, keeper->lease.instance) != 1)
+        return;
+    pthread_mutex_lock(&keeper->thread.lock);
+    keeper->gives = false;
+    pthread_mutex_unlock(&keeper->thread.lock);
+    if (*standby)
+        log_info(keeper->params.log, "lease: given to %.*s", name_bytes(standby), standby);
+    else
+        log_info(keeper->params.log, "lease: released");
+}
+
 /* Reports what one turn of the keeper's thread changed: metrics, log lines, and the callbacks won and lost. */
 static void tell(struct lease_keeper *keeper)
 {
@@ -342,6 +364,14 @@ static void tell(struct lease_keeper *keeper)
     }
 }
 
+static bool gives(struct lease_keeper *keeper)
+{
+    pthread_mutex_lock(&keeper->thread.lock);
+    bool gives = keeper->gives;
+    pthread_mutex_unlock(&keeper->thread.lock);
+    return gives;
+}
+
 /* Does one turn of the keeper's work: connects, reads the row, renews the lease or bids for it. Returns the time of the next turn. */
 static int64_t take_turn(struct lease_keeper *keeper)
 {
@@ -355,6 +385,8 @@ static int64_t take_turn(struct lease_keeper *keeper)
             look(keeper);
         if (keeper->link && leads && !keeper->looks)
             renew(keeper);
+        else if (keeper->link && gives(keeper))
+            give(keeper);
         else if (keeper->link && !leads)
             bid(keeper);
     }
@@ -370,16 +402,17 @@ static int64_t take_turn(struct lease_keeper *keeper)
 static void *run(void *arg)
 {
     struct lease_keeper *keeper = arg;
-    bool stopping = false;
+    bool stopping = false, gave = false;
     while (!stopping) {
         int64_t next_ns = take_turn(keeper), wait_ns;
         pthread_mutex_lock(&keeper->thread.lock);
         do {
-            wait_ns = next_ns - now_of_lease();
+            wait_ns = keeper->lease.gave == gave ? next_ns - now_of_lease() : 0;
             if (wait_ns > 0)
                 clock_cond_wait(&keeper->thread.wake, &keeper->thread.lock, clock_mono_ns() + wait_ns);
             stopping = keeper->thread.stopping;
         } while (!stopping && wait_ns > 0 && next_ns > now_of_lease());
+        gave = keeper->lease.gave;
         pthread_mutex_unlock(&keeper->thread.lock);
     }
     return NULL;
@@ -400,7 +433,7 @@ void lease_keeper_set_standby(struct lease_keeper *keeper, const char *node, boo
     pthread_mutex_lock(&keeper->thread.lock);
     keeper->follows = follows;
     keeper->gone_ns = *node ? 0 : now_of_lease();
-    if (*node)
+    if (*node && !keeper->lease.gave)
         snprintf(keeper->standby, sizeof(keeper->standby), "%s", node);
     pthread_mutex_unlock(&keeper->thread.lock);
 }
@@ -423,6 +456,29 @@ void lease_keeper_promised(struct lease_keeper *keeper, const char *node, uint64
         set_timer(keeper);
     }
     pthread_mutex_unlock(&keeper->thread.lock);
+}
+
+void lease_keeper_give(struct lease_keeper *keeper, const char *standby)
+{
+    const struct itimerspec never = { 0 };
+    pthread_mutex_lock(&keeper->thread.lock);
+    if (keeper->lease.leads && !keeper->lease.lost) {
+        keeper->gives = true;
+        snprintf(keeper->standby, sizeof(keeper->standby), "%s", standby);
+        lease_give(&keeper->lease);
+        timer_settime(keeper->timer, 0, &never, NULL);
+        pthread_cond_signal(&keeper->thread.wake);
+    }
+    pthread_mutex_unlock(&keeper->thread.lock);
+}
+
+bool lease_keeper_is_taken(struct lease_keeper *keeper)
+{
+    pthread_mutex_lock(&keeper->thread.lock);
+    const struct lease *lease = &keeper->lease;
+    bool taken = lease->gave && lease->row.leader[0] && lease->row.instance != lease->instance;
+    pthread_mutex_unlock(&keeper->thread.lock);
+    return taken;
 }
 
 int64_t lease_keeper_confirmed_age_ns(struct lease_keeper *keeper)
@@ -515,9 +571,10 @@ bool lease_keeper_start(struct lease_keeper *keeper)
 
 static void give_back(struct lease_keeper *keeper)
 {
-    if (keeper->link && lease_keeper_leads(keeper) &&
-        change_row(keeper, sql_give_back, &keeper->lease.row, "", keeper->lease.instance) == 1)
-        log_info(keeper->params.log, "lease: released");
+    if (!keeper->link || !lease_keeper_leads(keeper))
+        return;
+    keeper->standby[0] = 0;
+    give(keeper);
 }
 
 void lease_keeper_destroy(struct lease_keeper **pointer)

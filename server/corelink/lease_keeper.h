@@ -33,8 +33,8 @@ struct lease_keeper;
 /* Creates a keeper. This node does not lead before lease_keeper_start(). Returns NULL if the kernel provides no timer (logged). */
 struct lease_keeper *lease_keeper_create(const struct lease_keeper_params *params);
 bool lease_keeper_start(struct lease_keeper *keeper); /* starts the thread. Returns false if it cannot be started (logged) */
-/* Gives the lease back if this node leads, and frees the keeper. The caller must have ended everything that only a leader may do. &NULL
-   is fine; sets *keeper to NULL. */
+/* Gives the lease to any node if this node still leads, and frees the keeper. The caller must have ended everything that only a leader may
+   do. &NULL is fine; sets *keeper to NULL. */
 void lease_keeper_destroy(struct lease_keeper **keeper);
 bool lease_keeper_leads(struct lease_keeper *keeper); /* Returns whether this node leads. */
 
@@ -53,6 +53,11 @@ uint64_t lease_keeper_ask(struct lease_keeper *keeper);
 int64_t lease_keeper_confirmed_age_ns(struct lease_keeper *keeper);
 /* Processes the standby's promise in answer to the question with that number. */
 void lease_keeper_promised(struct lease_keeper *keeper, const char *node, uint64_t number);
+/* Gives the lease to the node `standby`, which may lead at once; "": to any node, which waits LEASE_NS. Call it once everything has ended
+   that only a leader may do: the kernel no longer ends the process. Returns at once; the keeper's thread changes the row. */
+void lease_keeper_give(struct lease_keeper *keeper, const char *standby);
+/* Returns whether another node has taken the lease that this node gave. */
+bool lease_keeper_is_taken(struct lease_keeper *keeper);
 
 /* --- for a follower --- */
 const char *lease_keeper_id(const struct lease_keeper *keeper); /* Returns the ID part of this node's name; valid as long as the keeper. */

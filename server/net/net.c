@@ -588,12 +588,20 @@ static void finish_actions(struct net *net)
     }
 }
 
+static bool goes_on(struct net *net)
+{
+    if (!atomic_load(&net->stopping))
+        return true;
+    set_timer(net, clock_mono_ns() + SETTLE_NS);
+    return net_hand_over(net);
+}
+
 void net_run(struct net *net)
 {
     struct server_context *server = &net->server;
     net_watch_readings(net);
     do_what_is_due(net);
-    while (!atomic_load(&net->stopping) && lws_service(server->lws, 0) >= 0)
+    while (goes_on(net) && lws_service(server->lws, 0) >= 0)
         collect(net);
     net_calls_close(net);
     net_unwatch_readings(net);

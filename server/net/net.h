@@ -20,7 +20,7 @@ int net_port(const struct net *net);
 void net_run(struct net *net);
 /* Wakes the event loop to collect frames and answers that other threads have finished. Any thread. */
 void net_wake(struct net *net);
-/* Ends net_run. Any thread; safe in a signal handler. */
+/* Ends net_run. A core that leads and has a standby first gives the lead to the standby. Any thread; safe in a signal handler. */
 void net_stop(struct net *net);
 /* Drains the daemon, so that clients move to other daemons: each session is closed at some instant within 10 s, after load balancers had 2
    s to notice (net_status.drains). Any thread; safe in a signal handler. */
@@ -31,8 +31,13 @@ bool net_call(struct net *net, void (*what)(void *arg), void *arg);
 /* Makes the event loop soon reload the plant and read the files of tokens and certificate again. Any thread; safe in a signal handler. */
 void net_check_credentials(struct net *net);
 
+/* Continues net_stop() of a leading core: everything has ended that only a leader may do (net_params.end_leading). Any thread. */
+void net_on_lead_ended(struct net *net);
+
 /* --- plant reload; call these functions in the event loop --- */
 
+/* Drops the pointer to the plant's historian, which is about to be destroyed. */
+void net_release_historian(struct net *net);
 /* Drops the pointers to the plant's historian and notifier, which are destroyed before the rest of the plant. */
 void net_release_recording(struct net *net);
 /* Releases everything that belongs to the plant, which is about to be destroyed. Sessions stay. */

@@ -9,6 +9,8 @@
 
 #define HANDED_PROTOCOL "plantcast-handed-socket"
 
+enum hand_over_step { HAND_OVER_NONE, HAND_OVER_ENDS_POLLING, HAND_OVER_SENDS, HAND_OVER_GIVES, HAND_OVER_DONE };
+
 struct net {
     struct server_context server;
     struct lws_vhost *vhost;
@@ -18,7 +20,11 @@ struct net {
     int64_t readings_ns; /* monotonic: when the next snapshot is due (readings.c) */
     struct cpu_meter cpu;
     int64_t cpu_ns; /* monotonic: when the processor load (cpu) was last read */
-    _Atomic bool stopping, look, drain, readings_changed;
+    _Atomic bool stopping, look, drain, readings_changed, lead_ended;
+    struct { /* hand_over.c */
+        enum hand_over_step step;
+        int64_t until_ns; /* monotonic time limit of the step */
+    } hand_over;
     struct {
         pthread_mutex_t turn; /* lock that a caller of net_call() holds, so that there is one call at a time */
         pthread_mutex_t lock;
@@ -34,6 +40,11 @@ struct net {
 
 /* Answers actions that are on disk by now, or cannot be kept. Returns whether other actions still wait for the disk. */
 bool net_settle_answers(struct net *net);
+
+/* --- hand_over.c; thread: the event loop --- */
+
+/* Takes the next step of giving the lead to the standby, after net_stop(). Returns false if nothing is left to do. */
+bool net_hand_over(struct net *net);
 
 /* --- net_calls.c --- */
 

@@ -51,6 +51,9 @@ struct net_params {
     bool is_core;                /* renderers may connect to this daemon */
     const char *node_name;       /* this daemon's name among several */
     struct lease_keeper *keeper; /* leadership lease of a core that has a standby, or is one; NULL: none */
+    /* ends everything that only a leader may do, on another thread, which then calls net_on_lead_ended(); called in the event loop, and
+       only with `keeper` */
+    void (*end_leading)(void *arg);
     /* reloads the plant for user `who`; called in the event loop. NULL: the plant cannot be reloaded */
     void (*reload)(void *arg, const char *who);
     /* puts a saved tag list in force and takes ownership of `save`; called in the event loop. NULL: not possible */
@@ -60,7 +63,7 @@ struct net_params {
     void (*import_ordered)(void *arg, const char *who);
     /* callback of the main program, called in the event loop once a second or more often; NULL: not needed */
     void (*tick)(void *arg, const struct net_status *status);
-    void *reload_arg; /* first argument of `reload`, `save`, `import_ordered` and `tick` */
+    void *reload_arg; /* first argument of all callbacks above */
 };
 
 #endif

@@ -41,9 +41,14 @@ size_t net_views(struct net *net, const struct plant_services *next, struct view
 
 /* --- from the old plant to the new one ------------------------------------------------------------------------------- */
 
-void net_release_recording(struct net *net)
+void net_release_historian(struct net *net)
 {
     net->server.params.plant.historian = NULL;
+}
+
+void net_release_recording(struct net *net)
+{
+    net_release_historian(net);
     net->server.params.plant.notifier = NULL;
 }
 

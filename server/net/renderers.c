@@ -51,6 +51,8 @@ struct renderer_peer {
     /* the last samples message took all samples that waited, so readings are sent next; reset when they are sent */
     bool samples_sent;
     bool asks;                    /* true: the peer must be asked for its promise not to lead (corelink/lease.h) */
+    uint64_t last_question;       /* standby: number of the question that was sent after everything else; 0: none */
+    bool is_complete;             /* standby: it has answered last_question, and so has received everything */
     struct core_samples *samples; /* samples for the peer's history, to be sent; NULL: none */
     uint64_t told;                /* standby: sequence number of the newest notifier state that was sent to it */
     uint64_t rows;                /* standby: sequence number of the last journal row that was sent to it */
@@ -125,6 +127,14 @@ bool renderers_have_standby(const struct server_context *server)
     while (renderer && !is_standby(renderer))
         renderer = renderer->next;
     return renderer;
+}
+
+const char *renderers_complete_standby(const struct server_context *server)
+{
+    const struct renderer_peer *renderer = server->core.renderers;
+    while (renderer && !renderer->is_complete)
+        renderer = renderer->next;
+    return renderer && !server->kept_answers.waiting && !renderers_owe_answers(server) ? renderer->lease : NULL;
 }
 
 static void count(struct server_context *server)
@@ -263,11 +273,20 @@ static bool send_standby(struct renderer_peer *renderer)
     return send_message(renderer, json_pack("{s:s}", "type", "standby"));
 }
 
-static bool send_question(const struct server_context *server, struct renderer_peer *renderer)
+/* Returns whether everything that the standby must receive has been sent. The first readings after lead_ended_ns make send_next() look
+   for samples once more. */
+static bool has_all(const struct server_context *server, const struct renderer_peer *renderer)
 {
+    int64_t ended_ns = server->life.lead_ended_ns;
+    return is_standby(renderer) && ended_ns && renderer->told_ns >= ended_ns && !renderer->last_question;
+}
+
+static bool send_question(const struct server_context *server, struct renderer_peer *renderer, bool last)
+{
+    uint64_t number = lease_keeper_ask(server->params.keeper);
     renderer->asks = false;
-    json_int_t number = (json_int_t)lease_keeper_ask(server->params.keeper);
-    json_t *message = json_pack("{s:s,s:I}", "type", "lease", "number", number);
+    renderer->last_question = last ? number : renderer->last_question;
+    json_t *message = json_pack("{s:s,s:I}", "type", "lease", "number", (json_int_t)number);
     int64_t age_ns = server->params.plant.historian ? historian_sent_age_ns(server->params.plant.historian) : INT64_MAX;
     if (age_ns != INT64_MAX)
         json_object_set_new(message, "sent_age_ms", json_integer(age_ns / NS_PER_MS + 1));
@@ -286,7 +305,7 @@ static bool send_refusal(struct renderer_peer *renderer)
    the connection is gone. */
 static bool send_to_voter(const struct server_context *server, struct renderer_peer *renderer)
 {
-    return !renderer->refusal_sent ? send_refusal(renderer) : !renderer->asks || send_question(server, renderer);
+    return !renderer->refusal_sent ? send_refusal(renderer) : !renderer->asks || send_question(server, renderer, false);
 }
 
 static bool links_differ(const struct server_context *server, const struct renderer_peer *renderer)
@@ -438,7 +457,7 @@ static bool send_next(struct server_context *server, struct renderer_peer *rende
     if (renderer->hello)
         good = send_hello(renderer);
     else if (renderer->asks)
-        good = send_question(server, renderer);
+        good = send_question(server, renderer, false);
     else if (waits)
         good = send_readings(server, renderer);
     else if (may_answer(server, renderer))
@@ -453,6 +472,8 @@ static bool send_next(struct server_context *server, struct renderer_peer *rende
         good = send_told(server->params.plant.notifier, renderer);
     else if (renderer->samples && !renderer->samples_sent)
         good = send_samples(server, renderer);
+    else if (has_all(server, renderer))
+        good = send_question(server, renderer, true);
     else
         more = renderer->samples_sent = false, good = send_readings(server, renderer);
     if (good && renderer->stands_by && !more)
@@ -613,6 +634,12 @@ static void act(struct server_context *server, struct renderer_peer *renderer, c
     renderers_on_change(server);
 }
 
+static void on_promise(const struct server_context *server, struct renderer_peer *renderer, uint64_t number)
+{
+    renderer->is_complete |= number && number == renderer->last_question;
+    lease_keeper_promised(server->params.keeper, renderer->lease, number);
+}
+
 static const char *on_message(struct server_context *server, struct renderer_peer *renderer)
 {
     json_t *message = json_loadb(renderer->in.at, renderer->in.length, JSON_REJECT_DUPLICATES, NULL);
@@ -622,9 +649,11 @@ static const char *on_message(struct server_context *server, struct renderer_pee
     else if (!strcmp(type, "renderer") && renderer->state == RENDERER_NEW)
         introduce(server, renderer, message);
     else if (!strcmp(type, "promise") && is_witness(renderer) && server->params.keeper)
-        lease_keeper_promised(server->params.keeper, renderer->lease, (uint64_t)json_integer_value(json_object_get(message, "number")));
+        on_promise(server, renderer, (uint64_t)json_integer_value(json_object_get(message, "number")));
     else if (renderer->state != RENDERER_TAKEN)
         why = "the first message is not an introduction (hello)";
+    else if (server->life.hands_over)
+        why = NULL; /* the renderer tells the user that the connection was lost */
     else if (!strcmp(type, "act") && json_is_integer(json_object_get(message, "id")))
         act(server, renderer, message);
     else if (!strcmp(type, "pairing") && server->logins.tokens)

@@ -11,6 +11,9 @@ int renderer_callback(struct lws *wsi, enum lws_callback_reasons reason, void *u
 const char *renderers_refusal(const struct server_context *server, struct lws *wsi);
 /* Returns whether a core of this version and configuration stands by for this one. */
 bool renderers_have_standby(const struct server_context *server);
+/* Returns the lease name of the standby that has confirmed the receipt of everything, once nothing changes any more
+   (life.lead_ended_ns) and all actions are answered; NULL: none has. Valid until the event loop runs again. */
+const char *renderers_complete_standby(const struct server_context *server);
 /* Makes the key with which this core's renderers sign view tokens; all renderers get the same key. */
 void renderers_make_key(struct server_context *server);
 /* Sends all renderers what changed. */

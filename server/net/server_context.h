@@ -110,6 +110,8 @@ struct server_context {
         int64_t looked_ns; /* monotonic: when the files of tokens and certificate were last checked */
     } logins;
     struct {
+        bool hands_over;   /* this leading core gives the lead to its standby: messages of users are dropped */
+        int64_t lead_ended_ns; /* monotonic time since when nothing changes that the standby must receive; 0: things may change */
         bool goes_down;    /* the server shuts down: connections are closed after their answer */
         char goodbye[64];  /* close reason that streams get at shutdown */
         int64_t drain_ns;  /* monotonic time since when the daemon drains its sessions to other daemons; 0: it does not */

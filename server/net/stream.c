@@ -470,6 +470,8 @@ static bool is_utf8(const struct text *text)
    follows the text, whose bytes need not be UTF-8. */
 static void on_receive(struct server_context *server, struct stream *stream, const void *bytes, size_t len)
 {
+    if (server->life.hands_over)
+        return;
     if (stream->in_count == 0)
         stream->in_begin_ns = clock_mono_ns();
     stream->in_count += len;

@@ -278,17 +278,23 @@ struct notifier *notifier_start(const struct notifier_params *params)
     return notifier;
 }
 
-void notifier_stop(struct notifier **pointer)
+void notifier_halt(struct notifier *notifier)
 {
-    struct notifier *notifier = *pointer;
-    if (!notifier)
-        return;
     atomic_store(&notifier->stopping, true);
     alarm_service_listen(notifier->params.alarm_service, NULL, NULL);
     if (notifier->started) {
         delivery_wake(notifier->delivery);
         pthread_join(notifier->thread, NULL);
     }
+    notifier->started = false;
+}
+
+void notifier_stop(struct notifier **pointer)
+{
+    struct notifier *notifier = *pointer;
+    if (!notifier)
+        return;
+    notifier_halt(notifier);
     delivery_destroy(&notifier->delivery);
     for (size_t i = 0; i < notifier->params.plant->notify->recipient_count; i++)
         counter_set(notifier->counters[i].waiting, 0);

@@ -27,8 +27,9 @@ char *notifier_kept(struct notifier *notifier);
 int notifier_put_kept(const char *folder, const char *text);
 /* Starts a notifier. Returns NULL if it cannot be started (logged). */
 struct notifier *notifier_start(const struct notifier_params *params);
-/* Aborts messages that are being sent, which are sent again after the next start, and waits until notify.json is written. &NULL is fine;
-   sets *notifier to NULL. */
+/* Aborts messages that are being sent, which are sent again after the next start, and waits until notify.json is written. */
+void notifier_halt(struct notifier *notifier);
+/* Halts and frees the notifier. &NULL is fine; sets *notifier to NULL. */
 void notifier_stop(struct notifier **notifier);
 
 #endif

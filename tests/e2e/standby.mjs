@@ -236,11 +236,11 @@ test('a standby that is loading its plant takes over as fast', options, async (t
     await two.restart(core);
 });
 
-test('a leader that is ended in good order gives the lease back, and the other leads', options, async (t) => {
+test('a leader that is ended in good order gives the lease to the other', options, async (t) => {
     const core = await two.leader();
     await two.followed(core);
     const { pause_ms } = await two.takeOver(t, core, kill(core, 'SIGTERM'));
-    assert.match(core.program.said, /lease: released/);
+    assert.match(core.program.said, /lease: given to/);
     await two.restart(core);
 });
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Two nodes must never lead at once: a random simulation of three nodes and a database with lost connections, delayed messages, clocks
-   that drift apart, and nodes that are killed, paused for seconds and restarted. */
+   that drift apart, and nodes that are killed, paused for seconds, restarted, and ended in good order, which gives the lease. */
 #include "tests/support/test.h"
 
 #include "corelink/lease.h"
@@ -11,7 +11,7 @@
 enum { NODES = 3, FLIGHTS = 512, STEP_MS = 10 };
 #define PATIENCE_NS S /* nanoseconds after which a node stops waiting for the database */
 
-enum what { LOOK, BID, RENEW, RELEASE, ROW, DONE, ASK, PROMISE };
+enum what { LOOK, BID, RENEW, GIVE, ROW, DONE, ASK, PROMISE };
 struct flight { /* a message on its way */
     int64_t at_ns; /* time of arrival on the world's clock; 0: this slot is free */
     enum what what;
@@ -32,6 +32,7 @@ struct lease_node {
     bool waits;
     bool alone; /* its standby is in maintenance */
     int64_t waits_since_ns;
+    int64_t ends_ns; /* of the world: the node gives its lease until this time, and ends then; 0: it does not end */
     int times_led;
 };
 
@@ -45,7 +46,9 @@ struct lease_world {
     uint64_t lives;
     unsigned seed;
     bool calm;
-    int most, changes; /* most: largest number of nodes that led at once */
+    int most;      /* largest number of nodes that led at once */
+    int takes;     /* number of bids that won within LEASE_NS after a lease was given */
+    int64_t given_ns; /* time when the row was last given */
 };
 
 static int chance(struct lease_world *world, int n)
@@ -81,6 +84,7 @@ static void start(struct lease_world *world, int i)
     char name[2] = { (char)('a' + i), 0 };
     node->life = ++world->lives;
     node->waits = false;
+    node->ends_ns = 0;
     node->rate = 1 + (chance(world, 400) - 200) / 10000.0; /* two in a hundred */
     node->ahead_ns = chance(world, 1000000) * MS;
     lease_init(&node->lease, name, (int64_t)node->life);
@@ -103,20 +107,25 @@ static void change(struct lease_world *world, struct flight *flight)
 {
     struct lease_row *row = &world->row;
     flight->good = expects(row, &flight->row);
-    if (flight->what == RENEW || flight->what == RELEASE)
+    if (flight->what == RENEW || flight->what == GIVE)
         flight->good &= row->instance == flight->row.instance;
     if (!flight->good)
         return;
     row->beat++;
     switch (flight->what) {
     case BID:
+        world->takes += !row->leader[0] && row->epoch && world->now_ns - world->given_ns < LEASE_NS / 2;
         row->epoch++;
         row->instance = flight->row.instance;
         snprintf(row->leader, sizeof(row->leader), "%c", 'a' + flight->from);
         row->standby[0] = 0;
         break;
     case RENEW: memcpy(row->standby, flight->standby, sizeof(row->standby)); break;
-    default: row->leader[0] = row->standby[0] = 0; break;
+    default:
+        row->leader[0] = 0;
+        memcpy(row->standby, flight->standby, sizeof(row->standby));
+        world->given_ns = world->now_ns;
+        break;
     }
 }
 
@@ -164,6 +173,8 @@ static void on_node(struct lease_world *world, struct lease_node *node, int i, c
             node->times_led++;
         } else if (flight->from == RENEW) {
             lease_renewed(&node->lease, flight->standby, flight->sent_ns);
+        } else {
+            end(world, node);
         }
         break;
     case ASK:
@@ -239,6 +250,17 @@ static void follow(struct lease_world *world, struct lease_node *node, int i)
     }
 }
 
+/* Gives the lease to a node that can be reached, or to any. After a failed attempt the node reads the row and tries again. */
+static void give(struct lease_world *world, struct lease_node *node, int i)
+{
+    int follower = follower_of(world, i);
+    const char other[2] = { follower < 0 ? 0 : (char)('a' + follower), 0 };
+    bool reads = chance(world, 2);
+    lease_give(&node->lease);
+    if (!node->waits)
+        ask_database(world, node, i, reads ? LOOK : GIVE, other);
+}
+
 static void run_node(struct lease_world *world, int i)
 {
     struct lease_node *node = &world->nodes[i];
@@ -251,6 +273,10 @@ static void run_node(struct lease_world *world, int i)
         end(world, node);
         return;
     }
+    if (node->ends_ns && world->now_ns >= node->ends_ns) {
+        end(world, node);
+        return;
+    }
     if (world->now_ns < node->wakes_ns || world->now_ns < node->next_ns)
         return;
     node->next_ns = world->now_ns + (node->lease.leads ? LEASE_RENEW_NS : LEASE_LOOK_NS);
@@ -258,7 +284,9 @@ static void run_node(struct lease_world *world, int i)
         node->waits = false;
         ask_database(world, node, i, LOOK, "");
     }
-    if (node->lease.leads)
+    if (node->ends_ns)
+        give(world, node, i);
+    else if (node->lease.leads)
         lead(world, node, i);
     else
         follow(world, node, i);
@@ -287,7 +315,12 @@ static void disturb(struct lease_world *world)
     if (world->calm || chance(world, 40))
         return;
     int i = chance(world, NODES + 1), k = chance(world, NODES + 1);
-    switch (chance(world, 7)) {
+    switch (chance(world, 8)) {
+    case 7:
+        for (i = 0; i < NODES; i++)
+            if (world->nodes[i].life && world->nodes[i].lease.leads && !world->nodes[i].ends_ns)
+                world->nodes[i].ends_ns = world->now_ns + (100 + chance(world, 3000)) * MS;
+        break;
     case 0:
     case 1: world->cut[i][k] ^= i != k; break;
     case 2: memset(world->cut, 0, sizeof(world->cut)); break;
@@ -332,7 +365,7 @@ static void run(struct lease_world *world, int64_t ns)
 TEST(never_two_and_one_in_the_end)
 {
     unsigned seed = (unsigned)sweep_seed();
-    int terms = 0;
+    int terms = 0, takes = 0;
     struct lease_world *world = malloc(sizeof(*world));
     for (int round = 0; round < sweep(4000, 150); round++) {
         memset(world, 0, sizeof(*world));
@@ -351,10 +384,12 @@ TEST(never_two_and_one_in_the_end)
             fail_msg("round %d of seed %u: two lead", round, seed);
         for (int i = 0; i < NODES; i++)
             terms += world->nodes[i].times_led;
+        takes += world->takes;
     }
     free(world);
-    printf("# %d terms\n", terms);
+    printf("# %d terms, %d of them by a node that the lease was given to\n", terms, takes);
     assert_true(terms > 150);
+    assert_true(takes > 20);
 }
 
 /* --- the rules of the lease, one by one ----------------------------------------------------------------------------------------- */
@@ -415,6 +450,43 @@ TEST(a_leader_counts_the_standby_that_the_row_names)
     lease_saw(&a, &other, 4 * S);
     assert_true(a.lost);
     assert_false(lease_acts(&a, 4 * S));
+}
+
+TEST(a_given_lease_is_taken_at_once_by_the_node_that_saw_its_leader)
+{
+    const struct lease_row none = { 0 };
+    struct lease a = follower("a", &none, S);
+    lease_bid(&a);
+    lease_won(&a, S);
+    lease_renew(&a, "b");
+    lease_renewed(&a, "b", 2 * S);
+    struct lease b = follower("b", &a.row, 2 * S), c = follower("c", &a.row, 2 * S);
+    assert_true(lease_promise(&b, 2 * S));
+    lease_give(&a);
+    assert_false(lease_acts(&a, 2 * S));
+    lease_promised(&a, "b", 2 * S);
+    assert_false(lease_acts(&a, 2 * S));
+    struct lease_row given = a.row;
+    given.beat++;
+    given.leader[0] = 0;
+    lease_saw(&b, &given, 2 * S + 1);
+    assert_true(lease_may_bid(&b, 2 * S + 1)); /* its promise bound it only to a */
+    lease_saw(&c, &given, 2 * S + 1);
+    assert_false(lease_may_bid(&c, 5 * S));
+    assert_true(lease_may_bid(&c, 5 * S + 1)); /* b may have ended */
+    lease_saw(&a, &given, 2 * S + 1);
+    assert_false(a.lost);
+    assert_false(lease_may_bid(&a, 100 * S)); /* a ends */
+    struct lease late = follower("b", &given, 3 * S), other = follower("b", &none, 3 * S);
+    assert_false(lease_may_bid(&late, 3 * S)); /* the row may be old, from a restored database */
+    lease_saw(&other, &given, 3 * S);
+    assert_false(lease_may_bid(&other, 3 * S));
+    assert_true(lease_may_bid(&other, 6 * S));
+    given.beat++; /* c has won and gone on */
+    given.epoch++;
+    memcpy(given.leader, "c", 2);
+    lease_saw(&b, &given, 4 * S);
+    assert_false(lease_may_bid(&b, 4 * S));
 }
 
 TEST(in_maintenance_a_leader_promises_itself_and_no_other_may_bid)

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A leader that is ended in good order evaluates its last samples, sends them to its standby and gives it the lease: each change of an
+// alarm is written once, the standby leads at once, and never do two poll.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { PostgresServer } from './support/postgres_server.mjs';
+import { promise } from './support/promise.mjs';
+import { kill, missingTwoCores, sleep, TwoCores, until } from './support/two_cores.mjs';
+
+const skip = missingTwoCores(), options = { skip, timeout: 240000 }, STOPS = 2, ROWS = 20, POLL_MS = 100;
+const GIVEN_MS = 1500, BLIND_MS = 2500; // time without a poller; time without readings at a renderer
+let server, two, stopFeeding;
+
+before(async () => {
+    if (skip)
+        return;
+    server = await PostgresServer.start();
+    server.makeDatabase('plants');
+    two = await TwoCores.create(server);
+    await two.plant.set({ 'TI-1': 50, 'TI-2': 20, 'PI-1': 5 });
+    await Promise.all([two.start('one'), two.start('two')]);
+    await two.followed(await two.leader());
+});
+after(async () => {
+    await stopFeeding?.();
+    await two?.destroy();
+    await server?.destroy();
+});
+
+// Makes the alarm of TI-1 come and go with each poll.
+function feed() {
+    let going = true;
+    const done = (async () => {
+        for (let i = 0; going; i++) {
+            await two.plant.tell(`set TI-1 ${i % 2 ? 50 : 95}`);
+            await sleep(POLL_MS);
+        }
+        await two.plant.tell('set TI-1 50');
+    })();
+    stopFeeding = async () => { going = false; stopFeeding = null; await done; };
+}
+
+// Returns the changes of TI-1's alarm, the oldest first.
+async function changes(core) {
+    const { rows } = await (await core.node.fetch('/api/v1/alarms/journal?tag=TI-1&limit=1000')).json();
+    return rows.filter(({ kind }) => kind === 'H').map(({ time_us, event, state }) => `${time_us} ${event} ${state}`).sort();
+}
+
+// Measures the longest time without usable readings at a renderer: { end() } returns milliseconds.
+function watch(renderer) {
+    let going = true, longest = 0, seen = performance.now();
+    const done = (async () => {
+        for (; going; await sleep(20)) {
+            const good = (await renderer.tags().catch(() => ({})))['TI-1']?.quality_name === 'Good', now = performance.now();
+            longest = Math.max(longest, now - seen);
+            seen = good ? now : seen;
+        }
+    })();
+    return { end: async () => { going = false; await done; return longest; } };
+}
+
+test('each change of an alarm is written once, whoever leads, and the standby leads at once', options, async (t) => {
+    const renderer = await two.renderer('r');
+    feed();
+    for (let stop = 0; stop < STOPS; stop++) {
+        const core = await two.leader();
+        await two.followed(core);
+        await until('the renderer is there', async () => (await renderer.tags())['TI-1'].quality_name === 'Good');
+        const had = (await changes(core)).length;
+        await until('changes of the alarm', async () => (await changes(core)).length > had + ROWS);
+        const watching = watch(renderer), { pause_ms } = await two.takeOver(t, core, kill(core, 'SIGTERM'));
+        assert.equal((await core.program.ended).code, 0);
+        assert.match(core.program.said, new RegExp(`lease: given to ${two.other(core).name}\n`));
+        await until('the renderer is there', async () => (await renderer.tags())['TI-1'].quality_name === 'Good');
+        promise(t, 'without a poller', pause_ms, GIVEN_MS);
+        promise(t, 'without readings at a renderer', await watching.end(), BLIND_MS);
+        await two.restart(core);
+    }
+    const core = await two.leader();
+    await two.followed(core);
+    await stopFeeding();
+    await until('the end of the alarm', async () => (await changes(core)).at(-1).includes(' clear '));
+    const rows = await changes(core), events = rows.map((row) => row.split(' ')[1]);
+    assert.ok(events.length > STOPS * ROWS);
+    assert.deepEqual(events.filter((event, i) => event === events[i - 1]), [], rows.join('\n'));
+    await until('the same changes at the standby', async () => (await changes(two.other(core))).length >= rows.length);
+    assert.deepEqual(await changes(two.other(core)), rows);
+    assert.deepEqual(await two.network.overlaps(), []);
+});
