@@ -22,6 +22,7 @@
 
 enum { MAX_FIRST_VIEWS = 16 }; /* maximum number of views that are drawn with the new plant before the switch */
 static const int64_t SETTLE_NS = NS_PER_S; /* time limit for an action to be on disk; after it, its user is told that it is not kept */
+static const int64_t FOLLOW_NS = 120 * NS_PER_S, LOOK_NS = 20 * NS_PER_MS; /* time limit for the core to switch; interval of looks */
 enum { WAIT_MS = 3000 };       /* maximum wait in milliseconds until another program has finished changing the plant's folder */
 
 struct reload {
@@ -31,6 +32,7 @@ struct reload {
     struct supervision *supervision;
     struct plant_import *import;   /* NULL: import is off */
     int64_t begun_ns;              /* monotonic time when the running reload was begun */
+    uint64_t following;            /* `follows` of the running reload */
     char by[TOKEN_NAME_BYTES];     /* user who asked for the running reload */
     const struct tag_save *saving; /* tag list that the running reload saves; NULL: none */
     const char *kept;              /* path under which the previous version of the tag list is kept */
@@ -43,6 +45,7 @@ struct reload {
     struct thread thread;
     /* --- below: protected by thread.lock */
     bool asked, imports;
+    uint64_t follows; /* connection that the core ends when it has loaded its plant, too; 0: the reload does not wait for the core */
     char who[TOKEN_NAME_BYTES]; /* user who asked for the next reload */
     struct tag_save *save;      /* tag list to be saved; NULL: none */
 };
@@ -250,16 +253,52 @@ static int lock_folder(const struct reload *reload, char **why)
     return lock;
 }
 
+/* Runs in the event loop. */
+static void announce(void *arg)
+{
+    net_announce_reload(arg);
+}
+
+/* Returns whether the running reload must wait, because its core has not switched yet. */
+static bool must_wait(struct reload *reload)
+{
+    pthread_mutex_lock(&reload->put_lock); /* a standby that takes the lead frees its link */
+    struct core_link *link = (*reload->runtime)->services.core_link;
+    bool waits = reload->following && link && core_link_session(link) == reload->following;
+    pthread_mutex_unlock(&reload->put_lock);
+    return waits;
+}
+
+/* Waits until the core, which loads the plant too, ends the connection because it has switched: a renderer that switches earlier is
+   refused. Returns false if the core does not switch. */
+static bool wait_for_core(struct reload *reload)
+{
+    struct thread *thread = &reload->thread;
+    int64_t end_ns = clock_mono_ns() + FOLLOW_NS;
+    bool stopping = false;
+    while (must_wait(reload) && !stopping && clock_mono_ns() < end_ns) {
+        pthread_mutex_lock(&thread->lock);
+        clock_cond_wait(&thread->wake, &thread->lock, clock_mono_ns() + LOOK_NS);
+        stopping = thread->stopping;
+        pthread_mutex_unlock(&thread->lock);
+    }
+    return !must_wait(reload);
+}
+
 /* Reloads the plant. Returns false if an error left everything unchanged; the error was reported. */
 static bool reload_now(struct reload *reload)
 {
     struct diag diag = { 0 };
     struct plant_diff diff = { 0 };
     int64_t begun_ns = clock_mono_ns();
+    if (reload->context->params->role == SERVER_CORE)
+        net_call(reload->net, announce, reload->net);
     struct plant_runtime *before = *reload->runtime, *after = plant_runtime_read(reload->context, &diag);
     const char *why = after ? plant_needs_restart(before->plant, after->plant) : diag.errors ? NULL : "the log says why";
     if (after && !why && !start_render_service(reload, after))
         why = "drawing the new plant failed; the log says why";
+    if (after && !why && !wait_for_core(reload))
+        why = "the core has not switched to its files; its log says why";
     bool good = after && !why;
     if (good) {
         plant_diff(before->plant, after->plant, &diff);
@@ -510,7 +549,9 @@ static void *run(void *arg)
         bool stopping = reload->thread.stopping, asked = reload->asked;
         struct tag_save *save = reload->save;
         struct import_order order;
+        uint64_t follows = reload->follows;
         reload->asked = reload->imports = false;
+        reload->follows = 0;
         reload->save = NULL;
         snprintf(who, sizeof(who), "%s", reload->who);
         pthread_mutex_unlock(&reload->thread.lock);
@@ -524,8 +565,10 @@ static void *run(void *arg)
         snprintf(reload->by, sizeof(reload->by), "%s", who);
         if (reload->import && plant_import_next(reload->import, &order))
             import_now(reload, &order);
+        reload->following = follows;
         if (asked)
             reload_settled(reload);
+        reload->following = 0;
     }
 }
 
@@ -569,6 +612,14 @@ void reload_ask(struct reload *reload, const char *who)
     snprintf(reload->who, sizeof(reload->who), "%s", who);
     pthread_cond_signal(&reload->thread.wake);
     pthread_mutex_unlock(&reload->thread.lock);
+}
+
+void reload_follow(struct reload *reload, uint64_t session)
+{
+    pthread_mutex_lock(&reload->thread.lock);
+    reload->follows = session;
+    pthread_mutex_unlock(&reload->thread.lock);
+    reload_ask(reload, "the core");
 }
 
 static void order(struct thread *thread, bool *order)

@@ -15,6 +15,10 @@ struct reload *reload_create(const struct plant_runtime_context *context, struct
 void reload_destroy(struct reload **reload);
 /* Asks for a reload and does not wait; if a reload is running, another one follows it. who: the user who asks, copied. Thread: any. */
 void reload_ask(struct reload *reload, const char *who);
+/* Asks for a reload because this daemon's core loads its plant. The new plant is put in force when the core has ended the connection
+   `session` (core_link_session()) to switch to its own plant, and dropped if the core does not switch. session 0: the core has switched.
+   Does not wait. Thread: any. */
+void reload_follow(struct reload *reload, uint64_t session);
 /* Makes this core take the lead from the core that it followed, even while a reload is reading or preparing; does not wait. Thread: any. */
 void reload_lead(struct reload *reload);
 /* Ends everything that only the leader of two cores may do (plant_runtime_end_leading()), for ever, and then calls net_on_lead_ended();

@@ -156,6 +156,11 @@ static void ask_reload(void *arg, const char *who)
     reload_ask(((struct server *)arg)->reload, who);
 }
 
+static void follow_reload(void *arg, uint64_t session)
+{
+    reload_follow(((struct server *)arg)->reload, session);
+}
+
 static void ask_save(void *arg, struct tag_save *save)
 {
     reload_save(((struct server *)arg)->reload, save);
@@ -202,6 +207,7 @@ static bool start_net(struct server *server)
         .keeper = server->keeper,
         .end_leading = end_leading,
         .reload = ask_reload,
+        .follow = server->params.role == SERVER_RENDER ? follow_reload : NULL,
         .save = server->params.role == SERVER_RENDER ? NULL : ask_save,
         .import = server->import,
         .import_ordered = on_import_ordered,

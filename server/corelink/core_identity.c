@@ -26,3 +26,15 @@ char *core_identity_difference(const json_t *told, const char *peer, const struc
     }
     return NULL;
 }
+
+static bool is_equal(const json_t *told, const char *member, const char *own)
+{
+    const char *other = json_string_value(json_object_get(told, member));
+    return other && !strcmp(other, own);
+}
+
+bool core_identity_is_other_configuration(const json_t *told, const struct core_identity *own)
+{
+    return is_equal(told, "version", own->version) && is_equal(told, "plant", own->plant) &&
+           !is_equal(told, "configuration", own->configuration);
+}

@@ -3,6 +3,7 @@
 #ifndef CORELINK_CORE_IDENTITY_H
 #define CORELINK_CORE_IDENTITY_H
 #include <jansson.h>
+#include <stdbool.h>
 
 #define CORE_SUBPROTOCOL "plantcast.core.v1"
 #define CORE_PATH "/core"
@@ -16,5 +17,8 @@ json_t *core_identity_message(const char *type, const struct core_identity *own)
 /* Returns how the identity message of the peer ("core" or "renderer") differs from `own`, as text for the log; free with mem_free().
    NULL: nothing differs. */
 char *core_identity_difference(const json_t *told, const char *peer, const struct core_identity *own);
+
+/* Returns whether the peer differs from `own` only in its configuration: it may follow once it has loaded the other's files. */
+bool core_identity_is_other_configuration(const json_t *told, const struct core_identity *own);
 
 #endif

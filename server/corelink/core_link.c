@@ -65,6 +65,7 @@ struct core_link {
     /* --- below: under thread.lock */
     struct lws_context *context; /* NULL: not connected */
     bool is_up;
+    uint64_t session; /* number of the connection that sends readings, unique among all links of this process */
     int up_index;     /* index in params.urls of the core that sends readings */
     struct text *out; /* messages that wait to be sent to the core */
     size_t out_count, out_capacity;
@@ -108,6 +109,14 @@ bool core_link_is_up(struct core_link *link)
     bool up = link->is_up;
     pthread_mutex_unlock(&link->thread.lock);
     return up;
+}
+
+uint64_t core_link_session(struct core_link *link)
+{
+    pthread_mutex_lock(&link->thread.lock);
+    uint64_t session = link->is_up ? link->session : 0;
+    pthread_mutex_unlock(&link->thread.lock);
+    return session;
 }
 
 /* Queues a message to the core; takes ownership of `text`. Call with the lock held. */
@@ -202,6 +211,7 @@ static void stay_to_vote(struct core_link *link, const char *why)
 static void on_refused(struct core_link *link, const json_t *message)
 {
     const char *why = json_string_value(json_object_get(message, "why"));
+    arrive(link, 0, mem_strdup(link->in.at));
     if (link->params.keeper && json_is_true(json_object_get(message, "votes")))
         stay_to_vote(link, why ? why : "the core refuses this node");
     else
@@ -316,7 +326,7 @@ static void on_text(struct core_link *link)
         why = core_alarms_take(link->params.alarm_service, message);
     else if (!strcmp(type, "answer"))
         on_answer(link, message);
-    else if (!strcmp(type, "lists"))
+    else if (!strcmp(type, "lists") || !strcmp(type, "reloading"))
         arrive(link, 0, mem_strdup(link->in.at));
     if (why)
         refuse(link, why);
@@ -341,6 +351,7 @@ static void set_up(struct core_link *link)
 {
     pthread_mutex_lock(&link->thread.lock);
     link->is_up = true;
+    link->session = (uint64_t)clock_mono_ns();
     link->up_index = link->turn.index;
     pthread_mutex_unlock(&link->thread.lock);
     counter_set(link->up[link->turn.index], 1);

@@ -47,6 +47,9 @@ void core_link_halt(struct core_link *link);
 void core_link_stop(struct core_link **link); /* Ends the thread like core_link_halt() and frees the link. &NULL is fine; leaves NULL. */
 bool core_link_is_up(struct core_link *link); /* Returns true while a core sends readings. Thread: any. */
 
+/* Returns the number of the connection over which a core sends readings; 0: none does. Thread: any. */
+uint64_t core_link_session(struct core_link *link);
+
 /* HTTP address of the core. */
 struct core_peer {
     char url[320]; /* http or https URL of the core, without a path */
@@ -73,7 +76,8 @@ bool core_link_tell(struct core_link *link, const char *text);
 /* A message from the core for the event loop. */
 struct core_arrival {
     struct core_arrival *next;
-    uint64_t client; /* id of the client that gets this answer; 0: no answer, but the core's own message `core` or `lists` */
+    uint64_t client; /* id of the client that gets this answer; 0: no answer, but the core's own message `core`, `lists`,
+                        `reloading` or `refused` */
     char *text;
 };
 /* Returns a list of the messages that arrived since the last call, in order; free each with core_arrival_free(). */

@@ -2,6 +2,7 @@
 /* Connects the sessions of a renderer with the renderer's core. */
 #include "net/core_end.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -52,11 +53,32 @@ static void take_lists(struct server_context *server, const json_t *lists)
     streams_on_alarms(server);
 }
 
+static void follow(const struct server_context *server, uint64_t session)
+{
+    if (server->params.follow)
+        server->params.follow(server->params.reload_arg, session);
+}
+
+/* Loads this daemon's files once for each configuration of the core that differs: the core's new files may be there by now. */
+static void take_refusal(struct server_context *server, const json_t *refusal)
+{
+    const char *configuration = json_string_value(json_object_get(refusal, "configuration"));
+    if (!configuration || !strcmp(configuration, server->core.followed))
+        return;
+    snprintf(server->core.followed, sizeof(server->core.followed), "%s", configuration);
+    follow(server, 0);
+}
+
 static void take(struct server_context *server, const char *text)
 {
     json_t *message = json_loads(text, 0, NULL);
-    if (!strcmp(json_string_value(json_object_get(message, "type")), "core"))
+    const char *type = json_string_value(json_object_get(message, "type"));
+    if (!strcmp(type, "core"))
         take_key(server, message);
+    else if (!strcmp(type, "reloading"))
+        follow(server, core_link_session(server->params.plant.core_link));
+    else if (!strcmp(type, "refused"))
+        take_refusal(server, message);
     else
         take_lists(server, message);
     json_decref(message);

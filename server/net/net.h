@@ -40,6 +40,8 @@ void net_on_lead_ended(struct net *net);
 void net_release_historian(struct net *net);
 /* Drops the pointers to the plant's historian and notifier, which are destroyed before the rest of the plant. */
 void net_release_recording(struct net *net);
+/* Tells the renderers of this core that it begins to load the plant, so that they do the same. */
+void net_announce_reload(struct net *net);
 /* Releases everything that belongs to the plant, which is about to be destroyed. Sessions stay. */
 void net_release_plant(struct net *net);
 /* Called when this standby takes over because the core it followed is gone and their link has stopped. plant: the same plant without the

@@ -56,6 +56,9 @@ struct net_params {
     void (*end_leading)(void *arg);
     /* reloads the plant for user `who`; called in the event loop. NULL: the plant cannot be reloaded */
     void (*reload)(void *arg, const char *who);
+    /* reloads the plant because this daemon's core does, which then ends the connection `session` (core_link_session()); 0: it has
+       reloaded. Called in the event loop. NULL: this daemon does not follow, because it is no renderer */
+    void (*follow)(void *arg, uint64_t session);
     /* puts a saved tag list in force and takes ownership of `save`; called in the event loop. NULL: not possible */
     void (*save)(void *arg, struct tag_save *save);
     struct plant_import *import; /* imports plants; NULL: import is off */

@@ -52,6 +52,11 @@ void net_release_recording(struct net *net)
     net->server.params.plant.notifier = NULL;
 }
 
+void net_announce_reload(struct net *net)
+{
+    renderers_announce_reload(&net->server);
+}
+
 void net_release_plant(struct net *net)
 {
     struct server_context *server = &net->server;

@@ -45,11 +45,13 @@ struct renderer_peer {
     enum { RENDERER_NEW, RENDERER_TAKEN, RENDERER_VOTES, RENDERER_REFUSED } state;
     char *refusal;     /* why the peer is refused; NULL: the peer is not refused */
     bool refusal_sent; /* true: the voting core has been sent the reason of its refusal */
+    bool other_configuration; /* the peer is refused because its configuration differs, and nothing else does */
     struct core_sent sent;
     bool alarms_sent, lists_sent, links_sent;
     bool stands_by;               /* a standby: a core that follows this one and can take over */
     /* the last samples message took all samples that waited, so readings are sent next; reset when they are sent */
     bool samples_sent;
+    bool reloads;                 /* true: the peer must be told that this core loads the plant */
     bool asks;                    /* true: the peer must be asked for its promise not to lead (corelink/lease.h) */
     uint64_t last_question;       /* standby: number of the question that was sent after everything else; 0: none */
     bool is_complete;             /* standby: it has answered last_question, and so has received everything */
@@ -226,6 +228,13 @@ void renderers_on_change(struct server_context *server)
         lws_callback_on_writable(renderer->wsi);
 }
 
+void renderers_announce_reload(struct server_context *server)
+{
+    for (struct renderer_peer *renderer = server->core.renderers; renderer; renderer = renderer->next)
+        renderer->reloads = true;
+    renderers_on_change(server);
+}
+
 void renderers_close(struct server_context *server, const char *why)
 {
     for (struct renderer_peer *renderer = server->core.renderers; renderer; renderer = renderer->next) {
@@ -281,6 +290,12 @@ static bool has_all(const struct server_context *server, const struct renderer_p
     return is_standby(renderer) && ended_ns && renderer->told_ns >= ended_ns && !renderer->last_question;
 }
 
+static bool send_reloading(struct renderer_peer *renderer)
+{
+    renderer->reloads = false;
+    return send_message(renderer, json_pack("{s:s}", "type", "reloading"));
+}
+
 static bool send_question(const struct server_context *server, struct renderer_peer *renderer, bool last)
 {
     uint64_t number = lease_keeper_ask(server->params.keeper);
@@ -293,19 +308,22 @@ static bool send_question(const struct server_context *server, struct renderer_p
     return send_message(renderer, message);
 }
 
-static bool send_refusal(struct renderer_peer *renderer)
+static bool send_refusal(const struct server_context *server, struct renderer_peer *renderer)
 {
     bool votes = renderer->state == RENDERER_VOTES;
     renderer->refusal_sent = true;
     renderer->close_text = votes ? NULL : "it was refused";
-    return send_message(renderer, json_pack("{s:s,s:s,s:b}", "type", "refused", "why", renderer->refusal, "votes", votes));
+    json_t *message = json_pack("{s:s,s:s,s:b}", "type", "refused", "why", renderer->refusal, "votes", votes);
+    if (renderer->other_configuration)
+        json_object_set_new(message, "configuration", json_string(server->session_context.plant->files.hash));
+    return send_message(renderer, message);
 }
 
 /* Sends the next message to a core that only votes: its refusal, then questions about its lease promise, and nothing else. Returns false if
    the connection is gone. */
 static bool send_to_voter(const struct server_context *server, struct renderer_peer *renderer)
 {
-    return !renderer->refusal_sent ? send_refusal(renderer) : !renderer->asks || send_question(server, renderer, false);
+    return !renderer->refusal_sent ? send_refusal(server, renderer) : !renderer->asks || send_question(server, renderer, false);
 }
 
 static bool links_differ(const struct server_context *server, const struct renderer_peer *renderer)
@@ -452,12 +470,14 @@ static bool send_next(struct server_context *server, struct renderer_peer *rende
     if (renderer->state == RENDERER_VOTES)
         return send_to_voter(server, renderer);
     if (renderer->state == RENDERER_REFUSED)
-        return renderer->refusal ? send_refusal(renderer) : send_standby(renderer);
+        return renderer->refusal ? send_refusal(server, renderer) : send_standby(renderer);
     bool good, more = true, waits = renderer->told_ns && clock_mono_ns() - renderer->told_ns > MAX_READINGS_DELAY_NS;
     if (renderer->hello)
         good = send_hello(renderer);
     else if (renderer->asks)
         good = send_question(server, renderer, false);
+    else if (renderer->reloads)
+        good = send_reloading(renderer);
     else if (waits)
         good = send_readings(server, renderer);
     else if (may_answer(server, renderer))
@@ -547,6 +567,7 @@ static void judge(struct server_context *server, struct renderer_peer *renderer,
     const char *plant = json_string_value(json_object_get(message, "plant")), *id = json_string_value(json_object_get(message, "id"));
     char *cannot_follow = core_identity_difference(message, "renderer", own);
     char *cannot_stand_by = role_refusal(renderer);
+    renderer->other_configuration = core_identity_is_other_configuration(message, own);
     if (!cannot_stand_by && renderer->stands_by)
         cannot_stand_by = standby_refusal(server, renderer, id, !cannot_follow);
     bool votes = cannot_follow && renderer->stands_by && !cannot_stand_by && plant && !strcmp(plant, own->plant);

@@ -14,6 +14,9 @@ bool renderers_have_standby(const struct server_context *server);
 /* Returns the lease name of the standby that has confirmed the receipt of everything, once nothing changes any more
    (life.lead_ended_ns) and all actions are answered; NULL: none has. Valid until the event loop runs again. */
 const char *renderers_complete_standby(const struct server_context *server);
+/* Tells all renderers that this core begins to load the plant, so that they load their files at the same time. A standby ignores it: a
+   leader without the database needs the standby's promises while it switches. */
+void renderers_announce_reload(struct server_context *server);
 /* Makes the key with which this core's renderers sign view tokens; all renderers get the same key. */
 void renderers_make_key(struct server_context *server);
 /* Sends all renderers what changed. */

@@ -80,6 +80,7 @@ struct server_context {
         char key[2 * VIEW_TOKEN_KEY_BYTES + 1]; /* on a core: the view token key for its renderers, hexadecimal; "": none */
         char refused[300];                      /* the last refusal of a renderer, as logged */
         bool listed;                            /* on a renderer: the core has sent its lists since the plant was loaded */
+        char followed[64];                      /* configuration of the core that refused this daemon, which then loaded its files */
         struct renderer_peer *renderers;        /* list of all connections to /core (renderers.c) */
         uint64_t told_number;                   /* sequence number of the last notifier state that was sent to a standby */
     } core;
