@@ -212,6 +212,8 @@ static void on_refused(struct core_link *link, const json_t *message)
 {
     const char *why = json_string_value(json_object_get(message, "why"));
     arrive(link, 0, mem_strdup(link->in.at));
+    if (link->params.keeper && !json_is_true(json_object_get(message, "takes_over")))
+        lease_keeper_set_refused(link->params.keeper, why ? why : "without a reason");
     if (link->params.keeper && json_is_true(json_object_get(message, "votes")))
         stay_to_vote(link, why ? why : "the core refuses this node");
     else
@@ -231,6 +233,8 @@ static void on_core(struct core_link *link, const json_t *message)
         refuse(link, why);
     } else {
         link->taken = true;
+        if (link->params.keeper)
+            lease_keeper_set_refused(link->params.keeper, NULL);
         if (link->params.historian)
             historian_follow(link->params.historian);
         arrive(link, 0, mem_strdup(link->in.at));
@@ -767,6 +771,8 @@ struct core_link *core_link_start(const struct core_link_params *params)
                                         "Seconds by which the core's clock is ahead of this machine's.");
     lws_set_log_level(LLL_ERR | LLL_WARN, NULL); /* libwebsockets logs only errors and warnings, because the link's own loop logs its
                                                     connections */
+    if (params->keeper) /* a reload lets this node lead, whatever the leader refused */
+        lease_keeper_set_refused(params->keeper, NULL);
     thread_init(&link->thread);
     link->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (link->stop_fd < 0)

@@ -61,14 +61,23 @@ static void take_until(struct lease *lease, int64_t sent_ns)
 
 /* --- a follower --------------------------------------------------------------------------------------------------------------- */
 
-bool lease_may_bid(const struct lease *lease, int64_t now_ns)
+static bool may_bid_unless_refused(const struct lease *lease, int64_t now_ns)
 {
     const struct lease_row *row = &lease->row;
     if (!lease->known || lease->leads || lease->lost || lease->gave)
         return false;
     bool named = !row->leader[0] || !row->standby[0] || !strcmp(row->standby, lease->node) || !strcmp(row->leader, lease->node);
-    return lease->offered ||
-           (named && now_ns - lease->seen_ns >= LEASE_NS && now_ns >= lease->bound_ns);
+    return lease->offered || (named && now_ns - lease->seen_ns >= LEASE_NS && now_ns >= lease->bound_ns);
+}
+
+bool lease_may_bid(const struct lease *lease, int64_t now_ns)
+{
+    return !lease->refused && may_bid_unless_refused(lease, now_ns);
+}
+
+bool lease_is_barred(const struct lease *lease, int64_t now_ns)
+{
+    return lease->refused && may_bid_unless_refused(lease, now_ns);
 }
 
 void lease_bid(struct lease *lease)

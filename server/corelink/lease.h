@@ -40,6 +40,7 @@ struct lease {
     bool lost;                     /* true: this node was the leader, and another node leads now */
     bool bids;                     /* true: a bid of this node is being sent, or its outcome is unknown */
     bool gave;                     /* true: this node was the leader and gave the lease; it never bids again */
+    bool refused;                  /* follower: the leader refused this node, which therefore does not bid */
     bool offered;                  /* follower: the leader has just given the lease to this node by name */
     int64_t seen_ns;               /* follower: time since which the row has not changed */
     int64_t bound_ns;              /* follower: time until which its own promise forbids it to bid */
@@ -63,6 +64,8 @@ bool lease_may_bid(const struct lease *lease, int64_t now_ns);
    row. */
 void lease_bid(struct lease *lease);
 void lease_won(struct lease *lease, int64_t sent_ns);
+/* Returns whether this node does not bid only because the leader refused it (lease->refused). */
+bool lease_is_barred(const struct lease *lease, int64_t now_ns);
 /* Makes a promise not to bid for LEASE_NS from now. Returns false if this node cannot promise that. */
 bool lease_promise(struct lease *lease, int64_t now_ns);
 

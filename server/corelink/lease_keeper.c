@@ -36,7 +36,7 @@ struct lease_keeper {
     /* --- below: used by the keeper's thread only */
     struct postgres_link *link; /* connection to the database; NULL: none */
     bool looks;                 /* true: the present row is unknown and must be read from the database */
-    bool told_won, told_lost, told_alone;
+    bool told_won, told_lost, told_alone, told_barred;
     char said[POSTGRES_WHY_BYTES], led_by[LEASE_NODE_BYTES];
     /* `beat` of the row when it first named another core that has this node's name; -1: that core turned out to be alive, which was
        logged; 0: the row has never named such a core */
@@ -47,6 +47,7 @@ struct lease_keeper {
     char standby[LEASE_NODE_BYTES]; /* name of the standby that is connected, or was connected until gone_ns */
     int64_t gone_ns;                /* time when the standby disconnected; 0: it is connected */
     bool follows;                   /* true: the standby has our version and configuration */
+    char *refusal;                  /* why the leader refused this node; NULL: it did not */
     bool gives;                     /* true: the row must still be changed, so that it gives the lease to `standby` */
     uint64_t asked;
     struct {
@@ -245,14 +246,28 @@ static void look(struct lease_keeper *keeper)
     memcpy(keeper->led_by, row.leader, sizeof(keeper->led_by));
 }
 
+/* Logs once why this node does not take over although nobody leads. */
+static void tell_barred(struct lease_keeper *keeper, bool barred, char *refusal)
+{
+    if (barred && !keeper->told_barred)
+        log_err(keeper->params.log,
+                "lease: nobody leads, and this core does not take over, because the last leader refused it (%s). To let it lead, copy the "
+                "leader's plant file and tag list here, and reload this core",
+                refusal);
+    keeper->told_barred = barred;
+    mem_free(refusal);
+}
+
 static void bid(struct lease_keeper *keeper)
 {
     pthread_mutex_lock(&keeper->thread.lock);
-    bool may = lease_may_bid(&keeper->lease, now_of_lease());
+    bool may = lease_may_bid(&keeper->lease, now_of_lease()), barred = lease_is_barred(&keeper->lease, now_of_lease());
+    char *refusal = barred ? mem_strdup(keeper->refusal) : NULL;
     struct lease_row seen = keeper->lease.row;
     if (may)
         lease_bid(&keeper->lease);
     pthread_mutex_unlock(&keeper->thread.lock);
+    tell_barred(keeper, barred, refusal);
     if (!may)
         return;
     int64_t sent_ns = now_of_lease();
@@ -502,6 +517,15 @@ const char *lease_keeper_id(const struct lease_keeper *keeper)
     return keeper->node + name_bytes(keeper->node) + 1;
 }
 
+void lease_keeper_set_refused(struct lease_keeper *keeper, const char *why)
+{
+    pthread_mutex_lock(&keeper->thread.lock);
+    mem_free(keeper->refusal);
+    keeper->refusal = why ? mem_strdup(why) : NULL;
+    keeper->lease.refused = why;
+    pthread_mutex_unlock(&keeper->thread.lock);
+}
+
 bool lease_keeper_promise(struct lease_keeper *keeper)
 {
     pthread_mutex_lock(&keeper->thread.lock);
@@ -591,6 +615,7 @@ void lease_keeper_destroy(struct lease_keeper **pointer)
         close(keeper->stop_fd);
     thread_finish(&keeper->thread);
     mem_free((char *)keeper->params.maintenance_path);
+    mem_free(keeper->refusal);
     mem_free(keeper->postgres.url);
     mem_free(keeper->postgres.schema);
     mem_free(keeper->postgres.login);

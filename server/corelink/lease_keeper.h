@@ -61,6 +61,9 @@ bool lease_keeper_is_taken(struct lease_keeper *keeper);
 
 /* --- for a follower --- */
 const char *lease_keeper_id(const struct lease_keeper *keeper); /* Returns the ID part of this node's name; valid as long as the keeper. */
+/* Sets why the leader refuses this node, which then does not take over; NULL: the leader does not refuse it, or this node has loaded its
+   plant since. Copies the text. */
+void lease_keeper_set_refused(struct lease_keeper *keeper, const char *why);
 /* Makes a promise to the leader, on its request, not to bid for LEASE_NS. Returns false if this node cannot promise that. */
 bool lease_keeper_promise(struct lease_keeper *keeper);
 

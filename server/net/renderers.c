@@ -313,7 +313,9 @@ static bool send_refusal(const struct server_context *server, struct renderer_pe
     bool votes = renderer->state == RENDERER_VOTES;
     renderer->refusal_sent = true;
     renderer->close_text = votes ? NULL : "it was refused";
-    json_t *message = json_pack("{s:s,s:s,s:b}", "type", "refused", "why", renderer->refusal, "votes", votes);
+    /* a core of another version takes over, because both cores are upgraded one after the other */
+    json_t *message = json_pack("{s:s,s:s,s:b,s:b}", "type", "refused", "why", renderer->refusal, "votes", votes, "takes_over",
+                                votes && !renderer->other_configuration);
     if (renderer->other_configuration)
         json_object_set_new(message, "configuration", json_string(server->session_context.plant->files.hash));
     return send_message(renderer, message);

@@ -71,3 +71,21 @@ test('a standby that comes again and again does not have it read as often', { ..
     const more = core.program.said.match(READ).length - length;
     assert.ok(more >= 1 && more <= 2, `read ${more} times after ${RETURNS} returns`);
 });
+
+test('a core that the leader refused does not take over before it is loaded anew, and says so', options, async () => {
+    const core = await two.leader(), other = two.other(core);
+    await two.followed(core);
+    writeFileSync(two.file, readFileSync(two.file, 'utf8').replace('max: 101 }', 'max: 102 }'));
+    core.program.child.kill('SIGHUP');
+    await core.program.line(/reload: configuration/);
+    await other.program.line(/configuration: the renderer has .*only votes/);
+    core.program.stopped = true;
+    core.program.child.kill('SIGKILL');
+    await other.program.line(/lease: nobody leads, and this core does not take over, because the last leader refused it \(configuration: /);
+    assert.ok(!await two.ready(other));
+    other.program.said = '';
+    other.program.child.kill('SIGHUP');
+    await two.waitsFor('the other core leads', () => two.ready(other));
+    await two.restart(core);
+    await two.followed(other);
+});

@@ -489,6 +489,25 @@ TEST(a_given_lease_is_taken_at_once_by_the_node_that_saw_its_leader)
     assert_false(lease_may_bid(&b, 4 * S));
 }
 
+TEST(a_node_that_the_leader_refused_does_not_bid)
+{
+    const struct lease_row led = { .epoch = 3, .beat = 9, .instance = 5, .leader = "a", .standby = "b" };
+    struct lease b = follower("b", &led, 10 * S);
+    assert_false(lease_is_barred(&b, 13 * S));
+    b.refused = true;
+    assert_false(lease_is_barred(&b, 13 * S - 1));
+    assert_true(lease_is_barred(&b, 13 * S));
+    assert_false(lease_may_bid(&b, 13 * S));
+    struct lease_row released = led;
+    released.beat++;
+    released.leader[0] = released.standby[0] = 0;
+    lease_saw(&b, &released, 14 * S);
+    assert_false(lease_may_bid(&b, 100 * S));
+    b.refused = false;
+    assert_false(lease_is_barred(&b, 17 * S));
+    assert_true(lease_may_bid(&b, 17 * S));
+}
+
 TEST(in_maintenance_a_leader_promises_itself_and_no_other_may_bid)
 {
     const struct lease_row none = { 0 };
