@@ -40,7 +40,7 @@ struct alarm_bench {
     struct alarms *alarms;
     struct sample_event *events;
     struct snapshot *snapshot;
-    int64_t second_ns; /* of the plant */
+    int64_t second_ns; /* time at which the next simulated second begins */
     int changes;
 };
 

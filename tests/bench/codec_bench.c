@@ -62,14 +62,14 @@ static const char *const codecs[] = { "jpeg", "h264" };
 enum { CODECS = sizeof(codecs) / sizeof(codecs[0]) };
 
 struct measured {
-    struct encoder *encoder; /* NULL: not in this build */
+    struct encoder *encoder; /* NULL: this build lacks the encoder */
     struct frame *before;
     struct decoder *decoder;
     double bytes, ms, cpu_ms, decode_cpu_ms;
     int packets;
 };
 
-/* One part after the other. */
+/* Decodes the parts of a packet, one after the other. */
 static void decode(struct measured *m, const struct packet *packet, const struct frame *frame)
 {
     double began_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID);

@@ -65,7 +65,7 @@ static void drag_decay(struct field_bench *bench)
     bench->params.decay = 0.5 + synthetic_random_unit(&bench->random);
 }
 
-/* goal_ms 0: none */
+/* Times a change of readings or parameters. goal_ms: longest time allowed; 0: none. */
 static void measure(struct field_bench *bench, const char *name, void (*change)(struct field_bench *), double goal_ms)
 {
     double ms[ROUNDS], work_ms[ROUNDS];

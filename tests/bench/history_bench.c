@@ -91,7 +91,7 @@ static void record(const char *name, double noise_size)
 
 enum { PLANT_TAGS = 186, PLANT_SOURCES = 4, PLANT_SECONDS = 7200, TIDY_S = 1200 };
 
-/* Returns a number of /proc/self/io. */
+/* Returns the number that /proc/self/io has under this name. */
 static double process_io(const char *name)
 {
     char line[80];

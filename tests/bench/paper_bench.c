@@ -26,13 +26,14 @@ enum { WIDTH_PX = 1920, HEIGHT_PX = 1080, PROBE_WIDTH_PX = 192, PROBE_HEIGHT_PX 
 enum { FEW_SENSORS = 5, MANY_SENSORS = 512 }; /* frames with MANY_SENSORS should take as long as frames with FEW_SENSORS */
 enum { IN_FLIGHT = 3, FLOW_FRAMES = 960 };    /* frames given to the GPU ahead, and frames per run, of the throughput measurement */
 enum { CAMERAS = 48, MOST_FRAMES = 96, LEAST_FRAMES = 2, HULL_POINTS = 96 };
-static const int64_t CHANGE_NS = 100 * NS_PER_MS, LONGEST_NS = 3 * NS_PER_S; /* of a row */
+/* time between two changes of readings; longest duration of a row */
+static const int64_t CHANGE_NS = 100 * NS_PER_MS, LONGEST_NS = 3 * NS_PER_S;
 /* milliseconds; slower brute-force frames are drawn only once */
 static const double LONGEST_BRUTE_MS = 20e3;
 static const double SWING_RAD = 6 * M_PI / 180, FOV_DEG = 15, WANTED_COVERAGE = 0.6;
 
 struct paper_model {
-    const char *path, *nodes, *up, *suffix; /* of the rows' names */
+    const char *path, *nodes, *up, *suffix; /* suffix: ending of the rows' names */
 };
 static const struct paper_model models[] = {
     { DEMO_MODEL, "E-101", "y", "" },
@@ -48,13 +49,13 @@ struct paper_bench {
     struct renderer *renderer;
     double hull_m[HULL_POINTS][3];
     struct camera cameras[CAMERAS];
-    double coverage; /* the least of them */
+    double coverage; /* smallest coverage of any camera */
     double brute_ms; /* time of the previous brute-force row; brute_sensors is its number of sensors, 0: no such row */
     int brute_sensors;
     double few_ms; /* milliseconds with the fewest sensors of a series; 0: not measured */
 };
 
-struct timing_series { /* times of one row */
+struct timing_series { /* measured times of one row */
     double time_ms[MOST_FRAMES], work_ms[MOST_FRAMES];
     int frames, triangles, changes;
     double seconds;
@@ -104,7 +105,7 @@ static void find_extremes(const struct paper_bench *bench, const double eye_m[3]
 static void fit(const struct paper_bench *bench, double azimuth, double elevation, struct camera *camera)
 {
     const struct scene *scene = bench->crowd.scene;
-    double axes[3][3] = { { -sin(azimuth), cos(azimuth), 0 }, /* right, up, ahead */
+    double axes[3][3] = { { -sin(azimuth), cos(azimuth), 0 }, /* directions to the right, up and ahead */
                           { -cos(azimuth) * sin(elevation), -sin(azimuth) * sin(elevation), cos(elevation) },
                           { -cos(azimuth) * cos(elevation), -sin(azimuth) * cos(elevation), -sin(elevation) } };
     double half = tan(FOV_DEG * M_PI / 360), distance_m = 0;
@@ -408,7 +409,7 @@ static void measure(struct paper_bench *bench, const struct paper_model *model, 
     mem_free(series);
 }
 
-struct goal { /* 0: none */
+struct goal { /* goals of a row; 0: none */
     int count;
     double cpu_ms[2], gpu_ms; /* goals in milliseconds: on two cores, by model; on a GPU, ten times as fast as the paper */
 };

@@ -15,7 +15,7 @@
 
 enum { MOVING_ROUNDS = 40, STILL_ROUNDS = 8, MOST_ROUNDS = 40 };
 
-/* goal: at most; 0: none. */
+/* Prints a row. goal: largest value allowed; 0: none. */
 static void print_row(const char *name, double *values, int count, double goal)
 {
     qsort(values, (size_t)count, sizeof(*values), by_size);

@@ -220,7 +220,7 @@ function stlOf(count) {
 }
 const step = (data) => `ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n` +
     `FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\n${data}ENDSEC;\nEND-ISO-10303-21;\n`;
-function rvmOf(depth) { // nested groups
+function rvmOf(depth) { // returns an RVM file of nested groups
     const words = (...numbers) => Buffer.concat(numbers.map((n) => { const b = Buffer.alloc(4); b.writeUInt32BE(n >>> 0); return b; }));
     const name = (text) => Buffer.concat([...text].map((c) => words(c.charCodeAt(0))));
     const chunk = (id) => Buffer.concat([name(id), words(0xffffffff, 1)]);
@@ -256,7 +256,7 @@ const MODELS = {
     'noise.3ds': Buffer.from([0x4d, 0x4d, 0xff, 0xff, 0xff, 0xff, 0x3d, 0x3d, 0xff, 0xff, 0xff, 0x7f]),
 };
 
-const SLOW = ['nodes.gltf', 'list.stp', 'string.stp', 'cycle.ifc']; // only in a long run
+const SLOW = ['nodes.gltf', 'list.stp', 'string.stp', 'cycle.ifc']; // files that are tried only in a long run
 const readsIfc = existsSync(join(BIN, 'plantcast-import-ifc/ifc.mjs'));
 const kindOf = (status, line) => (status === 0 ? 'read' : /needs more|was ended|crashed/.exec(line)?.[0] ?? 'refused');
 

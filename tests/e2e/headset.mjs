@@ -88,7 +88,7 @@ test('both eyes see the plant from their own places; a turned head sees it in th
     for (const away of [2, 20]) {
         const eye = [0, -0.5 - away, 0]; // 2 or 20 m in front of the box's side at y = -0.5
         await lookFrom(page, eye, [0, 1, 0]);
-        const { left, right } = await seen(page), row = EYE.height / 2 + (away === 2 ? 30 : 6); // beside the markers
+        const { left, right } = await seen(page), row = EYE.height / 2 + (away === 2 ? 30 : 6); // row: a row of pixels beside the markers
         const trueRuns = await Promise.all([-1, 1].map(async (side) => runOf(await truth(page, eye, side), row)));
         const runs = [left, right].map((picture) => runOf(picture, row));
         t.diagnostic(`${away} m: runs ${JSON.stringify(runs)}, true ${JSON.stringify(trueRuns)}`);

@@ -162,7 +162,7 @@ test('what people change stays; a second run changes nothing', { skip: notBuilt 
     assert.match(second[2], /E-101\.TT-02,sure,V-201,.*by hand/);
     match();
     assert.deepEqual(texts(), second);
-    // Rules and aliases.
+    // Rules and aliases of the site add matches.
     writeFileSync(join(folder, 'match_rules.csv'), 'Tag,Equipment\n"^FT-9([0-9])9$",P-10\\1\n^FT-999$,P-101\n');
     match();
     assert.match(readFileSync(join(folder, 'matches.csv'), 'utf8'), /FT-999,sure,P-101,.*rule 2 makes 'P-101' of it/);
@@ -411,7 +411,7 @@ test('from exports of two systems to a live picture', { skip: noData, timeout: 2
         await page.locator('.legend').getByText('Location assumed').waitFor();
         await page.evaluate(() => { location.hash = '#tag=ART1105BA_TT02'; });
         await page.locator('#card').getByText('Location assumed').waitFor();
-        // Without the walls.
+        // Draws the plant without the walls.
         const walls = ['-HZA05-B', '-HZB05-B', '-HZC05-B', '-HAA01---B', 'IMAGE-DALLE', '-HZ0501M-', 'ORIGINE_BATIMENT'];
         const view = `width=1280&height=800&group=temperature&hidden=${walls.map(encodeURIComponent).join(',')}`;
         const bare = await fetch(`${url}snapshot.png?${view}`);

@@ -33,14 +33,14 @@ struct faults {
     uint32_t lost, contexts;  /* lost: number of losses so far; contexts: number of existing contexts */
     uint64_t used_bytes, most_bytes;
     uint32_t objects, refused; /* objects: number of existing objects; refused: allocations that exceeded the limit */
-    uint32_t made;             /* contexts created so far */
+    uint32_t made;             /* number of contexts created so far */
 };
 
 struct object {
     EGLContext context;
     enum gl_object_kind kind;
     GLuint name;
-    uint64_t bytes; /* 0: the entry is free */
+    uint64_t bytes; /* size of the object; 0: the entry is free */
 };
 
 /* One thread calls GL at a time: a context belongs to one thread, and during a plant reload the other thread waits. */
@@ -49,7 +49,7 @@ static struct object objects[OBJECTS];
 static EGLContext current, gone; /* a lost context stays the current one */
 static EGLDisplay display;
 static uint32_t calls_left;
-static bool full; /* to be reported by glGetError */
+static bool full; /* glGetError is to report "out of memory" */
 static struct {
     PFNEGLGETPROCADDRESSPROC get_proc;
     PFNEGLCREATECONTEXTPROC create_context;

@@ -110,12 +110,13 @@ TEST_WITH(test_without_memory_there_is_no_data, set_up, tear_down)
     for (int kind = NO_SUMS; kind <= NO_BUFFER; kind++)
         for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
             view.tier = (enum tier)tier;
-            view.field.power = 1 + kind + 0.25 * tier; /* none that is known */
+            view.field.power = 1 + kind + 0.25 * tier; /* a power that no earlier frame had */
             fault = kind;
             uint64_t content = planned_content(stand.renderer, &view, stand.snapshot);
             assert_hatched(&view);
             fault = ALL_WELL;
-            assert_true(planned_content(stand.renderer, &view, stand.snapshot) != content); /* so it is drawn again */
+            /* the content differs, so the frame is drawn again */
+            assert_true(planned_content(stand.renderer, &view, stand.snapshot) != content);
             struct frame *frame = stand_draw(&stand, &view);
             assert_true(map_index_exact(colormap_at(0), frame_pixel(frame, 8, SIDE_PX - 8)) >= 0);
             frame_unref(&frame);

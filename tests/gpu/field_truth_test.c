@@ -108,7 +108,7 @@ TEST_WITH(test_the_hottest_goes_bad, set_up, tear_down)
         assert_true(is_hatched(&view, 2, 2, 0.7));
         assert_in_range(shown_at(&view, 0.3, 0.3), 45, 62); /* the other sensors stay, and the lost sensor's 95 has no effect on them */
         view.field.fill = FILL_NEIGHBOURS;
-        assert_false(is_hatched(&view, 2, 2, 0.7)); /* asked for, and stippled */
+        assert_false(is_hatched(&view, 2, 2, 0.7)); /* neighbours fill the gap as requested, and it is stippled */
         struct frame *frame = stand_draw(&stand, &view);
         int dots = 0;
         for (double y = 1.5; y < 2.5; y += 0.021)
@@ -153,7 +153,7 @@ TEST_WITH(test_one_sensor_is_everywhere_it_reaches, set_up, tear_down)
         toy_set(stand.snapshot, HOTTEST, 60, QUALITY_GOOD);
         assert_int_equal(shown_at(&view, 2, 2), 153);
         assert_int_equal(shown_at(&view, 2.5, 2.4), 153);
-        assert_true(is_hatched(&view, 0.2, 0.2, 0.2)); /* position of a lost sensor */
+        assert_true(is_hatched(&view, 0.2, 0.2, 0.2)); /* the position of a lost sensor is hatched */
     }
 }
 
@@ -162,9 +162,9 @@ TEST_WITH(test_a_part_that_nobody_reaches, set_up, tear_down)
     struct view view;
     for_each_tier(&view)
     {
-        assert_true(is_hatched(&view, 1.5 * side_m, 2, 1.8)); /* the second plate */
+        assert_true(is_hatched(&view, 1.5 * side_m, 2, 1.8)); /* no path leads to the second plate */
         assert_true(shown_at(&view, 3.5, 2) >= 0);
-        view.field.distance = DISTANCE_EUCLIDEAN; /* straight lines reach it */
+        view.field.distance = DISTANCE_EUCLIDEAN; /* straight lines reach the second plate */
         assert_false(is_hatched(&view, 1.5 * side_m, 2, 1.8));
         view.field.reach_m = 1;
         assert_true(is_hatched(&view, 1.5 * side_m + 1, 2, 0.8));
@@ -205,10 +205,10 @@ TEST_WITH(test_a_sensor_at_a_vertex_is_exact, set_up, tear_down)
     {
         for (double power = 0.5; power <= 16; power *= 2) {
             view.field.power = power;
-            assert_in_range(shown_at(&view, 2.002, 2.002), power < 1 ? 200 : 235, 245); /* 95: number 243 */
+            assert_in_range(shown_at(&view, 2.002, 2.002), power < 1 ? 200 : 235, 245); /* a reading of 95 has the colour number 243 */
         }
         view.field.interpolation = INTERPOLATION_PAPER;
-        assert_true(shown_at(&view, 2, 2) >= 0); /* neither 0/0 nor infinity */
+        assert_true(shown_at(&view, 2, 2) >= 0); /* the value is neither 0/0 nor infinite */
     }
 }
 

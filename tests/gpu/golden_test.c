@@ -161,7 +161,7 @@ static void test_golden(void **state)
 static void fill(void)
 {
     toy_fill(stand.snapshot, 0);
-    for (int i = 0; i < 7; i++) /* the last one has none */
+    for (int i = 0; i < 7; i++) /* the last tag keeps no limits */
         memcpy(stand.toy->plant.tags[i].alarms.limits, (double[]){ 10, 20, 70, 100 }, LIMIT_COUNT * sizeof(double));
     alarm_by_limits(&stand.toy->plant, stand.snapshot);
 }

@@ -105,7 +105,7 @@ static double largest_m(void)
 }
 
 struct fragment_truth {
-    double value;        /* place in the range */
+    double value;        /* true value, as a place in the range from 0 to 1 */
     bool no_data, a_tie; /* a_tie: rounding decides between two results */
 };
 
@@ -143,7 +143,7 @@ static void look_down(struct view *view, enum interpolation interpolation, enum 
 
 struct per_fragment_tally {
     double worst;
-    int most_off, flags_differ, no_data; /* most_off: colours of the map */
+    int most_off, flags_differ, no_data; /* most_off: largest error, in colours of the map */
 };
 
 static void compare(const struct view *view, const float (*numbers)[4], const struct frame *frame, double radius_m,

@@ -107,7 +107,7 @@ static void compare_pixel(struct pick_case *site, const struct view *view, const
         tally->differ += centre[1] > MEASURE_NOTHING;
         return;
     }
-    if (pick.inside) { /* section caps are not measured */
+    if (pick.inside) { /* a pick on a section cap has no measured value to compare with */
         tally->inside++;
         assert_true(pick.state == PICK_CONTEXT && isnan(pick.value));
         return;
@@ -168,7 +168,7 @@ static void assert_exact(const struct pick_tally *tally)
     say(tally);
     assert_true(tally->worst_value <= 1.0 / 255);
     assert_true(tally->worst_px < 1e-3);
-    assert_in_range(tally->differ, 0, tally->compared / 200); /* rims of hatching */
+    assert_in_range(tally->differ, 0, tally->compared / 200); /* picks may differ at rims of hatching */
     assert_in_range(tally->moved, 0, tally->compared / 50);   /* picks may differ at silhouettes and at railings thinner than a pixel */
     if (sweep_is_whole())
         assert_true(tally->longest_ms < 10);
@@ -257,7 +257,7 @@ TEST(test_sensors)
     for (size_t i = 0; i < frame->marker_count; i++) {
         const struct frame_marker *marker = &frame->markers[i];
         pick_at(site.scene, site.field, &view, site.snapshot, (double)marker->x_px, (double)marker->y_px, &pick);
-        if (pick.sensor != marker->tag) /* another one stands before it */
+        if (pick.sensor != marker->tag) /* another sensor stands before this one */
             continue;
         assert_int_equal(pick.sensor_occluded, marker->occluded);
         if (marker->occluded)

@@ -140,7 +140,7 @@ static void assert_no_flash(const char *path, const char *name)
         view.dark = i % 2 == 1;
         struct flash flash = flash_of(&site, &view);
         print_message("# %s, view %d: delta E %.2f on average, %.2f (p95)\n", name ? name : "demo", i, flash.mean, flash.p95);
-        bool materials = view.look == LOOK_MATERIALS; /* in full contrast */
+        bool materials = view.look == LOOK_MATERIALS; /* materials are drawn in full contrast */
         assert_true(flash.mean < (materials ? 4 : 3) && flash.p95 < (materials ? 14 : 10));
     }
     site_finish(&site);
@@ -345,8 +345,8 @@ TEST(test_holes_let_the_sun_through)
         plate.view.tier = (enum tier)tier;
         plate.view.camera.height_m = 6;
         struct frame *frame = stand_draw(&plate.stand, &plate.view);
-        int lit = frame_pixel(frame, 17, 100)[1], shaded = frame_pixel(frame, 57, 100)[1];       /* x: -2.5, -1.3 */
-        int through = frame_pixel(frame, 104, 100)[1], beside = frame_pixel(frame, 120, 100)[1]; /* x: 0.12, 0.6 */
+        int lit = frame_pixel(frame, 17, 100)[1], shaded = frame_pixel(frame, 57, 100)[1];       /* pixels at x = -2.5 and -1.3 */
+        int through = frame_pixel(frame, 104, 100)[1], beside = frame_pixel(frame, 120, 100)[1]; /* pixels at x = 0.12 and 0.6 */
         print_message("# lit %d, shaded %d; through the hole %d, beside its shadow %d\n", lit, shaded, through, beside);
         assert_true(shaded < lit - 30 && abs(through - beside) < 12 && through > shaded + 20);
         frame_unref(&frame);

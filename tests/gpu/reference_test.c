@@ -18,7 +18,7 @@
 
 /* Image size: the default run uses a quarter of the pixels and compares as many points. */
 static int width_px, height_px;
-enum { VIEWS = 14, SAMPLES = 715 }; /* samples: of a view */
+enum { VIEWS = 14, SAMPLES = 715 }; /* VIEWS: number of views of a case; SAMPLES: number of samples of a view */
 enum { CLOSE_PX = 32 };             /* number of samples across two pixels, in each direction */
 static const double TOLERANCE = 1.0 / 255;
 
@@ -173,14 +173,14 @@ static void look_at_some_asset(struct site *site, double away, struct view *view
     while (is_inside_any(site->scene, view->camera.eye_m));
 }
 
-struct reference_display { /* parameters of showing a plant */
+struct reference_display { /* how a plant is shown in one case */
     int group;
     int number, each; /* number of this case; the default run tries every each-th case */
     enum interpolation interpolation;
     enum distance_mode distance;
     enum tier tier;
     bool finest;
-    uint64_t seed; /* of its views */
+    uint64_t seed; /* seed of the case's views */
 };
 
 /* Applies the parameters as a client's message does. Returns false if they are refused. */
@@ -210,7 +210,7 @@ static void compare_views(struct site *site, const struct reference_display *way
         view_default(site->scene, width_px, height_px, &view);
         ask_for(site, way, &view);
         view.tier = way->tier;
-        if (i % 2) /* else as the plant says */
+        if (i % 2) /* every other view has the plant file's reach */
             view.field.reach_m = (double)INFINITY;
         site->random = way->seed + (uint64_t)i; /* the views of a case do not depend on the levels drawn */
         synthetic_random(&site->random);

@@ -18,7 +18,7 @@
 
 #define ENCODES "plantcast_encodes_total{codec=\"jpeg\"}"
 enum { REFINER = 1, MOVER = 2, PICKER = 3, VIEWERS = 100 };
-static const int64_t RECENT_NS = 600 * NS_PER_MS;  /* older frames are not shared */
+static const int64_t RECENT_NS = 600 * NS_PER_MS;  /* age from which a frame is not shared any more */
 static const int64_t PATIENCE_NS = 100 * NS_PER_S; /* far longer than any frame takes, also under sanitizers */
 
 static struct toy *toy;
@@ -75,7 +75,7 @@ static void ask_sized(uint64_t client, enum urgency urgency, double turn, int wi
     render_service_wake(service);
 }
 
-/* turn: of the camera. */
+/* Requests a frame for a client. turn: angle of the camera. */
 static void ask(uint64_t client, enum urgency urgency, double turn)
 {
     bool still = urgency == URGENCY_REFINE;

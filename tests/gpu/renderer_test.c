@@ -205,7 +205,8 @@ TEST_WITH(test_bit_by_bit_is_the_same_picture, reset, NULL)
             struct frame *frame = stand_draw(&stand, &other);
             frame_unref(&frame);
         }
-        assert_true(steps >= (rig.gl->software && (by_gl || view.tier == TIER_REFINED) ? 12 : 1)); /* else in one go */
+        /* a GPU may draw the frame in one step */
+        assert_true(steps >= (rig.gl->software && (by_gl || view.tier == TIER_REFINED) ? 12 : 1));
         struct frame *bits = renderer_end(stand.renderer, &job);
         assert_true(bits && !job);
         assert_same_picture(whole, bits);
@@ -368,11 +369,11 @@ TEST_WITH(test_many_sizes, reset, NULL)
 
 TEST_WITH(test_camera_within_the_plant, reset, NULL)
 {
-    look(0, 0, 1.2, 1, 0, 1.2); /* in the shell */
+    look(0, 0, 1.2, 1, 0, 1.2); /* the camera is inside the shell */
     struct frame *frame = stand_draw(&stand, &view);
     assert_true(brightness(frame) > 0);
     frame_unref(&frame);
-    look(2, -3, -4, 2, 0, 1); /* under the ground */
+    look(2, -3, -4, 2, 0, 1); /* the camera is under the ground */
     frame = stand_draw(&stand, &view);
     assert_true(brightness(frame) > 0);
     frame_unref(&frame);
@@ -388,7 +389,7 @@ static void draw_much(void)
         view.height_px = sizes[i % 3][1];
         view.tier = i % 2 ? TIER_REFINED : TIER_PREVIEW;
         view.look = i % 5 == 4 ? LOOK_MATERIALS : i % 5 == 3 ? LOOK_GLOSSY : LOOK_DEFAULT;
-        renderer_use_gl(stand.renderer, i % 5 == 3); /* on any machine */
+        renderer_use_gl(stand.renderer, i % 5 == 3); /* some rounds use GL on any machine */
         view.light_dir[0] = i % 4 == 3 ? 0.6 : 0;
         view.light_dir[1] = 0;
         view.light_dir[2] = i % 4 == 3 ? 0.8 : 1;

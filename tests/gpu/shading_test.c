@@ -36,7 +36,7 @@ static int tear_down(void **state)
 /* How a frame is encoded, and how its viewer sees colours. */
 struct delivery_path {
     const char *name;
-    int quality;                             /* of JPEG; 0: none */
+    int quality;                             /* quality of the JPEG; 0: no JPEG */
     /* full_chroma: no subsampling; deuteranope: colour-blind viewer; standard: another encoder, with the standard JPEG tables */
     bool full_chroma, deuteranope, standard;
 };

@@ -9,7 +9,7 @@
 static struct rig rig;
 static struct stand stand;
 
-enum { WALL, GRATING, SIGN, FENCE, WINDOW, CURTAIN, PLATES }; /* as make_plant() adds them */
+enum { WALL, GRATING, SIGN, FENCE, WINDOW, CURTAIN, PLATES }; /* plates in the order in which make_plant() adds them */
 enum { PAINTED, GRATE, GLASS, SMOKE, STEEL, MATERIALS };
 enum { BASE, GLOSS, BUMPS, CREASES, LAMPS, HOLES, HAZE, TEXTURES };
 enum { SIDE_PX = 64, TEXELS = SIDE_PX * SIDE_PX, MOST_VERTICES = 1024 };

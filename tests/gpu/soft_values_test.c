@@ -61,7 +61,7 @@ static bool bends(const float (*numbers)[4], int at, int step)
     return fabs(before + after - 2 * here) > 0.002 * here;
 }
 
-/* One surface all round. */
+/* Returns whether a pixel and its neighbours show one surface. */
 static bool is_within(const float (*numbers)[4], int at)
 {
     for (int y = -1; y <= 1; y++)

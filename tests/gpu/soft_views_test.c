@@ -25,7 +25,7 @@ TEST(test_home)
 
 TEST(test_sizes)
 {
-    enum { ONE_ROW_MORE = 185 }; /* than a tile has */
+    enum { ONE_ROW_MORE = 185 }; /* a picture one row higher than a tile */
     static const int sizes[][2] = { { 16, 16 }, { 17, 33 }, { 333, 217 }, { 64, 500 }, { 1001, 31 }, { 200, ONE_ROW_MORE } };
     EACH_TIER(tier)
         for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
@@ -104,7 +104,7 @@ TEST(test_sun)
 {
     EACH_TIER(tier) {
         struct view view = soft_view(&stand, tier, 400, 300);
-        for (int i = 0; i < 4; i++) { /* more than are kept */
+        for (int i = 0; i < 4; i++) { /* uses more lights than are cached */
             double towards[3] = { 0.6 * cos(i), 0.6 * sin(i), 0.8 };
             memcpy(view.light_dir, towards, sizeof(towards));
             soft_assert_like_gl(&stand, &view, tier == TIER_PREVIEW ? 0.003 : 0.01);

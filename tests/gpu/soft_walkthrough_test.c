@@ -27,7 +27,7 @@ static int differing(const struct frame *a, const struct frame *b)
     return count;
 }
 
-/* How many pixels look otherwise. */
+/* Returns the number of pixels that differ from the picture that GL draws. */
 static int compare(struct site *site, const struct view *view)
 {
     renderer_use_gl(site->renderer, true);

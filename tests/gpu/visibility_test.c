@@ -241,7 +241,7 @@ static struct toy *nested(bool hollow, bool open)
     if (hollow) {
         size_t first = body.index_count;
         shape_box(&body, TOY_STEEL, (double[3]){ -0.8, -0.8, -0.8 }, (double[3]){ 0.8, 0.8, 0.8 });
-        for (size_t i = first; i < body.index_count; i += 3) { /* turned inward */
+        for (size_t i = first; i < body.index_count; i += 3) { /* turns the inner box's triangles inward */
             uint32_t second = body.indices[i + 1];
             body.indices[i + 1] = body.indices[i + 2];
             body.indices[i + 2] = second;
@@ -300,7 +300,7 @@ TEST_WITH(test_a_cut_closes_bodies, reset, NULL)
             assert_int_equal(pick.inside, way == 0);
             assert_float_equal(pick.position_m[1], way == 0 ? -0.701 : -0.5, 1e-6);
             cut_through(&own, tier, true, box, &first_m, &last_m, &pick);
-            assert_true(first_m == 0 && pick.inside); /* the core is solid itself */
+            assert_true(first_m == 0 && pick.inside); /* the core is a solid of its own */
         }
         stand_finish(&own);
     }
@@ -311,7 +311,7 @@ TEST_WITH(test_a_cut_leaves_the_rest_alone, reset, NULL)
 {
     view.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { -1, 0, 0, 50 } } };
     struct frame *uncut = stand_draw(&stand, &view);
-    view.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { -1, 0, 0, 2.6 } } }; /* the tank goes */
+    view.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { -1, 0, 0, 2.6 } } }; /* this plane removes the tank */
     struct frame *cut = stand_draw(&stand, &view);
     assert_true(count_value(uncut, 80) > 2000);
     assert_int_equal(count_value(cut, 80), 0);

@@ -56,7 +56,7 @@ function measure() {
     return { memory_mb: of('VmRSS') / 1024, threads: of('Threads'), descriptors: readdirSync(`/proc/${pid()}/fd`).length };
 }
 
-// Twenty who drag.
+// Starts twenty clients that drag the camera.
 const crowd = () => new Promise((done, fail) => {
     const child = spawn(join(BIN, 'plantcast'), ['probe', `http://127.0.0.1:${plant.port}/`, '--sessions', String(SESSIONS), '--seconds',
         String(PROBE_S), '--motion', 'random', '--size', '320x180', '--blind', '--json'], { stdio: ['ignore', 'pipe', 'inherit'] });
@@ -137,7 +137,7 @@ async function drift(round) {
     return worst;
 }
 
-// By least squares, an hour.
+// Returns how much row[key] grows per hour, by least squares.
 function slope(rows, key) {
     const n = rows.length, mean = (of) => rows.reduce((sum, row) => sum + of(row), 0) / n;
     const t = mean((row) => row.hours), y = mean((row) => row[key]);

@@ -26,7 +26,7 @@ struct relay_chunk {
 
 struct relay_direction { /* one direction of a connection; a ring buffer of chunks */
     int from, to;
-    double bytes_per_s; /* 0: no limit */
+    double bytes_per_s; /* limit of the speed; 0: none */
     int64_t free_ns;    /* nanoseconds; time from which the next byte may be read */
     unsigned first, count;
     struct relay_chunk *chunks;
@@ -92,7 +92,7 @@ static void link_open(struct relay_link *link, int client, int port, double byte
         link_close(link);
 }
 
-/* False: the sender is gone. */
+/* Reads chunks from the sender. Returns false if the sender is gone. */
 static bool take(struct relay_direction *way, int64_t now_ns)
 {
     while (way->count < CHUNKS && now_ns >= way->free_ns) {
@@ -110,7 +110,7 @@ static bool take(struct relay_direction *way, int64_t now_ns)
     return true;
 }
 
-/* False: the receiver is gone. */
+/* Sends the chunks that are due. Returns false if the receiver is gone. */
 static bool give(struct relay_direction *way, int64_t now_ns)
 {
     while (way->count > 0) {

@@ -37,11 +37,11 @@ struct facility_options {
 struct facility {
     struct facility_options options;
     struct cad_random random;
-    FILE *bytes; /* the binary chunk */
+    FILE *bytes; /* file with the bytes of the binary chunk */
     size_t byte_count, triangles;
     long views, accessors, meshes, nodes;
     struct text view_json, accessor_json, mesh_json, node_json, roots, yaml, csv;
-    long flange; /* its mesh, shared by all */
+    long flange; /* index of the mesh that all flanges share */
 };
 
 struct pipe_mesh { /* a tube of rows x around vertices, closed in the second direction */
@@ -128,7 +128,7 @@ static void mesh_finish(struct pipe_mesh *mesh)
     mem_free(mesh->indices);
 }
 
-/* Standing, with round heads. */
+/* Makes a standing tank with round heads. */
 static void make_tank(struct pipe_mesh *mesh, int rows, int around, double radius, double height)
 {
     struct pipe_ring *rings = mem_array((size_t)rows, sizeof(*rings));

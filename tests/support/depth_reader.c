@@ -44,7 +44,7 @@ static int middle_of(int a, int b, int c)
 }
 
 struct codes_beside {
-    int left, up, corner; /* 0 beyond the edge */
+    int left, up, corner; /* codes of the cells to the left, above and diagonally; 0 beyond the edge */
 };
 
 static struct codes_beside codes_beside_of(const uint16_t *codes, int i, int columns)

@@ -88,7 +88,7 @@ TEST(where_a_daemon_may_listen)
     params.tokens_path = "tokens";
     assert_false(access_allowed_at(&params, false, &why));
     params.tls_cert_path = "cert";
-    assert_false(access_allowed_at(&params, true, &why)); /* half of TLS */
+    assert_false(access_allowed_at(&params, true, &why)); /* a certificate without a key is no TLS */
     params.tls_key_path = "key";
     assert_true(access_allowed_at(&params, false, &why));
     params.tokens_path = NULL;
@@ -98,7 +98,7 @@ TEST(where_a_daemon_may_listen)
     params = (struct access_params){ .behind_proxy = true };
     assert_false(access_allowed_at(&params, true, &why));
     params.tokens_path = "tokens";
-    assert_false(access_allowed_at(&params, true, &why)); /* by which name? */
+    assert_false(access_allowed_at(&params, true, &why)); /* no host name is allowed yet */
     params.host_count = 1;
     assert_true(access_allowed_at(&params, true, &why));
     /* refused, because credentials from the proxy would cross the network unencrypted */
@@ -135,7 +135,7 @@ TEST(hosts_are_names_without_ports)
 TEST(pages_of_other_hosts_may_not)
 {
     struct access_params params = { .origins = { "https://portal.example" }, .origin_count = 1 };
-    assert_true(access_origin(&params, "", "plant.example", true)); /* no browser */
+    assert_true(access_origin(&params, "", "plant.example", true)); /* a request without an origin does not come from a browser */
     assert_true(access_origin(&params, "http://plant.example:8080", "plant.example:8080", false));
     assert_true(access_origin(&params, "https://plant.example", "plant.example", true));
     assert_true(access_origin(&params, "https://portal.example", "plant.example", true));

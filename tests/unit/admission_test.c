@@ -104,7 +104,7 @@ static void a_second(struct admission *admission, struct address_share *share, i
             encoded.wait_ns = data_wait_ms * NS_PER_MS;
         }
         admission_on_frame(admission, share, &encoded);
-        admission_on_frame(admission, share, &encoded); /* of another who shares it */
+        admission_on_frame(admission, share, &encoded); /* a second session shares this frame, which counts once */
         packet_unref(&encoded.packet);
         frame_unref(&frame);
     }
@@ -186,7 +186,7 @@ TEST_WITH(one_address_keeps_no_other_out, set_up, NULL)
     assert_int_equal(0, admission_refuses(&admission, &shares[1],
                                           1000)); /* the render thread's 31 frames per second are shared by two addresses */
     shares[1].moving = 3;
-    assert_true(admission_refuses(&admission, &shares[1], 1000)); /* but not for four */
+    assert_true(admission_refuses(&admission, &shares[1], 1000)); /* with four moving sessions this address would get too few */
     struct address_share third = { 0 };
     assert_int_equal(0, admission_refuses(&admission, &third, 1000)); /* 31 frames per second shared by three addresses are 10 each */
     quotas_parse(&quotas, "least-fps=11");
@@ -201,7 +201,7 @@ TEST_WITH(many_addresses_of_one_session_each_are_as_many_sessions, set_up, NULL)
         admission_join(&admission, &shares[i]);
     for (int i = 0; i < ADMISSION_WINDOWS; i++)
         a_second_of(&admission, shares, 4, 6, 40);
-    assert_true(admission_refuses(&admission, &shares[4], 1000)); /* a fifth would leave 4.8 */
+    assert_true(admission_refuses(&admission, &shares[4], 1000)); /* a fifth address would leave 4.8 frames per second for each */
     for (int i = 0; i < ADMISSION_WINDOWS; i++)
         a_second_of(&admission, shares, 4, 7, 34);
     assert_int_equal(0, admission_refuses(&admission, &shares[4], 1000));

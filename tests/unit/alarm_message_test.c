@@ -70,7 +70,7 @@ static void give(struct alarm_message_setup *s, int tag, double value, uint32_t 
         sleep_ns(5 * NS_PER_MS);
 }
 
-/* Takes the text. */
+/* Parses the text, and frees it. */
 static json_t *parse(char *text)
 {
     json_t *o = json_loads(text, 0, NULL);

@@ -16,8 +16,8 @@ struct stage { /* fixture. Limits: TT: LL 0, L 10, H 80, HH 90; PT: H 5 with a d
     struct plant *plant;
     struct alarms *alarms;
     struct snapshot *snapshot;
-    char log[4000]; /* what was told */
-    int told[8];    /* the gravest of each tag */
+    char log[4000]; /* lines about all alarm events so far */
+    int told[8];    /* by tag: its gravest alarm, as reported */
 };
 
 static void on_change(void *arg, const struct alarm_change *change)
@@ -156,7 +156,7 @@ TEST(delays_are_monotonic_and_exact)
     s.snapshot->taken_mono_ns = 11 * S;
     alarms_tick(s.alarms, s.snapshot);
     assert_told(&s, "");
-    tick(&s, 30); /* nobody looked for long */
+    tick(&s, 30); /* no tick came for long; the raise is dated when it was due */
     assert_told(&s, "12 PT.H raise: normal > unacknowledged\n");
     end(&s);
 }
@@ -177,7 +177,7 @@ TEST(what_is_bad_is_held_and_says_so)
     assert_false(alarms_at(s.alarms, alarms_find(s.alarms, 0, ALARM_H))->held);
     assert_told(&s, "3 TT.H clear: acknowledged > normal\n3 TT.HH clear: unacknowledged > returned\n"
                     "3 TT.BAD clear: unacknowledged > returned\n");
-    s.snapshot->readings[0].quality = QUALITY_BAD_COMMUNICATION_ERROR; /* stale: nobody told */
+    s.snapshot->readings[0].quality = QUALITY_BAD_COMMUNICATION_ERROR; /* the reading went stale without an event */
     tick(&s, 9);
     assert_told(&s, "9 TT.BAD raise: returned > unacknowledged\n");
     /* A tag that never had a reading has no alarm at first; it gets one once its stale time has passed. */
@@ -201,7 +201,7 @@ TEST(shelves_end_and_come_back)
     const struct alarm *alarm = alarms_at(s.alarms, alarms_find(s.alarms, 0, ALARM_H));
     assert_string_equal(alarm->reason, "transmitter is being changed");
     assert_true(alarm->until.utc_ns == UTC + 62 * S);
-    assert_int_equal(act(&s, 30, 0, ALARM_H, ALARM_SHELVE, 60), REFUSAL_NONE); /* for longer */
+    assert_int_equal(act(&s, 30, 0, ALARM_H, ALARM_SHELVE, 60), REFUSAL_NONE); /* shelves the alarm again, for longer */
     tick(&s, 61);
     s.log[0] = 0;
     tick(&s, 90);
@@ -282,7 +282,7 @@ TEST(what_was_kept_is_taken_up)
     assert_true(alarms_at(next.alarms, alarms_find(next.alarms, 0, ALARM_HH))->held);
     hear(&next, 6, 0, 95, QUALITY_GOOD);
     assert_told(&next, "");                /* the alarm is still active and not raised again */
-    next.snapshot->taken_mono_ns = 27 * S; /* 22 s were left */
+    next.snapshot->taken_mono_ns = 27 * S; /* 22 s of the shelved time were left */
     next.snapshot->taken_utc_ns = UTC + 62 * S;
     alarms_tick(next.alarms, next.snapshot);
     assert_told(&next, "62 TT.H unshelve: shelved > unacknowledged\n");
@@ -571,7 +571,7 @@ TEST(a_device_without_limits_has_an_alarm)
     s.alarms = alarms_create(s.plant, &(struct alarms_listener){ on_change, on_tag, &s });
     s.snapshot = snapshot_create(5);
     hear_all(&s, 1, 50, QUALITY_GOOD);
-    hear_all(&s, 10, 50, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE); /* one missed poll */
+    hear_all(&s, 10, 50, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE); /* the reading after one missed poll */
     tick(&s, 14);
     hear_all(&s, 15, 50, QUALITY_BAD_COMMUNICATION_ERROR);
     tick(&s, 24);

@@ -566,7 +566,7 @@ TEST(distances_lie_in_blocks)
 
 /* --- packed distances --------------------------------------------------------------------------------------------------------- */
 
-enum { MANY = 70, FAR = 600, BLOCKS = 3 }; /* sensors; vertices; blocks of vertices */
+enum { MANY = 70, FAR = 600, BLOCKS = 3 }; /* number of sensors; of vertices; of blocks of vertices */
 
 struct packed_file {
     uint16_t codes[BLOCKS][MANY][ASSET_DISTANCE_BLOCK];

@@ -126,7 +126,7 @@ TEST(test_lines_removed_and_moved)
     mem_free(write_lines(path, 5, 1 << 20));
     char *bytes = text_read_file(path, 1 << 20, &count), *copy = mem_array(count, 1);
     assert_int_equal(starts_of(bytes, count, starts), 5);
-    /* the third */
+    /* removes the third line */
     memcpy(copy, bytes, starts[2]);
     memcpy(copy + starts[2], bytes + starts[3], count - starts[3]);
     put(path, copy, count - (starts[3] - starts[2]));
@@ -139,7 +139,7 @@ TEST(test_lines_removed_and_moved)
     audit_file_verify(path, &none, &report);
     assert_true(report.good);
     assert_int_equal(report.first_seq, 2);
-    /* the last two */
+    /* removes the last two lines */
     put(path, bytes, starts[3]);
     expect_fault(path, NULL, "the last 2 lines were removed");
     /* the head file was removed too: only somebody who kept a line elsewhere can detect that */
@@ -204,7 +204,7 @@ TEST(test_rotation)
     char *dir = folder(), *path = mem_printf("%s/a", dir), *full = mem_printf("%s.000000000004", path), *later;
     struct text lines = { 0 };
     struct audit_file file;
-    assert_null(write_lines(path, 10, 1000)); /* of some 280 bytes each */
+    assert_null(write_lines(path, 10, 1000)); /* each line has some 280 bytes */
     assert_int_equal(access(full, F_OK), 0);
     expect_good(path, 3, 10);
     assert_null(write_lines(path, 1, 1000));

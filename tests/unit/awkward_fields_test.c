@@ -19,7 +19,7 @@
 #define FEW 4             /* number of points that may err by more than one colour step */
 #define FEW_AT_RIMS 1000  /* where reaches end, */
 #define MOST_STEPS 4.0    /* largest allowed error of any point, in colour steps */
-#define ROUNDING 1.1      /* steps: distances are floats */
+#define ROUNDING 1.1      /* allowance in steps, because distances are floats */
 #define NAMED 2.0         /* the report's error was found at samples; between them the error may be this many times as large */
 #define LEAST_M 1e-5      /* metres; a sensor nearer than this has all the weight, see server/field */
 #define RIM_OF_REACH 0.05 /* no comparison within this share of the distance to where the data ends */

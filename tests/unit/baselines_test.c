@@ -53,7 +53,7 @@ TEST(test_a_name_is_found_replaced_and_removed)
     assert_null(now);
     assert_int_equal(baselines_find(baselines, "calm"), 0);
     assert_null(baselines_take(baselines, id));
-    assert_true(set(baselines, "calm", 6) > other); /* numbers are never used again */
+    assert_true(set(baselines, "calm", 6) > other); /* ids are never used again */
     baselines_destroy(&baselines);
 }
 
@@ -72,7 +72,7 @@ TEST(test_names_are_bounded)
     assert_true(baselines_may_set(baselines, "b7"));
     assert_int_equal(baselines_list(baselines, list), BASELINES_NAMED);
     assert_string_equal(list[31].name, "b31");
-    assert_int_not_equal(keep(baselines, 5), 0); /* has its own room */
+    assert_int_not_equal(keep(baselines, 5), 0); /* unnamed baselines have room of their own */
     baselines_destroy(&baselines);
 }
 
@@ -80,7 +80,7 @@ TEST(test_without_a_name_the_oldest_goes)
 {
     struct baselines *baselines = baselines_create();
     uint32_t name = set(baselines, "stays", 1), first = keep(baselines, 100), last = first;
-    assert_int_equal(keep(baselines, 100), first); /* the same instant */
+    assert_int_equal(keep(baselines, 100), first); /* a snapshot of the same instant is stored once */
     for (int i = 1; i < BASELINES_UNNAMED; i++)
         last = keep(baselines, 100 + i);
     const struct snapshot *held = baselines_take(baselines, first);

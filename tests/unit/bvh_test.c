@@ -233,8 +233,8 @@ TEST(test_what_rays_and_boxes_meet)
                 double from[3], way[3], high[3];
                 for (int axis = 0; axis < 3; axis++) {
                     from[axis] = (axis < 2 ? shifts_m[j] : 0) + between(-4, 10);
-                    way[axis] = p % 4 == 3 && axis != p % 3 ? 0 : between(-1, 1); /* some along an axis */
-                    high[axis] = from[axis] + (p % 5 ? between(0, 4) : 0);        /* some a point */
+                    way[axis] = p % 4 == 3 && axis != p % 3 ? 0 : between(-1, 1); /* some rays run along an axis */
+                    high[axis] = from[axis] + (p % 5 ? between(0, 4) : 0);        /* some boxes are points */
                 }
                 check_ray(&mesh, bvh, from, way, met);
                 check_box(&mesh, bvh, from, high, p % 3 ? 0 : between(0, 1));

@@ -11,7 +11,7 @@ TEST(nonsense_is_refused)
 {
     assert_true(camera_valid(&good));
     struct camera c = { .eye_m = { 412345, 5512345, 120 }, .target_m = { 412355, 5512345, 118 }, .up = { 0, 0, 1 }, .fov_deg = 45 };
-    assert_true(camera_valid(&c)); /* a survey's coordinates */
+    assert_true(camera_valid(&c)); /* coordinates of a survey are accepted */
     double *const numbers[] = { &c.eye_m[0], &c.target_m[1], &c.up[2], &c.fov_deg };
     const double wrong[] = { NAN, INFINITY, -INFINITY, 2e7 };
     for (size_t i = 0; i < 4; i++)
@@ -113,7 +113,7 @@ TEST(near_and_far_hold_the_box)
         for (int i = 0; i < 3; i++) {
             min[i] = random_in(-50, 0);
             max[i] = min[i] + random_in(0, 100);
-            c.eye_m[i] = random_in(-100, 100); /* often inside of the box */
+            c.eye_m[i] = random_in(-100, 100); /* the eye is often inside the box */
         }
         camera_matrices(&c, 1.6, min, max, view, projection);
         double far_over_near = (projection[10] - 1) / (projection[10] + 1);

@@ -181,7 +181,7 @@ TEST(test_a_signal_ends_it)
     }
 }
 
-/* linux/landlock.h of Linux 6.12. */
+/* Which accesses each ABI knows is taken from linux/landlock.h of Linux 6.12. */
 TEST(test_each_abi_of_landlock_restricts_what_it_knows)
 {
     static const struct {

@@ -118,7 +118,7 @@ TEST(test_reaches_through_what_is_thin)
         add_plate(&made.cad, 0);
         add_plate(&made.cad, gap_m);
         make(&made, (const double[3]){ 0, 0, 0 });
-        assert_true(fabs((double)made.along_m[3] - sqrt(2)) < 0.03); /* across its own plate */
+        assert_true(fabs((double)made.along_m[3] - sqrt(2)) < 0.03); /* distance across the source's own plate */
         /* the other plate cannot be reached, unless the gap is too thin for the cloud */
         assert_int_equal(isinf((double)made.along_m[7]) != 0, !thin);
         assert_true(surface_distances(made.surface, (const double(*)[3])(double[3]){ 0, 0, 0 }, 1, along_m));

@@ -68,7 +68,7 @@ TEST(only_changes_are_sent)
     assert_true(way.readings.utc_ns == 5000 * S && got[0].value == 0.1 + 0.2 && got[0].received_mono_ns == 99 * S);
     assert_true(got[0].received_utc_ns == 4999 * S && got[1].quality == QUALITY_BAD_SENSOR_FAILURE && got[1].value == -7);
     assert_true(got[0].has_value && got[1].has_value && !got[2].has_value && got[2].quality == QUALITY_BAD_WAITING);
-    way.snapshot->readings[0].received_utc_ns += S; /* read again, the same value */
+    way.snapshot->readings[0].received_utc_ns += S; /* the same value was read again */
     way.snapshot->readings[2].changes++;
     write_message(&way);
     assert_null(read_message(&way, 101 * S));
@@ -86,7 +86,8 @@ TEST(nonsense_is_refused)
     const size_t whole = way.text.length;
     for (way.text.length = 0; way.text.length < whole; way.text.length++)
         assert_non_null(read_message(&way, S));
-    assert_non_null(core_readings_read(&way.readings, TAGS - 1, way.text.at, whole, S)); /* more than there are */
+    /* the message has more readings than the plant has tags */
+    assert_non_null(core_readings_read(&way.readings, TAGS - 1, way.text.at, whole, S));
     const struct {
         size_t at, count;
         uint8_t byte;

@@ -33,7 +33,7 @@ static struct text make_message(void)
     store_write(store, &(struct sample){ .tag = 2, .quality = QUALITY_BAD_SENSOR_FAILURE }, 1, 2 * S, 5001 * S);
     assert_int_equal(core_samples_write(samples, &text), 2);
     core_samples_end(&samples);
-    store_write(store, &(struct sample){ .tag = 0, .value = 1 }, 1, 3 * S, 5002 * S); /* nobody listens any more */
+    store_write(store, &(struct sample){ .tag = 0, .value = 1 }, 1, 3 * S, 5002 * S); /* the store calls no listener any more */
     store_destroy(&store);
     plant_by_hand_destroy(&plant);
     return text;
@@ -67,15 +67,15 @@ TEST(nonsense_is_refused)
         assert_non_null(core_samples_read(&got, &count, TAGS, text.at, length, 77));
         assert_null(got);
     }
-    text.at[8] = TAGS; /* of the first one's tag */
+    text.at[8] = TAGS; /* changes the first sample's tag */
     assert_string_equal(read_text(&text, &got, &count), "an invalid sample");
     text.at[8] = 1;
-    text.at[8 + 4 + 3] = (char)0x80; /* Bad, and with a value */
+    text.at[8 + 4 + 3] = (char)0x80; /* makes the sample Bad although it has a value */
     assert_string_equal(read_text(&text, &got, &count), "an invalid sample");
     text.at[8 + 4 + 3] = 0;
     assert_null(read_text(&text, &got, &count));
     mem_free(got);
-    memset(text.at + 4, 0xff, 4); /* four thousand million */
+    memset(text.at + 4, 0xff, 4); /* states four thousand million samples */
     assert_string_equal(read_text(&text, &got, &count), "its length differs from that of its samples");
     text_finish(&text);
 }

@@ -148,7 +148,7 @@ CASE(mistakes_have_a_place)
     assert_one_error(f, 2, 4, "byte 0xB0 is not UTF-8 text");
     open_bytes(f, "A,B\n1,\0\n", 8);
     assert_one_error(f, 2, 3, "byte 0x00 is not UTF-8 text");
-    open_text(f, "A,B\n1,\xED\xA0\x80\n"); /* a surrogate */
+    open_text(f, "A,B\n1,\xED\xA0\x80\n"); /* a surrogate, which UTF-8 forbids */
     assert_one_error(f, 2, 3, "byte 0xED is not UTF-8 text");
     open_text(f, "A,B\n1,\xC0\xAF\n"); /* "/" in an overlong encoding, which UTF-8 forbids */
     assert_one_error(f, 2, 3, "byte 0xC0 is not UTF-8 text");

@@ -80,7 +80,7 @@ TEST(every_type_in_every_byte_order)
         if (sample.value != vectors[i].value)
             fail_msg("vector %zu: %.17g, not %.17g", i, sample.value, vectors[i].value);
         assert_int_equal(sample.quality, QUALITY_GOOD);
-        assert_int_equal(sample.tag, -1); /* the caller's */
+        assert_int_equal(sample.tag, -1); /* the caller sets the tag */
     }
 }
 
@@ -228,7 +228,7 @@ TEST(a_current_says_that_its_loop_has_failed)
     tag.scale.has_range = true;
     tag.scale.raw_high = 27648;
     tag.scale.scaled_high = 100;
-    assert_int_equal(quality_of_raw(&tag, -691), QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* off by default */
+    assert_int_equal(quality_of_raw(&tag, -691), QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* NE 43 is off by default */
     tag.scale.ne43 = true;
     const struct {
         double ma;

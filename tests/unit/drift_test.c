@@ -98,7 +98,8 @@ TEST(test_fit_is_least_squares)
         assert_int_equal(drift.hours, DRIFT_HOURS - (DRIFT_HOURS + 8 - round % 9) / 9);
         assert_true(fabs(drift.change - slow_change(values, predicted, nearest, DRIFT_HOURS)) < 1e-6);
         assert_true(fabs(drift.change - change) < 10 * drift.error);
-        assert_true(fabs(drift.scatter - hypot(noise / sqrt(3), 0.01)) < 0.2 * drift.scatter); /* of an even distribution */
+        /* noise / sqrt(3): deviation of evenly distributed noise */
+        assert_true(fabs(drift.scatter - hypot(noise / sqrt(3), 0.01)) < 0.2 * drift.scatter);
         if (fabs(change) > 4 * drift.scatter && fabs(change) > 10 * drift.error)
             assert_int_equal(drift.verdict, DRIFT_FOUND);
     }
@@ -195,7 +196,7 @@ TEST(test_what_cannot_be_told_is_unknown)
 
 struct recorded_series {
     const char *file, *columns[SENSORS];
-    int count; /* of columns */
+    int count; /* number of columns */
     double noise, beyond; /* noise of a reading; distance of the alarm limit, a tenth of the range */
     double from, to;      /* part of the file (0 to 1) that is stretched over a week */
     double hours[DRIFT_HOURS][SENSORS];
@@ -422,7 +423,7 @@ TEST_WITH(test_held_out_series, prep_case_set_up, prep_case_tear_down)
 
 struct drift_detection {
     int hours;      /* hour at which the drift was found; 0: not found */
-    double drifted; /* by then */
+    double drifted; /* amount drifted by that hour */
     double limit;   /* smallest distance so far between the reading and its alarm limit */
 };
 
@@ -463,7 +464,7 @@ static bool accuses_another(const struct row_of_sensors *row, const struct recor
 TEST_WITH(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_tear_down)
 {
     enum { SIZES = 3 };
-    static const double sizes[SIZES] = { 3, 4, 8 }; /* sigmas in a week */
+    static const double sizes[SIZES] = { 3, 4, 8 }; /* drifts, in sigmas per week */
     /* minimum detections; some drifts of the rig are hidden by its own changes, and series with a process fault are not counted */
     static const int least[][SIZES] = { { 2, 7, 8 }, { 10, 10, 10 }, { 0 },       { 0 },       { 8, 8, 8 }, { 7, 8, 8 },
                                         { 8, 8, 8 }, { 6, 7, 8 },    { 6, 7, 8 }, { 5, 6, 8 }, { 8, 8, 8 } };
@@ -487,7 +488,7 @@ TEST_WITH(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_te
                     others += accuses_another(&row, s, i, sign * sizes[size] * none[i].scatter);
                     if (at.hours == 0)
                         continue;
-                    assert_true(at.limit > 0); /* no alarm by then */
+                    assert_true(at.limit > 0); /* the alarm limit was not reached by then */
                     most_sigmas = fmax(most_sigmas, fabs(at.drifted) / none[i].scatter);
                     least_limit = fmin(least_limit, at.limit);
                 }

@@ -81,7 +81,7 @@ static struct request_ticket order_of(const struct encode_streams_fixture *f, ui
     return ticket;
 }
 
-/* What the encoder would make. */
+/* Returns the packet that the encoder would make. */
 static struct packet *encode(struct encode_streams_fixture *f, struct encode_stream *stream, const struct frame *frame, bool key)
 {
     struct chain_head *head = stream->work ? stream->work : (stream->work = mem_new(sizeof(*head)));
@@ -190,7 +190,7 @@ CASE(one_client_has_one_key_frame)
     for (int i = 0; i < 100; i++)
         show(f, 1, i, (uint64_t)i + 1, false);
     assert_true(f->encodes == 100 && f->keys == 1 && chain_count(f) == 1);
-    show(f, 1, 99, 100, true); /* its decoder was reset */
+    show(f, 1, 99, 100, true); /* the client's decoder was reset */
     assert_true(f->keys <= 2);
 }
 
@@ -226,7 +226,7 @@ CASE(who_looks_elsewhere_gets_a_stream_of_its_own)
     show(f, 0xffe, 0, 3, false);
     show(f, 1, 2, 4, false);
     assert_true(f->encodes == 4 && f->keys == 2 && chain_count(f) == 2);
-    show(f, 0xfff, 0, 5, false); /* and comes back */
+    show(f, 0xfff, 0, 5, false); /* the client that looked elsewhere is back */
     assert_true(chain_count(f) <= 2);
 }
 

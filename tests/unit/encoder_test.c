@@ -19,7 +19,7 @@ static struct frame *gradient(int w, int h)
             p[0] = (uint8_t)(x * 255 / w);
             p[1] = (uint8_t)(y * 255 / h);
             p[2] = x < w / 2 ? 200 : 40;
-            p[3] = 0x5a; /* not part of the picture */
+            p[3] = 0x5a; /* the fourth byte is not part of the picture */
         }
     frame->marker_count = 1;
     frame->markers = mem_new(sizeof(*frame->markers));
@@ -82,7 +82,7 @@ TEST(jpeg_keeps_the_picture)
 {
     check_jpeg(320, 200, 78, false, 24, 16);
     check_jpeg(320, 200, 95, true, 12, 0);
-    check_jpeg(333, 77, 78, false, 30, 16); /* no multiple of a block */
+    check_jpeg(333, 77, 78, false, 30, 16); /* the size is no multiple of a block */
     check_jpeg(16, 16, 90, true, 40, 8);
 }
 
@@ -94,7 +94,7 @@ static bool is_line(int x)
 
 static struct frame *thin_lines(int w, int h)
 {
-    static const uint8_t colors[3][3] = { { 231, 146, 89 }, { 42, 183, 216 }, { 230, 231, 232 } }; /* b, g, r */
+    static const uint8_t colors[3][3] = { { 231, 146, 89 }, { 42, 183, 216 }, { 230, 231, 232 } }; /* in the order b, g, r */
     struct frame *frame = frame_create(w, h);
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++)
@@ -120,7 +120,7 @@ static double lines_off(const struct frame *frame, const uint8_t *bytes, size_t 
     return sum / lines;
 }
 
-static size_t head_of(const uint8_t *bytes, size_t count) /* up to the picture itself */
+static size_t head_of(const uint8_t *bytes, size_t count) /* returns the length of the header, up to the picture itself */
 {
     size_t at = 0;
     while (at + 1 < count && !(bytes[at] == 0xff && bytes[at + 1] == 0xda))

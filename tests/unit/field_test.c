@@ -331,7 +331,7 @@ TEST(test_exact_at_the_sensor)
             }
             for (size_t i = 0; i < 12; i++)
                 assert_true(show(&rig)->at[i].value == (float)(0.1 + 7.3 * (double)i));
-            set(&rig, 5, 1e5, QUALITY_GOOD); /* one column */
+            set(&rig, 5, 1e5, QUALITY_GOOD); /* changes a single column */
             set(&rig, 5, 33.3, QUALITY_GOOD);
             for (size_t i = 0; i < 12; i++)
                 assert_true(show(&rig)->at[i].value == (float)(i == 5 ? 33.3 : 0.1 + 7.3 * (double)i));
@@ -485,7 +485,7 @@ TEST(test_of_assumed_places_the_nearest_to_trouble_stands_for_all)
     set(&rig, 2, 5, QUALITY_GOOD);
     assert_even(&rig, 5);
     rig.plant->plant.tags[0].alarms.limits[LIMIT_H] = 35;
-    assert_even(&rig, 40); /* beyond its own limit */
+    assert_even(&rig, 40); /* this reading is beyond the tag's own limit */
     assert_as_fresh(&rig);
     set(&rig, 0, 40, QUALITY_BAD_NO_COMMUNICATION);
     assert_even(&rig, 5);
@@ -625,7 +625,7 @@ TEST(test_a_sensor_out_of_reach_does_not_make_its_place_lost)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
     for (size_t j = 0; j < 300; j++)
-        synthetic_set_distance(rig.plant, 0, j, INFINITY); /* Bad, and on another part */
+        synthetic_set_distance(rig.plant, 0, j, INFINITY); /* sensor 0 is Bad and on another part */
     set(&rig, 0, 90, QUALITY_BAD_SENSOR_FAILURE);
     set(&rig, 1, 40, QUALITY_GOOD);
     const struct scalars *scalars = show(&rig);
@@ -877,7 +877,7 @@ TEST(test_version_grows_with_real_changes_only)
     show(&rig);
     assert_true(scalars->version > version);
     assert_int_equal(scalars->flags_version, flags);
-    assert_true(fabs(scalars->travel - travel - 2.5) < 1e-3); /* most where the sensor is */
+    assert_true(fabs(scalars->travel - travel - 2.5) < 1e-3); /* the change is largest where the sensor is */
     version = scalars->version;
     set(&rig, 1, (double)before + 2.5, QUALITY_UNCERTAIN_UNITS_EXCEEDED);
     show(&rig);
@@ -1151,7 +1151,7 @@ static void check_far_assets(size_t sensors)
         assert_true(round < 2 || field_bytes(rig.field) == last);
         last = field_bytes(rig.field);
     }
-    size_t each = sizeof(struct scalar) + (sensors > 8 ? sizeof(double) : 0); /* of a vertex */
+    size_t each = sizeof(struct scalar) + (sensors > 8 ? sizeof(double) : 0); /* bytes of a vertex */
     for (size_t count = DRAWN, had = 512; count < VERTICES; count *= 4) {
         size_t room = (count + 255) / 256 * 256;
         field_scalars_of(rig.field, 0, &rig.params, rig.plant->snapshot, count);
@@ -1197,7 +1197,7 @@ TEST(test_a_prefix_costs_less)
     uint64_t version = scalars->version, grown = scalars->grown;
     field_scalars_of(rig.field, 0, &rig.params, rig.plant->snapshot, 512);
     assert_int_equal(scalars->version, version);
-    show(&rig); /* somebody looks from near */
+    show(&rig); /* the asset is seen from near, with all its vertices */
     assert_true(scalars->ready == 20000 && scalars->version > version && scalars->grown > grown && scalars->flags_version > version);
     for (int tick = 0; tick < 3; tick++) { /* unused vertices expire: after a while only the prefix is kept up to date */
         set(&rig, 2, 10 + tick, QUALITY_GOOD);
@@ -1266,7 +1266,7 @@ TEST(test_what_is_under_way_may_be_dropped)
         field_advance(rig.field, 0, &other, rig.plant->snapshot, 5000, 10000);
     }
     assert_as_fresh(&rig);
-    field_advance(rig.field, 0, &other, rig.plant->snapshot, 5000, 10000); /* left under way */
+    field_advance(rig.field, 0, &other, rig.plant->snapshot, 5000, 10000); /* this computation is not finished before the end */
     rig_finish(&rig);
 }
 
@@ -1321,7 +1321,7 @@ TEST(test_distance_from_one_sensor)
     rig.params.show = straight.show = SHOW_DISTANCE;
     rig.params.sensor = straight.sensor = 4;
     straight.distance = DISTANCE_EUCLIDEAN;
-    assert_null(field_scalars(rig.field, 0, &rig.params, rig.plant->snapshot)); /* it stands on the other */
+    assert_null(field_scalars(rig.field, 0, &rig.params, rig.plant->snapshot)); /* sensor 4 is on the other asset */
     const struct scalars *way = field_scalars(rig.field, 1, &rig.params, rig.plant->snapshot);
     const struct scalars *line = field_scalars(rig.field, 1, &straight, rig.plant->snapshot);
     float most = 0;
@@ -1383,7 +1383,7 @@ TEST(test_difference_is_that_of_two_fields)
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         for (size_t i = 0; i < 12; i++)
-            set(&rig, i, between(&random, -30, 130), QUALITY_GOOD); /* paper clamps */
+            set(&rig, i, between(&random, -30, 130), QUALITY_GOOD); /* values beyond the range, which paper clamps */
         rig.params.baseline = baselines_set(baselines, "then", rig.plant->snapshot);
         assert_int_equal(show(&rig)->at[500].value, 0);
         const struct snapshot *then = baselines_take(baselines, rig.params.baseline);
@@ -1413,8 +1413,8 @@ TEST(test_difference_needs_both)
     set(&rig, 2, 60, QUALITY_GOOD);
     set(&rig, 3, 60, QUALITY_BAD_SENSOR_FAILURE);
     const struct scalars *scalars = show(&rig);
-    assert_true(scalars->at[1].no_data && scalars->at[3].no_data);          /* Bad then; Bad now */
-    assert_true(!scalars->at[2].no_data && scalars->at[2].uncertain > 127); /* Uncertain then */
+    assert_true(scalars->at[1].no_data && scalars->at[3].no_data);          /* sensor 1 was Bad then; sensor 3 is Bad now */
+    assert_true(!scalars->at[2].no_data && scalars->at[2].uncertain > 127); /* sensor 2 was Uncertain then */
     assert_true(!scalars->at[0].no_data && scalars->at[0].value == 0);      /* the sensor that came back does not count as a change */
     baselines_set(baselines, "then", rig.plant->snapshot);                  /* the baseline is replaced for all sessions that show it */
     scalars = show(&rig);

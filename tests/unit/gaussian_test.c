@@ -244,7 +244,8 @@ static const double few_places[FEW][3] = { { 0.2, 0.3, 0 }, { 1.7, 0.2, 0 }, { 1
 
 TEST(test_agrees_with_a_dense_one)
 {
-    static const struct gaussian_params cases[3] = { { 0.8, 0.5, 10 }, { 3, 0.1, 4 }, { 40, 0.2, 20 } }; /* the last: far longer */
+    /* the last range is far longer than the body */
+    static const struct gaussian_params cases[3] = { { 0.8, 0.5, 10 }, { 3, 0.1, 4 }, { 40, 0.2, 20 } };
     for (int c = 0; c < 3; c++) {
         struct gaussian_case s = { 0 };
         struct dense d = { 0 };
@@ -356,7 +357,7 @@ TEST(test_two_sensors_at_one_place_that_disagree)
     const double places[3][3] = { { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, -1 } }, readings[3] = { 20, 40, 60 };
     for (int i = 0; i < 2; i++) {
         struct gaussian_case s = { 0 };
-        sphere_of(&s, places, 3, (struct gaussian_params){ 2, i ? 0.5 : 0, 10 }); /* noise 0 too */
+        sphere_of(&s, places, 3, (struct gaussian_params){ 2, i ? 0.5 : 0, 10 }); /* also without noise */
         const double met = value_at(&s, readings, nearest_vertex(&s, places[0]));
         assert_true(fabs(met - 30) < 0.2);
         assert_true(fabs(value_at(&s, readings, nearest_vertex(&s, places[2])) - 60) < 0.2);
@@ -388,7 +389,7 @@ TEST(test_one_sensor_and_bodies_apart)
     const double near = (double)s.influence.deviations[nearest_vertex(&s, places[0])];
     const double far = (double)s.influence.deviations[nearest_vertex(&s, (const double[3]){ 0, 0, -1 })];
     print_message("one sensor: deviation %.2f at it, %.2f at the other pole\n", near, far);
-    assert_true(near < 2 && far > 12 && far < 17); /* sqrt(2) of the prior's */
+    assert_true(near < 2 && far > 12 && far < 17); /* far away it is sqrt(2) times the prior's */
     assert_true(s.influence.precision[0] < 1e-9);
     finish(&s);
 }

@@ -90,7 +90,7 @@ static void in_folder(const struct prep_case *c, const char *command)
     mem_free(whole);
 }
 
-/* Nothing is prepared. */
+/* Makes the plant of a test; nothing is prepared yet. */
 static int set_up(void **state)
 {
     *state = made.c;
@@ -442,7 +442,7 @@ static char *many_tags(int first)
 
 struct prepared {
     struct folder_file file;
-    struct trimesh mesh; /* of the finest level */
+    struct trimesh mesh; /* mesh of the finest level */
     struct bvh *bvh;
     float *values; /* field values at the asset's vertices, for some readings */
 };
@@ -559,7 +559,7 @@ CASE(one_of_many_sensors_is_split_for_alone)
     int first_found = 0;
     for (int move = 0; move < moves; move++) {
         char *tags = many_tags(move);
-        if (move == 1) { /* as if nothing had been */
+        if (move == 1) { /* a killed run in between must make no difference */
             char *findings = kept_file(c, ".splitting");
             prepare_killed_at(c, tags, bytes_of(findings) / 2);
             mem_free(findings);

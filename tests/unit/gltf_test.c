@@ -342,10 +342,10 @@ CASE(units_and_axes_are_turned_to_metres_and_z_up)
          "}");
     struct geometry g = cut(l, &(struct geometry_params){ .unit_m = 0.001, .up = AXIS_Y });
     assert_float_equal(g.origin_m[1], -7, 1e-9);     /* z of the model is -y of the asset */
-    assert_float_equal(g.origin_m[2], 0.0005, 1e-9); /* y is z */
+    assert_float_equal(g.origin_m[2], 0.0005, 1e-9); /* y of the model is z of the asset */
     float n[3];
     face_normal(&g, 0, n);
-    assert_true(n[1] < 0 && fabsf(g.normals[0][1] + 1) < 1e-5f); /* faced +z, faces -y */
+    assert_true(n[1] < 0 && fabsf(g.normals[0][1] + 1) < 1e-5f); /* the face pointed to +z in the model, and to -y here */
     geometry_finish(&g);
 }
 
@@ -384,7 +384,7 @@ CASE(a_nodes_place_is_the_middle_of_its_meshes)
     assert_float_equal(place[0], 10.5, 1e-9);
     assert_float_equal(place[2], 1, 1e-9);
     assert_true(geometry_node_place(&l->model, &params, "P-101B", place, why));
-    assert_float_equal(place[2], 0.5, 1e-9); /* with its seal */
+    assert_float_equal(place[2], 0.5, 1e-9); /* the pump's box includes its seal */
     assert_true(geometry_node_place(&l->model, &params, "P-101A", place, why));
     assert_false(geometry_node_place(&l->model, &params, "TT-1", place, why));
 }
@@ -413,7 +413,7 @@ CASE(a_name_that_is_there_several_times_is_refused)
     params.nodes = "south"; /* only one of the three pumps is in the asset */
     assert_true(geometry_node_place(&l->model, &params, "pump", place, why));
     assert_float_equal(place[0], 20.5, 1e-9);
-    assert_true(geometry_node_place(&l->model, &params, "south/", place, why)); /* without a name */
+    assert_true(geometry_node_place(&l->model, &params, "south/", place, why)); /* the pattern names a node without a name */
     assert_float_equal(place[0], 30.5, 1e-9);
     struct geometry g = cut(l, &(struct geometry_params){ .nodes = "north\n#5\n!#1", .unit_m = 1, .up = AXIS_Z });
     assert_int_equal(g.primitive_count, 2);

@@ -14,12 +14,12 @@
 
 struct h264_fixture {
     struct log *log;
-    struct workers *workers; /* helper threads; NULL: none */
+    struct workers *workers; /* threads that help to convert colours; NULL: none */
     struct encoder *encoder;
     AVCodecContext *decoder;
     AVFrame *picture;
-    uint8_t *bgrx; /* as decoded */
-    size_t bytes;  /* of the last packet */
+    uint8_t *bgrx; /* the decoded picture */
+    size_t bytes;  /* size of the last packet */
     bool key;
 };
 

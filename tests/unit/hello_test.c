@@ -161,7 +161,7 @@ CASE(a_token_stands_for_its_role)
     expect_error(f, bob, "not_allowed", 0);
     leave(f, &bob);
     struct session *local = open_session(f, ROLE_ENGINEER, "{\"type\":\"hello\",\"token\":\"pc_bob\"," SIZE "}");
-    expect_welcome(f, local, "viewer", false); /* also where none is needed */
+    expect_welcome(f, local, "viewer", false); /* a token counts also where none is needed */
     leave(f, &local);
     struct session *open = open_session(f, ROLE_OPEN, HELLO);
     expect_welcome(f, open, "open", false);

@@ -113,7 +113,7 @@ static double bent(int i)
     return i * i * 7919 % 1009;
 }
 
-/* When they came. */
+/* Writes a sample of each tag. Returns the wall clock time of the samples. */
 static int64_t write_all(struct historian_setup *s, double value)
 {
     int64_t utc_ns = clock_utc_ns();
@@ -233,7 +233,7 @@ static void read_series(struct historian_setup *s, const char *name, int tag, st
     int64_t now_us = clock_utc_ns() / 1000;
     char *folder = temp_path(s->folder, name);
     struct history_reader *reader = history_reader_create(s->log, folder);
-    history_series_finish(series); /* of the last call */
+    history_series_finish(series); /* frees the series of the last call */
     int error = history_series(reader, s->tags[tag].name, now_us - 7200 * US_PER_S, now_us + 7200 * US_PER_S, 10000, series);
     assert_int_equal(error, 0);
     history_reader_destroy(&reader);
@@ -582,7 +582,7 @@ CASE(a_full_disk_has_room_for_a_spool)
     assert_int_not_equal(access(reserve, F_OK), 0);
     assert_int_equal(unlink(filler), 0);
     start(s);
-    for (int i = 0; i < 500 && access(reserve, F_OK) != 0; i++) /* for the next time */
+    for (int i = 0; i < 500 && access(reserve, F_OK) != 0; i++) /* waits until the reserve for the next time exists */
         sleep_ns(10 * NS_PER_MS);
     historian_stop(&s->historian);
     assert_int_not_equal(access(spool, R_OK), 0);

@@ -229,7 +229,7 @@ CASE(time_zones_do_not_touch_what_is_recorded)
     const int64_t begins[] = { autumn - 1800 * S, NOVEMBER - 1800 * S };
     size_t count;
     for (size_t b = 0; b < 2; b++)
-        for (int quarter = 0; quarter < 4; quarter++) { /* each in another zone */
+        for (int quarter = 0; quarter < 4; quarter++) { /* records each quarter of an hour in another time zone */
             set_zone(zones[quarter]);
             int64_t from_us = begins[b] + quarter * 900 * S;
             int error;
@@ -428,7 +428,7 @@ CASE(gaps_are_told_in_order_and_joined)
     assert_true(gaps.at[0].from_us == october && gaps.at[0].to_us == october + 10 * S);
     assert_true(gaps.at[1].from_us == october + 200 * S && gaps.at[1].to_us == NOVEMBER + 86600 * S);
     mem_free(gaps.at);
-    assert_int_equal(history_gaps(s->reader, NOVEMBER + 3600 * S, NOVEMBER + 7200 * S, &gaps), 0); /* began in the month before */
+    assert_int_equal(history_gaps(s->reader, NOVEMBER + 3600 * S, NOVEMBER + 7200 * S, &gaps), 0); /* this gap began in the month before */
     assert_int_equal(gaps.count, 1);
     mem_free(gaps.at);
     assert_int_equal(history_gaps(s->reader, october + 20 * S, october + 30 * S, &gaps), 0);

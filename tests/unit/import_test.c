@@ -80,7 +80,7 @@ static struct history_series read_series(struct import_setup *s, const char *fol
 }
 
 struct wanted_point {
-    int64_t t_us; /* after OCTOBER_25 */
+    int64_t t_us; /* time since OCTOBER_25 */
     double value; /* NaN: none */
 };
 
@@ -124,7 +124,7 @@ CASE(long_rows_are_taken)
     assert_int_equal(s->counts.tags, 2);
     struct history_series series = read_series(s, "h", "FT-1");
     assert_int_equal(series.points.count, 5); /* five points, including the one that ends the line */
-    assert_true(series.points.at[1].t_us - series.points.at[0].t_us == 3600 * US_PER_S); /* both hours of that night */
+    assert_true(series.points.at[1].t_us - series.points.at[0].t_us == 3600 * US_PER_S); /* the hour that occurs twice in that night */
     assert_true(series.points.at[1].value == 2.5);
     assert_true(isnan(series.points.at[2].value) && series.points.at[2].quality == QUALITY_BAD_COMMUNICATION_ERROR);
     history_series_finish(&series);

@@ -47,7 +47,7 @@ static void draw(struct bend_case *drawn)
     }
 }
 
-/* One part more, moved. */
+/* Adds a moved copy of another shape. */
 static void join(struct cad *shape, const struct cad *other, const double move_m[3])
 {
     const size_t vertices = shape->vertex_count + other->vertex_count, indices = 3 * (shape->triangle_count + other->triangle_count);

@@ -132,7 +132,7 @@ CASE(test_harmonic_is_straight_and_follows_readings)
     for (size_t i = 0; i < SENSORS; i++)
         assert_true(fabs((double)look(&u, place_of(i))->value - 10.0 * (double)i) < 0.05);
     assert_true(fabs((double)look(&u, place_of(3) + 0.4)->value - 35) < 0.5);
-    u.snapshot->readings[4].value = 90; /* one reading: its column alone */
+    u.snapshot->readings[4].value = 90; /* one changed reading updates only its column */
     assert_true(fabs((double)look(&u, place_of(3) + 0.4)->value - 60) < 0.5);
     assert_true(fabs((double)look(&u, place_of(4))->value - 90) < 0.1);
     finish(&u);
@@ -242,7 +242,7 @@ CASE(test_picks_of_fin_tell_their_error)
         }
     print_message("%zu places, %zu off by more than a step of colour, %zu marked\n", compared, off, marked);
     assert_true(off > 0 && marked < compared);
-    u.snapshot->readings[0].value = u.snapshot->readings[1].value = 20; /* as all around */
+    u.snapshot->readings[0].value = u.snapshot->readings[1].value = 20; /* these readings equal those around */
     assert_true(look(&u, place_of(1) + 0.3)->uncertain == 0);
     assert_true(u.scalars->drawn_error == 0);
     finish(&u);
@@ -349,7 +349,7 @@ CASE(test_directions)
     write_model(c);
     write_plant(c, "", "", 1);
     write_directions(c, false);
-    assert_false(use(&u, c)); /* nobody prepared them */
+    assert_false(use(&u, c)); /* directions are not prepared yet */
     prep_case_expect(c, "$PLANT", 0);
     assert_true(use(&u, c));
     for (size_t i = 0; i < 4; i++) {
@@ -375,7 +375,7 @@ CASE(test_directions)
     assert_false(points_at(&u, 4.5).known);
     assert_true(points_at(&u, 5.5).known);
     lost->quality = QUALITY_GOOD;
-    say(&u, "V", 1, 0.1), say(&u, "W", 1, 5); /* upright on the strip */
+    say(&u, "V", 1, 0.1), say(&u, "W", 1, 5); /* a vector that stands upright on the strip */
     assert_false(points_at(&u, 4.5).known);
     finish(&u);
     write_directions(c, true);
@@ -537,7 +537,7 @@ CASE(test_blind_places)
     const struct scalar *lost = look(&u, place_of(4));
     assert_true(fabs(log((double)lost->value / 5) - 8) < 1.2); /* four sizes from both neighbours */
     assert_int_equal(lost->no_data, 0);
-    u.params.reach_m = 0.1; /* whatever the group's reach */
+    u.params.reach_m = 0.1; /* the group's reach has no effect */
     assert_int_equal(look(&u, place_of(4))->no_data, 0);
     finish(&u);
 }
@@ -586,7 +586,7 @@ CASE(test_suggestions_gain_less_and_less)
         before = list[i].after;
     }
     assert_true(list[0].at_m[0] > place_of(1) + seen_m && list[0].at_m[0] < STRIP_M - seen_m / 2);
-    for (double x = 0; x < STRIP_M; x += 0.05) { /* by hand, along a line */
+    for (double x = 0; x < STRIP_M; x += 0.05) { /* compares with positions tried one by one along a line */
         double gain = 0;
         for (double at = 0.005; at < STRIP_M; at += 0.01) {
             double near = fmin(fabs(at - place_of(0)), fabs(at - place_of(1))), now = fmin(near, fabs(at - x));

@@ -15,7 +15,7 @@ enum what { LOOK, BID, RENEW, GIVE, ROW, DONE, ASK, PROMISE };
 struct flight { /* a message on its way */
     int64_t at_ns; /* time of arrival on the world's clock; 0: this slot is free */
     enum what what;
-    int from, to;  /* nodes; NODES: the database */
+    int from, to;  /* index of the sending and of the receiving node; NODES: the database */
     uint64_t life; /* incarnation of the node that sends or receives the message */
     struct lease_row row; /* row that the message states or expects */
     char standby[LEASE_NODE_BYTES];
@@ -25,12 +25,12 @@ struct flight { /* a message on its way */
 
 struct lease_node {
     struct lease lease;
-    uint64_t life;       /* a process; 0: none runs */
+    uint64_t life;       /* incarnation of the running process; 0: none runs */
     int64_t starts_ns, wakes_ns, next_ns, asked_ns; /* of the world */
     int64_t ahead_ns, sent_ns; /* sent: on its own clock */
     double rate;
     bool waits;
-    bool alone; /* its standby is in maintenance */
+    bool alone; /* the standby of this node is in maintenance */
     int64_t waits_since_ns;
     int64_t ends_ns; /* of the world: the node gives its lease until this time, and ends then; 0: it does not end */
     int times_led;
@@ -85,7 +85,7 @@ static void start(struct lease_world *world, int i)
     node->life = ++world->lives;
     node->waits = false;
     node->ends_ns = 0;
-    node->rate = 1 + (chance(world, 400) - 200) / 10000.0; /* two in a hundred */
+    node->rate = 1 + (chance(world, 400) - 200) / 10000.0; /* clocks drift by up to two percent */
     node->ahead_ns = chance(world, 1000000) * MS;
     lease_init(&node->lease, name, (int64_t)node->life);
 }
@@ -147,7 +147,7 @@ static void on_database(struct lease_world *world, struct flight *flight)
     answer->good = asked.good;
     answer->sent_ns = asked.sent_ns;
     memcpy(answer->standby, asked.standby, sizeof(answer->standby));
-    answer->from = asked.what; /* what was asked */
+    answer->from = asked.what; /* kind of the question that this answers */
 }
 
 /* --- a node --------------------------------------------------------------------------------------------------------------------- */
@@ -183,7 +183,7 @@ static void on_node(struct lease_world *world, struct lease_node *node, int i, c
         struct flight *promise = send(world, PROMISE, i, flight->from);
         if (promise) {
             promise->sent_ns = flight->sent_ns;
-            promise->life = flight->life; /* of who asked */
+            promise->life = flight->life; /* incarnation of the node that asked */
         }
         break;
     case PROMISE: {
@@ -424,7 +424,7 @@ TEST(a_follower_waits_for_what_binds_it)
     struct lease c = follower("c", &led, 10 * S);
     assert_false(lease_may_bid(&c, 1000 * S)); /* b may have promised */
     struct lease a = follower("a", &led, 10 * S);
-    assert_true(lease_may_bid(&a, 13 * S)); /* started again */
+    assert_true(lease_may_bid(&a, 13 * S)); /* node a started again may bid for its own lease */
 }
 
 TEST(a_leader_counts_the_standby_that_the_row_names)
@@ -518,7 +518,7 @@ TEST(in_maintenance_a_leader_promises_itself_and_no_other_may_bid)
     assert_false(lease_acts(&a, 3 * S)); /* the row in the database does not name this follower yet */
     lease_renew(&a, "a");
     lease_renewed(&a, "a", 2 * S);
-    lease_promised(&a, "a", 100 * S); /* without the database */
+    lease_promised(&a, "a", 100 * S); /* the promise comes without the database */
     assert_true(lease_acts(&a, 102 * S - 1));
     assert_false(lease_acts(&a, 102 * S)); /* a process that hangs makes no promise */
     struct lease b = follower("b", &a.row, 10 * S), restarted = follower("a", &a.row, 10 * S);

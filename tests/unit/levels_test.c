@@ -228,7 +228,7 @@ TEST_WITH(error_is_a_bound, set_up, tear_down)
         double there_m = stray(s, &s->levels.at[0], &s->levels.at[l], &seed), back_m = stray(s, &s->levels.at[l], &s->levels.at[0], &seed);
         print_message("# level %zu: error %.4f m, found %.4f m and %.4f m (seed 7)\n", l, error_m, there_m, back_m);
         assert_true(fmax(there_m, back_m) <= 1.05 * error_m);
-        assert_true(fmax(there_m, back_m) >= 0.3 * error_m); /* and no wild guess */
+        assert_true(fmax(there_m, back_m) >= 0.3 * error_m); /* the stated error is no wild guess */
     }
 }
 
@@ -400,7 +400,7 @@ TEST(what_is_alone_and_small_goes_but_no_crowd)
     for (int i = 0; i < 400; i++)
         add_box(&g, 40 + 0.1 * (i % 20), 0.1 * (i / 20), 1, 0.05, 0.05, 0.05);
     assert_true(levels_make(&levels, &g, NULL));
-    assert_true(error_without(&g, &levels, 39.9) >= 2.75); /* the size of the whole */
+    assert_true(error_without(&g, &levels, 39.9) >= 2.75); /* the error is at least the grating's size */
     alone_m = INFINITY;
     for (size_t l = 0; l < levels.count; l++) {
         bool any = false;

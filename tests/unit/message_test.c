@@ -210,7 +210,7 @@ TEST(a_view_splits)
     view_default(small_scene(), 641, 360, &view);
     view = both_changed(view, "{\"type\":\"params\",\"seq\":1,\"colormap\":\"viridis\",\"split\":{\"distance\":\"euclidean\"}}");
     assert_true(view.split && view.field.distance == DISTANCE_GEODESIC && view.right.field.distance == DISTANCE_EUCLIDEAN);
-    assert_int_equal(view.right.colormap, colormap_find("viridis")); /* as the left half was */
+    assert_int_equal(view.right.colormap, colormap_find("viridis")); /* the right half takes what the left half had */
     view = both_changed(view, "{\"type\":\"params\",\"seq\":2,\"colormap\":\"cividis\",\"split\":{\"group\":\"pressure\"}}");
     assert_true(view.field.group == 0 && view.right.field.group == 1 && view.right.range_max == 16);
     assert_int_equal(view.right.colormap, colormap_find("viridis"));
@@ -337,7 +337,8 @@ TEST(queries_make_views)
     static const char *const seen[] = { "fit=E-101",     "side=top",           "projection=orthographic",
                                         "hidden=P-101A", "ghost=E-101,P-101A", "clip=1,0,0,2;0,3,0,1.5" };
     assert_true(query(seen, sizeof(seen) / sizeof(seen[0]), &view, &error));
-    assert_true(view.camera.height_m > 2 && view.camera.target_m[0] > 0.2 && view.camera.eye_m[2] > 2.5); /* next to the legend */
+    /* the plant is fitted into the area next to the legend */
+    assert_true(view.camera.height_m > 2 && view.camera.target_m[0] > 0.2 && view.camera.eye_m[2] > 2.5);
     assert_int_equal(visibility_of(&view.visibility, 0), ASSET_GHOST);
     assert_int_equal(visibility_of(&view.visibility, 1), ASSET_HIDDEN);
     assert_true(view.visibility.clip.plane_count == 2 && view.visibility.clip.planes[1][3] == 0.5 && !view.visibility.clip.is_box);
@@ -413,8 +414,8 @@ TEST(halves_show_what_the_plants_own_view_does)
         nearer += before[i] * before[i];
         farther += after[i] * after[i];
     }
-    assert_true(farther > 1.5 * nearer); /* it steps back */
-    for (int i = 0; i < 3; i++)          /* and looks the same way */
+    assert_true(farther > 1.5 * nearer); /* the camera steps back */
+    for (int i = 0; i < 3; i++)          /* the camera looks the same way as before */
         assert_float_equal(after[i] / sqrt(farther), before[i] / sqrt(nearer), 1e-6);
     assert_true(query(args, 2, &given, &error) && given.camera.eye_m[1] == -9); /* a camera stated by the client is not moved */
     plant->display.view = (struct plant_view){ 0 };

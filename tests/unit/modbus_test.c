@@ -255,7 +255,7 @@ CASE(what_was_refused_is_asked_anew_when_the_link_is_back)
     modbus_case_expect(s, 8, QUALITY_GOOD, 3);
     device_stop(&s->device);
     modbus_case_expect(s, 7, QUALITY_BAD_NO_COMMUNICATION, 3);
-    s->device.bad_code = 0; /* repaired meanwhile */
+    s->device.bad_code = 0; /* the device was repaired meanwhile */
     device_start(&s->device);
     modbus_case_expect(s, 7, QUALITY_GOOD, 8);
 }
@@ -299,7 +299,7 @@ CASE(one_refusal_loses_nothing)
         }
     }
     assert_int_equal(s->device.refused, 4);
-    assert_int_equal(s->device.most, 10); /* and nothing was cut */
+    assert_int_equal(s->device.most, 10); /* the block of 10 registers was not split */
 }
 
 CASE(what_was_refused_is_asked_again_after_seconds)

@@ -165,12 +165,12 @@ static void equipment(void **state)
         const json_t *asset = json_array_get(json_object_get(report, "assets"), i);
         triangles += of(asset, "model_triangles") + of(asset, "zero_area_triangles");
     }
-    assert_true(triangles == 79103); /* of the whole model */
+    assert_true(triangles == 79103); /* the assets together have all triangles of the model */
     assert_true(prep_case_number(report, "assets.4.repeated_triangles") == 192);
     json_decref(report);
 }
 
-/* Six mixers are one file. */
+/* The six mixers share one asset file. */
 static void mixers_and_water_tank(void **state)
 {
     json_t *report = prepare(*state, "../cookie_line");

@@ -103,7 +103,7 @@ CASE(what_they_were_is_kept)
     char title[12];
     assert_int_equal(save(f, "a", "0", -1), REFUSAL_NONE);
     assert_int_equal(versions_of(f, "a", 1), 0);
-    assert_int_equal(save(f, "a", "0", 0), REFUSAL_NONE); /* nothing but its place */
+    assert_int_equal(save(f, "a", "0", 0), REFUSAL_NONE); /* only the view's place in the order changes */
     assert_int_equal(versions_of(f, "a", 1), 0);
     for (int i = 1; i < 2 * NAMED_VIEW_VERSIONS; i++) {
         snprintf(title, sizeof(title), "%d", i);
@@ -220,7 +220,8 @@ CASE(a_further_short_link_replaces_the_one_unused_for_longest)
     assert_int_equal(short_links_share(links, "asset=first", NOON_US, first, NULL), REFUSAL_NONE);
     assert_int_equal(short_links_share(links, "asset=second", NOON_US, second, NULL), REFUSAL_NONE);
     share_many(links, 2, SHORT_LINKS - 2);
-    assert_int_equal(short_links_share(links, "asset=first", NOON_US + DAY_US, id, NULL), REFUSAL_NONE); /* used a day later */
+    /* the first link is used a day later */
+    assert_int_equal(short_links_share(links, "asset=first", NOON_US + DAY_US, id, NULL), REFUSAL_NONE);
     assert_int_equal(short_links_share(links, "asset=another", NOON_US + DAY_US, id, NULL), REFUSAL_NONE);
     assert_int_equal(json_array_size(short_links_list(links)), SHORT_LINKS);
     assert_string_equal(short_links_find(links, first), "asset=first");
@@ -243,7 +244,7 @@ CASE(links_that_nobody_opens_do_not_replace_one_that_was_used)
     assert_int_equal(json_array_size(short_links_list(links)), SHORT_LINKS);
     assert_string_equal(short_links_find(links, used), "asset=used");
     short_links_share(links, "asset=1", NOON_US + DAY_US, id, &added);
-    assert_true(added); /* it was replaced */
+    assert_true(added); /* this link had been replaced */
     short_links_close(&links);
 }
 

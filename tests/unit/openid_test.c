@@ -129,7 +129,7 @@ CASE(test_signatures)
     expect(f, sign(f->key, "RS256", "k1", CLAIMS), "n1", NULL, NULL);
     json_array_remove(json_object_get(f->jwks, "keys"), 0);
     expect(f, sign(f->key, "RS256", "k1", CLAIMS), "n1", NULL, "does not publish");
-    /* a changed character */
+    /* changes one character of the token */
     char *token = sign(f->other, "RS256", "k2", CLAIMS), *middle = strchr(token, '.') + 10;
     *middle = *middle == 'A' ? 'B' : 'A';
     expect(f, token, "n1", NULL, "");
@@ -254,7 +254,7 @@ TEST(test_log_ins)
     assert_string_equal(challenge, "E9Melhoa2OwvFrEMTJguCHaoeK1t8URWbuGJSstw-cM");
     first = *sign_ins_begin(table, here, "/?lang=de#tag=TE-101", NS_PER_S);
     assert_string_not_equal(first.state, first.binding);
-    assert_false(sign_ins_take(table, first.state, first.nonce, NS_PER_S, &taken)); /* another browser */
+    assert_false(sign_ins_take(table, first.state, first.nonce, NS_PER_S, &taken)); /* another browser lacks the binding */
     assert_false(sign_ins_take(table, "", "", NS_PER_S, &taken));
     assert_true(sign_ins_take(table, first.state, first.binding, NS_PER_S, &taken));
     assert_string_equal(taken.path, "/?lang=de#tag=TE-101");

@@ -41,13 +41,13 @@ TEST(test_limits_that_are_missing)
     expect(&high, 40, 0.5);
     expect(&high, 80, 1);
     expect(&high, 90, 2);
-    expect(&high, -50, 0); /* there is no low side */
+    expect(&high, -50, 0); /* without a low limit, nothing is too low */
     expect(&alone, 80, 1);
     expect(&alone, 120, 1.5);
     expect(&alone, 500, 2); /* a value just below HH has not passed HH */
     assert_true(limit_place(&range_0_100, &alone, 500) < 2);
     expect(&last, 40, 0.5);
-    assert_true(limit_place(&range_0_100, &last, 79.999) < 1); /* beyond no limit */
+    assert_true(limit_place(&range_0_100, &last, 79.999) < 1); /* no limit is passed yet */
     expect(&last, 80, 2);
     expect(&last, 160, 2.5);
     struct plant_tag low = with_limits(10, 20, NAN, NAN), both = with_limits(NAN, 20, 60, NAN), beyond = with_limits(NAN, NAN, -10, NAN);
@@ -81,7 +81,7 @@ TEST(test_places_rise_with_readings)
             double place = limit_place(&range_0_100, &tag, value);
             assert_true(place >= before - 1e-12 && fabs(place) <= 3);
             struct reading reading = { .value = value };
-            enum alarm_kind alarm = alarm_beyond(&tag, &reading); /* the colours say the same */
+            enum alarm_kind alarm = alarm_beyond(&tag, &reading); /* the alarm agrees with the colours */
             assert_int_equal(alarm == ALARM_HH, place >= 2 - 1e-9 && isfinite(limits[LIMIT_HH]));
             assert_int_equal(alarm == ALARM_LL, place <= -2 + 1e-9 && isfinite(limits[LIMIT_LL]));
             assert_int_equal(alarm == ALARM_NONE, fabs(place) < 1 - 1e-9);
@@ -166,7 +166,7 @@ TEST(test_tags_without_limits_have_no_place)
     for (int i = 0; i < LIMIT_COUNT; i++)
         plant->plant.tags[1].alarms.limits[i] = NAN;
     plant->snapshot->readings[0].value = 60;
-    plant->snapshot->readings[1].value = 1e6; /* takes no part */
+    plant->snapshot->readings[1].value = 1e6; /* a tag without limits takes no part */
     plant->snapshot->readings[2].value = 60;
     struct field_params params;
     field_params_default(&plant->plant, 0, &params);

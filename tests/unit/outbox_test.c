@@ -142,7 +142,7 @@ CASE(rules_choose_by_priority_area_and_shift)
     const struct plant *plant = f->c->plant;
     const int64_t noon = T0; /* 12:06 in Berlin */
     assert_int_equal(rules_for(plant, "T0000", 0, 1, noon), 3);
-    assert_int_equal(rules_for(plant, "T0001", 1, 1, noon), 1); /* of E-2, which is elsewhere */
+    assert_int_equal(rules_for(plant, "T0001", 1, 1, noon), 1); /* this tag belongs to E-2, in another area */
     assert_int_equal(rules_for(plant, "T0002", 2, 2, noon), 2);
     assert_int_equal(rules_for(plant, "T0002", 2, 2, noon + 2 * 3600 * S), 0);
     assert_int_equal(rules_for(plant, "T0002", 2, 2, noon + 3 * 86400 * S), 0); /* Saturday */
@@ -191,7 +191,7 @@ CASE(it_escalates_until_acknowledged)
     assert_int_equal(deliver(f, OPS, T0 + 60 * MIN), 0);
     assert_int_equal(deliver(f, BOSS, T0 + 60 * MIN), 1); /* alarm of the second escalation, which was waiting */
     assert_int_equal(deliver(f, BOSS, T0 + 90 * MIN), 0);
-    put(f, 0, LOCAL, true, true, T0 + 91 * MIN, T0 + 91 * MIN); /* raised again */
+    put(f, 0, LOCAL, true, true, T0 + 91 * MIN, T0 + 91 * MIN); /* the alarm is raised again */
     assert_int_equal(deliver(f, OPS, T0 + 91 * MIN + 3 * S), 1);
 }
 
@@ -442,7 +442,7 @@ CASE(it_rests_when_time_changes_nothing)
     put(f, 0, LOCAL, true, true, T0, T0);
     assert_false(outbox_rests(f->outbox));
     deliver(f, OPS, T0 + 4 * S);
-    assert_false(outbox_rests(f->outbox)); /* it may escalate */
+    assert_false(outbox_rests(f->outbox)); /* the alarm may still escalate */
     put(f, 0, LOCAL, false, false, T0, T0 + 5 * S);
     assert_false(outbox_rests(f->outbox)); /* a message to Alertmanager is still due */
     deliver(f, AM, T0 + 9 * S);

@@ -50,7 +50,7 @@ static struct frame *draw(int tag, bool occluded, bool split)
     return draw_beside(tag, occluded, split ? &same : NULL);
 }
 
-/* Of the left lower corner. */
+/* Returns whether the lower left corner has a list of alarms. */
 static bool has_list(const struct frame *frame)
 {
     for (int y = HEIGHT * 2 / 3; y < HEIGHT; y++)
@@ -305,7 +305,7 @@ static void differ(struct view *right, int way)
 TEST(halves_say_what_they_differ_in)
 {
     struct frame *plain = draw(0, false, true);
-    for (int x = 0; x < 240; x++) /* nothing to say */
+    for (int x = 0; x < 240; x++) /* halves that are computed alike have no caption */
         assert_int_equal(plain->bgrx[20 * plain->stride_bytes + 4 * (WIDTH / 2 + 4 + x)], 255);
     for (int way = 0; way < 9; way++) {
         struct view right;

@@ -129,7 +129,7 @@ struct pacer_world {
     int64_t rtt_ns, decode_ns;
     double pixels; /* pixels per frame: they determine the decoding time and the bytes */
     int64_t now_ns, link_free_ns, decoder_free_ns;
-    int64_t draw_ns;       /* a picture; 0: 20 ms */
+    int64_t draw_ns;       /* time to draw a picture; 0: 20 ms */
     int64_t busy_until_ns; /* until then the client is busy and acknowledges nothing */
     struct {
         uint32_t seq;
@@ -214,7 +214,7 @@ TEST(a_long_way_does_not_cost_rate)
     assert_true(rate(&world) > 25 && world.oldest_ns < 150 * MS);
 }
 
-/* 1 Mbit/s and 200 ms. */
+/* The network has 1 Mbit/s and a round trip of 200 ms. */
 TEST(a_slow_network_gets_small_pictures_in_time)
 {
     struct pacer pacer = fresh();
@@ -270,7 +270,7 @@ TEST(a_client_that_is_busy_for_a_moment_keeps_its_quality)
     channel_on_bytes(&pacer.channel, 1000000, 2500 * MS); /* the first text messages, sent while the page starts */
     quality_ladder_begin(&pacer.ladder, &pacer.channel, world.pixels);
     run_busy(&world, &pacer, 700 * MS, 0.75);
-    run_world(&world, &pacer, 0.1); /* two or three pictures */
+    run_world(&world, &pacer, 0.1); /* carries two or three pictures */
     world.now_ns += 12 * NS_PER_S;
     for (int i = 0; i < 3; i++) { /* the first move */
         run_busy(&world, &pacer, 600 * MS, 0.7);

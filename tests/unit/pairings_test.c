@@ -92,7 +92,7 @@ CASE(a_device_is_bound_kept_and_revoked)
     other.place = ROOM;
     strcpy(other.place.wall, "hall");
     assert_int_equal(pairings_ask(f->pairings, &other, 4 * NS_PER_S, again, &left_s), PAIRING_OTHER);
-    assert_int_not_equal(approve(f, digits, 4 * NS_PER_S), REFUSAL_NONE); /* once only */
+    assert_int_not_equal(approve(f, digits, 4 * NS_PER_S), REFUSAL_NONE); /* digits are valid once only */
     pairings_close(&f->pairings);
     f->pairings = pairings_open(f->log, f->folder, NULL);
     snprintf(path, sizeof(path), "%s/tokens", f->folder);
@@ -130,7 +130,7 @@ CASE(digits_expire)
         assert_int_equal(ask(f, 1, now_ns, others), PAIRING_WAITS);
     assert_string_equal(digits, others);
     ask(f, 1, now_ns, others);
-    assert_string_not_equal(digits, others); /* but once in a million */
+    assert_string_not_equal(digits, others); /* equal by chance once in a million runs */
     assert_int_not_equal(approve(f, digits, now_ns), REFUSAL_NONE);
     assert_int_equal(approve(f, others, now_ns), REFUSAL_NONE);
 }
@@ -158,7 +158,7 @@ CASE(few_wait_and_few_guesses_are_judged)
                      PAIRING_FULL); /* that address already has eight requests */
     for (int i = 0, now_s = PAIRING_QUIET_S; i < PAIRING_WRONG; i++)
         assert_int_not_equal(approve(f, "abcdef", now_s * NS_PER_S), REFUSAL_NONE);
-    assert_int_not_equal(approve(f, more, (PAIRING_QUIET_S + 1) * NS_PER_S), REFUSAL_NONE); /* right, and not judged */
+    assert_int_not_equal(approve(f, more, (PAIRING_QUIET_S + 1) * NS_PER_S), REFUSAL_NONE); /* right digits, which are not judged now */
     assert_int_equal(ask(f, PAIRINGS, (PAIRING_QUIET_S + 30) * NS_PER_S, more), PAIRING_WAITS);
     assert_int_equal(approve(f, more, (PAIRING_QUIET_S + 61) * NS_PER_S), REFUSAL_NONE);
 }
@@ -198,7 +198,7 @@ CASE(a_renderer_asks_its_core)
     ask(f, 3, NS_PER_S, digits);
     assert_string_equal(there, digits);
     assert_int_equal(look(renderer, 3, (PAIRING_S + 2) * NS_PER_S, there), PAIRING_WAITS);
-    assert_string_equal(there, ""); /* no longer good */
+    assert_string_equal(there, ""); /* the pairing is not valid any more */
     mirror(f, renderer, (PAIRING_S + 2) * NS_PER_S);
     assert_int_equal(look(renderer, 3, (PAIRING_S + 2) * NS_PER_S, there), PAIRING_WAITS);
     assert_int_equal(approve(f, digits, NS_PER_S), REFUSAL_NONE);

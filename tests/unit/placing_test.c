@@ -24,7 +24,7 @@ struct placing_fixture {
     char *folder;
     pthread_mutex_t lock;
     pthread_cond_t came;
-    int count; /* under lock: of notifications */
+    int count; /* number of notifications; needs the lock */
 };
 
 static void notify(void *arg)

@@ -40,7 +40,7 @@ static void paint(struct frame_bytes *picture, int x, int y, const uint8_t bgr[3
     memcpy(picture->bgrx + ((size_t)y * (size_t)picture->planes.width_px + (size_t)x) * 4, bgr, 3);
 }
 
-/* step: bands at once. */
+/* Converts a picture to planes. step: number of bands converted at once. */
 static void make(struct frame_bytes *picture, size_t step)
 {
     size_t bands = planes_bands(picture->planes.height_px);

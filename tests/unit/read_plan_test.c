@@ -99,8 +99,8 @@ TEST(gaps_are_bridged_up_to_the_device_s_limit)
     struct plant *plant = plant_of_registers((int[]){ 0, 6, 13, 23 }, 4, TABLE_HOLDING, DATA_FLOAT32);
     plant->sources[0].max_gap = 5;
     read_plan_init(&plan, plant, 0);
-    assert_block(&plan, 0, 0, 15, 3); /* gaps of 4 and 5 */
-    assert_block(&plan, 1, 23, 2, 1); /* of 8 */
+    assert_block(&plan, 0, 0, 15, 3); /* this block spans gaps of 4 and 5 */
+    assert_block(&plan, 1, 23, 2, 1); /* a gap of 8 begins a new block */
     read_plan_split(&plan, plant, 0);
     assert_block(&plan, 0, 0, 2, 1); /* splitting a block drops the gap at which it is split */
     assert_block(&plan, 1, 6, 9, 2);

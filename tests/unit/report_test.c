@@ -73,7 +73,7 @@ TEST_WITH(numbers_are_those_of_the_model, set_up, prep_case_tear_down)
         { "assets.0.surface.samples", 5000, 100000 },
         { "assets.0.surface.hidden_vertices", 0, 0 },
         { "assets.0.surface.unreachable_vertices", 0, 0 },
-        { "assets.0.surface.k", 0, 0 }, /* nothing is open */
+        { "assets.0.surface.k", 0, 0 }, /* no edge is open, so nothing is joined */
         { "assets.0.skipped_lines", 0, 0 },
         { "assets.0.sensors.0.surface_distance_m", 0, 1e-6 },
         { "assets.1.model_triangles", 25, 25 },
@@ -164,7 +164,7 @@ TEST_WITH(an_unchanged_asset_keeps_its_report, set_up, prep_case_tear_down)
     json_decref(first);
     json_decref(second);
     prep_case_expect(c, "$PLANT", 0);
-    assert_null(strstr(c->out.at, "Surfaces")); /* nothing was done */
+    assert_null(strstr(c->out.at, "Surfaces")); /* no asset was built */
     prep_case_says(&c->out, "4 unchanged");
     prep_case_tags(c, "T-GAP,400001,Float,plc,temperature,GAP,,0.5,0.5,1\n");
     prep_case_expect(c, "$PLANT", 0); /* files and reports of assets that are no longer in the plant are deleted */
@@ -230,7 +230,7 @@ TEST(the_time_left_follows_the_work)
     assert_float_equal(progress_left_s(&progress, 5 * s), 7, 1e-9);
     progress_step(&progress, 100, 6 * s);
     for (int i = 0; i < 3; i++)
-        progress_expect(&progress, 1); /* they are not */
+        progress_expect(&progress, 1); /* the other parts are not alike: they need little work */
     assert_float_equal(progress_left_s(&progress, 6 * s), 0.03, 1e-9);
     progress_end(&progress);
     fclose(out);

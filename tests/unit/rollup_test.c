@@ -15,7 +15,7 @@ static const struct history_point *at(const struct history_point *points, int co
     return &points[i];
 }
 
-/* Each microsecond by itself. */
+/* Computes a bucket by adding up each microsecond by itself. */
 static void slow_truth(const struct history_point *points, int count, bool step, int64_t begin_us, struct history_bucket *out)
 {
     double sum = 0;

@@ -54,7 +54,7 @@ TEST(test_limits_are_compared_as_floats)
 
 TEST(test_bands_of_an_interval)
 {
-    expect_row(12, 0, 0, 100, 10); /* centre 5 of 0..10 */
+    expect_row(12, 0, 0, 100, 10); /* the first band is 0..10, with its centre at 5 */
     expect_row(12, 9.99, 0, 100, 10);
     expect_row(38, 10, 0, 100, 10);
     expect_row(243, 99, 0, 100, 10);
@@ -67,7 +67,7 @@ TEST(test_bands_of_an_interval)
 
 TEST(test_bands_of_breaks)
 {
-    struct scale scale = linear(0, 100, 10); /* breaks come first */
+    struct scale scale = linear(0, 100, 10); /* breaks take precedence over the interval */
     memcpy(scale.breaks, (double[]){ -5, 60, 80, 95, 100 }, 5 * sizeof(double));
     scale.break_count = 5; /* three of the breaks are inside the range: four bands */
     static const struct {
@@ -88,7 +88,7 @@ TEST(test_edges_of_an_interval)
     struct scale scale = linear(20, 70, 20);
     assert_int_equal(scale_edges(&scale, edges), 2);
     assert_true(edges[0] == 40 && edges[1] == 60);
-    scale.interval = 25; /* MAX is no edge */
+    scale.interval = 25; /* MAX is no edge of a band */
     assert_int_equal(scale_edges(&scale, edges), 1);
     scale.interval = 0;
     assert_int_equal(scale_edges(&scale, edges), 0);

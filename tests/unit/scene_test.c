@@ -205,7 +205,7 @@ static void assert_refused(struct scene_fixture *f, const char *words)
 
 CASE(other_sensors_are_refused)
 {
-    write_asset(f, "1.asset", 1.00005, "TI-2", 2); /* half of the tolerance */
+    write_asset(f, "1.asset", 1.00005, "TI-2", 2); /* moves a sensor by half of the tolerance */
     struct scene *scene = scene_create(f->log, f->plant, f->prepared);
     assert_non_null(scene);
     scene_destroy(&scene);
@@ -321,7 +321,7 @@ CASE(home_is_the_view_of_the_plant)
         assert_true(least >= scene->bounds_min_m[i] - 1e-4 && most <= scene->bounds_max_m[i] + 1e-4);
         assert_true(least <= scene->bounds_min_m[i] + slack && most >= scene->bounds_max_m[i] - slack);
     }
-    for (int i = 0; i < 3; i++) /* west, south, above */
+    for (int i = 0; i < 3; i++) /* the camera is west, south and above of the plant */
         assert_true(i < 2 ? camera.eye_m[i] < scene->bounds_min_m[i] : camera.eye_m[i] > scene->bounds_max_m[i]);
     scene_destroy(&scene);
     plant_destroy(&f->plant);

@@ -135,7 +135,7 @@ static void carry(struct session_case *f, const struct frame_request *request, s
     ack(f, seq);
 }
 
-/* One picture all the way. */
+/* Requests, draws, sends and acknowledges one frame. */
 static struct frame_request show(struct session_case *f)
 {
     struct frame_request request = { 0 };
@@ -273,7 +273,7 @@ CASE(refined_frames_are_asked_for_signed)
 CASE(what_cannot_be_signed_is_refused)
 {
     struct message_error why = { 0 };
-    say(f, SIGNED_HELLO); /* no key */
+    say(f, SIGNED_HELLO); /* this server has no key */
     expect_error(f, "bad_field");
     f->context.signing_key = "0123456789abcdef";
     say(f, "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"jpeg\"],\"signed\":\"all\"}");
@@ -351,15 +351,15 @@ CASE(rests_once_nothing_waits_for_time)
     struct frame_request request;
     assert_true(session_rests(f->session, f->now_ns)); /* no hello yet */
     greet(f);
-    assert_false(session_rests(f->session, f->now_ns)); /* a frame is wanted, */
+    assert_false(session_rests(f->session, f->now_ns)); /* a frame is wanted */
     assert_true(ask(f, &request));
     assert_false(session_rests(f->session, f->now_ns)); /* drawn, */
     paint(f, &request, false);
     assert_false(session_rests(f->session, f->now_ns));
     uint32_t seq = send_picture(f);
-    assert_false(session_rests(f->session, f->now_ns)); /* under way, */
+    assert_false(session_rests(f->session, f->now_ns)); /* the frame is under way */
     ack(f, seq);
-    assert_false(session_rests(f->session, f->now_ns)); /* to be refined */
+    assert_false(session_rests(f->session, f->now_ns)); /* the frame is to be refined */
     f->now_ns += 250 * MS;
     show(f);
     assert_false(session_rests(f->session, f->now_ns)); /* counts as moving */
@@ -368,7 +368,7 @@ CASE(rests_once_nothing_waits_for_time)
     session_on_data(f->session, f->now_ns);
     assert_false(session_rests(f->session, f->now_ns));
     show(f);
-    assert_false(session_rests(f->session, f->now_ns)); /* the values, too */
+    assert_false(session_rests(f->session, f->now_ns)); /* values are to be sent too */
     expect(f, "tags ");
     assert_true(session_rests(f->session, f->now_ns));
     session_on_data(f->session, f->now_ns);
@@ -519,7 +519,7 @@ CASE(overtaken_pictures_are_not_sent)
     struct frame_request first = request;
     assert_true(ask(f, &request));
     f->number = 1;
-    paint(f, &request, false); /* number 2 */
+    paint(f, &request, false); /* this frame gets number 2 */
     f->number = 0;
     paint(f, &first, false); /* number 1 comes later */
     uint32_t seq;
@@ -704,7 +704,7 @@ CASE(a_preview_that_comes_after_a_refined_picture_does_not_stay)
         if (of_codec)
             say(f, "{\"type\":\"codecs\",\"codecs\":[\"png\"]}");
         else
-            show_data(f, false); /* overtakes it */
+            show_data(f, false); /* the preview overtakes the refined frame */
         session_on_data(f->session, f->now_ns += 500 * MS);
         assert_true(ask(f, &preview) && preview.view.tier == TIER_PREVIEW);
         paint(f, &refined, false);
@@ -1085,7 +1085,7 @@ CASE(a_follower_is_shown_its_leaders_view)
     json_decref(following);
     request = show(f);
     assert_true(request.view.width_px == 320 && request.view.camera.eye_m[0] == 3);
-    session_follow(f->session, leader, f->now_ns); /* it is back */
+    session_follow(f->session, leader, f->now_ns); /* the leader is back */
     following = hear(f);
     assert_null(json_object_get(following, "gone"));
     json_decref(following);
@@ -1093,7 +1093,7 @@ CASE(a_follower_is_shown_its_leaders_view)
     say(f, "{\"type\":\"follow\",\"session\":null}");
     session_follow(f->session, NULL, f->now_ns);
     json_decref(hear(f));
-    assert_true(show(f).view.camera.eye_m[0] == 9); /* its own, which was beneath */
+    assert_true(show(f).view.camera.eye_m[0] == 9); /* the session's own view, kept meanwhile */
     session_destroy(&leader);
 }
 

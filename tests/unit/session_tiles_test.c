@@ -227,9 +227,9 @@ static int size_after(struct quality_ladder *ladder, int64_t made_ms, int64_t fr
 TEST(test_a_server_that_takes_long_makes_smaller_pictures)
 {
     struct quality_ladder ladder = { 0 };
-    assert_int_equal(size_after(&ladder, 120, 1000, 9000), 0); /* fast enough */
+    assert_int_equal(size_after(&ladder, 120, 1000, 9000), 0); /* pictures are made fast enough */
     assert_int_equal(size_after(&ladder, 220, 10000, 10400), 0);
-    assert_int_equal(size_after(&ladder, 220, 10450, 10600), 1); /* half a second too long */
+    assert_int_equal(size_after(&ladder, 220, 10450, 10600), 1); /* pictures took too long for half a second */
     assert_int_equal(size_after(&ladder, 125, 11000, 19000), 1); /* the current cost is right: the size neither grows nor shrinks */
     assert_int_equal(size_after(&ladder, 60, 20000, 29000), 1);  /* frames of the next larger size would take 107 ms, so the size stays */
     assert_int_equal(size_after(&ladder, 40, 30000, 32900), 1);

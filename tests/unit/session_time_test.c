@@ -124,14 +124,14 @@ CASE(test_an_instant_is_shown_once_it_was_read)
     go(f, 60, 0);
     assert_true(f->session->view.at_us == 0);
     assert_true(wanted(f) == 60);
-    assert_true(isnan(wanted(f))); /* asked once */
+    assert_true(isnan(wanted(f))); /* an instant is requested only once */
     bring(f, 60, 5);
     assert_true(session_next_request(f->session, f->now_ns, &request));
     assert_true(request.view.at_us == NOW_US - 60000000 && request.view.field.slot == 1 && request.urgency == URGENCY_INPUT);
     assert_true(session_snapshot(f->session)->readings[0].value == 5);
     json_t *tags = hear(f, "tags");
     assert_int_equal(number(tags, "time_us"), NOW_US - 60000000);
-    assert_true(f->snapshot->readings[0].value == 0); /* nobody else's is touched */
+    assert_true(f->snapshot->readings[0].value == 0); /* the readings of other sessions stay unchanged */
 }
 
 CASE(test_the_client_is_told_where_it_is)

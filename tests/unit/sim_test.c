@@ -286,7 +286,7 @@ TEST(wide_series)
     bool found;
     assert_true(series_read(&series, path, "a", &found, why) && found);
     assert_int_equal(series.count, 3);
-    assert_true(series.length_s == 540); /* 6 min and one step */
+    assert_true(series.length_s == 540); /* the last time, 6 min, and one step */
     assert_true(series_at(&series, 0, false) == 1.5);
     assert_true(series_at(&series, 179.9, false) == 1.5); /* held, nothing invented */
     assert_true(series_at(&series, 180, false) == 2.5);

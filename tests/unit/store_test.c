@@ -98,7 +98,7 @@ CASE(a_bad_sample_does_not_make_the_value_younger)
     assert_quality(r->quality, QUALITY_BAD_CONFIGURATION);
     assert_true(r->age_ns == 3 * S);
     assert_true(r->value == 7);
-    assert_quality(look(s, 0, 100 * S)->quality, QUALITY_BAD_CONFIGURATION); /* the reason stays */
+    assert_quality(look(s, 0, 100 * S)->quality, QUALITY_BAD_CONFIGURATION); /* the stated reason stays although the value is old */
 }
 
 CASE(goes_stale)
@@ -180,7 +180,7 @@ CASE(what_is_dead_is_bad_at_once)
     store_tags_dead(s->store, (int[]){ 0, 1 }, 2, 12 * S);
     assert_quality(look(s, 0, 12 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
     assert_quality(look(s, 1, 12 * S)->quality, QUALITY_BAD_NO_COMMUNICATION); /* never had a value */
-    write_one(s, 0, 8, QUALITY_GOOD, 11 * S); /* stated to be from before */
+    write_one(s, 0, 8, QUALITY_GOOD, 11 * S); /* the sample's time is before the loss */
     assert_quality(look(s, 0, 12 * S)->quality, QUALITY_GOOD);
     store_tags_lost(s->store, (int[]){ 0 }, 1, 13 * S);
     assert_quality(look(s, 0, 13 * S)->quality, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
@@ -251,7 +251,7 @@ CASE(readings_go_on_in_another_plant)
     store_snapshot(store, 30 * S, 1030 * S, snapshot);
     assert_true(snapshot->readings[1].value == 42);
     assert_int_equal(snapshot->readings[1].alarm, ALARM_NONE); /* no alarm is shown until the new plant's alarms report one */
-    assert_quality(snapshot->readings[1].quality, QUALITY_GOOD); /* by its new patience */
+    assert_quality(snapshot->readings[1].quality, QUALITY_GOOD); /* the new plant's stale time is longer */
     assert_true(snapshot->readings[1].age_ns == 20 * S);
     assert_quality(snapshot->readings[0].quality, QUALITY_BAD_WAITING);
     assert_true(store_link_is_up(store, 0));
@@ -336,7 +336,7 @@ CASE(a_value_that_never_moves_is_doubted)
     assert_quality(look(s, 0, 67 * S)->quality, QUALITY_GOOD);
     for (int t = 68; t < 1000; t++)
         write_one(s, 1, 7, QUALITY_GOOD, t * S);
-    assert_quality(look(s, 1, 1000 * S)->quality, QUALITY_GOOD); /* nobody asked for it */
+    assert_quality(look(s, 1, 1000 * S)->quality, QUALITY_GOOD); /* this tag has no flatline_s */
 }
 
 /* A gateway keeps answering with the last values of a controller that has stopped. */
@@ -346,7 +346,7 @@ CASE(a_stopped_heartbeat_makes_all_bad)
     s->plant->sources[0].heartbeat_tag = 1;
     set_up_again(s);
     write_one(s, 0, 20, QUALITY_GOOD, 0);
-    assert_quality(look(s, 0, 0)->quality, QUALITY_BAD_WAITING); /* not heard yet */
+    assert_quality(look(s, 0, 0)->quality, QUALITY_BAD_WAITING); /* the heartbeat is not known yet */
     for (int t = 0; t < 10; t++) {
         write_one(s, 0, 20, QUALITY_GOOD, t * S);
         write_one(s, 1, t, QUALITY_GOOD, t * S);
@@ -393,7 +393,7 @@ CASE(other_tags_vouch)
     store_listen(s->store, on_sample_event, heard);
     write_one(s, 0, 20, QUALITY_GOOD, 0);
     write_one(s, 2, 30, QUALITY_GOOD, 0);
-    assert_quality(look(s, 0, 0)->quality, QUALITY_UNCERTAIN); /* no quality is known */
+    assert_quality(look(s, 0, 0)->quality, QUALITY_UNCERTAIN); /* the quality tag has no value yet */
     const struct {
         double word;
         uint32_t pattern, any;
@@ -411,7 +411,7 @@ CASE(other_tags_vouch)
     }
     write_one(s, 1, 4, QUALITY_GOOD, S);
     write_one(s, 0, 20, QUALITY_UNCERTAIN_UNITS_EXCEEDED, 2 * S);
-    assert_quality(look(s, 0, 2 * S)->quality, QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* its own stays */
+    assert_quality(look(s, 0, 2 * S)->quality, QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* the tag's own quality stays */
     write_one(s, 0, 20, QUALITY_GOOD, 3 * S);
     write_one(s, 1, 0, QUALITY_BAD_CONFIGURATION, 3 * S);
     assert_quality(heard[0], QUALITY_UNCERTAIN);
@@ -452,7 +452,7 @@ CASE(whoever_watches_is_told_once_until_the_next_look)
     write_one(s, 0, 20, QUALITY_GOOD, 2 * S); /* the same again: only younger */
     assert_int_equal(told, wanted);
     write_one(s, 0, 21, QUALITY_GOOD, 2 * S);
-    look(s, 0, 2 * S); /* somebody else looks */
+    look(s, 0, 2 * S); /* a snapshot for another reader */
     write_one(s, 0, 22, QUALITY_GOOD, 2 * S);
     assert_int_equal(told, ++wanted);
     take(s, 2 * S);
@@ -482,7 +482,7 @@ CASE(says_when_a_reading_gets_stale)
     write_one(s, 0, 20, QUALITY_GOOD, 4 * S);
     assert_true(take(s, 4 * S) == 8 * S);
     assert_true(take(s, 8 * S) == 9 * S);
-    assert_true(take(s, 9 * S) == INT64_MAX); /* both are */
+    assert_true(take(s, 9 * S) == INT64_MAX); /* both readings are stale */
 }
 
 /* Random writes, losses, alarms and pauses: every change in a snapshot was reported to listeners or predicted by the due time. */

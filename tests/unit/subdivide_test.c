@@ -25,9 +25,9 @@ struct prepared_body { /* a surface with sensors of two groups, prepared by the 
     struct surface_field field;
     bool as_solved; /* the truth uses the solver's distances at the point itself instead of the formula */
     struct levels levels;
-    float *distances; /* after splitting */
+    float *distances; /* distances of all vertices after subdivision */
     uint32_t own_vertices;
-    double (*distance)(const double a[3], const double b[3]); /* along the surface */
+    double (*distance)(const double a[3], const double b[3]); /* formula of the distance along the surface */
     size_t own_triangles;
     double radius_m[2][2]; /* paper's: [group][geodesic] */
     double reach_m[2];     /* metres by which each group's sensors reach; 0: no limit */

@@ -162,7 +162,7 @@ TEST(what_is_held_is_the_newest)
     struct history_point held;
     assert_false(swinging_door_held(&run->door, &held));
     put(run, 1 * S, 1, 0);
-    assert_false(swinging_door_held(&run->door, &held)); /* kept already */
+    assert_false(swinging_door_held(&run->door, &held)); /* the sample was kept already */
     put(run, 2 * S, 3, 0);
     assert_true(swinging_door_held(&run->door, &held));
     assert_int_equal(held.t_us, 2 * S);

@@ -106,7 +106,7 @@ TEST(test_udt_kinds)
 {
     static const struct {
         const char *kind, *json;
-        const char *name, *unit, *high, *address; /* of the first tag */
+        const char *name, *unit, *high, *address; /* expected fields of the first tag */
         size_t count;
         const char *remark; /* NULL: none */
     } cases[] = {
@@ -250,7 +250,7 @@ TEST(test_header_kinds)
 {
     static const struct {
         const char *kind, *text;
-        const char *name, *address, *unit, *low, *high, *description; /* of the first tag */
+        const char *name, *address, *unit, *low, *high, *description; /* expected fields of the first tag */
     } cases[] = {
         { "German", "Messstelle;Adresse;Einheit;Messbereich von;Messbereich bis;Bezeichnung\nT1;4001;°C;0;150;Lager\n", "T1", "4001",
           "°C",
@@ -457,7 +457,7 @@ TEST(test_encodings)
         tag_export_finish(&list);
     }
     assert_true(read_text(&list, "\xef\xbb\xbfTag\nTT-\xff"
-                                 "1\n")); /* the mark says UTF-8 */
+                                 "1\n")); /* the byte order mark says UTF-8 */
     assert_int_equal(list.damaged, 1);
     check(&list, 0, EXPORT_NAME,
           "TT-\xef\xbf\xbd"

@@ -14,7 +14,7 @@ struct carried {
     struct influence influence;
 };
 
-/* One sensor at the vertex. */
+/* Transports the vector of one sensor at the vertex. */
 static void carry(struct carried *c, size_t vertex)
 {
     const size_t count = c->shape.vertex_count;
@@ -50,7 +50,7 @@ static void normal_of(const struct carried *c, size_t vertex, double normal[3])
         normal[i] = (double)c->normals[vertex][i];
 }
 
-/* What arrives at a vertex. */
+/* Computes the vector that arrives at a vertex. */
 static void vector_at(const struct carried *c, size_t vertex, double out[3])
 {
     double normal[3], x[3], y[3], angle = (double)c->influence.shares[vertex];

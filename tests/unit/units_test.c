@@ -142,7 +142,8 @@ CASE(rows_are_in_their_own_unit)
     assert_string_equal(t[0].scale.own_unit, "°F");
     assert_true(fabs(t[0].alarms.limits[LIMIT_L] - 10) < 1e-9 && fabs(t[0].alarms.limits[LIMIT_H] - 90) < 1e-9); /* a temperature */
     assert_true(fabs(t[0].deadband - 1) < 1e-9 && fabs(t[0].alarms.settings.deadband - 5) < 1e-9);               /* a difference */
-    assert_true(t[1].alarms.limits[LIMIT_H] == 90 && t[1].alarms.settings.deadband == 2);                        /* the group's */
+    /* limit and deadband of the group */
+    assert_true(t[1].alarms.limits[LIMIT_H] == 90 && t[1].alarms.settings.deadband == 2);
     assert_true(t[4].alarms.limits[LIMIT_H] == 80 && t[4].deadband == 1 && !t[4].scale.change.converts);
     assert_true(!t[3].scale.change.converts && !t[5].scale.change.converts);
     assert_string_equal(t[3].unit, "°F");

@@ -19,7 +19,7 @@
 #define CELL 0.02 /* metres; size of a cell, and thickness of the plate */
 #define ACROSS 80
 #define UP 60
-#define RADIUS 0.8 /* to its inner side */
+#define RADIUS 0.8 /* metres; radius of the plate's inner side */
 #define FAR 3e-3   /* of the largest distance */
 
 static struct log *the_log;

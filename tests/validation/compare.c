@@ -23,8 +23,8 @@ enum { WORDS = 64, LINE_BYTES = 4096 };
 
 struct solution {
     struct trimesh skin;
-    double *values; /* by point */
-    bool *outside;  /* by triangle */
+    double *values; /* solution by point of the skin */
+    bool *outside;  /* by triangle of the skin */
 };
 
 struct heat_truth { /* solution by vertex of the asset file */
@@ -251,7 +251,7 @@ static bool draw(struct offline_renderer *offline, char *plant, const struct sol
     int count = 2 + split(line, words + 2);
     const char *paint = words[2];
     words[2] = "-o";
-    optind = 0; /* from the first word again */
+    optind = 0; /* getopt starts from the first word again */
     bool first = !offline->gl, good = count > 3 && snapshot_parse(count, words, false, &options) < 0;
     if (!good)
         return false;

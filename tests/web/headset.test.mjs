@@ -62,7 +62,7 @@ test('the clip coordinates of a point are those of the device, whatever is beyon
     assert.ok(clip[2] < clip[3] && clip[2] > -clip[3], 'between the nearest and the farthest');
     const [, , z, w] = clipOf(eye, [[0.02, 0, 0], 1], 0.05);
     assert.ok(z < -w, 'too near to be drawn');
-    const [, , endless, far] = clipOf(eye, [[1, 0, 0], 0], 0.05); // the background
+    const [, , endless, far] = clipOf(eye, [[1, 0, 0], 0], 0.05); // a direction without a distance: the background
     assert.ok(endless < far && far > 0, 'infinitely far is not cut off');
 });
 

@@ -190,7 +190,7 @@ test('phone: device pixels; choose equipment from the list, fly there, tap a sen
     const row = page.locator('.asset', { hasText: 'sensors' }).first();
     await shoot(page, 'phone-list');
     await row.tap();
-    await page.locator('#assets').waitFor({ state: 'hidden' }); // the list closes
+    await page.locator('#assets').waitFor({ state: 'hidden' }); // a tap on a row closes the list
     await page.waitForTimeout(1000);
     await settle(page);
     const selected = (await view(page)).params.selected;
@@ -228,7 +228,7 @@ test('phones: sheets of at most 40 % beside the picture, the legend a strip', op
             assert.ok(apart, `${name} ${sheet}: ${JSON.stringify([picture, box])}`);
             assert.ok(upright ? picture.height > 0.15 * height : picture.width > 0.55 * width, `${name} ${sheet}`);
             if (upright && sheet === '#alarms') {
-                await page.touchscreen.tap(box.x + box.width / 2, box.y + 8); // the grip
+                await page.touchscreen.tap(box.x + box.width / 2, box.y + 8); // taps the grip, which folds the sheet
                 await page.waitForFunction((most) => document.querySelector('#alarms').offsetHeight <= most, 0.2 * height + 1);
                 await page.touchscreen.tap(box.x + box.width / 2, (await boxOf(page, sheet)).y + 8);
                 await page.waitForFunction((least) => document.querySelector('#alarms').offsetHeight > least, 0.3 * height);

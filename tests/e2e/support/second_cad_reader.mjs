@@ -60,10 +60,10 @@ export async function secondMeshReader() {
     }
     const [{ FBXLoader }, { ColladaLoader }, { OBJLoader }] = loaders;
     globalThis.DOMParser ??= DOMParser;
-    globalThis.window ??= { innerWidth: 1, innerHeight: 1 }; // of cameras in FBX
+    globalThis.window ??= { innerWidth: 1, innerHeight: 1 }; // the FBX loader needs a window for cameras
     return (name, bytes, { metres = 1 } = {}) => {
         const { log, warn, error } = console;
-        console.log = console.warn = console.error = () => {}; // the loaders print
+        console.log = console.warn = console.error = () => {}; // silences the loaders
         try {
             if (/\.fbx$/i.test(name))
                 return sumScene(THREE, new FBXLoader().parse(Uint8Array.from(Buffer.from(bytes)).buffer, ''), metres);

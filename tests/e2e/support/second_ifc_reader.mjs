@@ -20,7 +20,7 @@ export async function secondReader() {
             head.voidValues, head.styleIds, head.styleColors, head.planeAngleToRadians);
         const sums = triangleSums();
         for (let i = 0; i < meshes.length; i++) {
-            const { ifcType, positions, origin, indices } = meshes.get(i); // Y up
+            const { ifcType, positions, origin, indices } = meshes.get(i); // web-ifc's meshes have Y up
             const at = (k) => [0, 1, 2].map((axis) => positions[3 * k + axis] + origin[axis]);
             for (let k = 0; ifcType !== 'IfcOpeningElement' && k + 2 < indices.length; k += 3)
                 sums.add(...[0, 1, 2].map((corner) => at(indices[k + corner])));
