@@ -258,8 +258,17 @@ test('in forced colours active and returned alarms still look different', option
         element.remove();
         return [backgroundColor, borderStyle];
     }));
+    const frames = await page.evaluate(() => ['timeline past', 'moment'].map((name) => {
+        const element = document.createElement('section');
+        element.className = name;
+        document.body.append(element);
+        const { borderTopStyle, outlineStyle } = getComputedStyle(element);
+        element.remove();
+        return [borderTopStyle, outlineStyle].includes('solid');
+    }));
     await shoot(page, 'alarms-forced-colours');
     await page.emulateMedia({ forcedColors: 'none' });
+    assert.deepEqual(frames, [true, true], 'frames around the past');
     assert.notEqual(looks[0][0], looks[1][0], looks.join(' | '));
     assert.deepEqual(looks.map(([, border]) => border), ['none', 'dashed']);
 });
@@ -345,6 +354,8 @@ test('several are shelved at once with one reason; the list is exported', option
     await page.locator('#shelve-reason').fill('work on the line');
     await shoot(page, 'alarms-shelve-two');
     await page.locator('#shelve button[type="submit"]').click();
+    await page.locator('#alarms-many').waitFor({ state: 'hidden' });
+    await page.waitForFunction(() => document.activeElement.closest('#alarms'), null, { timeout: 20000 });
     await page.waitForFunction(() => document.querySelectorAll('#alarms-aside tr').length === 2);
     assert.deepEqual((await page.locator('#alarms-aside td[data-col=tag]').allTextContents()).sort(), [...two].sort());
     assert.ok(await page.locator('#alarms-many').isHidden());
