@@ -11,13 +11,13 @@ void latency_stages_init(struct latency_stages *latency, struct counters *counte
 {
     for (int i = 0; i < STAGE_COUNT; i++) {
         char *name = mem_printf("plantcast_stage_seconds{stage=\"%s\"}", names[i]);
-        latency->of[i] = counters_add_histogram(counters, name, "Time that a frame spends in each stage of the pipeline.");
+        latency->of[i] = counters_add_histogram(counters, name, "Seconds that a frame spends in each stage of the pipeline.");
         mem_free(name);
     }
     latency->input = counters_add_histogram(counters, "plantcast_input_to_frame_seconds",
-                                            "Time from a client's input to its acknowledgement of the frame.");
+                                            "Seconds from a client's input until the client acknowledges the frame that shows it.");
     latency->sensor = counters_add_histogram(counters, "plantcast_sensor_to_frame_seconds",
-                                             "Time from a changed reading to a client's acknowledgement of the frame.");
+                                             "Seconds from a changed reading until a client acknowledges the frame that shows it.");
 }
 
 void latency_stages_sent(struct latency_stages *latency, const struct encoded_frame *encoded, int64_t now_ns)

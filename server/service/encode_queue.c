@@ -63,13 +63,14 @@ static void add_counters(struct encode_queue *queue)
         char *bytes = mem_printf("plantcast_encode_bytes_total{codec=\"%s\"}", name);
         queue->encodes[codec] = counters_add(counters, encodes, "counter", "Pictures encoded.");
         queue->encode_us[codec] = counters_add_seconds(counters, seconds, "counter", "Time spent encoding.");
-        queue->bytes[codec] = counters_add(counters, bytes, "counter", "Bytes of encoded pictures.");
+        queue->bytes[codec] = counters_add(counters, bytes, "counter", "Bytes of all encoded pictures.");
         mem_free(encodes);
         mem_free(seconds);
         mem_free(bytes);
     }
     queue->failures = counters_add(counters, "plantcast_encode_failures_total", "counter", "Pictures that could not be encoded.");
-    queue->chain_count = counters_add(counters, "plantcast_encode_streams", "gauge", "Video streams, each shared by its clients.");
+    queue->chain_count =
+        counters_add(counters, "plantcast_encode_streams", "gauge", "Video encodings in progress; clients with the same view share one.");
 }
 
 struct encode_queue *encode_queue_create(const struct encode_queue_params *params)

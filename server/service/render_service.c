@@ -189,12 +189,15 @@ static void add_counters(struct render_service *service, struct counters *counte
     service->same = counters_add(counters, "plantcast_renders_saved_total", "counter", "Pictures not drawn because nothing had changed.");
     service->shared = counters_add(counters, "plantcast_renders_shared_total", "counter", "Pictures reused from another client's request.");
     service->failures = counters_add(counters, "plantcast_render_failures_total", "counter", "Pictures that could not be drawn.");
-    service->steps = counters_add(counters, "plantcast_render_steps_total", "counter", "Steps in which slow pictures were drawn.");
-    service->abandoned =
-        counters_add(counters, "plantcast_renders_abandoned_total", "counter", "Pictures abandoned: no client needed them any more.");
+    service->steps =
+        counters_add(counters, "plantcast_render_steps_total", "counter", "Steps in which slow pictures were drawn.");
+    service->abandoned = counters_add(counters, "plantcast_renders_abandoned_total", "counter",
+                                      "Pictures abandoned because no client needed them any more.");
     service->picked = counters_add(counters, "plantcast_picks_total", "counter", "Pixel queries answered.");
-    service->pick_us = counters_add_seconds(counters, "plantcast_pick_seconds_total", "counter", "Time spent on pixel queries.");
-    service->losses = counters_add(counters, "plantcast_gl_losses_total", "counter", "GL contexts lost and created again.");
+    service->pick_us =
+        counters_add_seconds(counters, "plantcast_pick_seconds_total", "counter", "Seconds spent on queries for the value at a pixel.");
+    service->losses =
+        counters_add(counters, "plantcast_gl_losses_total", "counter", "OpenGL contexts that were lost (GPU reset) and created again.");
 }
 
 struct render_service *render_service_create(const struct render_service_params *params)

@@ -20,7 +20,7 @@ static counter *add(struct render_service *service, const char *of)
 {
     char *name = mem_printf("plantcast_memory_bytes{of=\"%s\"}", of);
     counter *added =
-        counters_add(service->params.counters, name, "gauge", "Memory held for drawing, by purpose; all but the models is cache.");
+        counters_add(service->params.counters, name, "gauge", "Bytes of memory held for drawing, by purpose; all but the models is cache.");
     mem_free(name);
     return added;
 }
@@ -31,7 +31,7 @@ void render_thread_memory_init(struct thread_memory *memory, struct render_servi
     for (int i = 0; i < RENDER_STORES; i++)
         memory->stores[i] = add(service, render_store_names[i]);
     memory->bound = counters_add(service->params.counters, "plantcast_memory_bound_bytes", "gauge",
-                                 "Limit of all caches together; the picture being drawn may exceed it.");
+                                 "Limit in bytes of all caches together (--memory); the picture being drawn is not included.");
 }
 
 /* Returns the recent peak of memory that the process needs besides `counted`, the bytes of models and caches. If memory is close to the

@@ -56,7 +56,8 @@ void process_counters_set(struct counters *counters)
 {
     unsigned long long fields[STAT_LAST + 1] = { 0 };
     struct rlimit files = { 0 };
-    counter_set(counters_add_seconds(counters, "process_cpu_seconds_total", "counter", "Processor time of all threads."),
+    counter_set(counters_add_seconds(counters, "process_cpu_seconds_total", "counter",
+                                     "Processor time of all threads of this process in seconds."),
                 clock_work_ns() / 1000);
     if (read_stat(fields)) {
         counter_set(counters_add(counters, "process_threads", "gauge", "Threads."), (int64_t)fields[STAT_THREADS]);
@@ -64,12 +65,14 @@ void process_counters_set(struct counters *counters)
             counters_add(counters, "process_start_time_seconds", "gauge", "Start time of the process, in seconds since 1970.");
         if (atomic_load(start_s) == 0) /* sets the start time only once, so that a later change of the clock does not move it */
             counter_set(start_s, boot_s() + (int64_t)(fields[STAT_START] / (unsigned long long)sysconf(_SC_CLK_TCK)));
-        counter_set(counters_add(counters, "process_virtual_memory_bytes", "gauge", "Address space in use."),
+        counter_set(counters_add(counters, "process_virtual_memory_bytes", "gauge", "Virtual memory of this process in bytes."),
                     (int64_t)fields[STAT_VIRTUAL]);
-        counter_set(counters_add(counters, "process_resident_memory_bytes", "gauge", "Resident memory, mapped files included."),
+        counter_set(counters_add(counters, "process_resident_memory_bytes", "gauge",
+                                 "Resident memory of this process in bytes, including mapped files."),
                     (int64_t)fields[STAT_RESIDENT] * sysconf(_SC_PAGESIZE));
     }
-    counter_set(counters_add(counters, "process_open_fds", "gauge", "Open files and sockets."), count_files());
+    counter_set(counters_add(counters, "process_open_fds", "gauge", "Files and sockets that this process has open."), count_files());
     if (getrlimit(RLIMIT_NOFILE, &files) == 0)
-        counter_set(counters_add(counters, "process_max_fds", "gauge", "Limit of open files and sockets."), (int64_t)files.rlim_cur);
+        counter_set(counters_add(counters, "process_max_fds", "gauge", "Most files and sockets that this process may have open."),
+                    (int64_t)files.rlim_cur);
 }
