@@ -17,7 +17,7 @@ enum login {
     LOGIN_GOOD,
     LOGIN_GOOD_NEW, /* the token is valid and was not seen from this address within ten minutes, so it is worth a log line */
     LOGIN_WRONG,
-    LOGIN_WRONG_SLOWS, /* the token is wrong, and by this failure the address becomes slowed */
+    LOGIN_WRONG_SLOWS, /* the token is wrong; with this failure the address has reached the limit and becomes slowed */
     LOGIN_HELD,        /* the address is slowed: the token was not checked */
 };
 

@@ -27,8 +27,8 @@ enum pairing { PAIRING_WAITS, PAIRING_DONE, PAIRING_FULL, PAIRING_OTHER };
 struct pairing_request {
     const char *secret;      /* secret of the device; must pass pairings_secret_valid() */
     struct wall_place place; /* wall and display that the device shows; the member `area` is ignored */
-    const uint8_t *address;  /* address of the device, as in struct address_usage */
-    const char *from;        /* the same address as text */
+    const uint8_t *address;  /* address of the device: 16 bytes, IPv4 as ::ffff:a.b.c.d */
+    const char *from;        /* address of the device as text */
 };
 
 struct pairings;

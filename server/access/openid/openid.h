@@ -32,14 +32,14 @@ char *openid_begin(struct openid *openid, const uint8_t address[16], const char 
                    char binding[SIGN_IN_SECRET_CHARS + 1], const char **why);
 
 struct openid_return { /* the parameters with which a browser returns from the provider; the texts may be NULL */
-    uint64_t request;  /* id of the HTTP request; the answer from openid_collect() carries it */
+    uint64_t request;  /* id of the HTTP request; openid_collect() returns it with the answer */
     const char *state, *code, *iss, *error, *binding, *from;
 };
 enum openid_finish {
     OPENID_WAITS,   /* the result is not known yet; openid_collect() returns it later */
     OPENID_FOREIGN, /* no log-in of that browser with this state is in progress, so the request is a replay or a forgery; it is only
                        counted, not recorded */
-    OPENID_FULL,    /* too many log-ins are being answered; the user must begin this one again */
+    OPENID_FULL,    /* too many log-ins wait to be verified; the user must begin the log-in again */
 };
 /* Takes the parameters with which a browser returned from the provider. OPENID_WAITS means that the log-in is being verified. */
 enum openid_finish openid_finish(struct openid *openid, const struct openid_return *brought, int64_t now_ns);

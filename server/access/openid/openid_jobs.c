@@ -49,8 +49,7 @@ struct openid_job *openid_take_job(struct openid_jobs *jobs)
     return job;
 }
 
-/* Drops the oldest queued revocation if too many wait because the provider accepts none; the token of the dropped one stays valid until
-   it expires. */
+/* If too many revocations wait because the provider accepts none, drops the oldest one; its token stays valid until it expires. */
 void openid_revoke_later(struct openid *openid, const char *refresh_token)
 {
     if (!refresh_token || !json_object_get(openid->metadata, "revocation_endpoint"))

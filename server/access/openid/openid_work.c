@@ -233,7 +233,7 @@ static bool may_start(const struct openid *openid, enum openid_task kind)
     return openid->running[kind] < at_once[kind];
 }
 
-/* Returns the task to do now. NULL: none is due; *next_ns receives the monotonic time at which the next one is. The caller holds the
+/* Returns the task to do now, or NULL if none is due; *next_ns receives the monotonic time when the next one is due. The caller holds the
    lock. */
 static struct task *take_task(struct openid *openid, int64_t *next_ns)
 {
