@@ -11,7 +11,7 @@ struct diag_item {
     char *file;
     int line, column; /* position, from 1; 0: none */
     char *text;
-    const char *form; /* format string of the text; diagnostics with the same one are grouped as similar */
+    const char *form; /* format string of the text; findings with the same format string are grouped as similar */
 };
 
 struct diag { /* zero-initialise */
