@@ -16,8 +16,8 @@ struct core_history *core_history_create(struct log *log, struct core_link *link
 void core_history_destroy(struct core_history **history); /* &NULL is fine; leaves NULL */
 /* Appends `name=value` to a path, preceded by `?` or `&`, with the value URL-encoded. */
 void core_history_add(struct text *path, const char *name, const char *value);
-/* Appends the core's answer to the query `path` to *out. Returns false on failure; a failure is logged unless the last one had the same
-   cause. */
+/* Appends the core's answer to the query `path` to *out. Returns false on failure, which is logged unless the last logged failure had the
+   same cause. */
 bool core_history_get(struct core_history *history, const char *path, struct text *out);
 /* Reads the readings of an instant into *snapshot, and the time at which the core's history starts into *first_us (0: no history).
    snapshot NULL: reads only the start of the history. Returns false on failure. */

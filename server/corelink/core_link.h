@@ -53,7 +53,8 @@ uint64_t core_link_session(struct core_link *link);
 /* HTTP address of the core. */
 struct core_peer {
     char url[320]; /* http or https URL of the core, without a path */
-    /* authorization: value of the HTTP header, empty: none; ca_path: as in params. Both are valid as long as the link */
+    /* authorization: value of the HTTP header `Authorization`, empty: none; ca_path: file of trusted certificates, NULL: the system's. Both
+       are valid as long as the link */
     const char *authorization, *ca_path;
 };
 /* *out receives the core that sends readings now. Returns false if no core does. Thread: any. */
