@@ -16,12 +16,13 @@
 enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 /* largest length of a piece (part of a triangle), relative to its distance to the nearest sensor; longer pieces are halved */
 #define STEP 0.3f
-#define MAX_POWER 2.0f /* largest power of shepard (exponent of the distance) at which STEP samples finely enough */
+#define MAX_POWER 2.0f /* for interpolation shepard: largest power (exponent of the distance) at which STEP samples finely enough */
 /* For shepard: L^2 K / (6 d^2) bounds the error in a triangle, with L its longest side, d its distance to the nearest sensor, and K /
    d^2 a bound of the weights' second derivative. */
 #define SHEPARD_ACCEPTED 6.0f
-#define PAPER_ACCEPTED 0.015f /* for paper: largest side of triangles that need no samples, as a fraction of the distance to the nearest
-                                 sensor and of the radius R */
+/* for interpolation paper: largest side of triangles that need no samples, as a fraction of the distance to the nearest sensor and of
+   the radius R */
+#define PAPER_ACCEPTED 0.015f
 #define STEP_OF_COLOR (1 / 255.0f)
 #define BORDER_SLACK 4  /* tolerated displacement of the border between data and no data, in steps of struct scalar's `lacking` */
 #define MARK_ALL 0.75   /* if at least this fraction of a level's area has interpolation errors, the whole level is marked */

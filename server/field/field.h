@@ -125,7 +125,8 @@ struct field_sensor {
     /* geodesic distance of each vertex, unless the file has them; NULL: not known yet, or straight-line distances are used */
     const float *along_m;
     float strength, decay;
-    float value;                        /* value that enters the sum: for `paper` 0..1; for a difference the reading minus the baseline's */
+    /* value that enters the sum: for interpolation `paper` scaled to 0..1; for a difference the reading minus the baseline's */
+    float value;
     bool configured, usable, uncertain; /* configured: the sensor would contribute if its quality were good; usable: it contributes;
                                            uncertain: its quality is Uncertain */
 };

@@ -13,7 +13,7 @@ struct field {
     struct field_layout **layouts;          /* sensor layouts by [asset][group]; NULL: not created yet, or the asset has no sensor of the
                                                group */
     struct field_state **states;            /* list of the states of each asset, by asset */
-    struct weights *weights[FIELD_BUCKETS]; /* all weights, hashed by their key */
+    struct weights *weights[FIELD_BUCKETS]; /* hash table of all cached weights, by their key */
     struct baselines *baselines;            /* NULL: none */
     struct trials *trials;                  /* NULL: none */
     struct trial_layout {                   /* layouts with trial positions */

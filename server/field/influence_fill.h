@@ -12,7 +12,7 @@ struct influence_fill;
 struct influence_fill *influence_fill_create(const double *precision, size_t count, const uint8_t *used);
 /* Frees the factor. &NULL is fine; sets it to NULL. */
 void influence_fill_destroy(struct influence_fill **fill);
-/* Replaces the values of lost sensors. Takes (lost * sensors) steps. */
+/* Replaces the elements of lost sensors in `values` by the values that follow from the used sensors. Takes (lost * sensors) steps. */
 void influence_fill_values(const struct influence_fill *fill, double *values);
 
 /* Writes for each sensor its precision given the used sensors: P_ii - P_iL (P_LL)^-1 P_Li, with L the lost sensors; for a lost sensor i,

@@ -41,10 +41,10 @@ struct kernel_column {
     const float *distance_m, *near_m, *top;
     size_t count;
     float reach_m, strength, decay;
-    float power;            /* exponent of shepard */
-    const float *near_log2; /* log2 of near_m, for shepard with a power other than 2 */
-    bool alike;             /* shepard: all strengths are equal */
-    float radius_m;         /* R of paper */
+    float power;            /* exponent of the distance, for interpolation shepard */
+    const float *near_log2; /* log2 of near_m, for interpolation shepard with a power other than 2 */
+    bool alike;             /* for interpolation shepard: true: all strengths are equal */
+    float radius_m;         /* radius R, for interpolation paper */
 };
 /* Writes the sensor's Shepard weight at each vertex: (strength / top) (near / distance)^power, with near the distance of the nearest
    sensor. It is exactly 1 for the strongest of the nearest sensors, and exactly 0 for all others where near is 0. With a reach, it is

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#define MAX_ALONE 1.999 /* largest position above H if the tag has no HH: just below +2, which is the position of HH */
+#define MAX_ALONE 1.999 /* largest position above H of a tag without HH: just below +2, which is the position of HH */
 
 /* The limits of one side (high or low), with the low side mirrored, so that larger values are always closer to an alarm. */
 struct limit_side {

@@ -13,7 +13,8 @@
 #include "plant/plant.h"
 
 #define LIMIT_PLACE_MOST 3.0
-/* Returns a reading's position between its tag's limits, by the rule above; NaN if the tag has no limits. value must be finite. */
+/* Returns a reading's position between its tag's limits, by the rule in this file's first comment; NaN if the tag has no limits. value must
+   be finite. */
 double limit_place(const struct plant_group *group, const struct plant_tag *tag, double value);
 
 #endif

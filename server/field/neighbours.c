@@ -11,7 +11,7 @@
 #include "plant/influence.h"
 #include "value/quality.h"
 
-#define AT_ONE_PLACE 1e-6 /* metres; sensors nearer than this to each other are at the same point */
+#define AT_ONE_PLACE 1e-6 /* metres; sensors that are nearer to each other count as being at one point */
 
 struct neighbours {
     struct field_layout *layout;

@@ -126,7 +126,8 @@ static double distance_range(const struct scene *scene, const struct field_param
     return 1;
 }
 
-/* Returns the largest standard deviation of gp's prior among all assets: if preparation fitted it, each asset has its own. */
+/* Returns the largest standard deviation, over all assets, of the prior of interpolation gp (Gaussian process). If preparation fitted the
+   prior, each asset has its own. */
 static double deviation_range(const struct scene *scene, int group)
 {
     const double stated = scene->plant->groups[group].gp.deviation;

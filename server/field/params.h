@@ -33,8 +33,8 @@ struct field_params {
     enum distance_mode distance;
     enum fill_mode fill;
     double strength, decay; /* factors on each sensor's strength and decay as configured; 1: unchanged */
-    double power;           /* exponent p of shepard */
-    double radius_m;        /* radius R of paper; 0: the largest distance on the asset from any of its configured sensors */
+    double power;           /* exponent p of the distance, for interpolation shepard */
+    double radius_m;        /* radius R of interpolation paper; 0: the largest distance on the asset from any of its configured sensors */
     double reach_m;         /* INFINITY: no limit */
     size_t override_count;
     struct field_override overrides[FIELD_OVERRIDES]; /* overrides sorted by tag; unused elements are zero */

@@ -39,7 +39,8 @@ static float nearness(const struct pixel_field *field, float distance_m)
     return fmaxf(0, (field->radius_m - distance_m) / field->radius_m);
 }
 
-/* Returns a sensor's weight. top: for paper, the largest exponent of all sensors at this point, which keeps expf() from overflowing. */
+/* Returns a sensor's weight. top: for interpolation paper, the largest exponent of all sensors at this point, which keeps expf() from
+   overflowing. */
 static float weight_of(const struct pixel_field *field, float strength, float distance_m, float near_m, float top)
 {
     float left = 1, part = 1;

@@ -10,7 +10,7 @@
 struct update; /* defined in update.h */
 
 struct state_input {           /* one sensor's inputs to the sums */
-    double value;              /* engineering units; for `paper` 0..1 */
+    double value;              /* engineering units; for interpolation paper scaled to 0..1 */
     uint8_t usable, uncertain; /* usable: enum sensor_use */
 };
 
@@ -61,7 +61,7 @@ void state_fill(struct field_state *state);
 bool state_needs_weights(const struct field_state *state);
 /* Returns true if the scalars show other inputs than state->now has. */
 bool state_is_behind(const struct field_state *state);
-/* For SHOW_DISTANCE, instead of the functions above: fills the scalars once with the distances from one sensor of the layout. */
+/* For SHOW_DISTANCE, instead of state_read() and an update: fills the scalars once with the distances from one sensor of the layout. */
 void state_measure(struct field_state *state, size_t sensor, uint64_t *versions);
 
 #endif

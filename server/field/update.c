@@ -15,11 +15,10 @@
 
 #define FLAG 255
 #define DRAWN_ERROR (1 / 255.0) /* fraction of the range; a vertex whose triangles may be drawn with a larger error is marked uncertain */
-#define ERROR_MARGIN 1.1        /* factor by which a newly chosen error limit is stricter than necessary, so that it survives small
-                                   changes of readings */
-#define ERROR_SLACK 1.5         /* an error limit that is stricter than necessary by more than this factor is replaced */
-#define MAX_BLIND 1000.0        /* the largest "smallest detectable hot spot" that is shown, in multiples of the group's range; larger
-                                   ones are shown as this */
+/* factor by which a newly chosen error limit is stricter than necessary, so that it survives small changes of readings */
+#define ERROR_MARGIN 1.1
+#define ERROR_SLACK 1.5  /* an error limit that is stricter than necessary by more than this factor is replaced */
+#define MAX_BLIND 1000.0 /* largest height of a hot spot that is shown, in multiples of the group's range */
 /* largest change of a reading, in multiples of the range, that is added to existing sums, where its rounding errors stay. After a larger
    change, everything is summed again */
 #define STEP_LIMIT 1e6
@@ -101,7 +100,7 @@ void update_rule(const struct field_state *state, const struct state_input *inpu
         bool around = state->params.interpolation == INTERPOLATION_FIN;
         float offset = around && !difference && !places ? (float)group->ambient : 0;
         *rule = (struct kernel_value){ .scale = 1, .offset = offset, .low = around ? offset : FLT_MAX, .high = around ? offset : -FLT_MAX };
-        if (state->params.interpolation == INTERPOLATION_GP) /* values of gp may exceed the readings */
+        if (state->params.interpolation == INTERPOLATION_GP) /* values of interpolation gp may exceed the readings */
             rule->low = -FLT_MAX, rule->high = FLT_MAX;
         for (size_t m = 0; m < state->weights->member_count; m++) {
             float value = (float)inputs[state->weights->members[m]].value;
@@ -201,8 +200,8 @@ void update_begin(struct field_state *state, size_t count)
    value filled in around a lost sensor; the larger byte counts. */
 static uint8_t uncertain_of(double marked, double total, uint8_t filled)
 {
-    double part = total > 0 && marked > 0 ? 2 * marked / total : 0; /* twice the fraction; gp's weights may be negative, so the sum may
-                                                                       be 0 or the fraction above 1 */
+    /* twice the fraction; weights of interpolation gp may be negative, so the sum may be 0 or the fraction above 1 */
+    double part = total > 0 && marked > 0 ? 2 * marked / total : 0;
     uint8_t leans = (uint8_t)(part >= 1 ? 128 + (int)(127 * (fmin(part, 2) - 1)) : (int)(127 * part));
     return leans > filled ? leans : filled;
 }

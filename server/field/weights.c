@@ -18,8 +18,8 @@
    data */
 #define MIN_SENSOR_SHARE 0.1
 
-/* largest standard deviation of gp that is shown, as a multiple of the prior's; without it, there is no bound on a body whose sensors
-   are all lost */
+/* largest standard deviation of interpolation gp that is shown, as a multiple of the prior's standard deviation. On a body whose sensors
+   are all lost, it would otherwise be unbounded */
 #define MAX_DEVIATIONS 4.0
 
 struct key_head { /* bytes of the key that are the same for all sensors. Must have no padding, because keys are compared as bytes */
@@ -33,7 +33,8 @@ struct key_sensor {
     float strength, decay;
 };
 
-/* Returns a sensor's strength, for paper times the user's factor. In shepard's sum a common factor cancels. */
+/* Returns a sensor's strength; for interpolation paper multiplied by the user's factor. In shepard's sum such a common factor would
+   cancel. */
 static float strength_of(const struct layout_sensor *sensor, const struct field_params *params)
 {
     const struct field_override *override = field_params_override_of(params, sensor->tag);
@@ -555,7 +556,7 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
         for (size_t k = 0; sums->marked && k < number; k++) {
             if (terms->marked[first + k] && !weights->deviations)
                 kernel_add(sums->marked, &heavy[k], ones, 1, count, NULL);
-            /* gp's weights may be negative: adds absolute values, so that two weights do not cancel */
+            /* weights of interpolation gp may be negative: adds absolute values, so that two weights do not cancel */
             for (size_t j = 0; terms->marked[first + k] && weights->deviations && j < count; j++)
                 sums->marked[j] += fabs((double)heavy[k][j]);
         }

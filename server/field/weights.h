@@ -42,7 +42,8 @@ struct weights {
     const struct field_layout *layout;
     enum interpolation interpolation;
     enum distance_mode distance;
-    float power, reach_m, radius_m, steps_per_m; /* steps_per_m: steps of scalar.lacking per metre */
+    /* steps_per_m: number of steps of struct scalar's `lacking` (encoded distance from the border of the data) per metre */
+    float power, reach_m, radius_m, steps_per_m;
     bool alike;                                  /* true: all members (sensors in the sum) have the same strength */
     float *strength, *decay;                     /* by sensor of the layout */
     /* for each sensor of the layout: 1: it would contribute if its quality were good; 0: it would not; more than 1: SENSOR_NO_LIMITS */
@@ -57,13 +58,13 @@ struct weights {
     uint8_t *place;              /* by vertex: enum place */
     uint8_t *lost;               /* for each vertex: how much nearer the nearest lost sensor is than the nearest usable one, encoded by
                                     weights_lacking() */
-    uint8_t *known;              /* for each block: bits of enum weights_known for the arrays above */
+    uint8_t *known; /* for each block: which of its arrays near_m, place, top and total are filled (bits of enum weights_known) */
     const float *prepared;       /* [member][vertex]: prepared weights from the asset's influence file; NULL: weights are computed from
                                     distances */
     struct influence_fill *fill; /* factor that gives lost sensors a value, for prepared interpolations; NULL: no sensor is lost */
-    double *ones;  /* by sensor, for prepared interpolations with lost sensors: the value that the sensor gets if all used sensors read
-                      1; else NULL */
-    float decay_m; /* metres. For interpolation fin the decay length; for gp 1/k, with k as in preprocess/influence/gaussian.h */
+    /* for prepared interpolations with lost sensors, by sensor: the value that the sensor gets if all used sensors read 1; else NULL */
+    double *ones;
+    float decay_m; /* metres; for interpolation fin: the decay length; for gp: 1/k, with k as in preprocess/influence/gaussian.h */
     const float *deviations; /* for interpolation gp: standard deviation of the field at each vertex while all sensors are used; else
                                 NULL */
     const float *priors;     /* for interpolation gp: standard deviation of the field at each vertex without any sensor */
