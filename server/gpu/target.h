@@ -13,8 +13,8 @@
 struct target {
     int width_px, height_px, samples;
     GLuint framebuffer, color, depth; /* framebuffer that passes draw to, and its textures */
-    /* framebuffer of the resolved picture (one sample per pixel), and its textures; if `samples` is 1, the same objects as the three
-       above */
+    /* framebuffer of the resolved picture (one sample per pixel), and its textures; if `samples` is 1, the same objects as framebuffer,
+       color and depth */
     GLuint resolved_framebuffer, resolved_color, resolved_depth;
     GLuint over_framebuffer; /* framebuffer with the resolved colour but no depth, for drawing over the picture while shaders read its
                                 depth */
