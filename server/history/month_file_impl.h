@@ -27,7 +27,7 @@ struct month_file {
     struct database db;
     int month;
     bool has_outbox; /* true: recorded points are copied to the outbox (points to send to PostgreSQL) */
-    bool has_blocks; /* true: the file is known to be of version 3 or later */
+    bool has_blocks; /* true: the file is known to have blocks of compressed points (format version 3 or later) */
     bool writes;     /* true: this handle has written the newest points at least once (month_seconds.h) */
     ino_t inode;
     const struct plant *shown_by; /* plant to whose units values are converted; NULL: not converted */

@@ -30,7 +30,8 @@ bool postgres_link_runf(struct postgres_link *link, const char *fmt, ...) __attr
 /* Runs one statement with parameters as text. Returns its rows in binary format, for PQclear(); NULL on failure. */
 PGresult *postgres_link_ask(struct postgres_link *link, const char *sql, int count, const char *const *parameters);
 
-/* Begins COPY table FROM STDIN (FORMAT binary). The functions below add rows column by column, and end the copy. */
+/* Begins COPY table FROM STDIN (FORMAT binary). The functions postgres_copy_...() add rows column by column; postgres_copy_end() ends the
+   copy. */
 bool postgres_copy_begin(struct postgres_link *link, const char *table);
 void postgres_copy_row(struct postgres_link *link, int columns);
 void postgres_copy_int32(struct postgres_link *link, int32_t value);
