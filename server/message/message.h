@@ -232,8 +232,9 @@ struct message {
     struct assumed_filter accept; /* accept_places */
     char kept[65];                /* in restore_tags: name of the stored version of the tag list */
     struct loop_check_request loop_check;
-    struct named_view_edit view_edit; /* save_view sets all members; remove_view only the id; share_view only the address;
-                                         send_to_wall only view and title */
+    /* which members the messages set: save_view all; remove_view only the id; share_view only the address; send_to_wall only view and
+       title */
+    struct named_view_edit view_edit;
     struct note_request note;         /* note, remove_note */
     struct wall_request wall;         /* in display, send_to_wall and point */
     struct pair_request pair;         /* pair, unpair */

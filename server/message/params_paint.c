@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parameters for bands, isolines and logarithmic scales. */
+/* Parses and applies the parameters for bands, isolines and logarithmic scales. */
 #include <math.h>
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parameters that select the quantity shown (values, distance from a sensor, difference from a baseline), and overrides of single
-   sensors. */
+/* Parses and applies parameters that select the quantity shown (values, distance from a sensor, difference from a baseline), and overrides
+   of single sensors. */
 #include <string.h>
 
 #include "field/colormap.h"

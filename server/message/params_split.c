@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The member `split` of params: the second set of parameters of a split view. */
+/* Parses and applies the member `split` of params: the second set of parameters of a split view. */
 #include <string.h>
 
 #include "message/json_fields.h"
