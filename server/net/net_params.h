@@ -47,7 +47,7 @@ struct net_params {
     unsigned codecs;                       /* bit mask of the codecs that work here (1 << enum wire_codec) */
     const char *web_folder;                /* folder of the web client's files; NULL: no page is served */
     const char *version;
-    const char *node;            /* as in struct session_context */
+    const char *node;            /* this daemon's name behind a load balancer; NULL: it runs alone */
     bool is_core;                /* renderers may connect to this daemon */
     const char *node_name;       /* this daemon's name among several */
     struct lease_keeper *keeper; /* leadership lease of a core that has a standby, or is one; NULL: none */

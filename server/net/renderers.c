@@ -62,7 +62,7 @@ struct renderer_peer {
     struct lists_seen lists;
     bool *links;            /* connection state of each source, as last sent; by source index */
     json_t *hello;          /* this core's introduction, to be sent first; NULL: already sent */
-    json_t *answers;        /* answers to be sent, in order of ACTED; that member is not sent */
+    json_t *answers;        /* answers to be sent, ordered by their member ACTED, which is removed before sending */
     struct deed *deeds;     /* forwarded actions whose answers wait until the actions are on disk */
     int64_t told_ns;        /* monotonic: when readings were last sent */
     int64_t since_ns;       /* monotonic: since when a message waits to be sent; 0: none waits */

@@ -93,7 +93,8 @@ static struct view *asked_view(struct asked *asked)
     return asked->picks ? &asked->pick.view : &asked->frame_request.view;
 }
 
-/* Requests the frame or pick: immediately for the present; for an instant, after its readings were loaded. */
+/* Requests the frame or pick: immediately if it shows the present; if it shows a past instant, after that instant's readings were
+   loaded. */
 static void begin(struct server_context *server, struct http_exchange *request)
 {
     struct asked *asked = request->asked;
