@@ -199,7 +199,7 @@ struct plant_source {
     int max_registers, max_bits;       /* maximum registers or bits in one request */
     int max_gap; /* maximum number of unneeded registers or bits between two tags that are still read by one request */
     enum byte_order byte_order;
-    int address_base; /* number of the first register in plain addresses, 0 or 1; see base_stated */
+    int address_base; /* number of the first register in plain addresses, 0 or 1; base_stated: true if the plant file states it */
     bool base_stated;
     char *heartbeat;    /* heartbeat: name of the tag whose value must keep changing; NULL: none */
     int heartbeat_tag;  /* index of the heartbeat tag, or -1 */
@@ -285,7 +285,7 @@ struct tag_scale { /* conversion from the raw value to the tag's unit */
 struct tag_place { /* place of a tag's sensor on its asset */
     /* `Place: equipment`: the exact position on the asset is unknown; the reading represents the whole asset (field/field.h) */
     bool assumed;
-    bool has_position;    /* true: position_m is set; false: see `node` */
+    bool has_position;    /* true: position_m is set; false: `node` gives the position or, without a node, the middle of the asset */
     double position_m[3]; /* position in metres, in the frame that the asset states */
     char *node;           /* name of the model node that gives the position, or NULL */
     char *lost_asset;     /* id in the tag list of an asset that does not exist (plant_load_with_orphans()), or NULL */

@@ -195,7 +195,7 @@ static bool remove_left(const char *folder, const char *own, bool now)
 
 /* --- locking -------------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the id of the process that has locked the folder; 0: the kernel does not tell (in a container, on a network file system). */
+/* Returns the id of the process that has locked the folder; 0: the kernel does not know it (in a container, on a network file system). */
 static int holder_of(int fd)
 {
     struct stat st;

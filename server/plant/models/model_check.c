@@ -11,7 +11,7 @@
 #include "plant/models/model_header.h"
 #include "plant/sensors.h"
 
-#define SAME_PLACE_M 1e-3 /* same value as in plantcast-prep */
+#define SAME_PLACE_M 1e-3 /* same value as in plantcast-prep, which uses it to compare positions of nodes */
 /* tolerated distance of a sensor from its asset's bounding box in metres, in addition to a fraction of the box's diagonal */
 #define SLACK_M 0.5
 #define SLACK 0.05

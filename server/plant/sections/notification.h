@@ -41,7 +41,7 @@ struct notify_shift {     /* shift: a time span in the plant's time zone */
 
 struct notify_step {
     double after_min; /* minutes since the alarm: 0 in the first step, ascending in the later ones */
-    uint32_t to;      /* bit mask of the recipients by index */
+    uint32_t to;      /* bit mask, by index, of the recipients that this step notifies */
 };
 
 struct notify_rule {

@@ -353,7 +353,7 @@ static void read_groups(struct yaml_reader *reader, yaml_node_t *node, void *rec
 
 /* --- other keys ------------------------------------------------------------------------------------------------------------- */
 
-/* Key handler that does nothing, because these keys were read before. */
+/* Key handler that does nothing, because read_conversions() has already read `convert`. */
 static void skip_conversions(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     (void)reader;
@@ -361,7 +361,8 @@ static void skip_conversions(struct yaml_reader *reader, yaml_node_t *node, void
     (void)record;
 }
 
-/* Reads `convert` before the assets, wherever it is in the file, since a model that will be made need not exist yet. */
+/* Reads `convert` before the assets, wherever the key is in the file, because a model that will be made by a conversion need not exist
+   yet. */
 static void read_conversions(struct yaml_reader *reader, const yaml_node_t *root, struct plant *plant)
 {
     if (!root || root->type != YAML_MAPPING_NODE)

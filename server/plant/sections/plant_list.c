@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lists, paths, secrets and limits, as several sections of the plant file and the tag list have them. */
+/* Reads lists, paths, secrets and limits, which several sections of the plant file and the tag list have in common. */
 #include <errno.h>
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses a path step by step, each time it is evaluated. */
+/* Paths are not compiled: each evaluation parses the path step by step. */
 #include "plant/sources/json_path.h"
 
 #include <stdio.h>

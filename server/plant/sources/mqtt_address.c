@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses TOPIC#PATH: the first `#` separates the two, because topics cannot contain it. */
+/* Parses addresses of the form TOPIC#PATH: the first `#` separates the two parts, because topics cannot contain it. */
 #include "plant/sources/mqtt_address.h"
 
 #include <stdio.h>

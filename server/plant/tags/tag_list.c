@@ -17,7 +17,7 @@ struct tag_list {
     struct plant *plant;
     struct tag_columns columns;
     struct plant_tag *tag;           /* the tag of the current row */
-    const struct plant_group *group; /* its group, or NULL */
+    const struct plant_group *group; /* group of the tag, or NULL */
     struct tag_links links, derived;
     size_t capacity; /* of plant->tags */
     struct alarm_references references;

@@ -49,8 +49,8 @@ extern const char *const pane_kind_names[]; /* names of pane kinds, by enum pane
 struct wall_pane {
     char *area, *title; /* area: name of the pane's area in the grid; title NULL: no title */
     enum pane_kind kind;
-    /* by `kind`: names of views, shown in turn; names of tags of a trend or of tiles; the text; the name of a tour; or the name of another
-       plant */
+    /* content of the pane, depending on `kind`: names of views, shown in turn; names of tags of a trend or of tiles; the text; the name of
+       a tour; or the name of another plant */
     char *items[PANE_ITEMS];
     size_t item_count;
     int item_lines[PANE_ITEMS], item_columns[PANE_ITEMS];
