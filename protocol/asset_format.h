@@ -68,7 +68,7 @@ struct asset_level { /* a level of detail: its primitives and its number of vert
    primitive are contiguous and cover all its indices. Clusters are in the order of primitives. */
 struct asset_cluster {
     uint32_t first_index, index_count; /* range in ASSET_INDICES; index_count is a positive multiple of 3 */
-    float low_m[3], high_m[3];         /* bounding box of its vertices */
+    float low_m[3], high_m[3];         /* bounding box of the cluster's vertices */
     float cone_axis[3], cone_cutoff;   /* normal cone for asset_cluster_turned_away(): axis and cutoff; cutoff 1: normals in all
                                           directions */
 };

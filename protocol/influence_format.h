@@ -23,8 +23,8 @@ struct influence_header {
 struct influence_entry {
     uint32_t group, interpolation; /* group: index in the plant file; interpolation: enum interpolation, INFLUENCE_HEAT or
                                       INFLUENCE_TRANSPORT */
-    uint32_t sensor_count;         /* number of the group's sensors with a known position; the arrays below have them in the order of the
-                                      asset file */
+    /* number of the group's sensors with a known position; the arrays of this entry have them in the order of the asset file */
+    uint32_t sensor_count;
     uint32_t zero;
     uint64_t precision, shares; /* offsets of double[sensor][sensor] and float[sensor][vertex] */
     uint64_t deviations;        /* for interpolation gp: offset of float[2][vertex], the field's standard deviations with all sensors and
