@@ -7,7 +7,7 @@ struct Cell {
 };
 layout(std430, binding = 0) buffer Cells { Cell cells[]; };
 layout(location = 0) uniform ivec2 grid; // columns and rows of the depth grid
-layout(location = 1) uniform vec2 steps; // a difference of depth counts as a step above x * depth + y
+layout(location = 1) uniform vec2 steps; // x, y: a difference of depth that is larger than x * depth + y counts as a step
 layout(binding = 0) uniform sampler2D depth;
 const int SIDE = 8;
 const float LEAST_GAP = 0.25;

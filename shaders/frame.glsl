@@ -6,7 +6,9 @@ layout(std140, binding = 0) uniform Frame {
     mat4 sun_from_eye;   // matrix from eye space to texture coordinates and depth of the shadow map
     vec4 sun;            // unit vector towards the sun; w: texel size of the shadow map in metres
     vec4 up;             // the plant's up direction; w: brightness of muted assets without a field; 0: not muted
-    vec4 scale;          // x: MIN, y: 1/(MAX - MIN); z: 1: logarithmic scale, both of binary logarithms; w: cell size of patterns in pixels
+    // scale of values: x: MIN, y: 1/(MAX - MIN); z 1: logarithmic scale, x and y are then of binary logarithms; w: cell size of patterns in
+    // pixels
+    vec4 scale;
     vec4 shade;          // row of the colour map = light * x + y, but at most z
     vec4 lines;          // x: width of isolines in pixels, 0: none; y: index of the first row of the backdrop
     vec4 back;           // orthographic: unit vector towards the viewer; w: view_constants.depth_scale. Perspective: all 0

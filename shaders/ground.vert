@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The square of ground that receives the plant's shadow.
+// Transforms the square of ground that receives the plant's shadow.
 #include "frame.glsl"
 layout(location = 0) uniform mat4 clip_from_ground;
 layout(location = 1) uniform mat4 eye_from_ground;

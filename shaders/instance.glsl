@@ -9,7 +9,8 @@ layout(location = 8) in mat4 clip_from_file;
 // rows of the matrix from file coordinates to eye space; in previews: to texture coordinates and depth of the sun's shadow map
 layout(location = 12) in mat3x4 from_file;
 layout(binding = 12) uniform samplerBuffer lights;
-layout(binding = 13) uniform usamplerBuffer scalars; // value as float bits; then bytes: no data, uncertain, no limits
+// per vertex: the field's value as float bits, then one byte each for no data, uncertain and no limits
+layout(binding = 13) uniform usamplerBuffer scalars;
 
 vec4 light_here()
 {

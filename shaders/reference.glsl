@@ -115,7 +115,8 @@ vec4 reference_field()
         return vec4(near_m, near_m < FAR ? 0.0 : 1.0, 0.0, 0.0);
     bool reached = near_m < FAR && near_m <= numbers.z;
     float limit_m = min(max(near_m, numbers.z), 0.5 * FAR);
-    for (int i = 0; choice.x != 0 && i < sensors.length(); i++) { // largest exponent, by which Algorithm 1 scales its weights
+    // largest exponent of all sensors; Algorithm 1 scales its weights by it, so that they do not overflow
+    for (int i = 0; choice.x != 0 && i < sensors.length(); i++) {
         float d = distance_to(i, spot);
         if ((sensors[i].state & 2u) != 0u && d <= limit_m)
             top = max(top, nearness(d) * sensors[i].place_m.w);
