@@ -9,7 +9,7 @@
 struct sim_device {
     struct sim_modbus modbus;
     int port;        /* number of the port in the plant file */
-    int listen_port; /* port on which it listens */
+    int listen_port; /* port on which the simulator listens for this device */
     size_t tag_count;
 };
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encodes a value: reverses the scaling, makes bytes with the most significant first, and places them by the byte order. */
+/* Encodes a value as a device does: reverses the scaling, makes bytes with the most significant first, and places them by the byte
+   order. */
 #include "sim_encode.h"
 
 #include <math.h>

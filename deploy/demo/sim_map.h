@@ -10,7 +10,7 @@
 struct sim_map_entry {
     char *tag, *series;
     double scale, offset;
-    const char *file; /* file that states the entry, for messages; owned by the map */
+    const char *file; /* file that contains the entry, for error messages; owned by the map */
     int line;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Processes one request at a time: checked here, answered by libmodbus. */
+/* Processes one Modbus request at a time: this file checks it, libmodbus makes the reply. */
 #include "sim_modbus.h"
 
 enum { HEADER_BYTES = 7, LENGTH_AT = 4, UNIT_AT = 6, FUNCTION_AT = 7, FIRST_AT = 8, COUNT_AT = 10, READ_BYTES = 12 };

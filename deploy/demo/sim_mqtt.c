@@ -160,7 +160,7 @@ static json_t *slot_of(json_t **root, const struct json_path_step *step, long *a
     return json_incref(json_array_get(*root, (size_t)*at));
 }
 
-/* Puts a value at a path below *root. Takes ownership of the value. */
+/* Puts a value at a path inside the JSON value *root, and creates what is missing. Takes ownership of the value. */
 static void put(json_t **root, const char *path, json_t *value)
 {
     struct json_path_step step;
@@ -177,7 +177,7 @@ static void put(json_t **root, const char *path, json_t *value)
         return;
     }
     if (json_is_null(made))
-        made = NULL; /* json_null() is one shared value without a reference count */
+        made = NULL; /* makes put() create a new value, because the JSON null is a singleton that cannot be changed */
     put(&made, path, value);
     if (step.kind == JSON_PATH_NAME)
         json_object_set_new(*root, step.name, made);

@@ -14,7 +14,7 @@ static const double MAX_STEP_S = 1.0, TAU = 6.283185307179586;
 #define T PROCESS_TEMPERATURE
 #define P PROCESS_PRESSURE
 #define V PROCESS_VIBRATION
-#define MACHINE "machine" /* pseudo loop name: the effect applies to one machine per cycle, each in turn */
+#define MACHINE "machine" /* pseudo loop name: the effect applies to machines, in each cycle to another one */
 
 struct effect {
     const char *word; /* the effect applies to loops whose names contain this word; or MACHINE */
@@ -56,7 +56,7 @@ struct process_state {
     enum process_kind kind;
     double normal, span;
     double shares[UPSETS], dead_s[UPSETS];
-    uint32_t loop; /* hash of the loop's name; sets the phase of its drift */
+    uint32_t loop; /* hash of the name of the tag's loop; sets the phase of the drift */
     int machine;   /* number of the tag's machine, or -1 */
     double dead_own_s, lag_s;
     double lagged, drift, noise, value;

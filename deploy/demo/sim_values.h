@@ -16,7 +16,7 @@ void sim_values_step(struct sim_values *values, double dt_s);
 double sim_values_at(const struct sim_values *values, size_t tag);
 void sim_values_force(struct sim_values *values, size_t tag, double value);
 void sim_values_release(struct sim_values *values, size_t tag);
-/* Does the same as process_upset(). */
+/* Returns progress and name of the current upset, like process_upset(). */
 double sim_values_upset(const struct sim_values *values, const char **name);
 
 #endif
