@@ -2,7 +2,7 @@
 // The connection's states, with a clock that the test advances.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { DEAD_MS, JITTER, LONGEST_WAIT_MS, QUIET_MS } from '../../clients/web/core/connection.js';
+import { CHECK_MS, DEAD_MS, FIRST_WAIT_MS, JITTER, LONGEST_WAIT_MS, OPENING_MS, QUIET_MS } from '../../clients/web/core/connection.js';
 import { SPREAD_MS } from '../../clients/web/core/wall.js';
 import { makeConnection } from './fixtures.mjs';
 
@@ -103,6 +103,60 @@ test('a server that falls silent is noticed, then given up without waiting for i
     assert.equal(connection.reason, 'The server stopped responding');
     assert.ok(sockets[0].closed);
     assert.equal(sockets[0].onmessage, null, 'what still comes is not heard');
+});
+
+test('a server that stops is noticed and left within 8.2 s, at whatever moment and with the longest wait; 1.8 s of 10 s remain', () => {
+    const most = DEAD_MS + CHECK_MS + FIRST_WAIT_MS * (1 + JITTER);
+    assert.ok(most <= 8200, `${most} ms`);
+    for (let spoke = 0; spoke < 4000; spoke += 50) {
+        const { connection, sockets, clock } = makeConnection({ random: () => 1 });
+        connection.start();
+        sockets[0].accept();
+        sockets[0].say({ type: 'welcome' });
+        connection.settle();
+        for (let ms = 0; ms < spoke; ms += 50) {
+            clock.advance(50);
+            sockets[0].say({ type: 'tags' });
+        }
+        const last = clock.now();
+        clock.advance(DEAD_MS - 1);
+        assert.equal(sockets.length, 1, 'not a moment early');
+        while (sockets.length < 2)
+            clock.advance(10);
+        assert.ok(clock.now() - last <= most + 10, `${clock.now() - last} ms, spoke for ${spoke} ms`);
+    }
+});
+
+test('lists that take long over a slow link get more time before the first message', () => {
+    const { connection, sockets, clock } = makeConnection();
+    connection.start();
+    sockets[0].accept();
+    clock.advance(OPENING_MS - 100);
+    assert.equal(connection.state, 'open');
+    sockets[0].say({ type: 'welcome' });
+    clock.advance(DEAD_MS - 100);
+    assert.equal(connection.state, 'open');
+    clock.advance(100 + CHECK_MS);
+    assert.ok(sockets[0].closed);
+});
+
+test('a page that hung for longer than the limit hears first what arrived meanwhile', () => {
+    for (const answers of [true, false]) {
+        const { connection, sockets, clock } = makeConnection();
+        connection.start();
+        sockets[0].accept();
+        sockets[0].say({ type: 'welcome' });
+        clock.advance(2100); // a ping is on its way
+        clock.time += DEAD_MS + 1000;
+        const [[id, late]] = clock.timers;
+        clock.timers.delete(id);
+        late.f(); // runs before the message that arrived meanwhile
+        assert.equal(connection.state, 'open');
+        if (answers)
+            sockets[0].say({ type: 'pong' });
+        clock.advance(1);
+        assert.equal(connection.state, answers ? 'open' : 'waiting');
+    }
 });
 
 test('a server that speaks every two seconds is never given up', () => {

@@ -7,9 +7,12 @@ export const FIRST_WAIT_MS = 500, LONGEST_WAIT_MS = 8000, JITTER = 0.25;
 // interval of pings, which an idle server answers, too
 export const PING_MS = 2000;
 export const QUIET_MS = 5000;
-export const DEAD_MS = 12000;
+// silence after which the page reconnects: deploy/SCALING.md adds it up
+export const DEAD_MS = 7000, CHECK_MS = 500;
+// limit of opening, and of the silence before the first message, which has long lists
+export const OPENING_MS = 10000;
 
-const GOING = 1001, FULL = 1013, FULL_MS = 10000, OPENING_MS = 10000, ANSWER_MS = 1000;
+const GOING = 1001, FULL = 1013, FULL_MS = 10000, ANSWER_MS = 1000;
 const CLOSE_REASONS = {
     1001: 'reason.down', 1002: 'reason.version', 1008: 'reason.forbidden', 1009: 'reason.long', 1013: 'reason.full', 4000: 'reason.slow',
 };
@@ -105,7 +108,7 @@ export class Connection {
         socket.onmessage = (event) => this.heard(event.data);
         socket.onclose = (event) => {
             if (event.code === FULL)
-                this.leastWait = this.leastWait || FULL_MS;
+                this.leastWait ||= FULL_MS;
             const back = event.code === GOING && /retry after (\d+) s$/.exec(event.reason ?? '');
             if (back)
                 this.leastWait = back[1] * 1000;
@@ -123,6 +126,7 @@ export class Connection {
     opened() {
         this.unopened = 0;
         this.blocked = '';
+        this.deadMs = OPENING_MS;
         this.lastHeard = this.clock.now();
         // Time of the first unanswered ping.
         this.pingAt = null;
@@ -135,6 +139,7 @@ export class Connection {
     }
 
     heard(data) {
+        this.deadMs = DEAD_MS;
         this.lastHeard = this.clock.now();
         this.pingAt = null;
         if (this.quiet)
@@ -145,18 +150,20 @@ export class Connection {
             this.onBytes(data);
     }
 
-    watch() {
+    watch(wait = CHECK_MS) {
         this.clock.clearTimeout(this.timer);
+        const due = this.clock.now() + wait;
         this.timer = this.clock.setTimeout(() => {
-            const silent = this.ask();
-            if (silent >= DEAD_MS) {
+            const silent = this.ask(), late = wait && this.clock.now() > due + ANSWER_MS;
+            if (silent >= this.deadMs && !late) {
                 this.lose(say('reason.silent'));
                 return;
             }
             if (!this.quiet && silent >= QUIET_MS)
                 this.become('open', true);
-            this.watch();
-        }, 500);
+            // the page hung: messages that arrived meanwhile are handled before the next timer, which decides
+            this.watch(late ? 0 : CHECK_MS);
+        }, wait);
     }
 
     // Sends a ping if one is due. Returns for how long the server has not answered a ping; not simply the time since its last message,
@@ -164,7 +171,7 @@ export class Connection {
     ask() {
         const now = this.clock.now();
         if (now >= this.nextPing) {
-            this.pingAt = this.pingAt ?? now;
+            this.pingAt ??= now;
             this.nextPing = now + PING_MS;
             this.send({ type: 'ping', t: now, ...(Date.now() - this.activeAt < 2 * PING_MS ? { active: true } : {}) });
         }
@@ -197,7 +204,7 @@ export class Connection {
         this.drop();
         this.reason = reason;
         if (was === 'open')
-            this.lostAt = this.lostAt ?? this.clock.now();
+            this.lostAt ??= this.clock.now();
         const usual = Math.min(LONGEST_WAIT_MS, FIRST_WAIT_MS * 2 ** this.tries);
         const wait = Math.max(usual, this.leastWait) * (1 + JITTER * (2 * this.random() - 1)) + this.spreadMs * this.random();
         this.leastWait = 0;
