@@ -41,7 +41,8 @@ soak: all tests
 	@$(MAKE) --no-print-directory soak-host
 # seed=N repeats the order of the faults of an earlier run. The table is in build/soak-host.txt, also during the run.
 soak-host: all $(out)/tests/faults/clock_off.so
-	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) MINUTES=$(or $(minutes),120) $(if $(seed),SEED=$(seed)) node --test tests/long/host.mjs
+	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) MINUTES=$(or $(minutes),120) $(if $(seed),SEED=$(seed)) \
+	    tests/long/contained node tests/long/host.mjs
 .PHONY: soak soak-host
 
 checked: demo plants style layers headers

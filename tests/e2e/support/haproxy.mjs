@@ -31,8 +31,10 @@ export class Haproxy {
         const file = join(proxy.folder, 'haproxy.cfg');
         writeFileSync(file, text);
         const checked = spawnSync(PROGRAM, ['-c', '-f', file], { encoding: 'utf8' });
-        if (checked.status !== 0)
+        if (checked.status !== 0) {
+            await proxy.destroy();
             throw new Error(checked.stderr);
+        }
         proxy.child = spawn(PROGRAM, ['-db', '-f', file], { stdio: ['ignore', 'ignore', 'pipe'] });
         proxy.said = checked.stderr;
         proxy.child.stderr.on('data', (chunk) => { proxy.said += chunk; });
@@ -56,7 +58,7 @@ export class Haproxy {
     }
 
     async destroy() {
-        if (this.child?.exitCode === null) {
+        if (this.child?.exitCode === null && this.child.signalCode === null) {
             const ended = new Promise((done) => this.child.once('exit', done));
             this.child.kill('SIGKILL');
             await ended;

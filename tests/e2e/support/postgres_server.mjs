@@ -26,9 +26,14 @@ export class PostgresServer {
         server.port = await freePort();
         const made = spawnSync(join(FOLDER, 'initdb'), ['-D', server.data, '-U', 'owner', '-A', 'trust', '--no-sync', '-E', 'UTF8'],
             { encoding: 'utf8', cwd: server.folder, ...as });
-        if (made.status !== 0)
-            throw new Error(made.stderr);
-        await server.restart();
+        try {
+            if (made.status !== 0)
+                throw new Error(made.stderr);
+            await server.restart();
+        } catch (error) {
+            await server.destroy();
+            throw error;
+        }
         return server;
     }
 
@@ -56,6 +61,7 @@ export class PostgresServer {
     async kill() {
         if (this.child && this.child.exitCode === null && this.child.signalCode === null) {
             this.child.kill('SIGQUIT');
+            this.child.kill('SIGCONT'); // after freeze()
             await this.ended;
         }
     }

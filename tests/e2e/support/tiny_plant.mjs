@@ -96,7 +96,7 @@ export class Program {
                 this.began = true;
                 return found;
             }
-            if (this.child.exitCode !== null || performance.now() > end)
+            if (this.child.exitCode !== null || this.child.signalCode !== null || performance.now() > end)
                 throw new Error(`no ${pattern} in:\n${this.said}`);
             await new Promise((done) => setTimeout(done, 20));
         }

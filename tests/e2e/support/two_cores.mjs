@@ -33,29 +33,38 @@ export class TwoCores {
     static async create(server, more = '', access = ['--trust-local']) {
         const two = new TwoCores();
         Object.assign(two, { server, access });
-        two.nodes = await Nodes.create();
-        const { plant } = two.nodes, tapPort = await freePort();
-        two.plant = plant;
-        two.databasePort = await freePort();
-        two.network = new Network();
-        await two.network.tap(tapPort, plant.modbusPort);
-        two.file = join(plant.folder, 'two.yaml');
+        try {
+            await two.make(more);
+        } catch (error) {
+            await two.destroy().catch(() => {});
+            throw error;
+        }
+        return two;
+    }
+    async make(more) {
+        const { server } = this;
+        this.nodes = await Nodes.create();
+        const { plant } = this.nodes, tapPort = await freePort();
+        this.plant = plant;
+        this.databasePort = await freePort();
+        this.network = new Network();
+        await this.network.tap(tapPort, plant.modbusPort);
+        this.file = join(plant.folder, 'two.yaml');
         writeFileSync(join(plant.folder, 'login'), server.login, { mode: 0o600 });
-        const url = server.url(two.databasePort).replace('127.0.0.1', 'db.test');
-        writeFileSync(two.file, `${readFileSync(plant.file, 'utf8').replace(`port: ${plant.modbusPort}`, `port: ${tapPort}`)}history:
+        const url = server.url(this.databasePort).replace('127.0.0.1', 'db.test');
+        writeFileSync(this.file, `${readFileSync(plant.file, 'utf8').replace(`port: ${plant.modbusPort}`, `port: ${tapPort}`)}history:
   deadband_percent: 0
   postgres: { url: "${url}", login: login }
 ${more}`);
         // two.yaml differs only in its port, so the prepared equipment is copied
         cpSync(plant.prepared, join(plant.folder, 'two.prepared'), { recursive: true });
-        const prepared = runProgram('plantcast-prep', [two.file]);
+        const prepared = runProgram('plantcast-prep', [this.file]);
         if (prepared.code !== 0)
             throw new Error(prepared.err);
-        const one = await two.makeCore('one', '127.0.0.2'), other = await two.makeCore('two', '127.0.0.3');
-        two.cores = { one, two: other };
-        one.toOther = await two.network.link(other.port, { from: STANDBY_HOST });
-        other.toOther = await two.network.link(one.port, { from: STANDBY_HOST });
-        return two;
+        const one = await this.makeCore('one', '127.0.0.2'), other = await this.makeCore('two', '127.0.0.3');
+        this.cores = { one, two: other };
+        one.toOther = await this.network.link(other.port, { from: STANDBY_HOST });
+        other.toOther = await this.network.link(one.port, { from: STANDBY_HOST });
     }
 
     // Makes a core with a history, a port and a connection to the database of its own.
@@ -160,8 +169,11 @@ ${more}`);
     }
 
     async destroy() {
-        await this.nodes.destroy();
-        await this.network?.close();
+        try {
+            await this.nodes?.destroy();
+        } finally {
+            await this.network?.close();
+        }
     }
 }
 

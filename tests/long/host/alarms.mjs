@@ -2,8 +2,10 @@
 // Raises alarms in the simulated device without a pause, lets operators acknowledge each, and clears it. Compares the journals of both
 // cores with what was done.
 import { setTimeout as sleep } from 'node:timers/promises';
+import { until } from '../../e2e/support/until.mjs';
 
 const KIND = 'H', HIGH = 95, NORMAL = 50, SHOWN_MS = 60000, STEP_MS = 100, JOURNAL_MS = 30000, ROWS = 1000;
+const PAUSE_MS = 4 * SHOWN_MS, AGAIN_MS = 5000;
 const EVENTS = ['raise', 'acknowledge', 'clear'];
 
 export class AlarmCycles {
@@ -24,9 +26,14 @@ export class AlarmCycles {
                 continue;
             }
             this.idle.delete(tag);
-            await this.cycle(tag, this.operators[turn % this.operators.length]);
-            this.counts.set(tag, this.counts.get(tag) + 1);
-            this.total++;
+            try {
+                await this.cycle(tag, this.operators[turn % this.operators.length]);
+                this.counts.set(tag, this.counts.get(tag) + 1);
+                this.total++;
+            } catch ({ message }) {
+                this.failures.push(`${tag}: ${message}`);
+                await sleep(AGAIN_MS);
+            }
         }
     }
 
@@ -40,7 +47,7 @@ export class AlarmCycles {
 
     // A user repeats an action that was not confirmed.
     async acknowledge(tag, operator) {
-        for (const end = performance.now() + SHOWN_MS; performance.now() < end; await sleep(STEP_MS)) {
+        for (const end = performance.now() + SHOWN_MS; performance.now() < end && !this.isOver; await sleep(STEP_MS)) {
             const answer = await operator.acknowledge(tag, KIND);
             if (answer?.not_kept)
                 this.notKept++;
@@ -52,7 +59,7 @@ export class AlarmCycles {
 
     async shown(tag, what, is) {
         const end = performance.now() + SHOWN_MS;
-        while (!this.operators.every(({ alarms, live }) => live && is(alarms.get(`${tag} ${KIND}`)))) {
+        while (!this.isOver && !this.operators.every(({ alarms, live }) => live && is(alarms.get(`${tag} ${KIND}`)))) {
             if (performance.now() > end) {
                 const states = this.operators.map(({ alarms, live }) => `${live ? '' : 'not live '}${alarms.get(`${tag} ${KIND}`)}`);
                 this.failures.push(`${tag}: not shown to all operators within ${SHOWN_MS / 1000} s that it ${what}: ${states.join(', ')}`);
@@ -64,8 +71,7 @@ export class AlarmCycles {
 
     async pause() {
         this.isPaused = true;
-        while (this.idle.size < this.tags.length)
-            await sleep(STEP_MS);
+        await until('the end of the cycles', () => this.idle.size === this.tags.length, PAUSE_MS / 1000);
     }
     resume() {
         this.isPaused = false;

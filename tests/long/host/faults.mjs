@@ -4,10 +4,14 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { sleep, until } from './site.mjs';
 
 const RESTART_MS = 8000, CUT_MS = 8000, FROZEN_MS = 15000, FULL_MS = 10000, CLOCK_MS = 15000, CLOCK_S = 3600, DRAINED_S = 20;
+const ENDED_MS = 30000;
 
 const ended = ({ program }) => program.child.exitCode !== null || program.child.signalCode !== null;
 const isCore = (node) => Boolean(node.disk);
-const start = (site, node) => (isCore(node) ? site.two.start(node.name) : site.startRenderer(node));
+async function start(site, node) {
+    site.mustGoOn();
+    return isCore(node) ? site.two.start(node.name) : site.startRenderer(node);
+}
 
 // Ends a process, or waits for its end, and starts it again after that time.
 async function endAndStart(site, node, signal, away_ms = RESTART_MS) {
@@ -15,10 +19,17 @@ async function endAndStart(site, node, signal, away_ms = RESTART_MS) {
     node.program.stopped = true;
     if (signal)
         node.program.child.kill(signal);
-    await node.program.ended;
+    const { program } = node, hasEnded = await Promise.race([program.ended, sleep(ENDED_MS)]);
+    program.child.kill('SIGKILL');
+    await program.ended;
     await sleep(away_ms);
-    await start(site, node);
-    node.isAway = false;
+    try {
+        await start(site, node);
+    } finally {
+        node.isAway = false;
+    }
+    if (!hasEnded)
+        throw new Error(`${node.name} went on running for ${ENDED_MS / 1000} s`);
 }
 async function stopAndGoOn(node, ms) {
     node.program.child.kill('SIGSTOP');
@@ -63,9 +74,8 @@ export const FAULTS = [
         act: ({ standby, random }) => cut([standby.toDatabase], anyHow(random)) },
     // the old leader recorded alarms behind the cut, which the next leader finds for itself and records too
     { name: 'leader cut off both', alerts: [], isRepeated: true, act: async ({ site, leader, standby, random }) => {
-        const how = anyHow(random), away = endAndStart(site, leader, null, CUT_MS);
-        await cut([leader.toDatabase, standby.toOther], how);
-        await away;
+        const links = [leader.toDatabase, standby.toOther];
+        await Promise.all([endAndStart(site, leader, null, CUT_MS), cut(links, anyHow(random))]);
     } },
     { name: 'renderer cut off cores', alerts: ['PlantcastCoreLost'],
         act: ({ site, random }) => cut(busiest(site).links, anyHow(random), FROZEN_MS) },
@@ -142,17 +152,20 @@ async function drained(site, renderer) {
     await until('the balancer', async () => /^UP/.test((await site.proxy.servers())[renderer.name].status), 30);
 }
 
-// Starts nodes that ended unexpectedly, as a service manager does. Returns a function that ends this; ends: receives the names.
+// Starts nodes that ended unexpectedly, as a service manager does, until the site is over. ends: receives the names.
 export function supervise(site, ends) {
-    const timer = setInterval(async () => {
-        for (const node of [...Object.values(site.two.cores), ...site.renderers].filter((one) => !one.isAway && ended(one))) {
-            node.isAway = true;
-            node.program.stopped = true;
-            ends.push(`${node.name} ended: ${node.program.said.trim().split('\n').slice(-2).join(' / ')}`);
-            await sleep(2000);
-            await start(site, node).catch(({ message }) => ends.push(message));
-            node.isAway = false;
-        }
+    const revive = async (node) => {
+        node.isAway = true;
+        node.program.stopped = true;
+        ends.push(`${node.name} ended: ${node.program.said.trim().split('\n').slice(-2).join(' / ')}`);
+        await sleep(2000);
+        await start(site, node).catch(({ message }) => ends.push(message));
+        node.isAway = false;
+    };
+    const timer = setInterval(() => {
+        if (site.isOver)
+            clearInterval(timer);
+        else
+            [...Object.values(site.two.cores), ...site.renderers].filter((one) => !one.isAway && ended(one)).forEach(revive);
     }, 500);
-    return () => clearInterval(timer);
 }

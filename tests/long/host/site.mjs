@@ -2,6 +2,7 @@
 // One plant with all of its programs on this machine: two cores with PostgreSQL, two renderers with TLS, HAProxy, Prometheus, operators and
 // the load generator. Each core has a small disk and a clock of its own; each link between the programs can be cut.
 import { spawn, spawnSync } from 'node:child_process';
+import { once } from 'node:events';
 import { appendFileSync, mkdirSync, readFileSync, renameSync, statfsSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { connect } from 'node:tls';
@@ -17,7 +18,7 @@ import { Operator } from './operators.mjs';
 import { Alerts, Footprint } from './watch.mjs';
 
 const NEW_KEY = '-newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes';
-const OPERATORS = 4, LOAD_SESSIONS = 4, LOAD_S = 20, DISK_MB = 48, RECOVERY_S = 60;
+const OPERATORS = 4, LOAD_SESSIONS = 4, LOAD_S = 20, DISK_MB = 48, RECOVERY_S = 60, PROGRAM_MS = 60000;
 const ACCESS = ['--behind-proxy', '--host', 'plant.example', '--host', '127.0.0.1'];
 
 function run(program, args, options = {}) {
@@ -37,33 +38,53 @@ function openssl(folder, command) {
 }
 
 export class Site {
-    static async start() {
-        const site = new Site();
-        site.server = await PostgresServer.start();
-        site.server.makeDatabase('plants');
-        const two = site.two = await TwoCores.create(site.server, '', ACCESS);
-        site.plant = two.plant;
-        site.folder = two.plant.folder;
-        site.slacken();
-        await site.plant.set({ 'TI-1': 50, 'PI-1': 50 });
-        site.makeAuthority();
+    constructor() { Object.assign(this, { over: new AbortController(), renderers: [], operators: [] }); }
+
+    get isOver() { return this.over.signal.aborted; }
+    mustGoOn() { this.over.signal.throwIfAborted(); }
+
+    // Starts everything, until destroy().
+    start() { return this.starting = this.startAll(); }
+    async startAll() {
+        const end = once(this.over.signal, 'abort').then(() => this.mustGoOn());
+        for (const step of [this.startServer, this.makeTwo, this.startCores, this.startRenderers, this.balance, this.watch]) {
+            this.mustGoOn();
+            const done = step.call(this), isMaking = !this.two;
+            await (isMaking ? done : Promise.race([done, end])); // destroy() ends what the later steps wait for
+        }
+    }
+    async startServer() {
+        this.server = await PostgresServer.start();
+        this.server.makeDatabase('plants');
+    }
+    async makeTwo() {
+        const two = this.two = await TwoCores.create(this.server, '', ACCESS);
+        this.plant = two.plant;
+        this.folder = two.plant.folder;
+        this.slacken();
+        await this.plant.set({ 'TI-1': 50, 'PI-1': 50 });
+        this.makeAuthority();
         for (const core of Object.values(two.cores))
-            site.equip(core);
-        await Promise.all([two.start('one'), two.start('two')]);
-        await two.followed(await two.leader());
-        site.renderers = [];
+            this.equip(core);
+    }
+    async startCores() {
+        await Promise.all([this.two.start('one'), this.two.start('two')]);
+        await this.two.followed(await this.two.leader());
+    }
+    async startRenderers() {
         for (const name of ['r1', 'r2'])
-            site.renderers.push(await site.makeRenderer(name));
-        await site.balance();
-        site.operators = Array.from({ length: OPERATORS }, (_, i) => new Operator({ name: `operator ${i + 1}`,
-            port: () => site.proxy.port, token: two.nodes.tokens.operator, watched: 'TI-2' }));
-        site.cycles = new AlarmCycles(site.plant, site.operators, ['TI-1', 'PI-1']);
-        const targets = [...Object.values(two.cores).map(({ port, name }) => ({ port, node: `core ${name}`, scheme: 'http' })),
-            ...site.renderers.map(({ port, name }) => ({ port, node: `renderer ${name}`, scheme: 'https' }))];
-        site.alerts = await Alerts.start(site.folder, targets, two.nodes.tokens.viewer, join(site.folder, 'ca.pem'));
-        site.footprint = new Footprint(() => site.processes());
-        site.load = site.generateLoad();
-        return site;
+            this.renderers.push(await this.makeRenderer(name));
+    }
+    async watch() {
+        const { cores, nodes } = this.two;
+        this.operators = Array.from({ length: OPERATORS }, (_, i) => new Operator({ name: `operator ${i + 1}`,
+            port: () => this.proxy.port, token: nodes.tokens.operator, watched: 'TI-2' }));
+        this.cycles = new AlarmCycles(this.plant, this.operators, ['TI-1', 'PI-1']);
+        const targets = [...Object.values(cores).map(({ port, name }) => ({ port, node: `core ${name}`, scheme: 'http' })),
+            ...this.renderers.map(({ port, name }) => ({ port, node: `renderer ${name}`, scheme: 'https' }))];
+        this.alerts = await Alerts.start(this.folder, targets, nodes.tokens.viewer, join(this.folder, 'ca.pem'));
+        this.footprint = new Footprint(() => this.processes());
+        this.load = this.generateLoad();
     }
 
     // Gives readings and the device more time, because the machine is busy, and polls less often.
@@ -132,6 +153,7 @@ export class Site {
     }
 
     async balance() {
+        this.mustGoOn();
         this.proxy = await Haproxy.start(this.renderers, this.two.cores.one, this.two.cores.two,
             { ca: join(this.folder, 'ca.pem'), coreCa: null, port: this.proxy?.port });
     }
@@ -184,22 +206,30 @@ export class Site {
     }
     freeDisk(core) { spawnSync('rm', [join(core.disk, 'filler')]); }
 
-    plantcast(...args) { return run(join(BIN, 'plantcast'), args); }
+    plantcast(...args) { return run(join(BIN, 'plantcast'), args, { signal: this.over.signal, timeout: PROGRAM_MS }); }
 
-    async destroy() {
-        this.isOver = true;
-        this.alerts?.end();
+    // Ends everything, also after a start that failed or goes on. Throws the first error in the end.
+    destroy() { return this.ending ??= this.endAll(); }
+    async endAll() {
+        this.over.abort();
+        await this.starting?.catch(() => {});
+        const errors = [];
+        for (const end of [this.endClients, () => this.load, () => this.proxy?.destroy(), () => this.alerts?.end(), this.unmount,
+            () => this.two?.destroy(), () => this.server?.destroy()])
+            await Promise.resolve().then(() => end.call(this)).catch((error) => errors.push(error));
+        if (errors.length > 0)
+            throw errors[0];
+    }
+    endClients() {
         this.footprint?.end();
         if (this.cycles)
             this.cycles.isOver = true;
-        for (const operator of this.operators ?? [])
+        for (const operator of this.operators)
             operator.leave();
-        await this.load;
-        await this.proxy?.destroy();
-        for (const core of Object.values(this.two?.cores ?? {}))
-            spawnSync('umount', ['-l', core.disk]);
-        await this.two?.destroy();
-        await this.server?.destroy();
+    }
+    unmount() {
+        for (const { disk } of Object.values(this.two?.cores ?? {}).filter((core) => core.disk))
+            spawnSync('umount', ['-l', disk]);
     }
 }
 

@@ -26,6 +26,7 @@ export class Alerts {
         const options = [`--config.file=${join(folder, 'prometheus.yml')}`, `--storage.tsdb.path=${join(folder, 'tsdb')}`,
             '--storage.tsdb.retention.time=3h', `--web.listen-address=127.0.0.1:${port}`];
         alerts.child = spawn('prometheus', options, { stdio: ['ignore', 'ignore', 'pipe'] });
+        alerts.ended = new Promise((done) => alerts.child.once('exit', done));
         alerts.said = '';
         alerts.child.stderr.on('data', (chunk) => { alerts.said = (alerts.said + chunk).slice(-5000); });
         alerts.timer = setInterval(() => alerts.poll().catch(() => {}), POLL_MS);
@@ -45,14 +46,15 @@ export class Alerts {
             if (!firing.has(name))
                 this.firing.delete(name);
     }
-    // Returns the names of the alerts that fire now or began to fire since a time.
-    since(at) { return new Set([...this.firing.keys(), ...this.fired.filter((one) => one.at >= at).map(({ name }) => name)]); }
+    // Returns the names of the alerts that began to fire since then.
+    since(at) { return new Set(this.fired.filter((one) => one.at >= at).map(({ name }) => name)); }
     // Returns the number of targets that Prometheus reads.
     async read() { return (await this.ask('targets')).data.activeTargets.filter(({ health }) => health === 'up').length; }
 
-    end() {
+    async end() {
         clearInterval(this.timer);
-        this.child.kill();
+        this.child.kill('SIGKILL');
+        await this.ended;
     }
 }
 
