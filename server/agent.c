@@ -27,14 +27,14 @@ struct agent {
 enum { PAUSE_MS = 100 };
 static const int64_t STATE_TIMEOUT_NS = 5 * NS_PER_S;
 
-/* Writes the line for the load balancer. If this daemon has no readings, the weight is 1 of 100: HAProxy then prefers other nodes. If
-   all nodes have lost the core, users still reach a node, whose page says that the core is lost. */
+/* Writes the line for the load balancer. If this daemon has no readings, HAProxy sends no users here. If all nodes have lost the core,
+   the shipped configuration sends users to any node that runs, whose page says that the core is lost. */
 static int print_line(const struct agent_state *state, char *line, size_t size)
 {
     int free_percent = state->busy_percent < 99 ? 100 - state->busy_percent : 1;
     if (state->drains)
         return snprintf(line, size, "down #draining\n");
-    return snprintf(line, size, "up %d%%\n", state->has_core ? free_percent : 1);
+    return state->has_core ? snprintf(line, size, "up %d%%\n", free_percent) : snprintf(line, size, "down #no core\n");
 }
 
 static void answer(struct agent *agent)

@@ -158,6 +158,8 @@ static bool find_client(struct server_context *server, struct lws *wsi, struct c
     leave_client(server, connection);
     if (proxied && !connection_header(wsi, WSI_TOKEN_X_FORWARDED_FOR, list, sizeof(list)))
         *refusal = TOO_LONG;
+    connection->from_proxy = proxied;
+    connection->forwarded = proxied && lws_hdr_total_length(wsi, WSI_TOKEN_X_FORWARDED_FOR) > 0;
     if (list[0] && !access_forwarded(&server->params.access, list, address, sizeof(connection->address)))
         lws_get_peer_simple(wsi, address, sizeof(connection->address));
     connection->client = address_limits_ref(server->room.addresses, address);

@@ -12,6 +12,8 @@ struct connection {               /* identity of one connection; lives as long a
     enum role role;               /* role of the user, according to the last request's headers */
     struct token_holder holder;
     char token[TOKEN_MAX_CHARS + 1]; /* token of the last request; "": none */
+    bool from_proxy;                 /* true: a trusted proxy sent the last request */
+    bool forwarded;                  /* true: the trusted proxy passed on a client's request; false also for the proxy's own checks */
     bool answered;                   /* true: all requests of this connection are answered */
     /* bytes received by the connection when the wait for its next request began; UINT64_MAX: not waiting (http/stuck_head.h) */
     uint64_t received_before_head;

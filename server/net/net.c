@@ -128,6 +128,11 @@ static const char *core_standing(const struct server_context *server)
                                              : "leads; a standby follows";
 }
 
+static bool has_core(const struct server_context *server)
+{
+    return !server->params.plant.core_link || server->session_context.core_up;
+}
+
 static void say_status(const struct server_context *server)
 {
     if (server->params.tick)
@@ -136,7 +141,7 @@ static void say_status(const struct server_context *server)
                                 .render_service = server->params.plant.render_service,
                                 .sessions = (size_t)server->streams.count,
                                 .busy_percent = admission_busy_percent(&server->room.admission),
-                                .has_core = !server->params.plant.core_link || server->session_context.core_up,
+                                .has_core = has_core(server),
                                 .core = core_standing(server),
                                 .drains = server->life.drain_ns != 0,
                                 .certificate_ends_s = server->tls ? tls_ends_s(server->tls) : 0,
@@ -168,6 +173,9 @@ static void tick(struct net *net, int64_t now_ns)
         net->server.session_context.history_first_us = history_loader_first_us(net->server.history_loader);
     if (net_check_links(&net->server))
         streams_on_readings(&net->server, false, true);
+    if (core_loss_on_tick(&net->server.life.core_loss, has_core(&net->server), now_ns))
+        log_warn(net->server.params.log, "no core for %d s: moving sessions to other nodes, which the load balancer says it uses",
+                 (int)((now_ns - net->server.life.core_loss.lost_ns) / NS_PER_S));
     streams_on_tick(&net->server);
     http_on_tick(&net->server, now_ns);
     render_service_wake(net->server.params.plant.render_service);

@@ -9,6 +9,7 @@
 #include "message/alarm_text.h"
 #include "message/marker_text.h"
 #include "net/address_limits.h"
+#include "net/core_loss.h"
 #include "net/latency_stages.h"
 #include "net/net_params.h"
 #include "net/picture_signer.h"
@@ -116,6 +117,7 @@ struct server_context {
         bool goes_down;    /* the server shuts down: connections are closed after their answer */
         char goodbye[64];  /* close reason that streams get at shutdown */
         int64_t drain_ns;  /* monotonic time since when the daemon drains its sessions to other daemons; 0: it does not */
+        struct core_loss core_loss;
         int start_s;       /* seconds that the daemon took to start, rounded up; 0: the daemon is not ready */
     } life;
     struct { /* texts that several sessions get */

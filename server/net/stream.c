@@ -19,6 +19,7 @@ static const int64_t SILENT_NS = SILENT_S * NS_PER_S;
 /* time for load balancers to notice that this daemon drains its sessions to other daemons */
 static const int64_t DRAIN_DELAY_NS = 2 * NS_PER_S;
 static const int64_t DRAIN_NS = 10 * NS_PER_S;
+static const int64_t MOVE_NS = 1 * NS_PER_S; /* within this time sessions move away from a node without a core */
 static const int64_t MOVING_NS = 200 * NS_PER_MS; /* a session's camera counts as moving for this long after an input of its user */
 
 /* --- connecting and disconnecting ------------------------------------------------------------------------------------- */
@@ -247,13 +248,24 @@ void streams_on_readings(struct server_context *server, bool data_changed, bool 
     }
 }
 
-/* Returns whether this session must be closed by now, while the daemon drains its sessions to other daemons. Sessions are closed at
+/* Returns whether a session whose node began at begun_ns to close sessions within spread_ns must be closed by now. Sessions are closed at
    different instants, because their pages reconnect to other nodes immediately. */
-static bool is_drained(const struct server_context *server, const struct stream *stream, int64_t now_ns)
+static bool is_due(const struct stream *stream, int64_t begun_ns, int64_t spread_ns, int64_t now_ns)
 {
     /* Fibonacci hashing: multiplying ids by 2^64 / golden ratio spreads consecutive ids evenly */
     uint64_t spread = (stream->session->id + 1) * 0x9E3779B97F4A7C15u >> 32;
-    return server->life.drain_ns && now_ns - server->life.drain_ns > DRAIN_DELAY_NS + (int64_t)(spread % 1000) * (DRAIN_NS / 1000);
+    return now_ns - begun_ns > (int64_t)(spread % 1000) * (spread_ns / 1000);
+}
+
+/* Closes a session that must move to another node: because this one is being drained, or has lost its core. A session that did not come
+   through a load balancer would reach the same node again, and stays without a core. */
+static void move_elsewhere(const struct server_context *server, const struct stream *stream, int64_t now_ns)
+{
+    int64_t drain_ns = server->life.drain_ns, moves_ns = server->life.core_loss.moves_ns;
+    if (drain_ns && is_due(stream, drain_ns + DRAIN_DELAY_NS, DRAIN_NS, now_ns))
+        session_close(stream->session, LWS_CLOSE_STATUS_GOINGAWAY, "this node is being drained; retry after 0 s");
+    if (moves_ns && connection_of(stream->wsi)->forwarded && is_due(stream, moves_ns, MOVE_NS, now_ns))
+        session_close(stream->session, LWS_CLOSE_STATUS_GOINGAWAY, "this node has lost its core; retry after 0 s");
 }
 
 void streams_on_tick(struct server_context *server)
@@ -267,8 +279,7 @@ void streams_on_tick(struct server_context *server)
     tiles_on_tick(server);
     for (struct stream *stream = server->streams.first; stream; stream = stream->next) {
         session_on_tick(stream->session, now_ns);
-        if (is_drained(server, stream, now_ns))
-            session_close(stream->session, LWS_CLOSE_STATUS_GOINGAWAY, "this node is being drained; retry after 0 s");
+        move_elsewhere(server, stream, now_ns);
         if (stream->in_count > 0 && now_ns - stream->in_begin_ns > patience_ns)
             session_close(stream->session, 1008, "an incomplete message timed out");
         count(server, stream);

@@ -1,24 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HAProxy in front of two renderers: a node that is killed or drained loses no view and no acknowledgement.
+// HAProxy in front of two renderers: a node that is killed, drained, stopped or cut off the core loses no view and no acknowledgement.
 import assert from 'node:assert/strict';
 import { connect } from 'node:net';
 import { after, before, test } from 'node:test';
+import { Operator } from '../long/host/operators.mjs';
 import { Haproxy, missingHaproxy } from './support/haproxy.mjs';
 import { Nodes, sleep, until } from './support/nodes.mjs';
 import { get, PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
+import { CuttableLink } from './support/postgres_server.mjs';
 import { promise } from './support/promise.mjs';
 import { notBuilt } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt() || (missingHaproxy() ?? false), timeout: 200000 };
-const VIEWERS = 40, BACK_MS = 10000;
-let nodes, core, renderers, proxy, viewers;
+const VIEWERS = 40, BACK_MS = 10000, BLIND_MS = 10000;
+let nodes, core, renderers, proxy, viewers, links;
 
 before(async () => {
     if (options.skip)
         return;
     nodes = await Nodes.create({ slowDevice: true });
     core = await nodes.core(0, '--behind-proxy', '--host', 'plant.example');
+    links = [await CuttableLink.open(core.port), await CuttableLink.open(core.port)];
     renderers = await Promise.all(['r1', 'r2'].map(start));
     proxy = await Haproxy.start(renderers, core);
     await nodes.plant.tell('set TI-1 20');
@@ -30,11 +33,14 @@ after(async () => {
         viewer.leave();
     await proxy?.destroy();
     await nodes?.destroy();
+    for (const link of links ?? [])
+        link.close();
 });
 
 async function start(name, i) {
     const agentPort = renderers?.[i].agentPort ?? await freePort();
-    const node = await nodes.renderer(name, core, '--agent-port', String(agentPort), '--behind-proxy', '--host', 'plant.example',
+    const through = { url: `ws://127.0.0.1:${links[i].port}` };
+    const node = await nodes.renderer(name, through, '--agent-port', String(agentPort), '--behind-proxy', '--host', 'plant.example',
         '--limit', 'address-sessions=100', '--limit', 'address-connections=200',
         ...(renderers ? ['--port', String(renderers[i].port)] : []));
     return Object.assign(node, { agentPort, name });
@@ -195,4 +201,66 @@ test('a token that was changed, or is another person\'s, restores nothing; as it
         assert.equal((await client.text('welcome')).resumed, restores, `case ${i}`);
         client.close();
     }
+});
+
+const isUp = async (name) => /^UP/.test((await proxy.servers())[name].status);
+const operatorNamed = (name) => new Operator({ name, port: () => proxy.port, token: nodes.tokens.operator, watched: 'TI-2' });
+const nodeOf = ({ jar }) => jar.cookie?.split('=')[1];
+
+// Opens operators with the page's own connection code, until each node has two, and changes a reading five times a second.
+async function watching(t) {
+    for (const viewer of viewers ?? [])
+        viewer.leave();
+    await until('both nodes up', async () => await isUp('r1') && await isUp('r2'));
+    let turn = 0;
+    const timer = setInterval(() => nodes.plant.tell(`set TI-2 ${20 + ++turn % 9}`).catch(() => {}), 200), operators = [];
+    t.after(() => {
+        clearInterval(timer);
+        for (const operator of operators)
+            operator.leave();
+    });
+    const count = (name) => operators.filter((one) => nodeOf(one) === name).length;
+    while (count('r1') < 2 || count('r2') < 2) {
+        const operator = operatorNamed(`operator ${operators.length}`);
+        operators.push(operator);
+        await until('a live picture', () => operator.frameAt > 0 && operator.sees);
+    }
+    return operators;
+}
+const blindMs = (operators, since) => Math.max(...operators.map((operator) => operator.longestBlind(since)));
+
+for (const [what, act, undo] of [
+    ['stopped', (i) => renderers[i].program.child.kill('SIGSTOP'), (i) => renderers[i].program.child.kill('SIGCONT')],
+    ['cut off the core', (i) => links[i].cut(), (i) => links[i].mend()],
+    ['cut off the core without a word', (i) => links[i].freeze(), (i) => links[i].mend()],
+])
+    test(`a node that is ${what}: its operators see the plant again at the other node, and nobody else notices`, options, async (t) => {
+        const operators = await watching(t), hit = operators.filter((one) => nodeOf(one) === 'r1'), began = performance.now();
+        act(0);
+        try {
+            await until('all at the other node', () => operators.every((one) => nodeOf(one) === 'r2' && one.sees));
+            promise(t, 'operators blind', blindMs(hit, began), BLIND_MS);
+            assert.ok(operators.filter((one) => !hit.includes(one)).every(({ visits }) => visits === 1));
+        } finally {
+            undo(0);
+        }
+        await until('the node in use', () => isUp('r1'));
+    });
+
+test('without a core at any node all sessions stay, and new users get a page; they go on when the core is back', options, async (t) => {
+    const operators = await watching(t);
+    const areDown = async (seconds) => Object.values(await proxy.servers())
+        .every(({ status, since_s: since }) => /^DOWN/.test(status) && since >= seconds);
+    for (const link of links)
+        link.cut();
+    await until('six checks without a node in use', () => areDown(6));
+    assert.equal((await get(proxy.port, '/readyz?role=render')).status, 200);
+    assert.ok(operators.every(({ visits }) => visits === 1));
+    const late = operatorNamed('late');
+    t.after(() => late.leave());
+    await until('a new user', () => late.connection.state === 'open' && late.tags.length > 0);
+    for (const link of links)
+        link.mend();
+    await until('live pictures', () => [...operators, late].every(({ sees }) => sees));
+    assert.ok([...operators, late].every(({ visits }) => visits === 1));
 });

@@ -28,13 +28,27 @@ static bool is_asked_as_renderer(struct http_exchange *request)
            !strcmp(argument, "role=render");
 }
 
+/* Takes what a load balancer says about itself in its check. A client's request, which has X-Forwarded-For, is not believed. */
+static void hear_balancer(struct server_context *server, struct http_exchange *request)
+{
+    static const char header[] = "x-haproxy-server-state:";
+    const struct connection *connection = connection_of(request->wsi);
+    char state[512];
+    if (connection->from_proxy && !connection->forwarded &&
+        lws_hdr_custom_copy(request->wsi, state, sizeof(state), header, sizeof(header) - 1) > 0)
+        core_loss_on_check(&server->life.core_loss, state, clock_mono_ns());
+}
+
 static int ready(struct server_context *server, struct http_exchange *request)
 {
+    hear_balancer(server, request);
     if (server->params.keeper && !core_end_leads(server))
         return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "this core is standby: another core leads, or none yet\n");
     if (is_asked_as_renderer(request) && !server->params.is_core && !server->params.plant.core_link)
         return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE,
                                    "not a renderer: this daemon was started without --role render and polls the devices itself\n");
+    if (is_asked_as_renderer(request) && server->life.drain_ns)
+        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "this node is being drained\n");
     if (render_service_ready(server->params.plant.render_service))
         return request_answer_text(request, HTTP_STATUS_OK,
                                    !server->params.keeper           ? "ok\n"

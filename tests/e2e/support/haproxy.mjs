@@ -17,7 +17,7 @@ export class Haproxy {
         const proxy = new Haproxy();
         proxy.folder = mkdtempSync(join(tmpdir(), 'plantcast-haproxy-'));
         proxy.port = own ?? await freePort();
-        const authorities = [ca, coreCa]; // in the order in which the shipped file names them
+        const authorities = [ca, ca, coreCa]; // in the order of the shipped file
         const tls = (authority) => (authority ? ` ssl verify required ca-file ${authority}` : '');
         let text = readFileSync(SHIPPED, 'utf8').replaceAll(/ ssl verify required ca-file \S+/g, () => tls(authorities.shift()))
             .replace(/bind :443 .*/, `bind 127.0.0.1:${proxy.port}`).replace('/run/haproxy', proxy.folder)
@@ -25,7 +25,7 @@ export class Haproxy {
         if (standby)
             text = text.replace('# server standby 10.0.0.20:8443', `server standby ${host}:${standby.port}`);
         renderers.forEach(({ port, agentPort }, i) => {
-            text = text.replace(`10.0.0.1${i + 1}:8443`, `${host}:${port}`)
+            text = text.replaceAll(`10.0.0.1${i + 1}:8443`, `${host}:${port}`)
                 .replace(`cookie r${i + 1} agent-port 8404`, `cookie r${i + 1} agent-port ${agentPort}`);
         });
         const file = join(proxy.folder, 'haproxy.cfg');
@@ -41,7 +41,8 @@ export class Haproxy {
         return proxy;
     }
 
-    // Returns the state of each server of a backend from `show stat`: { r1: { status, weight, sessions } }
+    // Returns the state of each server of a backend from `show stat`: { r1: { status, weight, sessions, since_s } }; since_s: seconds since
+    // the status changed.
     async servers(backend = 'renderers') {
         const text = await new Promise((done, fail) => {
             const socket = connect(join(this.folder, 'admin.sock'), () => socket.end('show stat\n'));
@@ -54,7 +55,7 @@ export class Haproxy {
         const column = (line, name) => line[head.indexOf(name)];
         return Object.fromEntries(lines.filter((line) => column(line, 'pxname') === backend && column(line, 'svname') !== 'BACKEND')
             .map((line) => [column(line, 'svname'), { status: column(line, 'status'), weight: Number(column(line, 'weight')),
-                sessions: Number(column(line, 'scur')) }]));
+                sessions: Number(column(line, 'scur')), since_s: Number(column(line, 'lastchg')) }]));
     }
 
     async destroy() {

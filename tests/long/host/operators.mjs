@@ -45,12 +45,14 @@ export class Operator {
     // watched: name of a tag whose reading changes all the time.
     constructor({ name, port, token, watched }) {
         Object.assign(this, { name, watched, tags: [], bad: new Set(), alarms: new Map(), live: false, frameAt: 0, gaps: [], seq: 0 });
+        this.visits = 0; // number of connections that opened
         this.answers = new Map();
         this.seenAt = performance.now();
         const jar = {};
         this.jar = jar;
         this.connection = new Connection({ url: '', clock, open: () => new PageSocket(port(), jar) });
         this.connection.onOpen = () => {
+            this.visits++;
             this.live = false;
             this.alarms.clear();
             this.connection.send({ type: 'hello', tokens: true, token, width: 160, height: 90, codecs: ['jpeg'] });

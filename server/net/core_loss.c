@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The balancer hears of a lost core at the agent's port (agent.h) once a second, and tells its own state in the next check. */
+#include "net/core_loss.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/clock.h"
+
+/* After a loss, the balancer's word counts only from this time on: renderers that lost the same core may notice it half a second apart, and
+   the balancer asks each once a second. */
+static const int64_t SETTLE_NS = 2500 * NS_PER_MS;
+static const int64_t CHECKED_NS = 3 * NS_PER_S; /* a balancer's word is valid for three checks */
+
+static bool is_elsewhere(const char *state)
+{
+    const char *weight = strstr(state, "; weight=");
+    int own, all;
+    return !strncmp(state, "DOWN", 4) && weight && sscanf(weight, "; weight=%d/%d", &own, &all) == 2 && all > 0;
+}
+
+void core_loss_on_check(struct core_loss *loss, const char *state, int64_t now_ns)
+{
+    loss->elsewhere_ns = is_elsewhere(state) ? now_ns : 0;
+}
+
+bool core_loss_on_tick(struct core_loss *loss, bool has_core, int64_t now_ns)
+{
+    bool moved = loss->moves_ns != 0;
+    if (has_core)
+        loss->lost_ns = 0;
+    else if (!loss->lost_ns)
+        loss->lost_ns = now_ns;
+    bool moves = loss->lost_ns && loss->elsewhere_ns - loss->lost_ns >= SETTLE_NS && now_ns - loss->elsewhere_ns < CHECKED_NS;
+    loss->moves_ns = !moves ? 0 : moved ? loss->moves_ns : now_ns;
+    return moves && !moved;
+}
