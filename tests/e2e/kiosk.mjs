@@ -237,7 +237,7 @@ test('systemd finds nothing wrong with its units', { skip: noAnalyze }, () => {
     try {
         for (const name of names) // the programs that the units start are not installed here
             writeFileSync(join(folder, `plantcast-kiosk${name}`), readFileSync(`deploy/systemd/plantcast-kiosk${name}`, 'utf8')
-                .replace('/usr/lib/plantcast/kiosk', '/bin/true'));
+                .replaceAll('/usr/lib/plantcast/kiosk', '/bin/true'));
         writeFileSync(join(folder, 'seatd.service'), '[Service]\nExecStart=/bin/true\n');
         const { status, stderr } = spawnSync('systemd-analyze', ['verify', '--man=no', ...names.map((name) =>
             join(folder, `plantcast-kiosk${name}`))], { encoding: 'utf8' });

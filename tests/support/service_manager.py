@@ -111,7 +111,7 @@ def main():
             if order.strip() == "again":
                 child.terminate()
                 child.wait()
-                child = start(given.command, variables, listening)
+                child, ready = start(given.command, variables, listening), False
             if order.startswith("freeze "):
                 frozen = freeze(child.pid, order.split()[1])
         if given.watchdog and ready and not killed and time.monotonic() - fed > given.watchdog:
