@@ -252,7 +252,7 @@ static void turn_to_shares(const struct solving *solving, size_t first, size_t w
 }
 
 /* Writes the kernels (covariances with each sensor's reading) at vertices [begin * STRIP, end * STRIP) to `shares`, where weigh_strips()
- * replaces them by H. */
+ * replaces them by H, the weights of the readings in the estimate at each vertex. */
 static void keep_kernels(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;

@@ -54,8 +54,8 @@ struct core_link {
         char said[ADDRESSES][WHY_BYTES]; /* for each address: the reason logged last why there was no connection */
     } hosts[CORE_URLS];
     int address;                                       /* index of the address that is being tried */
-    /* heard_ns: time of the newest message; least_ns, readings_ns: values that struct core_readings keeps from message to message (its
-       least_ns and at_ns) */
+    /* heard_ns: time of the newest message. least_ns: smallest difference of the two machines' monotonic clocks on this connection.
+       readings_ns: arrival time of the previous message with readings. core_readings_read() takes and updates both */
     int64_t heard_ns, begun_ns, least_ns, readings_ns;
     bool ended, taken, votes, introduced, clock_said;  /* votes: this connection is used only for lease promises and gets no readings */
     bool at_fault;       /* true: the connection failed because this node or the core is configured wrongly; false: the connection was

@@ -17,7 +17,8 @@ enum { DRIFT_HOURS = 168, DRIFT_HOURS_LEAST = 84 }; /* DRIFT_HOURS: hours of a w
 enum { DRIFT_NEAREST = 2 };                         /* largest number of nearest sensors whose readings become terms of the model */
 #define DRIFT_SIGMAS 3.0 /* DRIFT_FOUND is meant for a drift over the week of at least this many standard deviations (struct drift:
                             scatter) */
-/* an estimated drift counts from this many standard deviations on, fewer than DRIFT_SIGMAS because estimates err */
+/* least estimated drift for a verdict, in standard deviations; below DRIFT_SIGMAS, because estimates of a drift of DRIFT_SIGMAS are
+   sometimes too small */
 #define DRIFT_SIGMAS_LEAST 2.5
 #define DRIFT_ERRORS 5.0 /* an estimated drift must also be this many times its own standard error */
 

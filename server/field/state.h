@@ -27,7 +27,7 @@ struct field_state {
     double error_scale;      /* factor from weights->errors to the largest error drawn */
     unsigned added;          /* number of updates since the sums were last recomputed in full */
     struct state_input *now, *shown; /* by sensor of the layout: inputs that are requested now, and inputs that the scalars contain */
-    uint8_t *usable;                 /* enum sensor_use of `now`, by sensor of the layout */
+    uint8_t *usable;                 /* by sensor of the layout: whether the input in `now` is used (enum sensor_use) */
     /* storage for struct weights_terms. Element 0: the sensors whose input changed; element 1: all sensors in the sum */
     struct state_list {
         uint32_t *members;

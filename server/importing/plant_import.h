@@ -42,7 +42,8 @@ const char *plant_import_exports(const struct plant_import *import);
 const char *plant_import_matches(const struct plant_import *import);
 /* Returns the path of the report that plantcast import writes; the file may be absent. Valid as long as `import`. */
 const char *plant_import_report(const struct plant_import *import);
-/* Returns the static name of the file in the exports folder with match decisions, which an order with `decides` applies. */
+/* Returns the static name of the file with match decisions in the exports folder. An import order whose member `decides` is true applies
+   the decisions of this file. */
 const char *plant_import_decisions(void);
 /* Accepts an order. Returns false while another order is in progress. */
 bool plant_import_order(struct plant_import *import, const struct import_order *order);

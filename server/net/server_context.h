@@ -32,8 +32,8 @@ struct wall_displays {
     struct wall_seen {
         char wall[NAMED_VIEW_ID_BYTES];
         int display;
-        /* connected_ns: monotonic time as of which the connected display's oldest picture is current, 0: not connected; fresh_ns: the last
-           such time, kept after the display disconnects */
+        /* connected_ns: monotonic time up to which all pictures on this display are current (its oldest picture counts); 0: the display is
+           not connected. fresh_ns: the last such time, kept after the display disconnects */
         int64_t connected_ns, fresh_ns;
         counter *age;
     } at[WALL_DISPLAYS_SEEN];

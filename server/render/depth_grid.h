@@ -38,7 +38,8 @@ static inline int depth_cells_along(int px)
 {
     return (px + DEPTH_CELL_PX - 1) / DEPTH_CELL_PX;
 }
-/* Fills in the lens of a view. plant_from_ground: matrix from positions on the ground, 0..1 in x and y; NULL: no ground is seen. */
+/* Computes from a view the matrices that clients need to turn depth codes into positions (struct depth_lens). plant_from_ground: matrix
+   from positions on the drawn ground rectangle, 0..1 along each side, to the plant; NULL: the view shows no ground. */
 void depth_lens_init(struct depth_lens *lens, const struct view_constants *constants, const double *plant_from_ground, int width_px,
                      int height_px);
 /* Encodes the cells of a frame, row by row. Returns NULL when out of memory. The caller owns the grid (depth_grid_unref). */

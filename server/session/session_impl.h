@@ -40,8 +40,8 @@ void session_record_refusal(const struct session *session, const struct message_
 struct kept_action {
     struct settling_ticket journal, file, audit;
 };
-/* Notes how many rows journal, files and audit trail have so far; call this before carrying out an action. Pass the result to
-   session_kept_reply(). */
+/* Notes how many rows the alarm journal, the saved files (views, notes) and the audit trail have so far. Call this before carrying out an
+   action. session_kept_reply() takes the result and answers once the rows that the action added are on disk. */
 struct kept_action session_kept_begin(const struct session *session);
 /* Records the action in the audit trail, and queues the answer once journal, file and audit trail have the action on disk. If they cannot
    be written, or are not written within a second, the answer says so: `not_kept` for an action on alarms, otherwise `kept` false, and

@@ -210,8 +210,8 @@ SIMD_BODY float through_edge(const struct edge_window *sight, float da, float db
     return straight2 < best2 ? straight2 : best2;
 }
 
-/* Fills a row of distances (one per source) for a surface point: the shortest way through an edge of its triangle, or straight from a
- * corner. */
+/* Fills a row of distances (one per source) for a surface point. Each is the shortest of two kinds of ways: the straight way that enters
+ * the point's triangle through an edge, if it passes within that edge, and the distance at a corner plus the way from this corner. */
 SIMD_BODY void fill_row(const struct edge_window sights[3], const float to_m[3], const float *restrict a, const float *restrict b,
                         const float *restrict c, size_t count, float *restrict out)
 {

@@ -20,9 +20,9 @@ struct sample {
     uint32_t quality;
 };
 
-/* Argument of listeners. A listener is called for every sample and every lost link, in this order and under the store's lock, so it must
- * only copy the event and return. A link lost before the first sample makes no event, because the UTC time is not known yet; only snapshots
- * show it. */
+/* Argument of listeners. A listener is called for every sample and every lost link, in the order in which they happen and under the store's
+ * lock, so it must only copy the event and return. A link lost before the first sample makes no event, because the UTC time is not known
+ * yet; only snapshots show it. */
 struct sample_event {
     int tag;
     double value;

@@ -116,7 +116,7 @@ class Masks {
     }
 }
 
-// Returns one byte for each mask bit of the whole grid: 255 where the picture is near.
+// Returns one byte for each mask bit of the whole grid: 255 where the picture shows the nearer one of its cell's two surfaces.
 function readMasks(grid, bytes, codes) {
     const masks = new Masks(grid, codes), each = Math.ceil(grid.maskSide ** 2 / 8);
     let { at } = codes;

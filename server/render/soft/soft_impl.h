@@ -29,8 +29,9 @@ enum { MARK_LINE = 17, MARK_LINE_WHOLE = 255 };
 #define MARK_CAP 0xe0000000u
 #define MARK_KIND 0xc0000000u
 enum { MOST_RAMPS = 1 << 14 };
-/* Mark of a field that is evaluated at the pixel. With i the index in raster->pixels: MARK_PIXELS | i >> 8 << 16 | (i & 255) << 8 | row of
-   the colour map + raster->row_bias. raster_color() evaluates the field and replaces the mark by one of MARK_FIELD. */
+/* Mark of a field that is evaluated at the pixel. With i the index in raster->pixels: MARK_PIXELS | i << 8 | row of the
+   colour map + raster->row_bias (8 bits). raster_color() evaluates the field and replaces the mark by MARK_FIELD | index of the colour in
+   the rows of the colour map. */
 #define MARK_PIXELS 0x20000000u
 
 struct soft_vertex {

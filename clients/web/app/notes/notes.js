@@ -17,7 +17,7 @@ export class Notes {
     constructor({ session, selection, viewport, modules, hangs, tell, flyToTag, selectAsset }) {
         Object.assign(this, { session, selection, viewport, modules, hangs, flyToTag, selectAsset });
         this.pins = new Map(); // pins of notes: id -> { element, position }
-        this.pointer = null;   // position at which a desk points: { element, position, until }; null: nothing
+        this.pointer = null;   // mark where another user points, sent from a desk page: { element, position, until }; null: nobody points
         this.list = make('ul', { id: 'notes-list' });
         this.ofPlant = make('ul', { id: 'plant-notes', hidden: true }); // notes about the whole plant, over the picture
         viewport.element.append(this.ofPlant);
