@@ -51,6 +51,7 @@ const shown = (page, pattern) => page.waitForFunction(([source]) => new RegExp(s
 test('nginx without the lines for WebSocket is named on the page, with these lines; with them the page goes on', withNginx, async () => {
     const port = await freePort(), url = `http://127.0.0.1:${port}/plantcast/`;
     let stop = await startNginx(port, 'proxy_http_version 1.1;');
+    const began = performance.now();
     const desk = await openPage(url, DESKTOP);
     try {
         await shown(desk.page, /The server answers over HTTP, but nginx does not pass the WebSocket on/);
@@ -71,7 +72,8 @@ test('nginx without the lines for WebSocket is named on the page, with these lin
             }
         }
         await plant.daemon.line(/stream: a request from 127\.0\.0\.1 came without Upgrade: websocket, although it is a WebSocket/);
-        assert.equal(plant.daemon.said.match(/came without Upgrade/g).length, 1, 'one line a minute');
+        const minutes = Math.floor((performance.now() - began) / 60000);
+        assert.ok(plant.daemon.said.match(/came without Upgrade/g).length <= 1 + minutes, 'one line a minute');
         const answer = await fetch(`http://127.0.0.1:${plant.port}/stream`);
         assert.equal(answer.status, 426);
         assert.match(await answer.text(), /^426 Upgrade Required: /);
