@@ -8,6 +8,7 @@ import {
 import { contrast, countOutside, difference, meanAround } from '../support/pixels.mjs';
 import { missing, startPlant } from '../support/plant.mjs';
 import { sweep } from '../support/sweep.mjs';
+import { until } from '../support/until.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
@@ -77,7 +78,10 @@ test('one reading changes: the picture changes at its sensor, and nowhere but on
     await plant.ask(`set ${one.name} ${wanted}`);
     await waitForChange(page, one, before, 30);
     await settle(page, QUIET_MS);
-    const change = difference(before, await grab(page));
+    const change = difference(before, await until('a picture in full size', async () => {
+        const picture = await grab(page);
+        return picture.width === before.width && picture;
+    }));
 
     assert.ok(meanAround(change, one.x, one.y, 2) > 30, `at the sensor the colour changed by ${meanAround(change, one.x, one.y, 2)}`);
     const others = inside.filter((m) => m.asset !== one.asset);
