@@ -285,7 +285,8 @@ export class Plot {
         if (this.view.tags.length < 2)
             return;
         const ends = this.rows.map(({ tag }, i) => {
-            const k = data[i + 1].findLastIndex((value, n) => Number.isFinite(value) && data[0][n] <= max && data[0][n] >= min);
+            // a chart that is about to be replaced may have fewer columns than rows
+            const k = data[i + 1]?.findLastIndex((value, n) => Number.isFinite(value) && data[0][n] <= max && data[0][n] >= min) ?? -1;
             return k < 0 ? null : { tag, x: Math.min(valToPos(data[0][k], 'x', true), bbox.left + bbox.width - size / 2),
                 y: valToPos(data[i + 1][k], this.view.unitOf(tag) || '–', true) };
         }).filter(Boolean).sort((a, b) => a.y - b.y);
