@@ -260,13 +260,12 @@ serveInstalled();
 const offerVr = () => navigator.xr?.isSessionSupported('immersive-vr').then((yes) => yes && modules.prepare('enterVr'), () => {});
 navigator.xr?.addEventListener('devicechange', offerVr);
 offerVr();
-async function watch() {
-    const { watchMainThread } = await import('./common/watchdog.js');
-    watchMainThread({ scale: () => page.unit, reloads: document.body.classList.contains('wall') && parent === window });
-}
+// Loads the watchdog; again later if the server is away.
+const watch = () => setTimeout(() => import('./common/watchdog.js').then(({ watchMainThread }) => watchMainThread(
+    { scale: () => page.unit, reloads: document.body.classList.contains('wall') && parent === window })).catch(watch), WATCH_AFTER_MS);
 // no watchdog in a pane of a wall: the pane shares its main thread with the wall's page, which has a watchdog
 if (!new URLSearchParams(location.search).has('pane'))
-    setTimeout(() => watch().catch(console.warn), WATCH_AFTER_MS);
+    watch();
 // Opens the equipment list at the start if there is room for it.
 const showAssets = () => !narrow.matches && !document.body.classList.contains('wall') && modules.get('assets');
 narrow.addEventListener('change', showAssets);

@@ -19,7 +19,8 @@ const SHARED = ['light', 'environment', 'backdrop', 'arrows', 'selected', 'hidde
 // lists that are sent even if empty, because the plant's defaults may not be empty
 const SETS = ['hidden', 'isolate', 'ghost'];
 const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m', 'scale', 'isolines'];
-const OF_THE_INSTANT = ['tags', 'picked']; // types of messages whose data belong to the instant that is shown
+// types of messages whose data belong to the instant that is shown
+const OF_THE_INSTANT = ['tags', 'picked'];
 const NOW = { atUs: null, speed: 0, fromUs: null };
 const QUALITIES = ['good', 'uncertain', 'bad'];
 const MOST_BACKLOG_BYTES = 64 * 1024, RECENT_MS = 5000;
@@ -65,7 +66,8 @@ export class Session {
         this.lent = null;        // camera of the followed session that this one has taken over; null: none
         this.followers = { count: 0, sessions: [], names: [] }; // sessions that follow this one
         this.wantsDepth = false; // true: asks for depth grids, with which a picture can be shown from another camera
-        this.depth = null;       // newest depth grids: { messages (binary), more (true: the grid of the other half is missing) }
+        // newest depth grids: { messages (binary), more (true: the grid of the other half is missing) }
+        this.depth = null;
         this.forget();
         // the instant shown, as the server reports it; atUs null: now; fromUs null: no history is recorded
         this.time = { ...NOW, ...wanted.time };
