@@ -283,7 +283,7 @@ static bool send_standby(struct renderer_peer *renderer)
 }
 
 /* Returns whether everything that the standby must receive has been sent. The first readings after lead_ended_ns make send_next() look
-   for samples once more. */
+   for samples again. */
 static bool has_all(const struct server_context *server, const struct renderer_peer *renderer)
 {
     int64_t ended_ns = server->life.lead_ended_ns;
