@@ -38,10 +38,11 @@ void history_series_finish(struct history_series *series);
    half of the hour has a value. */
 int history_hourly(struct history_reader *reader, const char *tag, int64_t to_us, int hours, double *means);
 
-/* Finds the times of the first and the last recorded point. Returns false if there is none, or history cannot be read (logged). */
+/* Finds the times of the first and the last recorded point. Returns false if no point is recorded, or if history cannot be read
+   (logged). */
 bool history_span(struct history_reader *reader, int64_t *first_us, int64_t *last_us);
-/* Lists the gaps between two times in which nothing at all was recorded, although there are points before and after; ascending, without
-   overlaps. Free with mem_free(out->at). */
+/* Lists the gaps between two times: spans in which no tag was recorded, although points exist before and after. The list is in order of
+   time, without overlaps. Free with mem_free(out->at). */
 int history_gaps(struct history_reader *reader, int64_t from_us, int64_t to_us, struct history_gaps *out);
 /* Reads the readings of all tags at time t into a snapshot of the plant of `tags`. A tag that was never recorded is
    Bad_WaitingForInitialData. */

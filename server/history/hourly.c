@@ -6,7 +6,8 @@
 
 static const int64_t HOUR_US = 3600 * US_PER_S;
 
-/* Fills the hours between two buckets. No point was recorded in these hours, so the line between the buckets is straight. */
+/* Fills the hourly means between two buckets (rollups of recorded points). No point was recorded in these hours, so each mean lies on the
+   straight line between the buckets. */
 static void fill_between(const struct history_series *series, const struct history_bucket *a, const struct history_bucket *b,
                          int64_t from_us, int hours, double *means)
 {

@@ -37,10 +37,12 @@ struct import_series {
     int64_t first_us, last_us;
     struct spacing spacing;
     int64_t longest_us; /* longest time between two samples of this tag that is not a gap in the data */
-    bool has_pending;   /* in the second pass: true: the tag's newest sample waits, and is recorded once the next one has a later time */
+    /* true: `pending` holds the tag's newest sample of the second pass. It is recorded once a sample with a later time was read, because a
+       row with the same time replaces it */
+    bool has_pending;
     struct history_point pending;
     struct history_points before; /* points that the history had in the time span of the series before the import */
-    size_t next;                  /* index in `before` of the next point to compare with */
+    size_t next;                  /* index into `before`, whose points are compared with the imported samples in order of time */
 };
 
 struct history_import {
@@ -50,7 +52,7 @@ struct history_import {
                                             column per tag) */
     int *tags;                           /* wide form: index of the tag of each column; -1: the column is ignored */
     struct import_series *series;        /* array by tag */
-    int64_t row_us;                      /* wide form: time of the row read last; otherwise INT64_MIN */
+    int64_t row_us;                      /* wide form: time in the row read last; long form: INT64_MIN */
     struct import_counts *counts;
 };
 
@@ -64,7 +66,7 @@ static int find_time(struct history_import *import)
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
         if (csv_find(&import->csv, names[i]) >= 0)
             return csv_find(&import->csv, names[i]);
-    /* if no column has a known name, the first column is the time, unless it is named like a tag */
+    /* no column has a known name: the first column is taken as the time, unless its name is that of a tag */
     return plant_find_tag(import->params->plant, import->csv.header.cells[0].text) < 0 ? 0 : -1;
 }
 
@@ -291,10 +293,10 @@ static int64_t typical_spacing(struct import_series *series, size_t count)
     return typical_us;
 }
 
-/* Returns the longest time between two samples that is not a gap. The tag's Stale s is used only if it fits the series: it is meant for
-   live readings, which may come faster. A series of two samples has no rhythm, since the time between them may itself be the gap; it
-   uses the value of a typical series. If no series has a rhythm, it uses the longest time that our own history leaves between two
-   points. */
+/* Returns the longest time between two samples that is not a gap. The column `Stale s` of the tag list is used only if it fits the series:
+   that time is meant for live readings, which may come faster. A series of two samples has no rhythm, since the time between them may
+   itself be the gap: it uses the value of a typical series. If no series has a rhythm, it uses the longest time that our own history leaves
+   between two points. */
 static int64_t longest_gap(const struct import_params *params, const struct plant_tag *tag, struct spacing *spacing, int64_t typical_us,
                            bool exported)
 {
@@ -404,8 +406,8 @@ static bool is_end_of_line(const struct history_point *point)
     return point->quality == QUALITY_BAD_NO_COMMUNICATION && isnan(point->value);
 }
 
-/* Returns true if the existing history has an end of a line at that time, from an earlier import or a stopped daemon. Call it with
-   ascending times. */
+/* Returns true if the existing history ends a line at that time with a point without a value, written by an earlier import or when a daemon
+   stopped. Call it with ascending times. */
 static bool was_end_of_line(struct import_series *series, int64_t t_us)
 {
     while (series->next < series->before.count && series->before.at[series->next].t_us < t_us)
@@ -414,8 +416,8 @@ static bool was_end_of_line(struct import_series *series, int64_t t_us)
            is_end_of_line(&series->before.at[series->next]);
 }
 
-/* Records the pending sample, and ends its line if the next sample is further away than the longest gap-free time. next_us: time of the
-   next sample; INT64_MAX: none. */
+/* Records the pending sample. If the next sample, at next_us, is further away than the longest gap-free time, also records a point without
+   a value, which ends the line. next_us INT64_MAX: there is no next sample. */
 static void record_pending(struct filling *filling, int tag, int64_t next_us)
 {
     struct import_series *series = &filling->series[tag];
@@ -427,7 +429,7 @@ static void record_pending(struct filling *filling, int tag, int64_t next_us)
     if (ends) {
         const struct history_point end = { sample->t_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION };
         recorder_put(filling->recorder, tag, &end, &filling->rows);
-        /* the recorded line continues here: overwrites the point without a value that had ended it */
+        /* the recorded line continues here: the sample overwrites the point without a value that had ended the line */
     } else if (usable && was_end_of_line(series, sample->t_us + 1)) {
         recorder_end_tag(filling->recorder, tag, &filling->rows);
         add_row(filling, tag, sample->t_us + 1, sample->value, sample->quality);
@@ -449,8 +451,8 @@ static bool fill_sample(struct history_import *import, void *arg, int tag, const
 
 /* --- joining existing history -------------------------------------------------------------------------------------------------------- */
 
-/* Joins the first sample of a series to the recorded line before it: removes the end of that line, or sets one if the time between them
-   is a gap. */
+/* Joins the first sample of a series to the recorded line before it. If the time between them is a gap, records a point without a value at
+   the end of that line; otherwise removes such a point. */
 static void join_before(struct filling *filling, struct history_reader *reader, int tag)
 {
     struct import_series *series = &filling->series[tag];
@@ -519,7 +521,7 @@ static bool fill(const struct import_params *params, struct import_series *serie
         .series = series,
         .counts = counts,
     };
-    /* the second pass writes its findings here, where they are discarded, because `diag` already has them from the first pass */
+    /* the second pass gets a diag of its own, which is discarded: `diag` already has these findings from the first pass */
     struct diag again = { 0 };
     mkdir(params->folder, 0777); /* result ignored: if the folder cannot be created, opening a month reports the error */
     bool good = read_before(&filling) && read_file(params, &again, counts, series, fill_sample, &filling);

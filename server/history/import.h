@@ -29,14 +29,15 @@ struct import_counts {
 };
 
 /* Imports a file in one of two forms. Long: columns Tag, Time, Value and perhaps Quality (0x80050000, Good, Uncertain, Bad) and Unit.
-   Without a unit, values are in the unit of the tag's row in the tag list (own_unit), as a device sends them. Wide: Time, then one
-   column per tag. A blank cell and a state word (value/state_word.h) are Bad samples. The rows of each tag must ascend in time; of rows
-   with equal times the last one counts. A point without a value (Bad_NoCommunication) is recorded after the last sample before a gap,
-   and after the end of a series that no recorded point follows. The longest time between samples that is not a gap is longest_gap_us. If
-   that is 0, it is the tag's Stale s, if its row states it and the series is not slower than that; else ten times the median spacing of
-   the series. A series of two samples uses the median over all other series; if there are none, the tag's Stale s or twice override_s.
-   In an exported file, where lines replace samples, twice override_s is never a gap, and for a tag that is never stale no time is a gap.
-   Findings go to diag; after any error nothing is imported. Returns false on errors, or if the folder cannot be written (logged). */
+   Without a unit, values are in the unit of the tag's row in the tag list (own_unit), as a device sends them. Wide: Time, then one column
+   per tag. A blank cell and a state word (value/state_word.h) are Bad samples. The rows of each tag must ascend in time; of rows with equal
+   times the last one counts. A point without a value (Bad_NoCommunication) is recorded after the last sample before a gap, and after the
+   end of a series that no recorded point follows. The longest time between samples that is not a gap is longest_gap_us. If longest_gap_us
+   is 0, the limit is `Stale s` (a column of the tag list), if the tag's row states it and the series is not slower than that; else ten
+   times the median spacing of the series. A series of two samples uses the median over all other series; if there are none, `Stale s` or
+   twice override_s (the plant's maximum time between two recorded points). In an exported file, where lines replace samples, a time of up
+   to twice override_s is never a gap, and a tag that is never stale has no gaps. Findings go to diag; after any error nothing is imported.
+   Returns false on errors, or if the folder cannot be written (logged). */
 bool history_import(const struct import_params *params, struct diag *diag, struct import_counts *counts);
 
 #endif

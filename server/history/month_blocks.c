@@ -42,7 +42,7 @@ int month_chunk_store(struct month_file *file, struct month_chunk *chunk)
     return error;
 }
 
-/* Reads a chunk (times that several blocks share) into file->chunk, which keeps it for the next blocks. */
+/* Reads a chunk (times that several blocks share) into file->chunk, a cache for the blocks that are read next. */
 static int load_chunk(struct month_file *file, int64_t id)
 {
     if (id == file->chunk->id)
@@ -130,7 +130,8 @@ static bool add_rows(const struct month_chunk *chunk, bool shared, const uint64_
     return true;
 }
 
-/* Appends the points of the block in the statement's current row, whose columns begin with chunk and data. */
+/* Decodes the block in the statement's current row and appends its points. first column: id of the chunk; second column: the compressed
+   data. */
 static int take_block(struct month_file *file, sqlite3_stmt *block, struct history_points *out)
 {
     int64_t chunk = sqlite3_column_int64(block, 0);

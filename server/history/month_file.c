@@ -41,7 +41,8 @@ static const char schema_3[] =
     "CREATE TABLE block(tag INTEGER NOT NULL, t INTEGER NOT NULL, last INTEGER NOT NULL, chunk INTEGER NOT NULL, data BLOB NOT NULL,"
     " PRIMARY KEY(tag, t)) WITHOUT ROWID;"
     "CREATE TABLE second(n INTEGER PRIMARY KEY, stamp INTEGER NOT NULL, data BLOB NOT NULL);"
-    "INSERT INTO second VALUES(0, 1099511627776, x'');"; /* stamps begin at 1 << 40, so that every stamp takes 6 bytes */
+    /* stamps begin at 1 << 40: SQLite then stores every stamp in 6 bytes, so that rows keep their size and are overwritten in place */
+    "INSERT INTO second VALUES(0, 1099511627776, x'');";
 static const char *const schemas[HISTORY_VERSION] = { schema_1, schema_2, schema_3 };
 
 static const char *const sql[SQL_COUNT] = {

@@ -49,7 +49,7 @@ struct month_file *month_file_read(struct log *log, const char *folder, int mont
 /* Converts points and buckets from now on to the units in which this plant shows its tags. `plant` must outlive the file. */
 void month_file_show_by(struct month_file *file, const struct plant *plant);
 void month_file_close(struct month_file **file); /* Closes the file. &NULL is fine; leaves NULL. */
-/* Closes a file that turned out to be damaged and renames it, as month_file_open() does. */
+/* Closes a damaged file and renames it to history-2026-11.damaged-TIME.sqlite, as month_file_open() does. */
 void month_file_set_aside(struct month_file **file);
 int month_file_month(const struct month_file *file);
 /* Returns true if the name of the open file still belongs to it: the file was not deleted, renamed or replaced since. */
@@ -65,8 +65,8 @@ int month_file_write(struct month_file *file, const struct history_row *rows, si
 int month_file_use_outbox(struct month_file *file);
 /* Makes the next month_file_tidy() reload the rollups from the file, because another handle has imported points into it. */
 void month_file_forget_rollups(struct month_file *file);
-/* Moves the points written since the last call into compressed blocks by tag, and updates the rollups. The sibling
-   month_file_waiting() returns about how many points wait for that. */
+/* Moves the points written since the last call into compressed blocks by tag, and updates the rollups. The sibling month_file_waiting()
+   returns an estimate of the number of points that are not in blocks yet. */
 int month_file_tidy(struct month_file *file);
 size_t month_file_waiting(const struct month_file *file);
 /* Writes points of one tag, ascending, anywhere in the month, and updates the rollups. */
@@ -118,7 +118,7 @@ int month_file_span(struct month_file *file, int64_t *first_us, int64_t *last_us
 struct history_pair {
     struct history_point before, after;
     bool step;
-    struct unit_change change; /* conversion of values from the unit in the file that was read last */
+    struct unit_change change; /* conversion to the wanted unit of values from the file that was read last */
 };
 /* Finds for all tags the points around t_us, but searches only for points that earlier calls have not found. So pass the file of t_us's
    month first, then those of the months before and after. */

@@ -46,7 +46,8 @@ struct month_file {
 sqlite3_stmt *month_sql(struct month_file *file, enum month_statement which);
 /* Steps a statement to its end, and logs errors. Returns 0 or -errno. */
 int month_run(struct month_file *file, sqlite3_stmt *statement, const char *doing);
-/* *has receives whether the file has an outbox, which another handle may have created. Returns 0 or -errno. */
+/* Finds out whether the file has an outbox now, since another handle may have created one; *has receives the answer. Returns 0 or
+   -errno. */
 int month_has_outbox(struct month_file *file, bool *has);
 struct history_point month_point(sqlite3_stmt *statement, int first_column); /* Reads a point from the columns t, v, q of the current
                                                                                 row, the first of which is first_column. */

@@ -33,7 +33,7 @@ static int end(struct month_file *file, int error)
     memset(file->ids, 0, file->tag_count * sizeof(*file->ids));
     file->slot = file->slot_before;
     file->stamp = file->stamp_before;
-    file->chunk->id = 0; /* the next chunk may get the id of one that was rolled back */
+    file->chunk->id = 0; /* drops the cached chunk: after the rollback, the next chunk may get the same id with other times */
     return error;
 }
 
@@ -44,8 +44,8 @@ static bool convert_points(void *arg, struct history_points *points)
     return true;
 }
 
-/* Converts all values of a tag in this file to the unit in which the plant shows the tag now, if that is not the file's unit. Seconds hold
-   no point of the tag: month_file_write() moves those of earlier handles to blocks first. */
+/* Converts all values of a tag in this file to the unit in which the plant shows the tag now, if the file's unit differs. The table
+   `second` (newest points) has no point of the tag at this time: month_file_write() moves the points of earlier handles to blocks first. */
 static int convert_unit(struct month_file *file, int tag)
 {
     const struct history_tag *of = &file->tags[tag];
@@ -63,7 +63,8 @@ static int convert_unit(struct month_file *file, int tag)
     static const char *const columns[][2] = { { "sample", "v" },     { "recent", "v" },    { "held", "v" },
                                               { "rollup", "low" },   { "rollup", "high" }, { "rollup", "mean" },
                                               { "rollup", "first" }, { "rollup", "last" }, { "outbox", "v" } };
-    /* true: the file has an outbox, which an earlier run may have made because a database was configured then; none is created here */
+    /* the file may have an outbox from an earlier run, when a database was configured: its values are converted too. No outbox is created
+       here */
     bool has_outbox;
     int error = month_has_outbox(file, &has_outbox);
     size_t count = sizeof(columns) / sizeof(columns[0]) - !has_outbox;
@@ -121,7 +122,7 @@ static int find_ids(struct month_file *file, const struct history_row *rows, siz
     return error;
 }
 
-/* Copies recorded points to the outbox and newest samples to the table from which the outbox's reader takes them. */
+/* Copies the recorded points to the outbox, and the newest samples to the table from which the outbox's reader takes them. */
 static int put_outbox(struct month_file *file, const struct month_row *rows, size_t count, const struct month_row *held, size_t held_count)
 {
     int error = 0;
@@ -375,7 +376,8 @@ static int roll_again(struct month_file *file, int tag, int64_t id, int64_t from
     struct month_rollups rollups;
     struct history_point before;
     int error = find_before(file, id, from_us - 1, &before);
-    if (before.t_us != INT64_MIN) /* the line of the point before from_us now ends at a new point, so its buckets change too */
+    /* the line that began at the last point before from_us now ends at a new point, so the buckets in between change too */
+    if (before.t_us != INT64_MIN)
         from_us = before.t_us;
     from_us -= from_us % history_level_us[LEVEL_1_H];
     for (int level = 0; level < LEVEL_COUNT && !error; level++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes the rows of seconds. */
+/* Reads and writes the table `second` of a month's file: one row of compressed newest points for each second. */
 #include "history/month_seconds.h"
 
 #include <errno.h>
@@ -15,7 +15,7 @@ enum { SECOND_COLUMNS = 4, ROW_BYTES = 930, PAGE_BYTES = 1020, ID_MAX = 1 << 22 
 
 /* --- writing ------------------------------------------------------------------------------------------------------------------ */
 
-/* Reads the mark, which is the stamp of row 0: that of the newest row that was moved to blocks. */
+/* Reads the mark: the stamp of the newest row of the table `second` that was moved to blocks. Row 0 of the table stores the mark. */
 static int read_mark(struct month_file *file, int64_t *mark)
 {
     sqlite3_stmt *find = month_sql(file, SQL_MARK);
@@ -71,7 +71,8 @@ int month_seconds_write(struct month_file *file, struct month_row *rows, size_t 
     int error = read_mark(file, &mark);
     if (error || count + held_count == 0)
         return error;
-    if (mark >= file->stamp) { /* all rows were moved to blocks, maybe through another handle: starts again with the first row */
+    /* all rows were moved to blocks, maybe through another handle: writing begins again at the table's first row */
+    if (mark >= file->stamp) {
         file->stamp = mark;
         file->slot = 0;
     }
@@ -162,7 +163,7 @@ int month_seconds_read(struct month_file *file)
     sqlite3_bind_int64(next, 1, seconds->slot);
     while ((code = database_step(&file->db, next)) == SQLITE_ROW && !error) {
         if (sqlite3_column_int64(next, 1) <= seconds->stamp)
-            break; /* this row and all that follow are older: they wait to be overwritten */
+            break; /* rows are overwritten in order, so this row and all that follow are older: their points are in blocks already */
         error = take_second(file, next);
     }
     sqlite3_reset(next);

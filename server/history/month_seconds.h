@@ -9,7 +9,7 @@
 
 struct month_row {
     int64_t id;   /* the tag's id in the file; 0: no row */
-    size_t order; /* position in the order of recording */
+    size_t order; /* position of the point in the order of recording */
     struct history_point point;
 };
 

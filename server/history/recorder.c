@@ -22,7 +22,8 @@ struct recorder {
     int *touched;
 };
 
-/* Returns the range of a tag's values (highest minus lowest): of the instrument, otherwise of its group. */
+/* Returns the range of a tag's values (highest minus lowest): the measuring range of its instrument if that is known, otherwise the colour
+   range of its group. */
 static double span_of(const struct plant *plant, const struct plant_tag *tag)
 {
     if (tag->scale.has_range)
@@ -57,8 +58,8 @@ struct recorder *recorder_create(const struct plant *plant)
         const struct history_tag *tag = &recorder->tags[i];
         recorder->lanes[i].quality = QUALITY_BAD_WAITING;
         recorder->lanes[i].params = (struct swinging_door_params){
-            /* lets a recorded line deviate by `within`: the bound of swinging_door.h is 2 deadband + deviation, here 2 within/4 +
-               within/2 */
+            /* the recorded line may deviate from samples by at most `within`: swinging_door.h bounds the deviation by 2 deadband +
+               deviation, here 2 within/4 + within/2 */
             .deadband = tag->step ? 0 : tag->within / 4,
             .deviation = tag->step ? 0 : tag->within / 2,
             .override_us = (int64_t)(plant->history.override_s * US_PER_S),
@@ -118,8 +119,8 @@ void recorder_held(struct recorder *recorder, struct recorder_rows *held)
     for (size_t i = 0; i < recorder->touched_count; i++) {
         struct recorder_lane *lane = &recorder->lanes[recorder->touched[i]];
         lane->touched = false;
-        /* a point that was just recorded becomes the tag's held row (newest sample) too, so that the end of the line is known if the
-           writer is killed */
+        /* if the newest sample was just recorded, the recorded point becomes the tag's held row, so that the end of the line is known if
+           the writer is killed */
         if (!swinging_door_held(&lane->door, &point))
             point = lane->door.anchor;
         add(held, recorder->touched[i], &point, 1);

@@ -19,7 +19,7 @@ void recorder_put(struct recorder *recorder, int tag, const struct history_point
 uint32_t recorder_quality(const struct recorder *recorder, int tag);
 /* Appends the held rows: the newest samples that are not recorded yet, of tags that had a sample since the last call. */
 void recorder_held(struct recorder *recorder, struct recorder_rows *held);
-/* Makes the next recorder_held() append the newest samples of all tags. Call it after the held rows of the last call could not be
+/* Makes the next recorder_held() append the newest samples of all tags. Call it if the held rows of the last recorder_held() could not be
    written. */
 void recorder_hold_again(struct recorder *recorder);
 /* Records the newest sample of a tag if it is not recorded yet, as if the override period (longest time between two points) were over. */

@@ -65,7 +65,7 @@ static int64_t used_bytes(struct log *log, const char *folder, int month, bool n
     return size.bytes - size.free_bytes;
 }
 
-/* Deletes the oldest points of a month, at most CUT_BYTES. Returns false if the month's file does not allow that. */
+/* Deletes the oldest points of a month, at most CUT_BYTES. Returns false if the month's file is damaged or cannot be shrunk. */
 static bool cut_month(struct log *log, const char *folder, int month, bool newest, int64_t too_many, int64_t *unsent)
 {
     struct month_file_size size;

@@ -27,7 +27,8 @@ static void take_value(struct history_bucket *bucket, double value)
     bucket->high = fmax(bucket->high, value);
 }
 
-/* Adds to the bucket the segment from t0 to t1 of the line from rollup->last to `next`. next NULL: the last value holds. */
+/* Adds to the bucket the part from t0_us to t1_us of the line from rollup->last to `next`. next NULL: the value of rollup->last holds over
+   that time. */
 static void take_part(struct rollup *rollup, const struct history_point *next, int64_t t0_us, int64_t t1_us)
 {
     struct history_bucket *bucket = &rollup->bucket;

@@ -32,12 +32,12 @@ struct rollup { /* zero-initialise, then set length_us and step */
 /* Adds the next point in order of time; a point older than the last one counts as if it had the last one's time. Returns true if the
    point completes a bucket, which *closed receives. */
 bool rollup_put(struct rollup *rollup, const struct history_point *point, struct history_bucket *closed);
-/* *out receives the incomplete bucket, up to the last point. Returns false if there is none. */
+/* *out receives the incomplete bucket, up to the last point. Returns false if no bucket is incomplete. */
 bool rollup_rest(const struct rollup *rollup, struct history_bucket *out);
 /* Merges bucket `b` into bucket `a`. `b` comes after `a`, within the same longer bucket. */
 void rollup_merge(struct history_bucket *a, const struct history_bucket *b);
-/* Adds to `into` the line from the end of bucket `a` (at end_us) to the start of bucket `b`, as far as it lies between from_us and
-   to_us. */
+/* The line from the end of bucket `a` (at end_us) to the start of bucket `b` belongs to no bucket: adds its part between from_us and to_us
+   to the bucket `into`. */
 void rollup_bridge(struct history_bucket *into, const struct history_bucket *a, int64_t end_us, const struct history_bucket *b,
                    int64_t from_us, int64_t to_us);
 

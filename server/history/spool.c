@@ -21,7 +21,7 @@ static const char HEAD[] = "plantcast spool 1\n";
 enum {
     PLACES = 3,
     RESERVE_BYTES = 8 << 20,
-    PLENTY = 10 /* a reserve is made only if the free disk space is this many times its size */
+    PLENTY = 10 /* the reserve file (disk space kept for a spool) is made only if the free space on the disk is this many times its size */
 };
 
 char **spool_places(const char *folder)

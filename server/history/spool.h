@@ -12,8 +12,8 @@ struct spool_rows {
    with NULL; free with spool_places_free(). */
 char **spool_places(const char *folder);
 void spool_places_free(char **places);
-/* Reserves disk space in the folder while the disk has plenty, so that even a full disk can take a spool file, which then survives a
-   reboot. No-op if the reserve exists. Returns 0 or -errno; -ENOSPC: the disk does not have plenty. */
+/* Reserves disk space in the folder for a spool file, which then fits even on a full disk and survives a reboot. The space is reserved only
+   while the disk has plenty; a reserve that exists is kept. Returns 0 or -errno; -ENOSPC: the disk does not have plenty. */
 int spool_reserve(const char *folder);
 /* Writes all rows to the file, readable by its owner only; if the disk is full, into the reserve in the same folder. Returns 0 or
    -errno. */

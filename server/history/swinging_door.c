@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Swinging-door filter: a deadband, then the swinging door. */
+/* Swinging-door filter: selects the samples to record. Samples within a deadband are skipped; the door decides about the others. */
 #include "history/swinging_door.h"
 
 static void begin(struct swinging_door *door, const struct history_point *at)
@@ -25,7 +25,7 @@ static bool passes(const struct swinging_door *door, const struct history_point 
     return slope >= door->slope_low && slope <= door->slope_high;
 }
 
-/* Passes a sample to the swinging door. The sample passed the deadband, has the anchor's quality and is newer than the held point.
+/* Passes a sample that left the deadband to the swinging door. The sample must have the anchor's quality and be newer than the held point.
    Returns the number of points in `kept`. */
 static int swing(struct swinging_door *door, const struct swinging_door_params *params, const struct history_point *sample,
                  struct history_point *kept, int count)
@@ -76,8 +76,8 @@ int swinging_door_put(struct swinging_door *door, const struct swinging_door_par
     bool usable = history_point_usable(sample), due = sample->t_us - door->anchor.t_us >= params->override_us;
     const struct history_point *passed = door->has_held ? &door->held : &door->anchor;
     if (!usable || fabs(sample->value - passed->value) <= params->deadband) {
-        /* the sample is outside the door: records the held point (newest sample that passed the deadband), or a reader of the current state
-           would see a ramp instead of a step */
+        /* the sample is within the deadband but outside the door: records the held point (newest sample that passed the deadband).
+           Otherwise a reader of the current state would see a ramp instead of a step */
         if (usable && door->has_held && !passes(door, sample)) {
             struct history_point held = door->held;
             count = keep(door, &held, kept, count);

@@ -32,8 +32,8 @@ int swinging_door_put(struct swinging_door *door, const struct swinging_door_par
 /* Records the newest sample now, as if override_us had passed. Returns the number of points in `kept`. */
 int swinging_door_end(struct swinging_door *door, const struct swinging_door_params *params,
                       struct history_point kept[SWINGING_DOOR_MAX_POINTS]);
-/* *out receives the newest sample if it is not recorded yet. Returns false if it is recorded. Readers end the line at that sample, and
-   it must survive a crash. */
+/* *out receives the newest sample if it is not recorded yet. Returns false if it is recorded. Readers draw the line up to that sample, and
+   the caller stores it so that it survives a crash. */
 bool swinging_door_held(const struct swinging_door *door, struct history_point *out);
 
 #endif

@@ -20,11 +20,11 @@
 
 enum { BATCH_ROWS = 20000, ROUND_MS = 1000 };
 enum { NOTES = 128, SPANS = POSTGRES_SPANS };
-/* Lines of tags end at different times, up to this far apart. If the last mirrored sample is unknown, points are read from the database
-   from this long before the newest end of a recorded line on */
+/* maximum time between the ends of different tags' lines. If the time of the last mirrored sample is unknown, points are read from the
+   database from this long before the newest end of a recorded line */
 static const int64_t LINE_END_SPREAD_US = 60 * INT64_C(1000000);
-/* longer than a sample takes until its point is in the file of the leader or of the standby. This time passes before sent points are
-   deleted, and before missing points are read from the database */
+/* upper bound of the delay until a sample is a point in the file of the leader and of the standby. The thread waits this long before it
+   deletes sent points, and before it reads missing points from the database */
 static const int64_t OVERLAP_NS = 10 * NS_PER_S;
 static const int64_t LOOK_NS = 30 * NS_PER_S, NEWEST_NS = 5 * NS_PER_S, SAY_LOST_NS = 60 * NS_PER_S;
 
@@ -175,8 +175,9 @@ static bool is_due(const struct postgres *postgres, const struct postgres_span *
     return clock_mono_ns() >= span->at_ns + OVERLAP_NS && postgres->sent_ns >= span->at_ns;
 }
 
-/* Reads from the database the points that another daemon recorded in a time span. leads: the span is the time before this daemon led.
-   The former leader may then have sent points after the end that this daemon marked; the marks are corrected first. */
+/* Reads from the database the points that another daemon recorded in a time span. leads: the span is the time just before this daemon took
+   the lead. This daemon then marked the ends of lines in the database; the former leader may have sent later points, so the marks are
+   corrected first. */
 static bool fill_span(struct postgres *postgres, const struct postgres_span *span, bool leads, int64_t *points,
                       char why[POSTGRES_WHY_BYTES])
 {
@@ -336,8 +337,8 @@ static void forget_sent(struct postgres *postgres)
     }
 }
 
-/* Notes the newest sequence number in the newest month's outbox. At the turn of the month, points of the older month may be sent twice,
-   which does no harm: the database replaces them. */
+/* Notes the newest sequence number in the newest month's outbox. When a new month begins, points of the older month may be sent twice; the
+   database then replaces each point by its equal. */
 static void note_outbox(struct postgres *postgres)
 {
     int error, month = postgres->month_count ? postgres->months[postgres->month_count - 1].month : 0;
@@ -364,7 +365,7 @@ static void send_all(struct postgres *postgres)
     postgres->flushed = true;
     if (postgres->alone) {
         pthread_mutex_lock(&postgres->lock);
-        /* one round is subtracted, because the historian may have added points while this round sent the others */
+        /* sent_ns is one round in the past, because the historian may have added points while this round sent the others */
         postgres->sent_ns = now_ns - ROUND_MS * NS_PER_MS;
         pthread_mutex_unlock(&postgres->lock);
     }
@@ -376,8 +377,8 @@ static void *run(void *arg)
     struct pollfd fd = { .fd = postgres->stop_fd, .events = POLLIN };
     bool last;
     do {
-        last = poll(&fd, 1, ROUND_MS) > 0; /* after the stop signal, one more round of sending covers the points written before the
-                                              signal */
+        /* the last round begins after the stop signal, so that points written before the signal are sent */
+        last = poll(&fd, 1, ROUND_MS) > 0;
         if (!last || !*postgres->said)
             connect_now(postgres);
         take_lead(postgres);
@@ -389,7 +390,7 @@ static void *run(void *arg)
         drop_oldest(postgres);
         counter_set(postgres->counters.waiting, waiting(postgres));
         if (postgres->alone || !postgres->flushed) {
-            /* the lines of earlier recordings in the database must be ended before anything is sent */
+            /* nothing is sent until the restore has ended the lines that earlier recordings left open in the database */
             if (!postgres->restore.wanted || postgres->restore.next_month != INT_MAX)
                 send_all(postgres);
         } else {
@@ -455,7 +456,7 @@ static int64_t end_of_files_us(struct postgres *postgres)
 static void add_span(struct postgres *postgres, const struct postgres_span *span)
 {
     struct postgres_span *last = &postgres->owed.spans[SPANS - 1];
-    /* the list of time spans is full, as with an unstable connection: extends its last span instead */
+    /* the list of time spans is full, because the connection breaks often: extends the last span instead of adding one */
     if (postgres->owed.span_count == SPANS)
         *last = (struct postgres_span){ last->from_us, span->to_us, span->at_ns };
     else
@@ -486,8 +487,8 @@ void postgres_lead(struct postgres *postgres, int64_t from_us, int64_t to_us)
     pthread_mutex_unlock(&postgres->lock);
 }
 
-/* Queues another read of the time before this daemon led; at most two such reads wait in the queue. The first keeps its place however
-   often a standby reconnects. The second runs after the points of the newest connection have arrived. */
+/* Queues another read of the time before this daemon led. The queue holds at most two such reads: the first keeps its place however often a
+   standby reconnects, and the second runs after the points of the newest connection have arrived. */
 void postgres_fill_again(struct postgres *postgres)
 {
     struct postgres_span *newest = NULL;

@@ -17,7 +17,7 @@ struct postgres_span {
 struct postgres_owed { /* the time spans whose points must still be read from the database */
     struct postgres_span spans[POSTGRES_SPANS];
     size_t span_count;
-    struct postgres_span led; /* the time span just before this daemon became the leader; to_us 0: it has not become the leader */
+    struct postgres_span led; /* time span just before this daemon became the leader; to_us 0: this daemon is not the leader */
 };
 
 struct postgres_params {
@@ -39,15 +39,17 @@ struct postgres;
 struct postgres *postgres_start(const struct postgres_params *params);
 /* Adds to the count of points that were deleted from the files before they were sent. Thread: any. */
 void postgres_count_lost(struct postgres *postgres, int64_t points);
-/* Makes this daemon the only writer from to_us on. from_us: time of the last sample mirrored from the former leader; 0: none, so the
-   leader's lines are ended at their last points. Later points of the former leader are read as by postgres_fill(). Thread: any. */
+/* Makes this daemon the only writer from to_us on. from_us: time of the last sample mirrored from the former leader; 0: no sample was
+   mirrored, so the leader's lines are ended at their last points. If the former leader sent points after from_us, they are read from the
+   database as by postgres_fill(). Thread: any. */
 void postgres_lead(struct postgres *postgres, int64_t from_us, int64_t to_us);
 /* Reads the time before this daemon led from the database once more, because the former leader may have sent more points of that time.
    Thread: any. */
 void postgres_fill_again(struct postgres *postgres);
 /* For a standby: states that the leader has sent to the database everything recorded until age_ns ago. Thread: any. */
 void postgres_sent_elsewhere(struct postgres *postgres, int64_t age_ns);
-/* Returns the age in nanoseconds of the newest time T such that all points recorded before T are sent; INT64_MAX: unknown. Thread: any. */
+/* Returns the age in nanoseconds of the newest time T such that all points recorded before T are in the database; INT64_MAX: T is unknown.
+   Thread: any. */
 int64_t postgres_sent_age_ns(struct postgres *postgres);
 /* Replaces a gap in the files by the points that another daemon recorded between two times, once that daemon has sent them to the
    database. from_us 0: from the last point in the files. Thread: any. */

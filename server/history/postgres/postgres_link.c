@@ -16,7 +16,8 @@
 
 static const int64_t CONNECT_NS = 10 * NS_PER_S, ANSWER_NS = 60 * NS_PER_S, STOP_NS = 2 * NS_PER_S;
 static const int64_t EPOCH_US = 946684800000000; /* PostgreSQL's time counts from 2000 */
-/* keepalive settings: if this machine disappears, the server closes the connection and thereby releases our lock within half a minute */
+/* keepalive settings: if this machine disappears, the database server closes the connection within half a minute, and thereby releases the
+   lock that lets only one daemon write */
 static const char set_up[] = "SET client_min_messages = warning; SET synchronous_commit = on; SET tcp_keepalives_idle = 10;"
                              "SET tcp_keepalives_interval = 5; SET tcp_keepalives_count = 3";
 

@@ -71,8 +71,8 @@ static void end(struct postgres_restore *restore)
 
 /* --- ending lines in the database --------------------------------------------------------------------------------------------- */
 
-/* Ends the lines in the database at their last points, as month_file_recover() does in files. The newest samples become recorded points
-   even if later points exist: a standby may have sent its first points already. */
+/* Ends the lines in the database at their last points, as month_file_recover() does in files. Each tag's newest sample becomes a recorded
+   point. That is done even if later points exist, because a standby may have sent its first points already. */
 bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us)
 {
     static const char sql[] =

@@ -14,11 +14,12 @@ struct postgres_restore {
     bool wanted;    /* a restore is in progress */
     int next_month; /* month to restore next (months since January 1970); INT_MAX: the restore has not begun */
     int64_t points; /* points restored so far */
-    bool begins;    /* true: the lines of earlier recordings in the database are ended, or another daemon continues them */
+    /* true: sending may begin, because the lines of earlier recordings in the database are ended or another daemon continues them */
+    bool begins;
 };
 
-/* Decides whether the folder needs a restore (restore->wanted): it has no months' files, or an earlier restore is unfinished. Creates
-   the folder. */
+/* Decides whether the folder needs a restore and sets restore->wanted. A restore is needed if the folder has no months' files, or if an
+   earlier restore is unfinished. Creates the folder. */
 void postgres_restore_init(struct postgres_restore *restore, struct log *log, const struct plant *plant, const struct history_tag *tags,
                            const char *folder);
 /* Ends the lines in the database at their last points. Returns false if the server fails. */

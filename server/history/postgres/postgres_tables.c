@@ -185,7 +185,7 @@ static bool copy_points(struct postgres_tables *tables, const char *table, const
     for (size_t i = 0; i < count; i++) {
         const struct month_outbox_row *row = &rows[i];
         if (row->tag < 0 || (size_t)row->tag >= tables->tag_capacity || !tables->tags[row->tag].id)
-            continue; /* skips the row, because the month's file does not describe its tag */
+            continue; /* the month's file has no entry for this row's tag: the row is not sent */
         postgres_copy_row(link, 5);
         postgres_copy_int32(link, (int32_t)i);
         postgres_copy_int32(link, tables->tags[row->tag].id);
