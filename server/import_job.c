@@ -21,17 +21,18 @@ enum { FILES = 3, MAX_ARGUMENTS = 300, OWN_MB = 512 };
 static const size_t max_bytes = (size_t)256 << 20;
 
 struct texts {
-    char *at[FILES]; /* content of each file; NULL: the file does not exist */
+    char *at[FILES]; /* content of each file that an import changes (plant file, tag list, matches); NULL: the file does not exist */
 };
 
 struct import_job {
     struct import_job_params params;
     char *folder, *paths[FILES];
-    struct texts first, read, last; /* contents of the files at three times: at the beginning, after the models were read, and after the
-                                       tags were matched */
-    ino_t revision;                 /* inode of the newest revision folder before the import (find_revision()); 0: there was none */
-    bool prepares;                  /* true: preparing the models was begun */
-    bool undoes;                    /* true: an undo is running, which params.stop does not end */
+    /* contents of the plant file, tag list and matches at three times: before the import, after the models were read, and after the tags
+       were matched */
+    struct texts first, read, last;
+    ino_t revision; /* inode of the newest revision folder before the import (find_revision()); 0: there was none */
+    bool prepares;  /* true: plantcast-prep, which prepares the models, was started */
+    bool undoes;    /* true: an undo is running, which params.stop does not end */
 };
 
 struct arguments {
@@ -166,7 +167,8 @@ static void add_limits(struct arguments *list, const struct import_job *job)
     add_limit(list, "--memory", job->params.quotas->at[QUOTA_IMPORT_MB]);
 }
 
-/* Adds the option that tells a program that this daemon has locked the plant's folder for it, and lends it the lock. */
+/* Adds the option that tells a program that this daemon has locked the plant's folder on its behalf, and passes the descriptor of that
+   lock. */
 static void add_lent(struct arguments *list)
 {
     list->own[list->owned] = mem_printf("%d", HELPER_LENT);
@@ -266,7 +268,8 @@ char *import_job_run(struct import_job *job, const struct import_order *order, c
     struct export_list exports = { 0 };
     export_folder_list(plant_import_exports(job->params.import), &exports);
     char *why = NULL, *unread = NULL;
-    /* an error: only plantcast match, which needs a tag list, writes the data source into a new plant file */
+    /* refuses a new plant file without a tag list: only plantcast match, which needs a tag list, writes the data source into the new
+       file */
     if (order->anew && *order->source.host && !find_tags(&exports))
         why = mem_printf("the plant's source %s would be lost: the exports have no tag list; add it first", order->source.host);
     else if (order->models)

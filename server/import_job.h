@@ -12,13 +12,13 @@ struct import_job_params {
     const char *prepared;        /* folder of prepared assets */
     int lock;                    /* descriptor of the lock on the plant's folder, which is lent to the programs */
     const struct quotas *quotas; /* resource limits of the programs */
-    bool (*stop)(void *arg);     /* callback; true: the import must end */
+    bool (*stop)(void *arg);     /* callback; returns true if the import must stop */
     void *arg;
 };
 
 struct import_job;
-/* Stores what an undo needs: the present plant file, tag list and matches, and the identity of the newest revision of the models.
-   `params` itself need not outlive the call, but everything that its members point to must. */
+/* Prepares the undo of an import: stores the present plant file, tag list and matches, and the identity of the newest revision of the
+   models. `params` itself may be freed after the call; everything that its members point to must outlive the job. */
 struct import_job *import_job_begin(const struct import_job_params *params);
 /* Runs the programs. Returns NULL on success, else one line that says what went wrong (free with mem_free()). *remark is set if the
    models are good and can be used but the tag list is faulty: it receives the fault of the list (mem_free). */

@@ -6,12 +6,12 @@
 
 #include "plant/plant.h"
 
-struct import_source {                                   /* texts as `plantcast match` takes them; empty: not stated */
+struct import_source { /* data source as texts in the form of the arguments of `plantcast match`; empty: not stated */
     char host[254], port[6], unit[4], order[5], base[2]; /* host "": no source */
 };
 
-/* Returns true if the texts are safe as program arguments: a host name or numeric IPv4 address, numbers within their limits, a byte
-   order. */
+/* Returns true if the texts are safe as program arguments: `host` is a host name or a numeric IPv4 address, port, unit and base are numbers
+   within their limits, and `order` is a byte order. */
 bool import_source_good(const struct import_source *source);
 /* Returns the data source of a plant. Its host is empty if the plant has no source, several sources, or a source of another kind. */
 struct import_source import_source_of_plant(const struct plant *plant);

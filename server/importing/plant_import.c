@@ -19,11 +19,11 @@
 enum { MAX_OUTPUT_BYTES = 64 * 1024 };
 
 struct plant_import {
-    /* choice: path of the file that keeps units, axis and encoding across restarts of the daemon */
+    /* path of the file that stores the chosen units, axis and encoding, so that they survive a restart of the daemon */
     char *exports, *matches, *report, *choice;
     pthread_mutex_t lock;
     /* --- below: under `lock` */
-    struct import_order order; /* the order in progress; if there is none, the last one */
+    struct import_order order; /* the import order in progress; if none is in progress, the last one */
     struct import_order read;  /* the last successful order that read models; its units, axis and encoding are in use */
     bool ordered, busy, cancelled;
     enum import_phase phase;
@@ -254,7 +254,7 @@ void plant_import_end(struct plant_import *import, bool in_force, const char *wh
     mem_free(import->why);
     import->why = line.at;
     pthread_mutex_unlock(&import->lock);
-    /* errors are ignored: without this file, the next start only loses the stored choice */
+    /* errors are ignored: if this file cannot be written, a restart only loses the chosen units, axis and encoding */
     atomic_file_put(import->choice, choice, strlen(choice));
     mem_free(choice);
 }

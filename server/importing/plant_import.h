@@ -15,7 +15,7 @@ struct import_order {
     bool decides;                         /* true: apply the uploaded match decisions; only if `models` is false */
     char units[IMPORT_CHOICE_BYTES];      /* length unit of models that do not state one: m, mm, cm, in, ft; empty: the reader's default */
     char up[IMPORT_CHOICE_BYTES];         /* upward axis of models that do not state one: y or z; empty: the reader's default */
-    char mesh_units[IMPORT_CHOICE_BYTES]; /* like `units`, but only for OBJ, STL, PLY and 3DS */
+    char mesh_units[IMPORT_CHOICE_BYTES]; /* like `units`, but only for models in OBJ, STL, PLY or 3DS; empty: the reader's default */
     char encoding[IMPORT_ENCODING_BYTES]; /* encoding of tag list and models; empty: as the file states, or detected */
     struct import_source source;          /* data source of the tags; without a host: unchanged */
 };
@@ -47,7 +47,7 @@ const char *plant_import_report(const struct plant_import *import);
 const char *plant_import_decisions(void);
 /* Accepts an order. Returns false while another order is in progress. */
 bool plant_import_order(struct plant_import *import, const struct import_order *order);
-/* Cancels the order in progress; its changes are undone. */
+/* Cancels the import order in progress; what the order has changed so far is undone. */
 void plant_import_cancel(struct plant_import *import);
 bool plant_import_busy(struct plant_import *import);
 /* Returns as JSON the progress, units and axis of the models in use, and the plant's data source; free with mem_free(). */
@@ -63,8 +63,8 @@ void plant_import_set_phase(struct plant_import *import, enum import_phase phase
 /* Appends the output of a program to the messages that engineers can read on the page. */
 void plant_import_say(struct plant_import *import, const char *text);
 bool plant_import_cancelled(struct plant_import *import);
-/* Ends the order. in_force: true if the plant that the order made is in use now. why: one line that says why the order failed; NULL: it
-   succeeded. */
+/* Ends the import order. in_force: true if the daemon now uses the plant that the order made. why: one line that says why the order failed;
+   NULL: it succeeded. */
 void plant_import_end(struct plant_import *import, bool in_force, const char *why);
 
 #endif

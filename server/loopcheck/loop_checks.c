@@ -34,7 +34,8 @@ struct loop_checks {
     uint64_t *numbers;     /* by tag: sequence number (loop_checks_number()) of the tag's newest check */
     uint64_t number;
     bool begun;
-    atomic_bool *unproven; /* atomic flags by tag, read by threads that draw; true: the tag is marked as unproven */
+    /* atomic flags by tag, read by the render threads; true: pictures mark the tag as unproven (without a passed loop check) */
+    atomic_bool *unproven;
 };
 
 /* --- fingerprint of a tag's configuration ----------------------------------------------------------------------------------- */
@@ -106,7 +107,7 @@ static double number_of(const struct csv *csv, int column)
     return *text && !*end ? number : NAN;
 }
 
-/* Parses a time. Returns UTC microseconds; 0: the text is no time. */
+/* Parses the timestamp of a row. Returns microseconds UTC; 0: the text is not a timestamp. */
 static int64_t time_of(const char *text)
 {
     struct tm utc = { 0 };
@@ -196,7 +197,7 @@ void loop_checks_close(struct loop_checks **pointer)
 }
 
 struct row_job {
-    struct file_job job; /* first member, as struct file_job requires; its `owner` is the struct loop_checks */
+    struct file_job job; /* generic job, the first member because file_writer passes a pointer to it; job.owner is the struct loop_checks */
     struct loop_checks *loop_checks;
     struct log *log;
     char *folder, *path;
@@ -223,7 +224,7 @@ static int append(struct file_job *job)
         good = fseek(file, 0, SEEK_END) == 0 && fputc('\n', file) != EOF;
     good = good && fwrite(row->at, 1, row->length, file) == row->length && fflush(file) == 0 && fsync(fileno(file)) == 0;
     int error = good ? 0 : -errno;
-    /* removes the incomplete row, because the caller reports it as not stored */
+    /* after an error, truncates the file to remove the incomplete row, because the caller reports the check as not stored */
     if (!good && size >= 0 && ftruncate(fileno(file), size) != 0)
         log_err(own->log, "%s: %s", own->path, strerror(errno));
     fclose(file);

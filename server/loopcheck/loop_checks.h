@@ -33,12 +33,12 @@ struct loop_checks;
    are written at once. Never returns NULL. plant and writer must outlive the result. */
 struct loop_checks *loop_checks_open(struct log *log, const struct plant *plant, const char *folder, struct file_writer *writer);
 void loop_checks_close(struct loop_checks **loop_checks); /* &NULL is allowed; sets *loop_checks to NULL */
-/* Queues a record of a tag for the disk; once it is there, file_writer_collect() puts it in force. Returns REFUSAL_NONE, or why it could
-   not be added. */
+/* Queues a record of a loop check for writing to disk; after that, file_writer_collect() makes it the tag's newest check. Returns
+   REFUSAL_NONE, or why it could not be queued. */
 enum refusal_code loop_checks_add(struct loop_checks *loop_checks, int tag, const struct loop_check *check);
 /* Returns the newest record of a tag. */
 const struct loop_check *loop_checks_of(const struct loop_checks *loop_checks, int tag);
-/* Returns true if any tag has been checked. Once that is so, all tags that have not passed are marked as unproven. */
+/* Returns true if any tag has been checked. From the first check on, all tags that have not passed are marked as unproven. */
 bool loop_checks_begun(
     const struct loop_checks *loop_checks);
 uint64_t loop_checks_number(const struct loop_checks *loop_checks); /* returns a sequence number that increases with each record */
