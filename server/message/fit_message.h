@@ -12,8 +12,8 @@ bool camera_parse(const json_t *object, struct camera *out, struct message_error
 void fit_apply(const struct scene *scene, const struct fit_message *fit, const struct view *view, struct camera *camera);
 /* Sets view->camera from the members `camera`, `projection`, `height_m`, `fit` and `side` of a query. Without them, the view has the
    plant's initial camera or, if the plant file states none, one that shows the whole plant. bare: the picture has no legend and no clock,
-   so a fit leaves no room for them. Set all other members of the view before. Each half of a split view shows as much of the plant as the
-   initial camera shows at 16:9. Returns false with *error naming the wrong member. */
+   so `fit` leaves no room for them. Call it last, after all other members of the view are set. Each half of a split view shows as much of
+   the plant as the initial camera shows at 16:9. Returns false with *error naming the wrong member. */
 bool view_query_camera(const struct scene *scene, const struct plant *plant, const json_t *o, bool bare, struct view *view,
                        struct message_error *error);
 

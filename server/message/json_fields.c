@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checked members of a JSON object. */
+/* Reads members of a JSON object and checks their type and range. */
 #include "message/json_fields.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Readers of checked members of a JSON object. Each returns false, with *error saying what was expected, if the member is wrong. Pure.
-   Thread: any. */
+/* Readers of members of a JSON object, which also check type and range. Each returns false, with *error saying what was expected, if the
+   member is wrong. Pure. Thread: any. */
 #ifndef MESSAGE_JSON_FIELDS_H
 #define MESSAGE_JSON_FIELDS_H
 #include "message/message.h"
@@ -18,7 +18,7 @@ bool may_vector(const json_t *o, const char *name, double out[3], bool *given, s
 bool may_name(const json_t *o, const char *name, const struct name *names, int *out, bool *given, struct message_error *error);
 /* Reads a text of 1 to size - 1 printable ASCII characters. */
 bool may_text(const json_t *o, const char *name, char *out, size_t size, bool *given, struct message_error *error);
-/* Reads free text of less than `size` bytes without control characters (has_controls()). needed: a text that is empty or blank is an
+/* Reads free text of less than `size` bytes without control characters (has_controls()). needed: true: an empty or blank text is an
    error. */
 bool need_words(const json_t *o, const char *name, bool needed, char *out, size_t size, struct message_error *error);
 /* Returns true if the text has characters that would garble a line of text: control characters, and overrides of the writing direction. */

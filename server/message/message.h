@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A client's message: its JSON text is parsed into a checked struct. No other code reads and checks clients' input. Pure. Thread: any. */
+/* A client's message: its JSON text is parsed and checked, and becomes a struct. No other code parses messages of clients. Pure. Thread:
+   any. */
 #ifndef MESSAGE_MESSAGE_H
 #define MESSAGE_MESSAGE_H
 #include <jansson.h>
@@ -52,7 +53,8 @@ enum message_type {
     MESSAGE_SIGN
 };
 
-enum signed_frames { SIGNED_NONE, SIGNED_REFINED, SIGNED_ALL }; /* which frames of a session the server signs */
+/* frames of a session that the server signs: none, the refined ones, or all */
+enum signed_frames { SIGNED_NONE, SIGNED_REFINED, SIGNED_ALL };
 
 /* RESUME_CHARS: length of a resume token (with which a client continues its session) without a view; RESUME_MOST_CHARS: largest length,
    with a view */
@@ -96,7 +98,7 @@ enum baseline_change { BASELINE_STAYS, BASELINE_NONE, BASELINE_NAMED, BASELINE_N
 struct params_change {
     uint32_t seq;
     unsigned given;            /* bit mask of enum params_given */
-    struct field_params field; /* members from here on are set only if their bit is in `given` */
+    struct field_params field; /* first of the parameters: this member and those below are valid only if their bit is set in `given` */
     int colormap;
     double ramp_interval;
     struct color_scale color_scale;
@@ -111,8 +113,8 @@ struct params_change {
     double light_dir[3];
     int environment;
     int selected_asset;
-    /* if GIVEN_SENSORS is set, field.overrides has the sensors that the message names. FIELD_AS_CONFIGURED: strength or decay was
-       omitted; if both were, the sensor's override is removed */
+    /* with GIVEN_SENSORS, field.overrides holds the sensors that the message names. A strength or decay that the message omits is
+       FIELD_AS_CONFIGURED; if it omits both, the sensor's override is removed */
     bool only_these_sensors; /* true: the message had `sensors: null`, so all other overrides are removed */
     enum baseline_change baseline;
     char baseline_name[BASELINE_NAME_BYTES];
@@ -138,21 +140,22 @@ struct pick_request {
 enum { ALARM_REQUEST_MOST = 256 };
 struct alarm_request {
     int action;                          /* enum alarm_event */
-    int tags[ALARM_REQUEST_MOST], count; /* indices of the tags; for ALARM_LINK, indices of devices (alarm/devices.h) */
-    uint8_t kinds[ALARM_REQUEST_MOST];   /* enum alarm_kind of each alarm, in the order of `tags` */
+    /* tags whose alarms the request names, as indices; for alarms of kind ALARM_LINK, indices of devices (alarm/devices.h) */
+    int tags[ALARM_REQUEST_MOST], count;
+    uint8_t kinds[ALARM_REQUEST_MOST]; /* kind of each alarm (enum alarm_kind), in the order of `tags` */
     double for_s;
     char reason[ALARM_REASON_BYTES], name[ALARM_NAME_BYTES - 24];
 };
 
 #define TIME_MOST_SPEED 3600
 struct time_request {
-    bool has_at;   /* true: at_us is set; false: playback starts from the instant shown now */
+    bool has_at;   /* true: playback starts at at_us; false: playback starts at the instant shown now */
     int64_t at_us; /* microseconds UTC; 0: the present */
     double speed;  /* seconds of history per second of playback; negative: backwards; 0: paused */
 };
 
 enum { CODEC_LIST_MOST = 4 };
-struct codec_list { /* codecs that a client can decode, in order of preference */
+struct codec_list { /* codecs that a client can decode, the preferred one first */
     enum wire_codec at[CODEC_LIST_MOST];
     int count;
     bool choose; /* true: the server may choose any of these codecs, and change the choice later */
@@ -177,7 +180,7 @@ struct loop_check_request {
 
 struct note_request {
     char id[NOTE_ID_BYTES], text[NOTE_TEXT_BYTES], name[ALARM_NAME_BYTES - 24];
-    /* id: the note to remove; in `note`: the note to replace, or "" */
+    /* message remove_note: the note to remove; message note: the note that the new one replaces, or "" */
     int tag, asset; /* index of the tag or asset to which the note is attached; -1: none */
     bool has_position;
     double position_m[3];
@@ -192,7 +195,8 @@ struct wall_request {
 };
 
 struct pair_request {
-    char digits[7], device[64]; /* pair: the digits that the display shows; unpair: name of the display's device */
+    /* digits: message pair: the number that the display shows; device: message unpair: name of the display's device */
+    char digits[7], device[64];
 };
 
 struct hello_request {
@@ -200,39 +204,40 @@ struct hello_request {
     double idle_ms; /* milliseconds since the user was last active; negative: not stated */
     bool tokens;    /* true: the server shall send the view as a token whenever it changes */
     bool depth;     /* the client asks for depth grids */
-    bool anew;      /* true: resume only the session's id and the sessions that follow it, not its view */
+    bool anew;      /* true: resume keeps only the session's id and the sessions that follow it; the view starts fresh */
     bool has_camera, has_params;
-    struct wall_place tile; /* which tile this display shows of a picture across many displays; display 0: none */
+    /* tile of a picture that is spread over many displays, which this display shows; display 0: this client shows no tile */
+    struct wall_place tile;
 };
 
 struct message {
     enum message_type type;
     struct hello_request hello;
-    int width_px, height_px;         /* in hello and resize: size of the view; 0: as in the resumed session */
-    struct codec_list codecs;        /* in hello and codecs: what the client can decode; empty: as in the resumed session */
-    double pixel_ratio;              /* in hello and resize: device pixels per page pixel; 0: not stated */
-    char named[NAMED_VIEW_ID_BYTES]; /* in hello and look: id of a view in the plant file; empty (only in hello): none */
+    int width_px, height_px;         /* messages hello and resize: size of the view in pixels; 0: as in the resumed session */
+    struct codec_list codecs;        /* messages hello and codecs: codecs that the client can decode; empty: as in the resumed session */
+    double pixel_ratio;              /* messages hello and resize: device pixels per CSS pixel of the page; 0: not stated */
+    char named[NAMED_VIEW_ID_BYTES]; /* messages hello and look: id of a view in the plant file; empty: no view (only in hello) */
     struct camera camera;            /* camera, hello */
-    uint32_t seq;                    /* sequence number in camera, ack, fit, pick and look; in hello that of its camera */
+    uint32_t seq; /* sequence number of the messages camera, ack, fit, pick and look; message hello: sequence number of its camera */
     struct params_change params;     /* params, hello */
-    struct split_change split;       /* in params and hello; applied after `params` */
+    struct split_change split;       /* messages params and hello: change of the right half of a split view, applied after `params` */
     struct fit_message fit;
     struct pick_request pick;
     bool visible;
-    double decode_ms; /* in ack: milliseconds that the client needed for decoding; negative: not stated */
+    double decode_ms; /* message ack: milliseconds that the client needed to decode the frame; negative: not stated */
     double t;         /* ping */
-    bool active;      /* in ping: true: the user was active since the last ping */
-    uint64_t follow;  /* in follow and lead: id of a session; 0: none */
+    bool active;      /* message ping: true: the user was active since the last ping */
+    uint64_t follow;  /* messages follow and lead: id of a session; 0: no session */
     struct alarm_request alarm;
     struct time_request time; /* time, hello */
     struct place_request place;
     struct coverage_request coverage;
-    char confirm[17];             /* in save_tags, accept_places and restore_tags: hash of the tag list that the user saw and confirms;
-                                     empty: not confirmed yet */
+    /* messages save_tags, accept_places and restore_tags: hash of the tag list that the user saw and confirms; empty: not confirmed yet */
+    char confirm[17];
     struct assumed_filter accept; /* accept_places */
-    char kept[65];                /* in restore_tags: name of the stored version of the tag list */
+    char kept[65];                /* message restore_tags: name of the stored version of the tag list */
     struct loop_check_request loop_check;
-    /* which members the messages set: save_view all; remove_view only the id; share_view only the address; send_to_wall only view and
+    /* edit of a named view. save_view sets all members, remove_view only the id, share_view only the address, send_to_wall only view and
        title */
     struct named_view_edit view_edit;
     struct note_request note;         /* note, remove_note */
@@ -251,28 +256,26 @@ bool params_parse(const struct plant *plant, const json_t *object, struct params
 struct params_context {
     const struct scene *scene;
     struct baselines *baselines;     /* NULL: no baselines here */
-    const struct snapshot *snapshot; /* readings that the change may store as a baseline; NULL: none */
-    int64_t now_us;                  /* UTC time, for arguments of queries */
+    const struct snapshot *snapshot; /* readings from which a change of parameters may store a baseline; NULL: there are none */
+    int64_t now_us;                  /* UTC time in microseconds against which times in the arguments of a query are checked */
     bool bare;                       /* for queries: true: the picture has no legend and no clock */
 };
-/* Applies a change to a view. If part of the change is wrong, returns false with *error and leaves the view unchanged. If the group
-   changes, the view first gets that group's settings. */
+/* Applies a change of parameters to a view. If part of the change is wrong, returns false with *error and leaves the view unchanged. If the
+   change names another group, the view first gets that group's default parameters. */
 bool params_apply(const struct params_context *context, const struct params_change *change, struct view *view, struct message_error *error);
-/* params_parse_show() and params_apply_show(), for params_parse() and params_apply(): the members `show`, `sensor`, `baseline` and
-   `sensors` (params_show.c). */
+/* Parts of params_parse() and params_apply() that handle the members `show`, `sensor`, `baseline` and `sensors`. */
 bool params_parse_show(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error);
 bool params_apply_show(const struct params_context *context, const struct params_change *change, const struct view *before,
                        struct view *view, struct message_error *error);
 /* Stores or removes the baseline that a change names. Call it last, after all checks of the change, because it cannot be undone. */
 void params_apply_baseline(const struct params_context *context, const struct params_change *change, struct view *view);
-/* params_parse_paint() and params_apply_paint(), for params_parse() and params_apply(): the members `scale`, `breaks` and `isolines`
-   (params_paint.c). */
+/* Parts of params_parse() and params_apply() that handle the members `scale`, `breaks` and `isolines`. */
 bool params_parse_paint(const json_t *o, struct params_change *out, struct message_error *error);
 bool params_apply_paint(const struct plant *plant, const struct params_change *change, struct view *view, struct message_error *error);
 /* split_parse() and split_apply() handle the member `split`, which describes the right half of a split view (params_split.c). */
 bool split_parse(const struct plant *plant, const json_t *o, struct split_change *out, struct message_error *error);
 bool split_apply(const struct params_context *context, const struct split_change *change, struct view *view, struct message_error *error);
-/* Returns true if a view may have that size. */
+/* Returns true if a view may have that width and height in pixels. */
 bool view_size_valid(double width_px, double height_px);
 
 #endif

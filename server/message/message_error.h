@@ -7,9 +7,11 @@
 struct message_error {
     const char *code; /* error code of PROTOCOL.md, static */
     char text[REFUSAL_TEXT_BYTES];
-    struct refusal refusal; /* code of the refusal; REFUSAL_NONE: the client program made an error, which only the English text describes */
-    char about[24];         /* type of the refused message; empty: unknown */
-    int retry_after_s;      /* seconds that the client should wait before it tries again; 0: not stated */
+    /* refusal with its code and arguments, which pages translate; code REFUSAL_NONE: the client program made an error, which only the
+       English text describes */
+    struct refusal refusal;
+    char about[24];    /* type of the refused message; empty: unknown */
+    int retry_after_s; /* seconds that the client should wait before it tries again; 0: not stated */
 };
 
 /* Sets the error's code (a static text) and its formatted English text, which is cut to fit. Leaves `about` unchanged. */

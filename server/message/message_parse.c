@@ -82,7 +82,7 @@ static bool parse_key_frame(const struct plant *plant, const json_t *o, struct m
     return true;
 }
 
-/* Reads the message `time`. Its microseconds come as a double, which represents those of any valid instant exactly. */
+/* Reads the message `time`. JSON has its microseconds as a double, which represents the microseconds of any valid time exactly. */
 static bool parse_time(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
     const json_t *at = json_object_get(o, "at_us");

@@ -13,11 +13,11 @@ enum projection { PROJECTION_AS_IT_IS = -1, PROJECTION_PERSPECTIVE, PROJECTION_O
 
 extern const struct name names_arrows[], names_backdrop[], names_strip[], names_language[], names_interpolation[], names_distance[],
     names_fill[], names_show[], names_scale[], names_look[], names_codec[], names_projection[], names_side[], names_pick[],
-    names_signed[]; /* each table ends with a NULL text */
+    names_signed[]; /* tables of names; each ends with an entry whose text is NULL */
 
 /* Returns the value of a name; -1: not in the table. */
 int name_find(const struct name *names, const char *text);
-/* Returns the name of a value, which must be in the table; static. */
+/* Returns the name of a value as a static text. The table must contain the value. */
 const char *name_of(const struct name *names, int value);
 
 #endif

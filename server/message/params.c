@@ -192,7 +192,8 @@ bool params_parse(const struct plant *plant, const json_t *o, struct params_chan
            params_parse_paint(o, out, error) && visibility_parse(plant, o, out, error);
 }
 
-/* Sets the group and its default parameters in a view; a view that shows values relative to alarm limits keeps doing so. */
+/* Changes the group of a view and sets that group's default parameters. A view that shows values relative to alarm limits continues to do
+   so. */
 static void take_group(const struct scene *scene, int group, bool is_operator, struct view *view)
 {
     field_params_default(scene->plant, group, &view->field);

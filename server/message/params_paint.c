@@ -20,7 +20,7 @@ static bool parse_scale(const json_t *o, struct params_change *out, struct messa
     return true;
 }
 
-/* Reads a list of ascending numbers. Returns false if it is not one, or has more than `most` numbers. */
+/* Reads a JSON array of ascending numbers, at most `most`. Returns false if the value is anything else. */
 static bool take_list(const json_t *list, double *numbers, int most, int *count)
 {
     *count = 0;

@@ -173,7 +173,7 @@ static bool find_baseline(const struct params_context *context, const struct par
     return true;
 }
 
-/* If the change shows another quantity, sets the range and colours that fit it. */
+/* If the change shows another quantity (values, distances, differences), sets the value range and colours that fit the quantity. */
 static void take_quantity(const struct params_context *context, const struct field_params *before, struct view *view)
 {
     const struct field_params *now = &view->field;
@@ -186,8 +186,8 @@ static void take_quantity(const struct params_context *context, const struct fie
         view->colormap = now->show == SHOW_DIFFERENCE ? colormap_find("diverging") : 0;
 }
 
-/* Returns true if the view can be drawn correctly. `paper`, and distances from a sensor, cannot be drawn on an asset that has that
-   single sensor and whose surface is therefore not subdivided (plant_cuts_singles()). If not, fills *error. */
+/* Returns true if the view can be drawn correctly, otherwise fills *error. An asset with a single sensor may have a surface that is not
+   subdivided (plant_cuts_singles()); the interpolation `paper` and distances from a sensor cannot be drawn on such a surface. */
 static bool may_show(const struct plant *plant, const struct field_params *field, struct message_error *error)
 {
     char group[48], asset[48];

@@ -73,7 +73,8 @@ bool save_tags_parse(const struct plant *plant, const json_t *o, struct message 
     return need_seq(o, &out->seq, error) && may_text(o, "confirm", out->confirm, sizeof(out->confirm), NULL, error);
 }
 
-/* Returns true if a glob pattern has few enough stars to be matched quickly: each star multiplies the time that a long name may take. */
+/* Returns true if a glob pattern has few enough stars for matching to be fast: each star multiplies the time that matching a long name may
+   take. */
 static bool is_simple(const char *pattern)
 {
     int stars = 0;
@@ -141,7 +142,7 @@ static void add_far(json_t *list, const struct plant *plant, int tag, int asset,
         json_array_append_new(list, json_pack("[s,s,f,f]", plant->tags[tag].name, plant->assets[asset].id, distance_m, limit_m));
 }
 
-/* Lists the group's sensors that are too far from their asset's surface. Sensors that the user moves on trial count at their trial
+/* Lists the group's sensors that are too far from their asset's surface. A sensor that the user moves on trial is judged by its trial
    position. */
 static json_t *far_list(const struct scene *scene, const struct place_set *set, int group)
 {

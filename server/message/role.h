@@ -7,7 +7,7 @@
 
 enum role {
     ROLE_NOBODY,   /* not authenticated yet */
-    ROLE_RENDERER, /* a renderer daemon: may open /core and request history, nothing else */
+    ROLE_RENDERER, /* a renderer daemon: may only open /core and request history */
     ROLE_STANDBY,  /* a standby core: has the rights of a renderer */
     ROLE_OPEN,     /* anyone, under --open-viewers */
     ROLE_VIEWER,

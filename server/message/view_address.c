@@ -8,11 +8,14 @@
 
 #include "base/mem.h"
 
-/* how many numbers an address has for a camera: 3 each for eye, target and up, the angle, and the height of a parallel projection */
+/* number of comma-separated values of a camera in a URL: 3 each for eye, target and up, the angle, and the height of a parallel
+   projection */
 enum { CAMERA_NUMBERS = 11 };
 
 static const struct {
-    const char *name, *of_query; /* name in the address; name in a query, NULL: queries have no such field, so it is dropped */
+    /* name: field in the page's URL; of_query: argument of a query with the same meaning; NULL: queries have no such argument, so the field
+       is dropped */
+    const char *name, *of_query;
 } names[] = {
     { "group", "group" },
     { "interpolation", "interpolation" },
@@ -112,7 +115,8 @@ static bool add_clip(struct view_address *out, const char *value)
     return view_address_add(out, !strchr(value, ';') && commas == 5 ? "clip_box" : "clip", value);
 }
 
-/* Adds the parameters of the right half of a split view. The value `same` (both halves show the same) becomes an empty argument. */
+/* Adds the parameters of the right half of a split view as the argument `split`. The value `same` (both halves have equal parameters)
+   becomes an empty argument. */
 static bool add_split(struct view_address *out, char *value)
 {
     for (char *at = value, *colon; (colon = strchr(at, ':')); at = colon + strcspn(colon, ";"))

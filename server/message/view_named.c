@@ -7,8 +7,8 @@
 #include "message/view_address.h"
 #include "message/view_query.h"
 
-/* Size and time with which the address of a named view is checked. Any values will do: whether an address is valid depends neither on the
-   picture's size nor on the time, which only must be later than the instant in the address. */
+/* picture size and time used while checking the address of a named view. Any size will do, since the address does not depend on it; the
+   time only must be later than the instant in the address. */
 enum { CHECKED_WIDTH_PX = 1280, CHECKED_HEIGHT_PX = 720 };
 static const int64_t CHECKED_US = INT64_C(4000000000000000); /* a time in 2096 */
 

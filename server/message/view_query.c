@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts the query of /snapshot.png to the JSON of messages, so that the same code checks both. */
+/* Converts the query of /snapshot.png to the JSON of the messages `camera` and `params`, so that the same code checks queries and
+   messages. */
 #include "message/view_query.h"
 
 #include <stdlib.h>

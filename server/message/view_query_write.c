@@ -56,7 +56,7 @@ static bool put_list(struct view_address *out, const char *name, const double *v
     return count > 0 ? put_numbers(out, name, values, (size_t)count) : view_address_add(out, name, "none");
 }
 
-/* --- parameters of one half ---------------------------------------------------------------------------------------------------- */
+/* --- parameters of one half of a split view ------------------------------------------------------------------------------------- */
 
 static bool put_overrides(struct view_address *out, const struct plant *plant, const struct field_params *field)
 {
@@ -130,7 +130,7 @@ static bool put_split(struct view_address *out, const struct params_context *con
     return good;
 }
 
-/* --- parameters of both halves --------------------------------------------------------------------------------------------------- */
+/* --- parameters that both halves of a split view share --------------------------------------------------------------------------- */
 
 static bool put_camera(struct view_address *out, const struct camera *camera)
 {

@@ -17,10 +17,11 @@ char *view_edit_do(struct named_views *views, const struct message *message, con
 char *share_view_do(struct short_links *links, const struct message *message, int64_t time_us, char added[SHORT_LINK_ID_BYTES]);
 /* The part of the walls that a client's token allows the client to see. */
 struct walls_reader {
-    const char *wall; /* wall and display of a paired device, which may see nothing else; NULL: all walls */
+    /* wall and display to which a paired device is limited: it may see nothing else; NULL: the client may see all walls */
+    const char *wall;
     int display;
-    /* for a token that is limited to some views: returns true if the client may see that view in a pane; panes with clocks and texts are
-       always allowed. NULL: no limit */
+    /* returns true if a client whose token is limited to some views may see that view in a pane; panes with clocks and texts are always
+       allowed. NULL: the token has no such limit */
     bool (*sees)(const void *arg, const char *view);
     const void *arg;
 };
