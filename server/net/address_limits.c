@@ -10,7 +10,8 @@
 
 struct address_limits {
     const struct quotas *quotas;
-    struct address_usage **all; /* the addresses known now: a few thousand at most; searched only when a connection opens */
+    /* usage of each known address: a few thousand at most, because the list is searched when a connection opens */
+    struct address_usage **all;
     size_t count, capacity;
     uint64_t payers; /* newest address id (address_share.account) that was given out; ids count up from 1 */
     bool exempt;
@@ -42,7 +43,7 @@ static void read_address(const char *text, struct address_usage *out)
     struct in6_addr six;
     struct in_addr four;
     char plain[64] = "";
-    /* drops the zone of an address such as fe80::1%eth0 */
+    /* drops the zone index of a link-local address, such as %eth0 in fe80::1%eth0 */
     memcpy(plain, text, strcspn(text, "%") < sizeof(plain) ? strcspn(text, "%") : 0);
     if (inet_pton(AF_INET, plain, &four) == 1) {
         memcpy(out->address, mapped, sizeof(mapped));

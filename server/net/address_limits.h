@@ -9,7 +9,7 @@ struct address_usage {
     uint8_t address[16]; /* IPv4 addresses as ::ffff:a.b.c.d */
     bool local;          /* loopback: 127.x or ::1 */
     int refs, connections, sessions;
-    int named;               /* number of a reverse proxy's connections whose last request came from this address */
+    int named;               /* number of connections from a reverse proxy whose last request named this client address */
     int pictures, questions; /* count of HTTP requests for pictures and for history that are being answered */
     int64_t answer_bytes;    /* bytes of HTTP answers that the client has not read yet */
     struct address_share share;
@@ -28,8 +28,8 @@ struct address_usage *address_limits_ref(struct address_limits *limits, const ch
 /* Releases a reference and sets *usage to NULL; accepts a pointer to NULL. */
 void address_limits_unref(struct address_limits *limits, struct address_usage **usage);
 
-/* Return whether the address may have one more: connection; stream; connection of a proxy; history query; HTTP answer of `count` bytes;
-   picture over HTTP. Each function checks one of these quotas. */
+/* Each function checks one quota and returns whether the address may have one more of these, in this order: connection; stream; connection
+   of a proxy; history query; HTTP answer of `count` bytes; picture over HTTP. */
 bool address_limits_may_connect(const struct address_limits *limits, const struct address_usage *usage);
 bool address_limits_may_stream(const struct address_limits *limits, const struct address_usage *usage);
 bool address_limits_may_be_named(const struct address_limits *limits, const struct address_usage *usage);

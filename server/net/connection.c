@@ -44,7 +44,8 @@ bool connection_may_open(struct server_context *server, int fd)
     if (server->room.connections >= server->room.quotas->at[QUOTA_CONNECTIONS])
         return count_refusal(server, false);
     lws_get_peer_simple_fd(fd, address, sizeof(address));
-    /* all connections of a proxy come from its address; sessions are limited later, by the address that the proxy forwards */
+    /* a proxy may open any number of connections, since all of them come from its address; sessions are limited later, by the address that
+       the proxy forwards */
     if (access_is_proxy(&server->params.access, address))
         return true;
     struct address_usage *usage = address_limits_ref(server->room.addresses, address);
@@ -149,7 +150,8 @@ static bool has_forwarding(struct lws *wsi)
     return false;
 }
 
-/* Finds the client's address; behind a trusted proxy, the client's address that the proxy forwards. Returns false with *refusal set. */
+/* Finds the address of the client. Behind a trusted proxy, that is the address that the proxy forwards in a header. Returns false with
+   *refusal set. */
 static bool find_client(struct server_context *server, struct lws *wsi, struct connection *connection, struct http_refusal *refusal)
 {
     char list[512] = "", *address = connection->address;
@@ -178,7 +180,7 @@ static bool has_token_in_query(struct lws *wsi)
     return false;
 }
 
-/* Finds the request's token; token "": none. Returns false if a header is too long. */
+/* Finds the access token of the request; token "": the request has none. Returns false if a header is too long. */
 static bool find_token(struct lws *wsi, char token[TOKEN_MAX_CHARS + 1])
 {
     char text[512];
@@ -281,7 +283,8 @@ static const struct http_refusal *judge_token(struct server_context *server, str
     return login_is_good(login) ? NULL : login == LOGIN_HELD ? &HELD : &BAD_TOKEN;
 }
 
-/* Appends a suffix with characters that no token's name can have, so that a signed-in user and a token never look alike in journals. */
+/* Appends a suffix to a signed-in user's name. No token's name can have these characters, so a signed-in user and a token never look alike
+   in journals. */
 void connection_tell_apart(const struct server_context *server, struct token_holder *person)
 {
     size_t length = strlen(person->name), most = sizeof(person->name) - sizeof(SIGNED_IN);

@@ -31,8 +31,9 @@ struct connection *connection_of(struct lws *wsi);
 
 struct http_refusal {
     int status;
-    const char *text; /* body of the answer, static text; NULL: the words of `code` */
-    /* REFUSAL_NONE: an error of the server's operator or of a proxy, which pages do not translate; `text` describes it */
+    const char *text; /* body of the answer, static text; NULL: the text that belongs to `code` */
+    /* code of the refusal, which pages translate. REFUSAL_NONE: the server's operator or a proxy made an error, which only `text`
+       describes */
     enum refusal_code code;
 };
 /* Reads the headers of a request and sets the connection's role, client and holder. Returns false if the request must be refused, with the
@@ -41,7 +42,8 @@ bool connection_identify(struct server_context *server, struct lws *wsi, struct 
 /* Appends a suffix to the name of a signed-in user if a token has the same name, or if it is `local`, so that journals and the audit
    trail can tell them apart. */
 void connection_tell_apart(const struct server_context *server, struct token_holder *person);
-/* Returns the name of the user who made the last request, for journals and lists; "local" if there is none. */
+/* Returns the name of the user who made the last request on this connection, for journals and lists; "local" if the user needed no
+   token. */
 const char *connection_who(const struct connection *connection);
 /* Records a request of an identified user in the audit trail. result: as in struct audit_entry; why: the reason of a refusal, or NULL. */
 void connection_record(const struct server_context *server, struct lws *wsi, const char *event, const char *result, const char *path,

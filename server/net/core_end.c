@@ -59,7 +59,8 @@ static void follow(const struct server_context *server, uint64_t session)
         server->params.follow(server->params.reload_arg, session);
 }
 
-/* Loads this daemon's files once for each configuration of the core that differs: the core's new files may be there by now. */
+/* Handles the core's refusal of this renderer because their configurations differ: loads this daemon's files again, since the core's new
+   files may be there by now. Tries once for each configuration that the core names. */
 static void take_refusal(struct server_context *server, const json_t *refusal)
 {
     const char *configuration = json_string_value(json_object_get(refusal, "configuration"));

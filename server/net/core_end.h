@@ -5,7 +5,8 @@
 #define NET_CORE_END_H
 #include "net/server_context.h"
 
-/* Makes sessions forward users' actions over the plant's core_link, if the plant has one (only on a renderer). */
+/* On a renderer, makes sessions forward users' actions to the core over the plant's core_link. On other daemons, which have no core_link,
+   does nothing. */
 void core_end_bind(struct server_context *server);
 /* Returns whether this daemon polls devices and owns alarms: it is neither a renderer nor a standby core. */
 bool core_end_leads(const struct server_context *server);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The balancer hears of a lost core at the agent's port (agent.h) once a second, and tells its own state in the next check. */
+/* The load balancer asks each renderer at its agent port (agent.h) once a second and thereby learns that a core is lost. With its next
+   check it sends its own state, from which core_loss decides whether sessions move. */
 #include "net/core_loss.h"
 
 #include <stdio.h>
@@ -7,10 +8,10 @@
 
 #include "base/clock.h"
 
-/* After a loss, the balancer's word counts only from this time on: renderers that lost the same core may notice it half a second apart, and
-   the balancer asks each once a second. */
+/* delay after the loss of a core from which the balancer's statement counts: renderers that lost the same core may notice it half a second
+   apart, and the balancer asks each renderer once a second */
 static const int64_t SETTLE_NS = 2500 * NS_PER_MS;
-static const int64_t CHECKED_NS = 3 * NS_PER_S; /* a balancer's word is valid for three checks */
+static const int64_t CHECKED_NS = 3 * NS_PER_S; /* validity of a balancer's statement: three checks, of which it makes one a second */
 
 static bool is_elsewhere(const char *state)
 {

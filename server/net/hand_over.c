@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How a leading core ends in good order: it ends polling, sends its standby everything, and gives the lease to the standby. The event loop
-   serves meanwhile, so that the lease stays confirmed and renderers keep their readings until the other core leads. */
+/* How a leading core shuts down in order: it stops polling devices, sends everything to its standby, and gives the leadership lease to the
+   standby. The event loop continues to serve meanwhile, so that the lease stays confirmed and renderers keep their readings until the
+   standby leads. */
 #include "base/clock.h"
 #include "net/core_end.h"
 #include "net/net.h"
@@ -10,7 +11,7 @@
 static const int64_t SEND_NS = 2 * NS_PER_S; /* time limit for the standby to receive everything */
 static const int64_t TAKE_NS = NS_PER_S;     /* time limit for the standby to take the lease */
 
-/* Returns the next step after `step`, or `step` itself while that is not finished. */
+/* Returns the next step of handing over the lead; returns `step` itself while that step is not finished. */
 static enum hand_over_step next_step(struct net *net, enum hand_over_step step)
 {
     struct server_context *server = &net->server;
@@ -26,7 +27,7 @@ static enum hand_over_step next_step(struct net *net, enum hand_over_step step)
         return HAND_OVER_ENDS_POLLING;
     case HAND_OVER_ENDS_POLLING:
         if (!lease_keeper_leads(keeper))
-            return HAND_OVER_DONE; /* the lease is lost: the process must end */
+            return HAND_OVER_DONE; /* the leadership lease is lost to another core: this process must end */
         if (!atomic_load(&net->lead_ended))
             return step;
         server->life.lead_ended_ns = now_ns;

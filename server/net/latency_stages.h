@@ -10,7 +10,8 @@
 enum { STAGE_WAIT, STAGE_FIELD, STAGE_RENDER, STAGE_ENCODE, STAGE_QUEUE, STAGE_WRITE, STAGE_NETWORK, STAGE_DECODE, STAGE_COUNT };
 struct latency_stages {
     struct histogram *of[STAGE_COUNT];
-    /* total time to the acknowledgement of a frame: from the input, and from the changed reading, that it shows */
+    /* total latency until a frame is acknowledged: measured from the input that the frame shows, and from the changed reading that it
+       shows */
     struct histogram *input, *sensor;
 };
 

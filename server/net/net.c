@@ -25,10 +25,11 @@
 #include "net/wall_displays.h"
 #include "session/view/resume.h"
 
-static const int64_t SETTLE_NS = 5 * NS_PER_MS; /* interval between checks whether an action is on disk */
-/* longest wait at shutdown until actions are on disk. settling_end() gives each action at most a second, so this wait suffices */
+/* interval at which the event loop checks, while actions wait for the disk, whether they are written */
+static const int64_t SETTLE_NS = 5 * NS_PER_MS;
+/* longest wait at shutdown until users' actions are on disk; it suffices, because settling_end() gives each action at most a second */
 static const int64_t SETTLED_NS = 1500 * NS_PER_MS;
-/* interval between ticks; REST_NS: interval while no session has timed work within the next second */
+/* TICK_NS: interval between ticks of the sessions; REST_NS: the same while no session has timed work within the next second */
 static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S;
 static const int64_t GOODBYE_NS = 500 * NS_PER_MS;       /* time for close frames and answers to be sent at shutdown */
 static const int64_t RECORD_INTERVAL_NS = 60 * NS_PER_S; /* minimum time between two audit entries about tokens not checked */
@@ -57,8 +58,8 @@ static void lws_log_line(int level, const char *line)
 
 /* --- periodic work ---------------------------------------------------------------------------------------------------- */
 
-/* Checks the files of tokens and certificate. A file counts as changed only once it has stopped changing, so a second look may be
-   needed. */
+/* Checks whether the files of tokens and certificate have changed. A file is read only once it has stopped changing, so a further check may
+   follow. */
 static void look_at_files(struct net *net, int64_t now_ns)
 {
     struct server_context *server = &net->server;
@@ -88,7 +89,8 @@ static void record_sum(const struct server_context *server, int64_t *count, cons
     *count = 0;
 }
 
-/* Adds to the audit trail, once a minute, how many tokens and log-in answers were not checked. */
+/* Adds a line to the audit trail, at most once a minute, with the number of tokens and log-in answers that were left unchecked because
+   their address is throttled. */
 static void record_held(struct server_context *server, int64_t now_ns)
 {
     if ((!server->logins.held && !server->logins.unasked) || now_ns - server->logins.held_ns < RECORD_INTERVAL_NS)
@@ -115,7 +117,7 @@ static void look_around(struct net *net, int64_t now_ns)
     net->server.session_context.cpu_used = 1 - cpu_meter_free(&net->cpu, stat);
 }
 
-/* Returns what the service manager's status says about this core of a pair (static text); NULL: nothing. */
+/* Returns the text about this core's role in a pair of cores that the service manager shows as status (static); NULL: there is no pair. */
 static const char *core_standing(const struct server_context *server)
 {
     struct lease_keeper *keeper = server->params.keeper;
@@ -353,7 +355,7 @@ static void raise_file_limit(struct log *log, const struct quotas *quotas)
         log_warn(log, "files: the limit cannot be raised: %s", strerror(errno));
 }
 
-/* Checks that the port can be bound, because libwebsockets does not report why it cannot listen. */
+/* Checks that the port can be bound, so that the reason is logged: libwebsockets does not report why it cannot listen. */
 bool net_port_free(struct log *log, const char *address, int port)
 {
     struct sockaddr_in6 six = { .sin6_family = AF_INET6, .sin6_port = htons((uint16_t)port) };
@@ -432,7 +434,9 @@ static bool open_context(struct net *net)
         info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
         info.ssl_cert_filepath = server->params.access.tls_cert_path;
         info.ssl_private_key_filepath = server->params.access.tls_key_path;
-        info.alpn = "http/1.1"; /* HTTP/2 is off: there a request is not a connection, and could carry a WebSocket */
+        /* HTTP/2 stays off: there one connection carries many requests, one of which may even be a WebSocket, but this server keeps its
+           state per connection */
+        info.alpn = "http/1.1";
     }
     lws_set_log_level(LLL_ERR | LLL_WARN, lws_log_line);
     atomic_store(&lws_log_to, server->params.log);

@@ -31,21 +31,22 @@ bool net_call(struct net *net, void (*what)(void *arg), void *arg);
 /* Makes the event loop soon reload the plant and read the files of tokens and certificate again. Any thread; safe in a signal handler. */
 void net_check_credentials(struct net *net);
 
-/* Continues net_stop() of a leading core: everything has ended that only a leader may do (net_params.end_leading). Any thread. */
+/* Tells the event loop that everything has ended that only a leader may do, so that net_stop() of a leading core continues. Called by
+   net_params.end_leading. Any thread. */
 void net_on_lead_ended(struct net *net);
 
 /* --- plant reload; call these functions in the event loop --- */
 
 /* Drops the pointer to the plant's historian, which is about to be destroyed. */
 void net_release_historian(struct net *net);
-/* Drops the pointers to the plant's historian and notifier, which are destroyed before the rest of the plant. */
+/* Drops the pointers to the plant's historian and notifier, which the caller is about to destroy before the rest of the plant. */
 void net_release_recording(struct net *net);
 /* Tells the renderers of this core that it begins to load the plant, so that they do the same. */
 void net_announce_reload(struct net *net);
 /* Releases everything that belongs to the plant, which is about to be destroyed. Sessions stay. */
 void net_release_plant(struct net *net);
-/* Called when this standby takes over because the core it followed is gone and their link has stopped. plant: the same plant without the
-   link. */
+/* Called when this standby takes over: the core that it followed is gone, and the link to that core has stopped. plant: the same plant
+   without the link. */
 void net_lead(struct net *net, const struct plant_services *plant);
 /* Switches to another plant; sessions keep showing what the new plant has under the same names. Returns false if history cannot be read
    any more, already logged. */

@@ -23,10 +23,10 @@ struct net {
     _Atomic bool stopping, look, drain, readings_changed, lead_ended;
     struct { /* hand_over.c */
         enum hand_over_step step;
-        int64_t until_ns; /* monotonic time limit of the step */
+        int64_t until_ns; /* monotonic time limit of the current step of the hand-over */
     } hand_over;
     struct {
-        pthread_mutex_t turn; /* lock that a caller of net_call() holds, so that there is one call at a time */
+        pthread_mutex_t turn; /* lock that each caller of net_call() holds, so that one call is made at a time */
         pthread_mutex_t lock;
         pthread_cond_t done;
         /* --- below: protected by `lock` */
@@ -38,12 +38,13 @@ struct net {
 
 /* --- net.c; thread: the event loop --- */
 
-/* Answers actions that are on disk by now, or cannot be kept. Returns whether other actions still wait for the disk. */
+/* Answers the actions that are on disk by now, and those that could not be written. Returns whether other actions still wait for the
+   disk. */
 bool net_settle_answers(struct net *net);
 
 /* --- hand_over.c; thread: the event loop --- */
 
-/* Takes the next step of giving the lead to the standby, after net_stop(). Returns false if nothing is left to do. */
+/* Takes the next step of giving the lead to the standby, after net_stop() was called. Returns false once all steps are done. */
 bool net_hand_over(struct net *net);
 
 /* --- net_calls.c --- */

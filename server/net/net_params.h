@@ -28,7 +28,7 @@ struct net_status { /* state of the event loop, passed to the callback at each t
     int busy_percent;           /* percentage of the render thread's time spent on frames that a client waits for */
     bool has_core;              /* true: readings arrive from the core; always true without --role render */
     const char *core;           /* role of this core in a pair of cores (static text); NULL: there is no pair */
-    bool drains;                /* true: sessions are being closed so that their clients move to other daemons (drain) */
+    bool drains;                /* true: the daemon drains: it closes sessions so that their clients move to other daemons */
     int64_t certificate_ends_s; /* expiry of the certificate in force, seconds of UTC since 1970; 0: no certificate */
 };
 
@@ -48,21 +48,21 @@ struct net_params {
     const char *web_folder;                /* folder of the web client's files; NULL: no page is served */
     const char *version;
     const char *node;            /* this daemon's name behind a load balancer; NULL: it runs alone */
-    bool is_core;                /* renderers may connect to this daemon */
+    bool is_core;                /* true: this daemon is a core, to which renderers may connect */
     const char *node_name;       /* this daemon's name among several */
-    struct lease_keeper *keeper; /* leadership lease of a core that has a standby, or is one; NULL: none */
-    /* ends everything that only a leader may do, on another thread, which then calls net_on_lead_ended(); called in the event loop, and
-       only with `keeper` */
+    struct lease_keeper *keeper; /* leadership lease of a core in a pair (leader or standby); NULL: there is no pair */
+    /* callback in the event loop, only with `keeper`: starts to end everything that only a leader may do, on another thread. That thread
+       calls net_on_lead_ended() when it is done */
     void (*end_leading)(void *arg);
-    /* reloads the plant for user `who`; called in the event loop. NULL: the plant cannot be reloaded */
+    /* callback in the event loop that reloads the plant for user `who`; NULL: the plant cannot be reloaded */
     void (*reload)(void *arg, const char *who);
-    /* reloads the plant because this daemon's core does, which then ends the connection `session` (core_link_session()); 0: it has
-       reloaded. Called in the event loop. NULL: this daemon does not follow, because it is no renderer */
+    /* callback in the event loop that reloads the plant because this daemon's core reloads it. session: number of the connection
+       (core_link_session()) that the core then closes; 0: the core has reloaded already. NULL: this daemon is no renderer */
     void (*follow)(void *arg, uint64_t session);
-    /* puts a saved tag list in force and takes ownership of `save`; called in the event loop. NULL: not possible */
+    /* callback in the event loop that puts a saved tag list in force and takes ownership of `save`; NULL: tag lists cannot be saved */
     void (*save)(void *arg, struct tag_save *save);
     struct plant_import *import; /* imports plants; NULL: import is off */
-    /* an import order of user `who` was accepted; called in the event loop. Set only with `import` */
+    /* callback in the event loop after an import order of user `who` was accepted; set only with `import` */
     void (*import_ordered)(void *arg, const char *who);
     /* callback of the main program, called in the event loop once a second or more often; NULL: not needed */
     void (*tick)(void *arg, const struct net_status *status);

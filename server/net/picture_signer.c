@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Moves pictures from a list of unsigned ones to a list of signed ones. The quota on pictures that are being answered keeps both lists
-   short. */
+/* Signs queued pictures on a thread, which moves each from the list of unsigned pictures to the list of signed ones. The quota on
+   unanswered picture requests keeps both lists short. */
 #include "net/picture_signer.h"
 
 #include "base/mem.h"
@@ -165,7 +165,7 @@ void picture_signer_settle(struct picture_signer *signer)
     signer->waiting = NULL;
     while (signer->busy)
         pthread_cond_wait(&signer->settled, &signer->thread.lock);
-    forget_last(signer); /* safe, because the thread is idle and does not use last_signed now */
+    forget_last(signer); /* no lock on the cache needed: the thread is idle and does not use it now */
     free_all(signer->done);
     signer->done = NULL;
     pthread_mutex_unlock(&signer->thread.lock);

@@ -20,7 +20,7 @@
 #include "net/core_end.h"
 #include "session/session_proxy.h"
 
-#define ACTED "acted_ns" /* member of a queued answer: monotonic time at which its action was on disk */
+#define ACTED "acted_ns" /* key in the JSON of a queued answer, with the monotonic time at which the answered action was on disk */
 enum { TICK_US = 200000, MAX_MESSAGE_BYTES = 256 * 1024 /* maximum size of one message */, MAX_ANSWERS = 1024, SEND_TIMEOUT_S = 5 };
 static const int64_t MAX_READINGS_DELAY_NS = 500 * NS_PER_MS, STANDBY_TIMEOUT_NS = 2 * NS_PER_S;
 

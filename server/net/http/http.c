@@ -28,7 +28,8 @@ static bool is_asked_as_renderer(struct http_exchange *request)
            !strcmp(argument, "role=render");
 }
 
-/* Takes what a load balancer says about itself in its check. A client's request, which has X-Forwarded-For, is not believed. */
+/* Takes the state that a load balancer states in its check of this node. Ignores requests with X-Forwarded-For, which come from clients and
+   may be forged. */
 static void hear_balancer(struct server_context *server, struct http_exchange *request)
 {
     static const char header[] = "x-haproxy-server-state:";
@@ -59,7 +60,7 @@ static int ready(struct server_context *server, struct http_exchange *request)
 
 #define NGINX_LINES "proxy_http_version 1.1; proxy_set_header Upgrade $http_upgrade; proxy_set_header Connection \"upgrade\";"
 
-/* time after a failed handshake within which the page may ask for the reason of the refusal */
+/* validity of a stored refusal of a stream handshake; within this time the page may ask for the reason */
 static const int64_t REFUSED_NS = 15 * NS_PER_S;
 
 /* Logs a request to the stream's path without the header Upgrade, which a wrongly configured proxy sends: proxies drop Upgrade and
@@ -96,7 +97,7 @@ static int stream_without_upgrade(struct server_context *server, struct http_exc
                                "removed it. nginx needs: " NGINX_LINES "\n";
     int64_t now_ns = clock_mono_ns();
     const char *refused = last_refusal(server, connection_of(request->wsi)->address, now_ns);
-    /* the page itself asks with ?why after a failed handshake: that is not worth a log line */
+    /* no log line for a request with ?why: the page itself sends it after a failed handshake, to learn the reason */
     if (lws_hdr_total_length(request->wsi, WSI_TOKEN_HTTP_URI_ARGS) == 0)
         log_without_upgrade(server, request->wsi, now_ns);
     char *body = refused ? mem_printf("%srefused: %s", text, refused) : mem_strdup(text);
@@ -117,8 +118,8 @@ static int file(struct server_context *server, struct http_exchange *request, co
     return request_answer(request, HTTP_STATUS_OK, found->type, bytes, found->count, "etag:", found->etag);
 }
 
-/* Sends the browser of a short link to the page, which asks for the link's view by its own rights. The address is a relative one, because a
-   proxy may serve the page below another path. */
+/* Redirects the browser from a short link to the page, which then requests the link's view with the user's own rights. The redirect is
+   relative, because a proxy may serve the page below another path. */
 static int open_link(struct http_exchange *request, const char *id)
 {
     char to[sizeof("../#v=") + SHORT_LINK_ID_BYTES];
@@ -133,12 +134,13 @@ static const struct {
     const char *path;
     int (*serve)(struct server_context *server, struct http_exchange *request);
     enum role least;
-    /* bit mask (VIEWS, DISPLAY, NODE) of the kinds of narrowed token that may use this path: limited to views, to one display, or to
-       renderers */
+    /* bit mask (VIEWS, DISPLAY, NODE) of the kinds of limited token that may use this path: tokens for some views only, for one display
+       only, or for renderers */
     unsigned narrowed;
 } routes[] = {
     { "/healthz", alive, ROLE_NOBODY, 0 },
-    { "/readyz", ready, ROLE_NOBODY, 0 }, /* the event loop runs only once model, GL and store are ready; GL may be lost later */
+    /* always ready: the event loop runs only once model, GL and store are ready, although GL may be lost later */
+    { "/readyz", ready, ROLE_NOBODY, 0 },
     { "/stream", stream_without_upgrade, ROLE_NOBODY, 0 },
     { "/login", ask_login, ROLE_NOBODY, 0 },
     { "/login/callback", ask_login_callback, ROLE_NOBODY, 0 },
@@ -226,7 +228,7 @@ static int serve_route(struct server_context *server, struct http_exchange *requ
 static int serve_post(struct server_context *server, struct http_exchange *request, const char *path)
 {
     enum role role = connection_of(request->wsi)->role;
-    request->close = true; /* closes the connection: the client may send a body that nobody will read */
+    request->close = true; /* close the connection after the answer, because the client may send a body that nobody will read */
     if (role < ROLE_ENGINEER) {
         connection_record(server, request->wsi, "access", "refused", path, "this needs the role engineer");
         return refuse_others(request, role);
@@ -251,7 +253,7 @@ static int serve(struct server_context *server, struct http_exchange *request, c
     connection_set_answered(server, request->wsi, false);
     stuck_head_arrived(request->wsi);
     if (!get && !request->head && !post) {
-        request->close = true; /* closes the connection: the client may send a body that nobody will read */
+        request->close = true; /* close the connection after the answer, because the client may send a body that nobody will read */
         static const char text[] = "only GET and HEAD are allowed (POST: /api/v1/reload, /logout)\n";
         return request_answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, HTTP_TEXT, mem_strdup(text), strlen(text), "allow:", "GET, HEAD");
     }

@@ -8,7 +8,7 @@
 #include "net/http/stuck_head.h"
 #include "net/connection.h"
 
-/* answers up to this size are not counted in the quota: memory has room for one on each permitted connection */
+/* answers up to this size do not count in the quota of an address: memory suffices for one such answer on each permitted connection */
 enum { SMALL_BYTES = 64 * 1024 };
 enum { HEAD_BYTES = 8192 }; /* room for the headers of an answer with the longest list of allowed origins, of 256 characters each */
 
@@ -219,7 +219,8 @@ void request_await(struct server_context *server, struct http_exchange *request)
     request->next = server->http.waiting;
     server->http.waiting = request;
     request->usage = connection_of(request->wsi)->client;
-    int64_t wait_s = server->room.quotas->at[QUOTA_ANSWER_WAIT_S]; /* seconds that a picture, past readings or a reload may take */
+    /* time in seconds after which a request for a picture, past readings or a reload is answered with "not ready" */
+    int64_t wait_s = server->room.quotas->at[QUOTA_ANSWER_WAIT_S];
     request->until_ns = clock_mono_ns() + wait_s * NS_PER_S;
     lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, (int)wait_s + 15);
 }

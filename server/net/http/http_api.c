@@ -234,8 +234,8 @@ int api_views(struct server_context *server, struct http_exchange *request)
     return request_answer_json(request, reply_views_text(&server->session_context, args.count ? args.list[0] + 3 : NULL));
 }
 
-/* Returns the view of a short link. Without a connection to the core, or before the core has sent its lists, a renderer answers 503 for an
-   unknown link, which may exist. */
+/* Returns the view of a short link. A renderer that is not connected to the core, or has not received the core's lists yet, answers an
+   unknown link with 503, because the link may exist. */
 int api_link(struct server_context *server, struct http_exchange *request)
 {
     struct message_error error = { 0 };
@@ -283,9 +283,8 @@ int api_walls(struct server_context *server, struct http_exchange *request)
     return request_answer_json(request, walls_text(server->params.plant.scene->plant, &reader));
 }
 
-/* Forwards a pairing request to the core, which chooses the digits and sends them to its renderers. The core is asked every time, because
-   the digits expire unless the request is repeated. Returns what this renderer
-   knows of the request so far. */
+/* Forwards a pairing request to the core, which chooses the digits and sends them to its renderers. The renderer repeats this at each
+   request of the display, because the digits expire otherwise. Returns what this renderer knows of the request so far. */
 static enum pairing ask_core(struct server_context *server, const struct pairing_request *asked, char digits[PAIRING_DIGITS + 1],
                              int *left_s)
 {
@@ -297,7 +296,7 @@ static enum pairing ask_core(struct server_context *server, const struct pairing
     return now;
 }
 
-/* Answers an unpaired display that asks, with a secret of its own, whether it was accepted. The display shows the digits meanwhile. */
+/* Answers an unpaired display that polls with its secret whether an engineer has accepted it. The display shows the digits meanwhile. */
 static int pair(struct server_context *server, struct http_exchange *request, const struct pairing_request *asked)
 {
     char digits[PAIRING_DIGITS + 1];

@@ -11,7 +11,7 @@ struct asked { /* the frame, or the pick in a frame, for which an HTTP request w
     char **args; /* decoded arguments of the URL, for the signed statement in a picture; freed by asked_free() */
     size_t arg_count;
     struct pick_query pick;
-    /* reference to the readings of the picture's instant; NULL: present readings, or still being loaded */
+    /* readings of the picture's instant (a reference); NULL: the picture shows the present, or the readings are still being loaded */
     const struct historical_snapshot *historical;
 };
 
@@ -21,9 +21,9 @@ struct http_exchange {
     struct address_usage *usage;
     bool head;              /* the request is HEAD: the answer has no body */
     bool close;             /* true: the connection is closed after this answer */
-    bool sandboxed;         /* the answer belongs to a sandboxed document (opaque origin), which Chromium runs in a process of its own */
+    bool sandboxed; /* true: the answer belongs to a sandboxed document (opaque origin), which Chromium runs in a process of its own */
     char *set_cookie;       /* value of the header Set-Cookie of the next answer; NULL: the answer sets no cookie */
-    struct refusal refusal; /* sent in the next answer's header Plantcast-Refusal; REFUSAL_NONE: none */
+    struct refusal refusal; /* refusal to be sent in the header Plantcast-Refusal of the next answer; REFUSAL_NONE: no such header */
     char *body;
     size_t count, sent;
     /* address in whose answer_bytes the body is counted; NULL: not counted. The connection holds the reference */
@@ -34,13 +34,13 @@ struct http_exchange {
         PIECES_NONE,
         PIECES_CHUNKED,
         PIECES_TO_END
-    } pieces;                    /* the headers were sent and the body follows in pieces: chunked, or up to the end of the connection */
+    } pieces; /* how the body follows the headers: at once, in HTTP chunks, or in pieces up to the end of the connection */
     bool last_piece;             /* `body` is the last piece */
     uint64_t client;             /* id under which a waiting request is found (request_await) */
     int64_t until_ns;            /* monotonic time at which a waiting request is answered with "not ready" */
-    bool reloads;                /* the request waits for a reload of the plant */
-    bool recorded;               /* the request is done, and waits until `record` is on disk */
-    struct settling_ticket record; /* line of the request in the audit trail */
+    bool reloads;                /* true: the request waits for a reload of the plant */
+    bool recorded;               /* true: the requested action is done; its answer waits until the audit line `record` is on disk */
+    struct settling_ticket record; /* audit-trail line of the request */
     struct upload_body *body_in; /* upload in progress; NULL: none */
     const char *step;            /* path of a POST request of an import (static text), for the audit trail */
     struct asked *asked;         /* frame or pick for which the request waits; NULL: none */
@@ -93,7 +93,8 @@ bool request_args(struct lws *wsi, struct args *args, struct message_error *erro
 /* Returns the value of the first argument with that name; NULL: there is none. */
 const char *arg_of(const struct args *args, const char *name);
 
-/* Makes the request wait and sets request->client. The answer is given later, outside of the request's own libwebsockets callback. */
+/* Makes the request wait: its answer is given later, outside of the request's own libwebsockets callback. Sets request->client, the id
+   under which the waiting request is found. */
 void request_await(struct server_context *server, struct http_exchange *request);
 /* Frees the data about the frame or pick for which a request waits. &NULL is allowed; sets *asked to NULL. */
 void asked_free(struct asked **asked);
@@ -101,7 +102,7 @@ void asked_free(struct asked **asked);
 struct http_exchange *request_find(const struct server_context *server, uint64_t client);
 /* Ends the request's waiting; does nothing if it does not wait. */
 void request_forget(struct server_context *server, struct http_exchange *request);
-/* Takes the callback result (0 or -1) of an answer given outside of the request's own callback. -1: the connection is closed soon. */
+/* Carries out the result of an answer that was given outside of the request's own callback: 0 keeps the connection, -1 closes it soon. */
 void request_answered(struct http_exchange *request, int result);
 
 /* Handlers by path: each answers the request or makes it wait. */

@@ -23,7 +23,7 @@ struct upload_body {
     int64_t left, bytes; /* left: bytes of the upload still to come; bytes: size of the whole file */
     int64_t begun_ns;
     char name[256];
-    bool decides; /* the uploaded file holds the engineer's decisions; the end of the upload starts an import */
+    bool decides; /* true: the upload is a file of match decisions by an engineer; the end of the upload starts an import */
 };
 
 /* Adds an import step to the audit trail. result: as in struct audit_entry; why: the reason of a refusal, or NULL. The outcome of an import
@@ -264,8 +264,8 @@ static int begin_decisions(struct server_context *server, struct http_exchange *
     return begin_body(server, request, plant_import_decisions(), true);
 }
 
-/* Returns whether an upload is slower than any real link and would occupy its slot for ever. libwebsockets itself closes one that stalls
-   completely. */
+/* Returns whether an upload is slower than any real link and would thus occupy its slot for hours. An upload that stalls completely needs
+   no check here: libwebsockets closes its connection. */
 static bool drips(const struct upload_body *body)
 {
     int64_t taken_s = (clock_mono_ns() - body->begun_ns) / NS_PER_S;

@@ -17,8 +17,8 @@ static int answer_redirect(struct http_exchange *request, const char *to)
     return request_answer(request, HTTP_STATUS_SEE_OTHER, HTTP_TEXT, NULL, 0, "location:", to);
 }
 
-/* Sets a cookie. ending: "" for the session; "-b" for the browser that begins a log-in: the provider's redirect must send that cookie
-   back, so it is not SameSite=Strict. seconds 0: removes the cookie. */
+/* Sets a cookie. ending: suffix of the cookie's name: "" for the session's cookie; "-b" for the cookie of a browser that begins a log-in.
+   The provider's redirect must send that cookie back, so it is not SameSite=Strict. seconds 0: removes the cookie. */
 static void set_cookie(const struct openid_config *config, struct http_exchange *request, const char *ending, const char *value,
                        int seconds)
 {
@@ -51,8 +51,8 @@ int ask_login(struct server_context *server, struct http_exchange *request)
     return result;
 }
 
-/* Refuses a provider's answer for which no log-in waits. It cannot be a guess at a secret of 256 bits, and another site's page can make
-   a browser send it, so it is counted but neither recorded nor held against the address. */
+/* Refuses an identity provider's answer that belongs to no log-in in progress. Such an answer is counted, but neither recorded nor held
+   against the client's address: it cannot be a guess at a secret of 256 bits, and another site's page can make a user's browser send it. */
 static int refuse_unasked(struct server_context *server, struct http_exchange *request, enum openid_finish why)
 {
     server->logins.unasked++;
@@ -99,7 +99,7 @@ int ask_login_callback(struct server_context *server, struct http_exchange *requ
     return refuse_unasked(server, request, result);
 }
 
-/* Counts failed log-ins in the metrics, also if the browser no longer waits for the answer. */
+/* Adds failed log-ins to the metrics, including those whose browser no longer waits for the answer. */
 static void count_refused(struct server_context *server, const struct openid_answer *answer)
 {
     if (answer->result == OPENID_AWAY)

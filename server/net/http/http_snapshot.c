@@ -39,8 +39,8 @@ static const struct named_view *find_view(const struct server_context *server, c
     return named;
 }
 
-/* Reads the address of a view of the plant file, with the author's rights; the client may set size and language. Returns false with *error
-   if the address is not valid. */
+/* Reads the address of a view of the plant file into *out, with the rights of the view's author. Of the query's arguments, only width,
+   height and language are added. Returns false with *error if the address is not valid. */
 static bool expand(const struct named_view *named, const struct args *args, struct view_address *out, struct message_error *error)
 {
     static const char *const mine[] = { "width", "height", "language" };
@@ -62,8 +62,8 @@ static bool expand(const struct named_view *named, const struct args *args, stru
     return good;
 }
 
-/* Reads the requested picture into *view. If a view is named, *address receives its full parameters, for view_address_finish(); otherwise
-   they are in *args. Returns false with *error if the request is not valid. */
+/* Reads the requested picture into *view. If the query names a view of the plant file, *address receives that view's full parameters (free
+   with view_address_finish()); otherwise the parameters stay in *args. Returns false with *error if the request is not valid. */
 static bool read_picture(struct server_context *server, struct lws *wsi, struct args *args, struct view_address *address, struct view *view,
                          struct message_error *error)
 {
@@ -185,7 +185,7 @@ static void say_values(const struct frame *frame, struct text *out)
         text_add(out, ", drawn_error=%g", frame->drawn_error);
 }
 
-/* Adds the plant's name, for clients that may know it; a name longer than NAME_BYTES is left out. */
+/* Adds a header with the plant's name, if the client may know the name and it has at most NAME_BYTES. */
 static void say_plant(const struct server_context *server, const struct http_exchange *request, struct text *out)
 {
     const char *name = server->params.plant.scene->plant->name;

@@ -83,9 +83,9 @@ static bool toggles_template(const char *line, const char *end)
     return toggles;
 }
 
-/* Drops indentation and empties lines that hold only a comment, except the first, which is the licence. This saves a fifth of the bytes
-   that a page loads. Lines of template literals stay as they are. Line numbers stay those of the source. Returns the bytes left of
-   `count`. */
+/* Removes indentation and empties lines that hold only a comment, except the first line, which is the licence. A page thus loads a fifth
+   fewer bytes. Lines of template literals are left unchanged, and no line is removed, so that line numbers match the source. Returns how
+   many of the `count` bytes are left. */
 static size_t drop_comments(char *bytes, size_t count)
 {
     size_t out = 0;

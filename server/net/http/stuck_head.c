@@ -30,14 +30,14 @@ void stuck_head_await(struct lws *wsi, bool first)
     lws_set_timer_usecs(wsi, CHECK_INTERVAL_US);
 }
 
-/* Stops the watch. The timer fires once more and is then not set again: libwebsockets 4.1 cannot cancel a timer, and a delay of -1 makes it
-   fire immediately. */
+/* Stops the watch. The timer stays set and fires once more: libwebsockets 4.1 cannot cancel a timer, and a delay of -1 makes it fire
+   immediately. */
 void stuck_head_arrived(struct lws *wsi)
 {
     connection_of(wsi)->received_before_head = NOT_WATCHED;
 }
 
-/* Writes the answer 408 with a single attempt: bytes that the socket does not accept immediately are lost. */
+/* Writes the answer 408 (request timeout) with a single call: bytes that the socket does not accept immediately are lost. */
 static void tell(struct lws *wsi)
 {
     static const char body[] = "408 Request Timeout: the request's headers are incomplete. Is the name of a header truncated?\n";
