@@ -40,32 +40,35 @@ struct renderer_peer {
     char name[64];                /* name of the peer's node, as the peer reports it */
     char lease[LEASE_NODE_BYTES]; /* on a standby's connection: lease id, which distinguishes two nodes with the same name */
     struct text in, out;          /* in: message being received; out: message being built, after LWS_PRE spare bytes */
-    /* RENDERER_VOTES: a core that only votes: it may not follow this core, for example because its version differs, but its promises not to
-       lead count (corelink/lease.h) */
+    /* state of the peer. RENDERER_VOTES: a core that only votes about which core leads: it may not follow this core, for example because
+       its version differs, but its promises not to take the lead count (corelink/lease.h) */
     enum { RENDERER_NEW, RENDERER_TAKEN, RENDERER_VOTES, RENDERER_REFUSED } state;
     char *refusal;     /* why the peer is refused; NULL: the peer is not refused */
-    bool refusal_sent; /* true: the voting core has been sent the reason of its refusal */
-    bool other_configuration; /* the peer is refused because its configuration differs, and nothing else does */
+    bool refusal_sent; /* true: the reason of the refusal was sent to a peer that only votes */
+    bool other_configuration; /* true: the peer is refused only because its configuration differs from this core's */
     struct core_sent sent;
     bool alarms_sent, lists_sent, links_sent;
-    bool stands_by;               /* a standby: a core that follows this one and can take over */
-    /* the last samples message took all samples that waited, so readings are sent next; reset when they are sent */
+    bool stands_by; /* true: the peer is a standby, a core that follows this one and can take over */
+    /* true: the last samples message took all samples that waited, so the next message has readings, which resets the flag */
     bool samples_sent;
-    bool reloads;                 /* true: the peer must be told that this core loads the plant */
-    bool asks;                    /* true: the peer must be asked for its promise not to lead (corelink/lease.h) */
-    uint64_t last_question;       /* standby: number of the question that was sent after everything else; 0: none */
-    bool is_complete;             /* standby: it has answered last_question, and so has received everything */
+    bool reloads; /* true: the message that this core loads the plant must still be sent to the peer */
+    bool asks;    /* true: the question for the peer's promise not to take the lead must still be sent (corelink/lease.h) */
+    /* standby: number of the question that was sent after all other messages while this core ends; 0: not sent yet */
+    uint64_t last_question;
+    bool is_complete;             /* standby: true: the standby has answered last_question, and so has received everything */
     struct core_samples *samples; /* samples for the peer's history, to be sent; NULL: none */
     uint64_t told;                /* standby: sequence number of the newest notifier state that was sent to it */
     uint64_t rows;                /* standby: sequence number of the last journal row that was sent to it */
-    uint64_t alarms;              /* sequence number of the last change of alarms that was sent */
+    uint64_t alarms;              /* sequence number of the last change of alarms that was sent to the peer */
     struct lists_seen lists;
-    bool *links;            /* connection state of each source, as last sent; by source index */
-    json_t *hello;          /* this core's introduction, to be sent first; NULL: already sent */
-    json_t *answers;        /* answers to be sent, ordered by their member ACTED, which is removed before sending */
+    bool *links;   /* connection state of each data source, as last sent to the peer; by source index */
+    json_t *hello; /* this core's introduction, the first message to the peer; NULL: already sent */
+    /* answers to forwarded actions that are still to be sent, ordered by their JSON member ACTED (time at which the action was on disk),
+       which is removed before sending */
+    json_t *answers;
     struct deed *deeds;     /* forwarded actions whose answers wait until the actions are on disk */
     int64_t told_ns;        /* monotonic: when readings were last sent */
-    int64_t since_ns;       /* monotonic: since when a message waits to be sent; 0: none waits */
+    int64_t since_ns;       /* monotonic time since when a message waits to be sent; 0: no message waits */
     const char *close_text; /* reason to close the connection; NULL: the connection stays open */
 };
 
@@ -99,8 +102,8 @@ static struct core_identity own_identity(const struct server_context *server)
     return (struct core_identity){ server->params.version, plant->name, plant->files.hash };
 }
 
-/* Returns whether the other core's lease promises count. A core with other plant files cannot be a standby, but its promise not to lead is
-   just as valid. */
+/* Returns whether the other core's promises not to take the lead (corelink/lease.h) count. A core with other plant files cannot be a
+   standby, but its promise is just as valid. */
 static bool is_witness(const struct renderer_peer *renderer)
 {
     return renderer->stands_by && (renderer->state == RENDERER_TAKEN || renderer->state == RENDERER_VOTES);
@@ -112,7 +115,7 @@ static bool is_standby(const struct renderer_peer *renderer)
     return renderer->stands_by && renderer->state == RENDERER_TAKEN;
 }
 
-/* Tells the lease keeper which core's promises count; at most one core's do. */
+/* Tells the lease keeper the core whose promises not to take the lead count. There is at most one such core. */
 static void name_standby(struct server_context *server)
 {
     const struct renderer_peer *witness = NULL;
@@ -163,7 +166,7 @@ static void end_deed(struct deed *deed)
     mem_free(deed);
 }
 
-/* Sends the answers to actions that are on disk, or can never be written. */
+/* Sends the answers to forwarded actions that are on disk by now, and to those that could not be written. */
 static void settle(struct renderer_peer *renderer)
 {
     for (struct deed **at = &renderer->deeds, *deed; (deed = *at);) {
@@ -282,8 +285,8 @@ static bool send_standby(struct renderer_peer *renderer)
     return send_message(renderer, json_pack("{s:s}", "type", "standby"));
 }
 
-/* Returns whether everything that the standby must receive has been sent. The first readings after lead_ended_ns make send_next() look
-   for samples again. */
+/* Returns whether everything that the standby must receive has been sent. Samples that arrived before lead_ended_ns count as sent only
+   after one more message of readings, because that message makes send_next() look for samples again. */
 static bool has_all(const struct server_context *server, const struct renderer_peer *renderer)
 {
     int64_t ended_ns = server->life.lead_ended_ns;
@@ -313,7 +316,7 @@ static bool send_refusal(const struct server_context *server, struct renderer_pe
     bool votes = renderer->state == RENDERER_VOTES;
     renderer->refusal_sent = true;
     renderer->close_text = votes ? NULL : "it was refused";
-    /* a core of another version takes over, because both cores are upgraded one after the other */
+    /* a core that is refused only for its version may still take over: pairs are upgraded one core after the other */
     json_t *message = json_pack("{s:s,s:s,s:b,s:b}", "type", "refused", "why", renderer->refusal, "votes", votes, "takes_over",
                                 votes && !renderer->other_configuration);
     if (renderer->other_configuration)
@@ -321,8 +324,8 @@ static bool send_refusal(const struct server_context *server, struct renderer_pe
     return send_message(renderer, message);
 }
 
-/* Sends the next message to a core that only votes: its refusal, then questions about its lease promise, and nothing else. Returns false if
-   the connection is gone. */
+/* Sends the next message to a core that only votes: the reason of its refusal, then questions for its promise not to take the lead
+   (corelink/lease.h), and nothing else. Returns false if the connection is gone. */
 static bool send_to_voter(const struct server_context *server, struct renderer_peer *renderer)
 {
     return !renderer->refusal_sent ? send_refusal(server, renderer) : !renderer->asks || send_question(server, renderer, false);
@@ -430,8 +433,8 @@ static void wake_answers(const struct server_context *server)
             lws_callback_on_writable(one->wsi);
 }
 
-/* Returns whether an action has not been sent to a standby yet. Until it has been sent, no client is told that the action is done, because
-   the standby might take over. A standby that is too slow is not waited for. */
+/* Returns whether an action has not been sent to a standby yet. Until then no client is told that the action is done: the standby might
+   take over without having received it. A standby that is too slow is not waited for. */
 static bool standby_lacks(const struct server_context *server)
 {
     struct lists_seen lists = lists_now(server);
@@ -508,7 +511,7 @@ static bool send_next(struct server_context *server, struct renderer_peer *rende
 /* --- receiving ------------------------------------------------------------------------------------------------------------------------ */
 
 /* Returns an error message if the peer's token has the wrong role, otherwise NULL; the caller frees the message with mem_free. A renderer's
-   token must not get the standby's place, whose holder takes over as core. */
+   token is refused for a standby, because a standby takes over as core. */
 static char *role_refusal(const struct renderer_peer *one)
 {
     const struct connection *connection = connection_of(one->wsi);
@@ -520,9 +523,9 @@ static char *role_refusal(const struct renderer_peer *one)
                       name_of(names_role, (int)role), name_of(names_role, (int)role));
 }
 
-/* Returns the reason why peer `one` cannot be a standby, or NULL; the caller frees the text with mem_free. Names are unique and there is
-   only one standby, so that each promise has one author. matches: `one` has this core's version and files, and may replace a core that only
-   votes. */
+/* Returns the reason why peer `one` cannot be a standby, or NULL; the caller frees the text with mem_free. Only one standby with one name
+   is accepted, so that every promise not to take the lead has one author. matches: `one` has this core's version and files, and may replace
+   a core that only votes. */
 static char *standby_refusal(const struct server_context *server, struct renderer_peer *one, const char *id, bool matches)
 {
     if (!server->params.keeper)
@@ -562,8 +565,8 @@ static void end_voters(struct server_context *server)
         }
 }
 
-/* Decides whether a peer is accepted. A standby of this plant with other files or another version only votes: it may be about to be
-   upgraded or reloaded, before or after this core. */
+/* Decides whether a peer is accepted. A standby whose plant has the same name but whose files or version differ is accepted only as a
+   voter: it may be about to be upgraded or reloaded, before or after this core. */
 static void judge(struct server_context *server, struct renderer_peer *renderer, const json_t *message, const struct core_identity *own)
 {
     const char *plant = json_string_value(json_object_get(message, "plant")), *id = json_string_value(json_object_get(message, "id"));
@@ -676,7 +679,9 @@ static const char *on_message(struct server_context *server, struct renderer_pee
     else if (renderer->state != RENDERER_TAKEN)
         why = "the first message is not an introduction (hello)";
     else if (server->life.hands_over)
-        why = NULL; /* the renderer tells the user that the connection was lost */
+        /* ignores the message, because this core hands over the lead: when the connection ends, the renderer tells the user that the
+           connection was lost */
+        why = NULL;
     else if (!strcmp(type, "act") && json_is_integer(json_object_get(message, "id")))
         act(server, renderer, message);
     else if (!strcmp(type, "pairing") && server->logins.tokens)
@@ -731,7 +736,7 @@ static int on_writeable(struct server_context *server, struct renderer_peer *ren
 {
     if (!renderer->close_text)
         return send_next(server, renderer) ? 0 : -1;
-    /* the connection stays open until these actions are answered; settle() and on_beat() ask libwebsockets for the next callback */
+    /* the connection stays open until the answers to these actions are sent; settle() and on_beat() request the next callback for that */
     if (renderer->deeds)
         return 0;
     if (json_array_size(renderer->answers) > 0 && !server->life.goes_down) {

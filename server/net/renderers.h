@@ -9,21 +9,21 @@
 int renderer_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
 /* Checks the client of a new connection to /core. Returns NULL, or why it is refused (static text). */
 const char *renderers_refusal(const struct server_context *server, struct lws *wsi);
-/* Returns whether a core of this version and configuration stands by for this one. */
+/* Returns whether a standby core of this version and configuration is connected to this core. */
 bool renderers_have_standby(const struct server_context *server);
-/* Returns the lease name of the standby that has confirmed the receipt of everything, once nothing changes any more
-   (life.lead_ended_ns) and all actions are answered; NULL: none has. Valid until the event loop runs again. */
+/* Returns the lease name of the standby that has confirmed the receipt of everything, once nothing changes any more (life.lead_ended_ns)
+   and all actions are answered; NULL: no standby has confirmed. Valid until the event loop runs again. */
 const char *renderers_complete_standby(const struct server_context *server);
-/* Tells all renderers that this core begins to load the plant, so that they load their files at the same time. A standby ignores it: a
-   leader without the database needs the standby's promises while it switches. */
+/* Tells all renderers that this core begins to load the plant, so that they load their files at the same time. A standby ignores the
+   message and keeps answering: a leader that cannot reach the database needs the standby's promises not to take the lead. */
 void renderers_announce_reload(struct server_context *server);
 /* Makes the key with which this core's renderers sign view tokens; all renderers get the same key. */
 void renderers_make_key(struct server_context *server);
 /* Sends all renderers what changed. */
 void renderers_on_change(struct server_context *server);
-/* Sends answers to forwarded actions once the actions are on disk. */
+/* Sends answers to actions that renderers forwarded for their users, once the actions are on disk. */
 void renderers_settle(struct server_context *server);
-/* Returns whether a forwarded action is not answered yet. */
+/* Returns whether an action that a renderer forwarded is not answered yet. */
 bool renderers_owe_answers(const struct server_context *server);
 /* Closes the connections to all renderers, because the plant changes or the daemon ends. why: static text. */
 void renderers_close(struct server_context *server, const char *why);

@@ -44,8 +44,9 @@ struct wall_displays {
 struct tile_wall {
     char wall[NAMED_VIEW_ID_BYTES]; /* id of the wall; "": entry is free */
     uint64_t leader;                /* id of the leading session; 0: none */
-    uint64_t asked, presented;      /* ids of the wall's pictures: of the one requested last, and of the one presented last */
-    struct quality_ladder made;     /* quality ladder of the wall: its picture size follows how long the server takes to draw and encode */
+    uint64_t asked, presented;      /* ids of two pictures of the wall: of the picture requested last, and of the picture presented last */
+    /* quality ladder of the wall: steps of picture size, chosen by how long the server takes to draw and encode */
+    struct quality_ladder made;
 };
 
 enum { UPGRADE_REFUSALS = 16 };
@@ -56,9 +57,10 @@ struct server_context {
     struct lws_context *lws;
     struct { /* readings.c */
         struct snapshot *snapshot;
-        uint32_t *changes;      /* reading.changes in the last snapshot, by tag */
+        uint32_t *changes;      /* by tag: the counter `changes` of the reading in the last snapshot */
         int64_t data_ns;        /* monotonic: arrival of the oldest reading that changed in the last snapshot */
-        int64_t next_change_ns; /* monotonic: when a quality changes next by time alone; INT64_MAX: never */
+        /* monotonic time when the quality of a reading next changes because the reading grows old; INT64_MAX: never */
+        int64_t next_change_ns;
         bool *links_up;         /* connection state of each source, by source index */
     } readings;
     struct history_queries *history_queries; /* NULL: nothing is recorded */
@@ -73,15 +75,16 @@ struct server_context {
         size_t by_client_capacity;
         int count;
         uint64_t next_client;
-        bool restless;    /* true: some session has timed work soon, so ticks come at the short interval */
+        bool restless;    /* true: some session has timed work within the next second, so the event loop ticks at the short interval */
         int64_t still_ns; /* time to render the last refined frame that was drawn for one session alone, not shared */
     } streams;
     struct {
         struct view_token_keys token_keys;      /* on a renderer: keys that sign view tokens */
         char key[2 * VIEW_TOKEN_KEY_BYTES + 1]; /* on a core: the view token key for its renderers, hexadecimal; "": none */
-        char refused[300];                      /* the last refusal of a renderer, as logged */
-        bool listed;                            /* on a renderer: the core has sent its lists since the plant was loaded */
-        char followed[64];                      /* configuration of the core that refused this daemon, which then loaded its files */
+        char refused[300]; /* text of the last refusal of a renderer that was logged, so that a repetition is not logged */
+        bool listed;       /* on a renderer: true: the core has sent its lists (of views, notes and so on) since the plant was loaded */
+        /* configuration named by the core's last refusal of this renderer, which then loaded its files again to match that configuration */
+        char followed[64];
         struct renderer_peer *renderers;        /* list of all connections to /core (renderers.c) */
         uint64_t told_number;                   /* sequence number of the last notifier state that was sent to a standby */
     } core;
@@ -112,13 +115,14 @@ struct server_context {
         int64_t looked_ns; /* monotonic: when the files of tokens and certificate were last checked */
     } logins;
     struct {
-        bool hands_over;   /* this leading core gives the lead to its standby: messages of users are dropped */
-        int64_t lead_ended_ns; /* monotonic time since when nothing changes that the standby must receive; 0: things may change */
-        bool goes_down;    /* the server shuts down: connections are closed after their answer */
+        bool hands_over; /* true: this leading core is handing the lead to its standby; users' messages are ignored meanwhile */
+        /* monotonic time since when nothing changes any more that the standby must receive; 0: changes are possible */
+        int64_t lead_ended_ns;
+        bool goes_down;    /* true: the server shuts down; connections are closed after their answer */
         char goodbye[64];  /* close reason that streams get at shutdown */
-        int64_t drain_ns;  /* monotonic time since when the daemon drains its sessions to other daemons; 0: it does not */
+        int64_t drain_ns;  /* monotonic time since when the daemon drains its sessions to other daemons; 0: it does not drain */
         struct core_loss core_loss;
-        int start_s;       /* seconds that the daemon took to start, rounded up; 0: the daemon is not ready */
+        int start_s; /* seconds that the daemon took to start, rounded up; 0: it is still starting */
     } life;
     struct { /* texts that several sessions get */
         struct tag_text_cache tags;
@@ -175,7 +179,8 @@ bool stream_owns(const struct server_context *server, uint64_t client);
    takes ownership of the frame. */
 void stream_on_frame(struct server_context *server, struct encoded_frame *encoded);
 void stream_on_pick(struct server_context *server, const struct pick_answer *answer);
-/* Sends a frame, signed if that was possible; takes ownership of signing->encoded; the caller frees the rest of the struct. */
+/* Sends a frame that picture_signer returned: signed, or unsigned if signing failed. Takes ownership of signing->encoded; the caller frees
+   the rest of the struct. */
 void stream_on_signed(struct server_context *server, struct signing *signing);
 void stream_on_historical_snapshot(struct server_context *server, const struct history_loader_answer *answer);
 /* stream_on_coverage() and stream_say() pass a copy of the sensor coverage, or of a text, to the stream whose client asked for it. They do
@@ -190,7 +195,7 @@ void streams_on_tick(struct server_context *server);
 void streams_on_readings(struct server_context *server, bool data_changed, bool links_changed);
 /* Makes all sessions send changed alarms. */
 void streams_on_alarms(struct server_context *server);
-/* Sends answers to actions that are on disk by now, or can never be written. */
+/* Sends answers to users' actions that are on disk by now, or could not be written. */
 void streams_settle(struct server_context *server);
 /* Closes sessions whose token is no longer valid. */
 void streams_check_tokens(struct server_context *server, int64_t now_utc_ns);
@@ -215,11 +220,11 @@ void http_on_history_answer(struct server_context *server, struct history_answer
 void http_on_sign_ins(struct server_context *server);
 /* Answers the HTTP requests that asked for a reload, once it is done. good: the new plant is loaded; text: the result as JSON. */
 void http_on_reloaded(struct server_context *server, bool good, const char *text);
-/* Answers all requests that wait for the plant that is about to be replaced. */
+/* Answers all requests that wait for something of the present plant, which is about to be replaced. */
 void http_release_plant(struct server_context *server);
-/* Answers requests whose line in the audit trail is on disk, or cannot be written. */
+/* Answers HTTP requests whose line in the audit trail is on disk by now, or could not be written. */
 void http_settle(struct server_context *server);
-/* Answers requests that have waited too long. */
+/* Answers HTTP requests that have waited too long for a frame, pick or reload. */
 void http_on_tick(struct server_context *server, int64_t now_ns);
 /* Sends a complete short answer in plain text. Returns the result for the libwebsockets callback. */
 int http_answer(struct lws *wsi, int status, const char *text);

@@ -16,10 +16,12 @@
 
 enum { STREAM_CLOSE_STALLED = 4000, LAST_WORDS_S = 2, BACK_MAX_S = 60, SILENT_S = 6 };
 static const int64_t SILENT_NS = SILENT_S * NS_PER_S;
-/* time for load balancers to notice that this daemon drains its sessions to other daemons */
+/* delay between the start of a drain (moving sessions to other daemons) and the first session closed, in which load balancers notice the
+   drain */
 static const int64_t DRAIN_DELAY_NS = 2 * NS_PER_S;
 static const int64_t DRAIN_NS = 10 * NS_PER_S;
-static const int64_t MOVE_NS = 1 * NS_PER_S; /* within this time sessions move away from a node without a core */
+/* time within which all sessions of a node that has lost its core are closed, so that they move to other nodes */
+static const int64_t MOVE_NS = 1 * NS_PER_S;
 static const int64_t MOVING_NS = 200 * NS_PER_MS; /* a session's camera counts as moving for this long after an input of its user */
 
 /* --- connecting and disconnecting ------------------------------------------------------------------------------------- */
@@ -96,8 +98,8 @@ static void count(struct server_context *server, struct stream *stream)
     stream->dropped = session->stats.dropped;
 }
 
-/* Returns whether the view is kept for the client's return: true after an accepted hello, unless the client was refused (close code
-   1008). */
+/* Returns whether the session's view is stored so that a returning client can resume it: true after an accepted hello, unless the client
+   was refused (close code 1008). */
 static bool may_return(const struct stream *stream)
 {
     return stream->session->hello && stream->session->close.code != 1008;
@@ -134,7 +136,7 @@ static void on_close(struct server_context *server, struct stream **slot)
 
 /* --- work after each event of a session ------------------------------------------------------------------------------- */
 
-/* Advances playback, and requests readings for it; followers go to the same instant. */
+/* Advances playback, and requests the readings of the instant shown. Following sessions show the same instant. */
 static void travel(struct server_context *server, struct stream *stream, int64_t now_ns)
 {
     struct session *session = stream->session;
@@ -219,7 +221,8 @@ static void log_silence(struct server_context *server, struct stream *stream, in
              (unsigned long long)session->id, connection_of(stream->wsi)->address, display, SILENT_S + PACER_STALL_S);
 }
 
-/* Watches a client that acknowledges nothing: it is sent nothing more, its session keeps only its view, and is closed in the end. */
+/* Watches a client that acknowledges no frame: sends it nothing more, reduces its session to the view, and closes the session if the
+   silence lasts 15 s. */
 static void watch_stall(struct server_context *server, struct stream *stream, int64_t now_ns)
 {
     enum pacer_state state = session_state(stream->session, now_ns);
@@ -248,8 +251,8 @@ void streams_on_readings(struct server_context *server, bool data_changed, bool 
     }
 }
 
-/* Returns whether a session whose node began at begun_ns to close sessions within spread_ns must be closed by now. Sessions are closed at
-   different instants, because their pages reconnect to other nodes immediately. */
+/* Returns whether a session must be closed by now. The node closes all its sessions within spread_ns from begun_ns on, at different
+   instants, because the closed pages reconnect to other nodes immediately. */
 static bool is_due(const struct stream *stream, int64_t begun_ns, int64_t spread_ns, int64_t now_ns)
 {
     /* Fibonacci hashing: multiplying ids by 2^64 / golden ratio spreads consecutive ids evenly */
@@ -257,8 +260,8 @@ static bool is_due(const struct stream *stream, int64_t begun_ns, int64_t spread
     return now_ns - begun_ns > (int64_t)(spread % 1000) * (spread_ns / 1000);
 }
 
-/* Closes a session that must move to another node: because this one is being drained, or has lost its core. A session that did not come
-   through a load balancer would reach the same node again, and stays without a core. */
+/* Closes a session that must move to another node, because this node is being drained or has lost its core. Only sessions that came through
+   a load balancer are closed after the loss of a core: others would reach the same node again. */
 static void move_elsewhere(const struct server_context *server, const struct stream *stream, int64_t now_ns)
 {
     int64_t drain_ns = server->life.drain_ns, moves_ns = server->life.core_loss.moves_ns;
@@ -319,7 +322,8 @@ static void take_frame(struct server_context *server, struct stream *stream, str
     pump(server, stream);
 }
 
-/* Passes a frame that is wanted signed to the signer. Returns false if it cannot be signed; the client then gets it unsigned. */
+/* Passes a frame to the signer if its client wants signed frames. Returns false if the frame cannot be signed; the client then gets it
+   unsigned. */
 static bool sign(struct server_context *server, struct stream *stream, struct encoded_frame *encoded)
 {
     const struct packet *packet = encoded->packet;
@@ -409,7 +413,7 @@ void stream_say(struct server_context *server, uint64_t client, const char *text
     pump(server, stream);
 }
 
-/* Logs and records the login: once for each admitted session, and for each refused token. */
+/* Writes a stream's login to the log and the audit trail: once for each admitted session, and for each refused token. */
 static void note_login(struct server_context *server, struct stream *stream, bool was_in)
 {
     const struct session *session = stream->session;
@@ -419,7 +423,8 @@ static void note_login(struct server_context *server, struct stream *stream, boo
         return;
     if (good)
         holder.role = session->identity.role;
-    if (!good) /* does not count refusals with close code 1013 (try again later), because pump() counts these */
+    /* a login that was not checked because of throttling (LOGIN_HELD, close code 1013) is not counted here, because pump() counts it */
+    if (!good)
         counter_inc(server->counters.refused, session->identity.login != LOGIN_HELD);
     if (!good || session->identity.role > ROLE_OPEN || holder.name[0])
         connection_log_login(server, stream->wsi, "stream", &holder, good ? LOGIN_GOOD_NEW : session->identity.login);

@@ -15,7 +15,7 @@ struct stream {
     size_t in_count;             /* bytes of the current message received so far, including those that were too many to store */
     struct encoded_frame *sending;
     uint32_t seq;
-    enum session_depth depth; /* depth of the frame being sent */
+    enum session_depth depth; /* whether depth grids go with the frame being sent, and whether they are new */
     int half;                 /* index of the depth grid being sent, among those of the frame */
     enum { SEND_MARKERS, SEND_DEPTH, SEND_HEADER, SEND_PAYLOAD } step;
     int packet, part;      /* which packet of the frame is being sent, and which part of that packet (indexes from 0) */
@@ -23,11 +23,11 @@ struct stream {
     bool cut;              /* the frame was cut short: only the end of its message is still to be sent */
     uint64_t ping, pong;   /* sequence numbers of the last ping sent and of the last pong received */
     int64_t ping_ns;       /* monotonic: when the last ping was sent */
-    /* progress of the first bandwidth measurement, which takes the time from sending the first text until the pong of a ping that
-       follows the first texts */
+    /* progress of the first bandwidth measurement. It lasts from the sending of the first text to the pong of a ping that follows the first
+       texts */
     enum { FIRST_TEXTS, FIRST_PING, FIRST_DONE } first;
     size_t first_bytes;
-    int64_t first_ns; /* monotonic: when the first text before the first frame was sent */
+    int64_t first_ns; /* monotonic time when the first text was sent; used until the first frame is sent */
     struct known_markers known;
     char *carried;  /* during a plant reload: parameters of the session's view as text, for session_take_plant() */
     bool throttled; /* true: the client sent too many messages, so nothing is read from it for now */
@@ -64,11 +64,11 @@ void stream_on_pong(struct stream *stream, const void *bytes, size_t count);
 
 /* --- tile_walls.c: sessions that are tiles of one picture over many displays --- */
 
-/* Requests the next picture of the wall to which a tile (one display's part of a wall's picture) belongs, and presents a picture that all
-   tiles have, if due. */
+/* Requests the next picture of the wall to which a tile (one display's part of a wall's picture) belongs. Also presents a picture that all
+   tiles have received, if its time has come. */
 void tiles_pump(struct server_context *server, const struct stream *stream);
-/* Call it when tiles (each one display's part of a picture) of a wall connected, disconnected or were dropped: chooses the leader and
-   informs all tiles. leaving: a stream that is being closed, or NULL. */
+/* Chooses the leading tile of a wall and informs all tiles (a tile is one display's part of the wall's picture). Call it when tiles
+   connected, disconnected or were dropped. leaving: a stream that is being closed, or NULL. */
 void tiles_gather(struct server_context *server, const char *wall, const struct stream *leaving);
 /* Drops tiles (each one display's part of a wall's picture) that delay their wall, and readmits them once they keep up. Call it every
    tick. */
@@ -82,8 +82,8 @@ void follow_resolve(struct server_context *server, struct stream *stream);
 bool follow_spread(struct server_context *server, const struct stream *leader);
 /* Gives all viewers of one view the same step of the quality ladder. Call it every tick. */
 void follow_share_steps(struct server_context *server);
-/* Call it when a stream is being closed: its followers follow the session that resumed its view over another connection, or no one if there
-   is none. */
+/* Call it when a stream is being closed. If another connection has resumed its view, its followers follow that session; otherwise they
+   follow nobody. */
 void follow_forget(struct server_context *server, const struct stream *leader);
 /* Sends leaders the list of their followers if it changed. Call it every tick. */
 void follow_tell(struct server_context *server, int64_t now_ns);

@@ -28,7 +28,7 @@ static void hand_over(struct server_context *server, const struct session *from,
             session_follow(stream->session, to, clock_mono_ns());
 }
 
-/* Hands the lead over to one of the followers (the heir): the shown view stays the same, but from now on the heir moves it. */
+/* Hands the lead to one of the followers (the heir): all sessions keep showing the same view, but from now on the heir's user moves it. */
 static void resolve_lead(struct server_context *server, struct session *session, uint64_t number)
 {
     const struct stream *other = stream_called(server, number);

@@ -181,7 +181,7 @@ static void part_sent(struct server_context *server, struct stream *stream)
     encoded_frame_destroy(&stream->sending);
 }
 
-/* Puts the header in front of the first bytes of the payload: a separate write would be a separate system call and network packet. */
+/* Writes the header and the first bytes of the payload together: a separate write would cost a system call and a network packet. */
 static size_t put_header(struct stream *stream, uint8_t *bytes)
 {
     struct wire_frame head = frame_header(stream);
@@ -239,7 +239,8 @@ void stream_give_up(struct server_context *server, struct stream *stream, int64_
     encoded_frame_destroy(&stream->sending);
 }
 
-/* Ends the frame's message early, with fewer bytes than the frame's header announces. Returns false if the connection is gone. */
+/* Ends the WebSocket message of a frame that was cut short, with fewer bytes than the frame's header announces. Returns false if the
+   connection is gone. */
 static bool write_end(struct server_context *server, struct stream *stream)
 {
     stream->cut = false;

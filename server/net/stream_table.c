@@ -6,7 +6,7 @@
 #include "base/mem.h"
 #include "net/stream.h"
 
-/* Returns the index in server->streams.by_client of that session, or where it would be inserted. */
+/* Returns the index of a session in server->streams.by_client, or the index at which the session would be inserted. */
 static size_t place_of(const struct server_context *server, uint64_t client)
 {
     size_t at;

@@ -61,7 +61,7 @@ static struct session *choose(struct server_context *server, const struct tile_w
 static void take_lead(const struct server_context *server, struct tile_wall *wall, struct session *leader, const struct stream *leaving)
 {
     const struct stream *before = wall->leader ? stream_find(server, wall->leader) : NULL;
-    /* stream_find() would not find the leaving stream, because it was already removed from the table */
+    /* finds the stream without stream_find(), because the leaving stream was already removed from the table */
     if (leaving && leaving->session->id == wall->leader)
         before = leaving;
     if (before)
@@ -94,8 +94,8 @@ static void tell(struct server_context *server, const struct tile_wall *wall, co
         }
 }
 
-/* Applies the burn-in shift to all tiles (each one display's part of the picture) of a wall; also before the first picture of a new
-   tile. */
+/* Applies the burn-in shift to all tiles (each one display's part of the picture) of a wall. A new tile gets the shift before its first
+   picture. */
 static void move_all(struct server_context *server, const char *wall)
 {
     struct burn_shift shift = burn_shift_at(clock_plant_ns());

@@ -153,8 +153,8 @@ static int write_chain(const SSL_CTX *context, const char *path)
     return error;
 }
 
-/* Writes the certificate that is in force to the service's folder in /run, where Prometheus and other programs of this machine find the one
-   to trust. */
+/* Writes the certificate that is in force to the service's folder in /run. Prometheus and other programs of this machine read it there to
+   verify this server. */
 static void publish(const struct tls *tls)
 {
     const char *runtime = getenv("RUNTIME_DIRECTORY");
@@ -171,7 +171,7 @@ void tls_serve(struct tls *tls, SSL_CTX *context)
 {
     publish(tls);
     SSL_CTX_set_min_proto_version(context, TLS1_2_VERSION);
-    /* TLS 1.2 is used without CBC ciphers; all ciphers of TLS 1.3 are good */
+    /* in TLS 1.2, CBC ciphers are turned off; TLS 1.3 needs no list, because all its ciphers are secure */
     SSL_CTX_set_cipher_list(context, "ECDHE+AESGCM:ECDHE+CHACHA20");
     tls->served = context;
 }

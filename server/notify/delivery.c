@@ -21,7 +21,7 @@ struct transfer {
     char why[CURL_ERROR_SIZE];
     struct log *log;
     const char *name;  /* name of the recipient */
-    char mailbox[256]; /* mailbox in the last RCPT command; empty: the last command was another one */
+    char mailbox[256]; /* mailbox in the last RCPT command of the SMTP dialogue; empty: the last command was another one */
 };
 
 struct delivery {
@@ -120,7 +120,8 @@ static void set_common(struct delivery *delivery, struct transfer *transfer, con
     curl_easy_setopt(handle, CURLOPT_CONNECTTIMEOUT, (long)CONNECT_S);
     curl_easy_setopt(handle, CURLOPT_TIMEOUT_MS, (long)(delivery->notify->timeout_s * 1000));
     curl_easy_setopt(handle, CURLOPT_SSLVERSION, (long)CURL_SSLVERSION_TLSv1_2);
-    curl_easy_setopt(handle, CURLOPT_QUICK_EXIT, 1L); /* makes libcurl not wait for a hanging name server when the daemon ends */
+    /* lets the daemon end without waiting for libcurl's thread, which may wait for a name server that does not answer */
+    curl_easy_setopt(handle, CURLOPT_QUICK_EXIT, 1L);
     if (ca_file)
         curl_easy_setopt(handle, CURLOPT_CAINFO, ca_file);
 }

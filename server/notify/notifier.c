@@ -36,11 +36,10 @@ struct notifier {
     struct outbox *outbox;
     struct recipient_counters *counters; /* by index of the recipient */
     counter *lost, *spool_good;
-    bool *failing;   /* by index of the recipient: true if the last delivery failed */
+    bool *failing;   /* by index of the recipient: true: the last delivery to the recipient failed */
     uint64_t number; /* change number of the newest alarm change that was processed */
     bool looked, unsaved;
-    /* value of outbox_counts.lost up to which lost notifications were counted already; an outbox restored after a reload may start above
-       0 */
+    /* value of outbox_counts.lost up to which lost notifications are in the metrics; not 0 at the start if a reload restored the outbox */
     int64_t lost_before;
 };
 
@@ -101,7 +100,7 @@ static void save(struct notifier *notifier)
     if (!notifier->unsaved)
         return;
     char *text = json_text(outbox_save(notifier->outbox), 0);
-    publish(notifier, mem_strdup(text)); /* a standby core gets the text first, because writing it to disk may take long */
+    publish(notifier, mem_strdup(text)); /* passes the text to a standby core before writing it to disk, which may take long */
     int error = put_file(notifier->path, text, true);
     mem_free(text);
     if (error)

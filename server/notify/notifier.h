@@ -13,7 +13,7 @@ struct notifier_params {
     const struct plant *plant;           /* must have a `notify` */
     struct alarm_service *alarm_service; /* plant and alarm service must outlive the notifier */
     const char *folder;                  /* folder of notify.json; the alarm journal creates it */
-    void (*kept)(void *arg);             /* called by the notifier's thread when the content of notify.json changed; NULL: no callback */
+    void (*kept)(void *arg); /* callback on the notifier's thread after the content of notify.json has changed; NULL: no callback */
     void *kept_arg;
 };
 
@@ -27,7 +27,7 @@ char *notifier_kept(struct notifier *notifier);
 int notifier_put_kept(const char *folder, const char *text);
 /* Starts a notifier. Returns NULL if it cannot be started (logged). */
 struct notifier *notifier_start(const struct notifier_params *params);
-/* Aborts messages that are being sent, which are sent again after the next start, and waits until notify.json is written. */
+/* Aborts messages that are being sent, and waits until notify.json is written. The aborted messages are sent after the next start. */
 void notifier_halt(struct notifier *notifier);
 /* Halts and frees the notifier. &NULL is fine; sets *notifier to NULL. */
 void notifier_stop(struct notifier **notifier);

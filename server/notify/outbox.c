@@ -99,8 +99,8 @@ static void queue_item(struct outbox *outbox, int recipient, const struct episod
 {
     struct recipient_box *box = &outbox->boxes[recipient];
     int index = (int)(episode - outbox->episodes);
-    bool may_wait = step > 0 || episode->told_us; /* a repeated notification or an escalation is not queued if the alarm is still in the
-                                                     queue */
+    /* true: a repetition or an escalation, which is not queued if the alarm is in the queue already */
+    bool may_wait = step > 0 || episode->told_us;
     for (size_t i = 0; may_wait && i < box->waiting.count; i++)
         if (box->waiting.at[i].episode == index)
             return;
@@ -343,8 +343,8 @@ static bool goes_to(const struct plant_notify *notify, const struct episode *epi
     return false;
 }
 
-/* Makes an Alertmanager message of all active alarms, and of the alarms that have ended since the last message. Returns false if there
-   are none. */
+/* Makes an Alertmanager message of all active alarms, and of the alarms that have ended since the last message. Returns false if there are
+   no such alarms. */
 static bool make_alerts(struct outbox *outbox, int recipient, int64_t now_us)
 {
     struct recipient_box *box = &outbox->boxes[recipient];

@@ -11,7 +11,7 @@
 
 enum { OUTBOX_ITEMS = 5000 /* maximum number of queued alarms of all recipients together */, OUTBOX_ID_BYTES = 40 };
 #define OUTBOX_REPEAT_US (600 * INT64_C(1000000)) /* minimum time between two notifications of an alarm that cleared by itself */
-#define OUTBOX_KEEP_US (86400 * INT64_C(1000000)) /* age after which an undeliverable message is dropped */
+#define OUTBOX_KEEP_US (86400 * INT64_C(1000000)) /* age after which a message that cannot be delivered is dropped */
 #define OUTBOX_REFRESH_US (60 * INT64_C(1000000)) /* interval at which all active alarms are sent to Alertmanager again */
 #define OUTBOX_ALERT_US (300 * INT64_C(1000000))  /* time after which Alertmanager drops an alarm that is not sent again */
 
@@ -19,7 +19,7 @@ struct outbox_item { /* one alarm in a message */
     char *name;      /* name of the tag or device */
     int tag;         /* index of the tag; -1: the alarm is that of a device */
     enum alarm_kind kind;
-    int priority, step; /* step: index of the rule's escalation step; 0: the first notification */
+    int priority, step; /* index of the rule's escalation step to which the notification belongs; 0: the first notification */
     enum alarm_status status;
     double value, limit;         /* NaN: none */
     int64_t raised_us, ended_us; /* UTC microseconds. ended_us: when the alarm returned to normal or was acknowledged; 0: the alarm is

@@ -13,9 +13,9 @@ struct episode { /* episode of an alarm: begins when the alarm needs attention; 
     double value, limit;
     int64_t raised_us; /* UTC microseconds at which the alarm was raised, as of the last call of outbox_put() */
     int64_t began_us;
-    int64_t ended_us;            /* UTC microseconds at which the alarm no longer needed attention; 0: it still does */
-    int64_t cleared_us;          /* UTC microseconds at which the alarm stopped being annunciated; 0: it still is */
-    int64_t told_us;             /* UTC microseconds of the newest notification; 0: none since the alarm was last acknowledged */
+    int64_t ended_us;            /* UTC microseconds at which the alarm no longer needed attention; 0: it still needs attention */
+    int64_t cleared_us;          /* UTC microseconds at which the alarm stopped being annunciated; 0: it is still annunciated */
+    int64_t told_us;             /* UTC microseconds of the newest notification; 0: no notification since the alarm was last acknowledged */
     uint32_t rules;              /* bit mask of the notification rules that applied when the episode began */
     uint32_t told;               /* bit mask of the recipients that were notified */
     uint8_t steps[NOTIFY_RULES]; /* by rule: number of escalation steps carried out */
@@ -45,15 +45,15 @@ struct recipient_box { /* messages queued for one recipient */
     int64_t retry_us;
     int last_priority; /* most urgent priority in the last message */
     int attempts;
-    int64_t left_out; /* number of alarms that the queue had no room for since the last message */
-    bool changed;     /* for Alertmanager: true: alarms changed since the last message */
+    int64_t left_out; /* number of alarms since the last message for which the queue was full */
+    bool changed;     /* only for Alertmanager: true: alarms have changed since the last message */
 };
 
 struct outbox {
     const struct plant *plant;
     struct episode *episodes;
     size_t count, capacity;
-    int *by_alarm;               /* 1 + index of the episode, by tag and alarm kind; 0: there is none */
+    int *by_alarm;               /* by tag and alarm kind: 1 + index of the alarm's episode; 0: the alarm has no episode */
     struct recipient_box *boxes; /* by index of the recipient */
     size_t items;                /* queued alarms of all recipients */
     int64_t lost, made;

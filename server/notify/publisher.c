@@ -24,7 +24,7 @@
 static const int64_t CONNECT_NS = 10 * NS_PER_S;
 
 struct topic {
-    char *name, *unit;       /* unit: JSON object that has the unit as its only member */
+    char *name, *unit;       /* unit: text of a JSON object with the unit as its only member */
     int64_t received_utc_ns; /* UTC time of the reading that was published last */
     uint32_t quality;
     bool is_published; /* published on the current connection */
@@ -119,7 +119,8 @@ static void add_alarm(void *arg, const struct alarm *alarm)
     json_array_append_new(arg, one);
 }
 
-/* Publishes all alarms that are not normal in one message; so the broker retains no alarm that has ended. */
+/* Publishes all alarms that are not normal in one message. The broker retains only the last message, and so never an alarm that has
+   ended. */
 static bool publish_alarms(struct publisher *publisher)
 {
     const struct plant_publish *config = publisher->params.plant->publish;
@@ -223,7 +224,8 @@ static void make_topics(struct publisher *publisher)
     }
 }
 
-/* Returns the configured client id or makes a random one, because a broker ends the connection of another client with the same id. */
+/* Returns the configured MQTT client id, or a random one if none is configured: a broker disconnects a client when another one connects
+   with the same id. */
 static char *make_client_id(const struct plant_publish *config)
 {
     unsigned random = 0;

@@ -10,7 +10,7 @@
 #include "scene/scene.h"
 
 struct assumed_filter {
-    int asset, group;  /* indices in the plant of an asset and a group; -1: any */
+    int asset, group;  /* indices in the plant of an asset and a group to which the selection is limited; -1: any */
     char pattern[101]; /* glob for the tag's name; a text without * and ? is searched in the tag's name and description;
                           case-insensitive; empty: any */
     double within_m;   /* largest distance in metres of the position from the asset's surface; negative: any distance */
@@ -19,9 +19,10 @@ struct assumed_filter {
 };
 
 enum assumed_outcome {
-    ASSUMED_NOT_MEANT, /* the filter does not select the tag: its position is not assumed, or its asset, group or name does not match */
+    /* the filter does not select the tag: its position is not an assumed one, or its asset, group or name does not match the filter */
+    ASSUMED_NOT_MEANT,
     ASSUMED_ACCEPTED,
-    ASSUMED_NOWHERE, /* the tag's row in the tag list has neither a node nor X, Y, Z */
+    ASSUMED_NOWHERE, /* not accepted: the tag's row in the tag list has neither a node nor X, Y, Z */
     ASSUMED_MISSING, /* its asset has no model */
     ASSUMED_FAR,     /* too far from the surface */
     ASSUMED_UNSURE,  /* confidence too low or unknown */

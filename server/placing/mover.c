@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the stored surface of an asset and creates the relocation object that computes distances on it. */
+/* Creates the relocation object of an asset, which computes distances from moved sensors on the asset's stored surface. */
 #include "placing/mover.h"
 
 #include <stdlib.h>

@@ -15,7 +15,7 @@
 #include "surface/relocation.h"
 #include "value/quality.h"
 
-enum { MOVERS = 4 }; /* number of relocation objects in memory above which those of assets without moved sensors are freed */
+enum { MOVERS = 4 }; /* maximum number of relocation objects in memory; above it, those of assets without moved sensors are freed */
 
 struct distance_ask { /* pending request for the geodesic distances of one moved sensor */
     struct placing *placing;
@@ -25,7 +25,7 @@ struct distance_ask { /* pending request for the geodesic distances of one moved
 };
 
 struct placing_entry { /* private data of a moved sensor; set->placed has the data that callers see */
-    uint64_t asked;    /* sequence number of the sensor's pending request; 0: none */
+    uint64_t asked;    /* sequence number of the sensor's pending distance request; 0: none is pending */
     uint64_t ticket;
     struct trial_sensor sensor;
 };
@@ -261,7 +261,7 @@ void place_set_destroy(struct place_set **pointer)
     *pointer = NULL;
 }
 
-/* Returns the index of a move in the set that equals `move`; -1: none. */
+/* Returns the index of the move in the set that has the same tag and position as `move`; -1: none. */
 static int find_same(const struct place_set *set, const struct place_move *move)
 {
     for (size_t i = 0; i < set->count; i++) {
@@ -339,7 +339,7 @@ bool place_set_changed(struct place_set *set)
     return changed;
 }
 
-/* --- results of the workers --------------------------------------------------------------------------------------------------- */
+/* --- results that workers have computed ---------------------------------------------------------------------------------------- */
 
 static void take(struct placing *placing, struct distance_ask *ask)
 {

@@ -33,7 +33,7 @@ struct place_move {
     double position_m[3]; /* in the plant frame */
 };
 enum placed_state {
-    PLACED_WAITING, /* geodesic distances are still being computed; until then straight-line distances are used */
+    PLACED_WAITING, /* geodesic distances are still being computed; straight-line distances are used meanwhile */
     PLACED_READY,
     PLACED_STRAIGHT /* geodesic distances cannot be computed (the reason is logged); straight-line distances are used */
 };
@@ -79,8 +79,8 @@ struct sensor_coverage_answer {
    from which a point counts as far from its sensors; 0: chosen for the asset. placing_collect() returns the answer. */
 void placing_request_coverage(struct placing *placing, const struct place_set *set, int group, double far_m,
                               const struct snapshot *snapshot, uint64_t client, uint32_t seq);
-/* Passes newly computed distances to the sets that asked for them. Returns a linked list of the coverage answers that are ready, oldest
- * first; the caller frees each with sensor_coverage_answer_free(). */
+/* Passes newly computed distances to the sets of moves that requested them. Returns a linked list of the coverage answers that are ready,
+   oldest first; the caller frees each with sensor_coverage_answer_free(). */
 struct sensor_coverage_answer *placing_collect(struct placing *placing);
 /* Frees one answer. */
 void sensor_coverage_answer_free(struct sensor_coverage_answer *answer);

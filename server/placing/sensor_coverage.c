@@ -67,7 +67,8 @@ static void find_next(const struct field_layout *layout, enum distance_mode mode
     }
 }
 
-struct nearest_block { /* by vertex of a block: distance to the nearest sensor, and whether that sensor's reading is usable */
+/* one block of surface vertices; by vertex: distance to its nearest sensor in metres, and whether that sensor's reading is usable */
+struct nearest_block {
     float m[KERNEL_BLOCK];
     bool good[KERNEL_BLOCK];
 };

@@ -19,15 +19,15 @@ struct sensor_coverage_query {
 
 struct sensor_coverage {
     size_t sensors;
-    double far_m;            /* the limit used */
-    double farthest_m;       /* metres from the farthest surface point to its nearest sensor, among points that a path connects to a
-                                sensor */
+    double far_m; /* the limit used */
+    /* metres from the surface point that is farthest from all sensors to its nearest sensor; points that no path along the surface connects
+       to a sensor do not count */
+    double farthest_m;
     double farthest_at_m[3]; /* position of the farthest surface point, in plant coordinates */
     double far_share;        /* fraction of the surface's area that counts as far (far_m), 0..1 */
     double lost_share;       /* fraction of the area that no sensor reaches, or whose nearest sensor has no usable reading */
-    double next_m;           /* metres from a sensor to its nearest other sensor, for the sensor where that is largest; 0: there is only
-                                one sensor */
-    int next_tags[2];        /* indices of the tags of the two sensors of next_m; -1: none */
+    double next_m;           /* largest distance in metres from a sensor to its nearest other sensor; 0: there is only one sensor */
+    int next_tags[2];        /* indices of the tags of the two sensors that are next_m apart; -1: none */
 };
 
 /* Computes the coverage for a query into *out. Returns false if no sensor of the group is on the asset. */

@@ -35,7 +35,8 @@ struct suggest_asset { /* an asset */
 struct candidate {
     size_t part;
     uint32_t vertex;
-    double bound; /* upper bound of the candidate's gain: reduction of the measure times the area in square metres */
+    /* upper bound of what a sensor at the candidate gains: reduction of the measure (sensor_suggest.h) times the area in square metres */
+    double bound;
 };
 
 struct suggesting {

@@ -52,7 +52,8 @@ static void cannot_write(struct refusal *why, const char *file, int error)
         refusal_set(why, REFUSAL_UNWRITTEN, "file=%s\nerror=%s", file, strerror(error));
 }
 
-/* Gives the present file a second name by a hard link, which keeps the file's owner and mode. Returns that name. */
+/* Keeps the present tag list as an earlier version: gives it a second name by a hard link, which keeps owner and mode. Returns that
+   name. */
 char *tag_file_keep(const char *path, struct refusal *why)
 {
     for (int n = 1; n < MAX_VERSIONS; n++) {

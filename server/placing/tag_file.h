@@ -11,7 +11,7 @@
 /* A request to save a tag list, from a user who has seen how it differs from the present list. */
 struct tag_save {
     char *path;
-    char *before, *after; /* text of the present list, and of the list to save */
+    char *before, *after; /* text of the present tag list, and text of the list to save */
     char *who;
     uint64_t client; /* id of the client that gets the answer */
     uint32_t seq;
@@ -19,7 +19,7 @@ struct tag_save {
 /* Frees a request to save a tag list. NULL is fine. */
 void tag_save_free(struct tag_save *save);
 
-/* Returns the text of the tag list (mem_free). NULL with the reason in *why. */
+/* Returns the text of the tag list; free with mem_free(). Returns NULL on failure, with the reason in *why. */
 char *tag_file_read(const char *path, struct refusal *why);
 /* Writes a hash of the text as 16 hexadecimal digits, by which versions are told apart. */
 void tag_file_hash(const char *text, char out[17]);
