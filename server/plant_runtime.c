@@ -25,7 +25,7 @@ char *plant_runtime_prepared_folder(const struct server_params *params, const st
     if (access(folder, F_OK) == 0 || length <= before + after || strncmp(params->plant_path, installed, before) != 0 ||
         strcmp(params->plant_path + length - after, name) != 0)
         return folder;
-    mem_free(folder); /* the service prepares into this folder (plantcastd@.service) */
+    mem_free(folder); /* folder into which the systemd service prepares the plant (plantcastd@.service) */
     return mem_printf("/var/lib/plantcast/%.*s/prepared", (int)(length - before - after), params->plant_path + before);
 }
 
@@ -182,8 +182,9 @@ bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_r
 {
     if (before)
         store_adopt(runtime->services.store, before->services.store);
-    if (!before) /* after a reload, sessions of the old runtime change the users' files until the switch, so the event loop opens them at
-                    the switch */
+    /* opens the files that users change, unless this is a reload: then sessions of the old runtime change these files until the switch, at
+       which the event loop opens them */
+    if (!before)
         plant_runtime_open_lists(runtime);
     if (runtime->services.history_folder)
         runtime->services.loop_checks =

@@ -22,7 +22,7 @@ struct plant_runtime_context { /* parts that a reload keeps */
     struct audit *audit; /* audit trail; NULL: nothing is recorded */
     struct file_writer *file_writer; /* writes what users change */
     struct workers *workers;
-    struct lease_keeper *keeper; /* lease keeper of a core that has a standby, or is a standby; NULL: none */
+    struct lease_keeper *keeper; /* lease keeper of a core in a pair (leader or standby); NULL: there is no pair */
     bool *follows;               /* true: another core polls devices and owns the alarms; plant_runtime_lead() sets it to false */
     void (*notify)(void *arg);   /* called by any thread when frames or alarm changes can be collected */
     void *notify_arg;
@@ -31,7 +31,7 @@ struct plant_runtime_context { /* parts that a reload keeps */
 struct plant_runtime {
     const struct plant_runtime_context *context;
     struct plant *plant;
-    struct plant_services services; /* core_link takes the place of `sources` */
+    struct plant_services services; /* services of the plant; on a daemon that follows a core, core_link takes the place of `sources` */
     struct publisher *publisher;    /* NULL: nothing is published */
     struct source **sources;        /* sources by index in plant->sources */
     struct source *derived;         /* computes derived tags; NULL: there are none */
@@ -64,8 +64,8 @@ bool plant_runtime_lead(struct plant_runtime *runtime);
 /* Starts the render service. first: views to draw in advance, so that the first frames of these views come quickly. Returns false on
    failure, already logged. */
 bool plant_runtime_start_render_service(struct plant_runtime *runtime, const struct view *first, size_t first_count);
-/* Ends reading, recording and evaluating, so that a runtime of the plant `next` can take over. Frames are still drawn, with the readings
-   from before the call. */
+/* Ends reading, recording and evaluating, so that the runtime of the plant `next` can take over. The render service continues to draw
+   frames, with the readings from before the call. */
 void plant_runtime_hand_over(struct plant_runtime *runtime, const struct plant *next);
 
 /* Ends everything that only the leader of two cores may do: polling, evaluation of alarms, recording, notifying. The last samples are

@@ -10,7 +10,7 @@
 #define PLANT_HEAT_TRANSFER 9.0 /* default heat transfer coefficient, W/(m2 K): still air with radiation, EN 1991-1-2, 3.1(6) */
 
 #define PLANT_GP_DEVIATION 0.25 /* assumed standard deviation of the field, as a fraction of the group's range */
-#define PLANT_GP_RANGE 0.25     /* correlation length where it cannot be fitted, as a fraction of the asset's size */
+#define PLANT_GP_RANGE 0.25     /* correlation length to use if there are no readings to fit it to, as a fraction of the asset's size */
 #define PLANT_GP_FITTED 3       /* minimum number of sensors on an asset from which `gp` can be fitted to readings */
 #define PLANT_GP_NOISE 0.005    /* assumed standard deviation of a reading's noise, as a fraction of the group's range */
 

@@ -22,7 +22,7 @@ static char *folder_of(const char *path)
     return slash == path ? mem_strdup("/.") : mem_printf("%.*s", (int)(slash - path), path);
 }
 
-/* Hashes the content of plant file and tag list, so that a file that is changed back has the old hash again. */
+/* Hashes the contents of plant file and tag list. A file that is changed back thus gets its old hash again. */
 static void hash_files(struct plant *plant)
 {
     const char *const paths[] = { plant->files.path, plant->files.tags_path };

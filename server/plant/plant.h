@@ -10,7 +10,9 @@
 #include "base/text/diag.h"
 #include "plant/tags/units.h"
 
-#define PLANT_MAX_M 1e7 /* maximum distance from the origin in metres: survey coordinates (UTM) can be 5,500 km north */
+/* maximum distance of positions from the plant's origin in metres; large enough for survey coordinates (UTM), whose northings reach 10,000
+   km */
+#define PLANT_MAX_M 1e7
 
 enum interpolation {
     INTERPOLATION_SHEPARD,
@@ -23,10 +25,10 @@ enum interpolation {
 /* DISTANCE_HEAT: geodesic distances by the heat method (Crane et al., 2013), as in Kim & Suh, Electronics 2025, 14(15), 2938 */
 enum distance_mode { DISTANCE_GEODESIC, DISTANCE_EUCLIDEAN, DISTANCE_HEAT, DISTANCES };
 enum fill_mode { FILL_NONE, FILL_NEIGHBOURS }; /* whether neighbouring sensors colour the area around a sensor whose reading is Bad */
-/* display with which a client begins: values, or values relative to their alarm limits */
+/* display with which a client begins: values, or values relative to their alarm limits (operator's display) */
 enum plant_show { PLANT_SHOW_VALUE, PLANT_SHOW_OPERATOR };
 enum plant_start { PLANT_START_SHOWN, PLANT_START_GHOST, PLANT_START_HIDDEN }; /* initial display state of an asset */
-enum { PLANT_STARTS = 4096 }; /* number of assets, from the first in the plant file on, that can be hidden one by one */
+enum { PLANT_STARTS = 4096 }; /* maximum number of assets that can be hidden one by one: the first ones in the plant file */
 enum axis { AXIS_Y, AXIS_Z }; /* upward axis */
 enum data_type {
     DATA_BIT,
@@ -41,17 +43,17 @@ enum data_type {
     DATA_BCD /* 4 digits, one register */,
     DATA_LBCD /* 8 digits, two registers */
 };
-/* Order in which the bytes of a value A B C D (A most significant) arrive. For 64 bits: CDAB reverses the registers, BADC swaps the
-   bytes of each register, DCBA does both. NONE: not stated. */
+/* Order in which the bytes of a value A B C D (A most significant) arrive from a Modbus device. For 64 bits: CDAB reverses the order of the
+   registers, BADC swaps the bytes within each register, DCBA does both. NONE: not stated. */
 enum byte_order { BYTE_ORDER_NONE, BYTE_ORDER_ABCD, BYTE_ORDER_CDAB, BYTE_ORDER_BADC, BYTE_ORDER_DCBA };
-/* Modbus tables; their function codes are, in this order, 1, 2, 4, 3 */
+/* Modbus tables in the order of their standard numbering; to read them, function codes 1, 2, 4 and 3 are used */
 enum register_table { TABLE_COIL, TABLE_DISCRETE, TABLE_INPUT, TABLE_HOLDING };
 enum scaling { SCALING_NONE, SCALING_LINEAR, SCALING_SQUARE_ROOT };
 enum limit { LIMIT_LL, LIMIT_L, LIMIT_H, LIMIT_HH, LIMIT_COUNT };
 enum alarm_mode { /* which system manages the alarms */
-                  /* alarms are managed by another system: limits are watched and shown here, but no alarm can be acknowledged here */
+                  /* another system manages alarms: this daemon watches and shows limits, but its users cannot acknowledge alarms */
                   ALARMS_DISPLAY,
-                  ALARMS_MIRROR, /* alarm bits of another system are read */
+                  ALARMS_MIRROR, /* another system manages alarms, and this daemon reads that system's alarm bits */
                   ALARMS_LOCAL   /* this daemon */
 };
 enum { ALARM_PRIORITIES = 4, ALARM_PRIORITY_DEFAULT = 2 };
@@ -74,12 +76,12 @@ struct plant_asset {
     char *nodes;   /* node patterns (nodes.h), one a line; each matching node is taken with its sub-tree. NULL: the whole model */
     double unit_m; /* length of a model unit in metres, including the scale of the asset's placement */
     enum axis up;  /* upward axis of the model */
-    /* metres; gaps in the surface up to this size are bridged when distances along it are computed; 0: chosen from the model */
+    /* size in metres of gaps in the surface that are bridged when distances along it are computed; 0: chosen from the model */
     double tolerance_m;
     /* transform from asset frame (Z up) to plant frame, column-major; rotation and translation only: both frames are in metres */
     double placement[16];
     enum plant_start start;
-    double thickness_m;                /* wall thickness in metres; 0: not stated */
+    double thickness_m;                /* thickness of the asset's wall in metres; 0: not stated */
     double conductivity;               /* W/(m K) */
     double heat_transfer;              /* W/(m2 K), to the surroundings */
     bool sensors_in_asset_frame;       /* true: X, Y, Z of the asset's tags are in the asset frame; false: in the plant frame */
@@ -91,14 +93,15 @@ struct plant_asset {
 struct plant_alarm_settings { /* how and when alarms of this group or tag are raised and cleared */
     double deadband;          /* engineering units */
     double on_delay_s, off_delay_s;
-    int priority; /* priority of LL and HH, from 1 (most urgent) to ALARM_PRIORITIES; L and H get the next less urgent one */
-    bool latch;   /* true: the alarm is latched: it stays until an operator resets it */
+    /* priority of the alarms LL and HH, from 1 (most urgent) to ALARM_PRIORITIES; L and H get the next less urgent priority */
+    int priority;
+    bool latch; /* true: the alarm is latched: it stays until an operator resets it, even if the value returns to normal */
 };
 
-struct plant_mirror {  /* meaning of a tag that is an alarm bit of another system */
-    int tag;           /* index of the tag that has the alarm, or -1 */
-    int limit;         /* enum limit: the limit whose alarm the bit reports; LIMIT_COUNT: an alarm without a limit */
-    bool acknowledged; /* the bit means "acknowledged" rather than "alarm present" */
+struct plant_mirror {  /* meaning of a tag that is an alarm bit of another system (`mirror`) */
+    int tag;           /* index of the tag whose alarm the bit reports, or -1 */
+    int limit;         /* limit whose alarm the bit reports (enum limit); LIMIT_COUNT: the alarm belongs to no limit */
+    bool acknowledged; /* true: the bit means "acknowledged"; false: the bit means "alarm present" */
 };
 
 struct plant_gp { /* parameters of the interpolation `gp` */
@@ -126,12 +129,13 @@ struct plant_group {
     bool directed;     /* true: some tags of the group have a direction, which is shown with arrows */
     bool heat;         /* `geodesic: heat`: plantcast-prep also computes distances by the heat method, as in Kim & Suh */
     struct plant_gp gp;
-    /* radius in metres of the hot spots for `show: blind`: distance at which the spot's excess has fallen by a factor exp(-1/2) */
+    /* radius in metres of the hot spots for `show: blind`: the distance from a spot's centre at which its excess has fallen by a factor
+       exp(-1/2) */
     double hot_spot_m;
     bool cuts_singles; /* `singles: cut`; see plant_cuts_singles() */
     enum fill_mode fill;
     bool log;                    /* `scale: log`; requires min > 0 */
-    double breaks[PLANT_BREAKS]; /* ascending boundaries of the colour bands, for views that ask for bands */
+    double breaks[PLANT_BREAKS]; /* ascending boundaries of the colour bands; used by views that show bands instead of a continuous scale */
     double isolines[PLANT_ISOLINES];
     int break_count, isoline_count;
     int line;
@@ -158,22 +162,16 @@ struct plant_mqtt { /* MQTT settings of a source or of `publish`; texts that are
     char *ca, *certificate, *key; /* PEM files for TLS; ca NULL: the system's trusted certificates */
     char *will;                   /* topic of the last will: after a disconnection the broker publishes "offline" there */
     char *topic;                  /* topic template for tags whose address has no topic */
-    char *value, *time, *quality; /* paths of value, time and quality in JSON payloads */
+    char *value, *time, *quality; /* JSONPaths of value, time and quality in JSON payloads */
     bool will_stays;              /* true: the last will is published as a retained message, which new subscribers get, too */
-    bool rebirth; /* true: birth certificates may be requested from Sparkplug nodes; that request is the only message published */
+    bool rebirth; /* true: birth certificates may be requested from Sparkplug nodes; apart from this request the source publishes nothing */
 };
 
-enum opcua_policy {
-    OPCUA_BEST /* the best security policy that the server offers */,
-    OPCUA_AES256,
-    OPCUA_BASIC256,
-    OPCUA_AES128,
-    OPCUA_NONE
-};
+enum opcua_policy { OPCUA_BEST /* best security policy that the server offers */, OPCUA_AES256, OPCUA_BASIC256, OPCUA_AES128, OPCUA_NONE };
 
 struct plant_opcua {                   /* OPC UA settings of a source; texts that are not given are NULL */
-    bool has_security;                 /* true: the key `security` was given; a source without the key is refused */
-    enum opcua_policy policy;          /* messages are signed and encrypted (SignAndEncrypt), except with OPCUA_NONE */
+    bool has_security;                 /* true: the plant file states the key `security`; a source without that key is refused */
+    enum opcua_policy policy;          /* security policy. Messages are signed and encrypted (SignAndEncrypt), except with OPCUA_NONE */
     char *certificate, *key;           /* our certificate and key, files in PEM or DER */
     char *trusted;                     /* folder of trusted certificates and revocation lists */
     char *server_name;                 /* host name in the server's certificate, if it differs from the host */
@@ -188,7 +186,7 @@ struct plant_opcua {                   /* OPC UA settings of a source; texts tha
 struct plant_source {
     char *id, *kind; /* "modbus", "replay", "mqtt" or "opcua" */
     enum transport transport;
-    char *hosts[PLANT_HOSTS]; /* redundant hosts of one device: if one does not answer, the next is tried */
+    char *hosts[PLANT_HOSTS]; /* redundant hosts of one device: if a host does not answer, the next one is tried */
     int host_count;
     char *device;                      /* serial device */
     int baud, parity, stop_bits;       /* parity: 'N', 'E' or 'O' */
@@ -199,7 +197,7 @@ struct plant_source {
     int max_registers, max_bits;       /* maximum registers or bits in one request */
     int max_gap; /* maximum number of unneeded registers or bits between two tags that are still read by one request */
     enum byte_order byte_order;
-    int address_base; /* number of the first register in plain addresses, 0 or 1; base_stated: true if the plant file states it */
+    int address_base; /* number of the first register in plain addresses: 0 or 1; base_stated: the plant file states it */
     bool base_stated;
     char *heartbeat;    /* heartbeat: name of the tag whose value must keep changing; NULL: none */
     int heartbeat_tag;  /* index of the heartbeat tag, or -1 */
@@ -210,13 +208,13 @@ struct plant_source {
     char *login; /* path of a file with the user on the first line, the password on the second */
     struct plant_mqtt mqtt;
     struct plant_opcua opcua;
-    bool simulated; /* readings of this source are simulated, not measured now */
+    bool simulated; /* true: readings of this source are simulated, not measured */
     int line;
 };
 
 /* The broker to which readings and alarms are published. */
 struct plant_publish {
-    struct plant_source broker; /* connection settings; only the broker's address and our identity are used */
+    struct plant_source broker; /* connection settings; of these only the broker's address and our own identity are used */
     char *prefix;               /* prefix of all topics; begins with plantcast/ */
     double every_s;
 };
@@ -231,21 +229,22 @@ struct plant_postgres {
 
 struct plant_history {
     bool off;
-    char *folder; /* folder of the history; NULL: the folder that plant_history_folder() returns */
+    char *folder; /* folder of the history; NULL: the default, FOLDER/NAME.history (plant_history_folder()) */
     double keep_days, keep_gb;
     double deadband_percent; /* deadband in percent of a tag's span, for tags without a deadband of their own */
     double override_s;       /* maximum time in seconds between two recorded points of a tag */
     struct plant_postgres postgres;
 };
 
-/* Sentinel: a raw value that means "no sensor", given as bits or as a number. */
+/* Sentinel: a raw value with which a device says "no sensor", given as bits or as a number. */
 struct plant_sentinel {
     bool is_bits;
     uint64_t bits;
     double number;
 };
 
-/* Another tag that tells whether this tag's value is valid: it is valid if ((value of the other tag & mask) == want) != negate. */
+/* Quality tag: another tag that tells whether this tag's value is valid. The value is valid if ((value of the quality tag & mask) == want)
+   != negate. */
 struct plant_quality_tag {
     int tag;             /* index of the other tag */
     uint64_t mask, want; /* mask 0: no quality tag */
@@ -255,16 +254,17 @@ struct plant_quality_tag {
 enum { PLANT_SENTINELS = 4 };
 struct tag_signal { /* address of a tag's value at its device, and its encoding there */
     char *address;  /* address as written: a register, a series name, a topic, or = and an expression */
-    /* MQTT: the full topic, and the path of the value in its payload ("": the source's default). Sparkplug: GROUP/NODE[/DEVICE], and the
-       metric. OPC UA: the namespace URI, and an identifier such as s=NAME. Other sources: NULL. */
+    /* topic, path: parts of the address. MQTT: the full topic, and the path of the value in its payload ("": the source's default).
+       Sparkplug: GROUP/NODE[/DEVICE], and the metric. OPC UA: the namespace URI, and an identifier such as s=NAME. Other sources: NULL. */
     char *topic, *path;
-    int element;     /* index of the element in an OPC UA array; -1: the value is no array */
-    int modbus_unit; /* Modbus unit identifier; -1: that of the source */
+    int element;     /* index of the element in an OPC UA array; -1: the node's value is no array */
+    int modbus_unit; /* Modbus unit identifier of the device; -1: as stated for the source */
     enum register_table table;
-    int register_index; /* register number, from 0, as on the wire */
-    int bit;            /* number of the bit within the register; -1: the whole register */
+    int register_index; /* number of the first register, counted from 0 as in Modbus messages */
+    int bit;            /* number of the bit within the register; -1: the value is the whole register */
     enum data_type type;
-    /* byte order: for 32 and 64 bits always known; for 16 bits as the row states, otherwise NONE (standard order); for single bits NONE */
+    /* byte order. Values of 32 and 64 bits always have one; values of 16 bits have NONE (standard order) unless the tag's row states one;
+       single bits have NONE */
     enum byte_order byte_order;
     int scan_ms; /* scan interval in milliseconds; 0: the source's poll_ms */
 };
@@ -273,11 +273,13 @@ struct tag_scale { /* conversion from the raw value to the tag's unit */
     enum scaling kind;
     double raw_low, raw_high, scaled_low, scaled_high; /* range of raw values, and the range to which it is scaled, in own_unit */
     bool has_range;                                    /* true: scaled_low to scaled_high is the instrument's measuring range */
-    bool ne43; /* true: raw_low and raw_high are 4 and 20 mA, so currents outside are judged by NAMUR NE 43 */
+    /* true: raw_low and raw_high are 4 and 20 mA, so a current outside of that range is judged by NAMUR NE 43 (overrange or broken wire) */
+    bool ne43;
     struct plant_sentinel sentinels[PLANT_SENTINELS];
     int sentinel_count;
     bool negate;
-    /* unit of the values at the tag's address, and of scaled_low and scaled_high: the row's unit; if the row has none, the tag's */
+    /* unit of the values at the tag's address, and of scaled_low and scaled_high: the unit in the tag's row, or, if the row has none, the
+       tag's unit */
     char *own_unit;
     struct unit_change change; /* conversion from own_unit to the tag's unit */
 };
@@ -288,42 +290,43 @@ struct tag_place { /* place of a tag's sensor on its asset */
     bool has_position;    /* true: position_m is set; false: `node` gives the position or, without a node, the middle of the asset */
     double position_m[3]; /* position in metres, in the frame that the asset states */
     char *node;           /* name of the model node that gives the position, or NULL */
-    char *lost_asset;     /* id in the tag list of an asset that does not exist (plant_load_with_orphans()), or NULL */
+    char *lost_asset;     /* id of the tag's asset in the tag list if no such asset exists (plant_load_with_orphans()), else NULL */
 };
 
 struct tag_validity {                 /* conditions under which a tag's reading is good */
-    double stale_s;                   /* age in seconds from which the reading is stale; default: three poll intervals, at least 5 s */
+    double stale_s; /* age in seconds from which the tag's reading is stale; default: three poll intervals, at least 5 s */
     bool states_stale;                /* the row states stale_s */
-    double flatline_s;                /* seconds without a change after which the value is uncertain; 0: never */
+    double flatline_s;                /* seconds without any change after which the tag's value is uncertain; 0: never */
     struct plant_quality_tag quality; /* another tag that states whether the reading is valid */
 };
 
 struct tag_alarms {
-    double limits[LIMIT_COUNT];           /* tag's own limits, else the group's; NaN: none */
-    struct plant_alarm_settings settings; /* alarm settings of the tag's row; otherwise the group's */
+    double limits[LIMIT_COUNT];           /* limits of the tag, or else of its group; NaN: no limit */
+    struct plant_alarm_settings settings; /* alarm settings in the tag's row, or else of its group */
     int suppressed_by; /* index of a bit tag; while that bit is 1, this tag's alarms are suppressed by design; -1: none */
     struct plant_mirror mirror;
 };
 
 struct tag_direction { /* direction of a tag's value */
-    int tags[3];       /* indices of the tags with the direction: components along X, Y and Z of the plant, or a bearing */
-    int count;         /* number of these tags: 0: no direction; 1: a bearing in degrees; 3: components */
+    int tags[3];       /* indices of the tags that hold the direction: its components along X, Y and Z of the plant, or a bearing */
+    int count;         /* number of tags in `tags`: 0: the value has no direction; 1: a bearing in degrees; 3: components */
 };
 
 struct plant_tag {
     char *name, *description;
-    char *unit;               /* unit of the tag's readings, limits and deadbands: the group's unit; for a tag without a group, the row's */
+    char *unit; /* unit of the tag's readings, limits and deadbands: the group's unit, or, for a tag without a group, the unit in its row */
     int source, group, asset; /* index, or -1 */
     struct tag_signal signal;
     struct tag_scale scale;
     struct expression *expression; /* expression of a derived tag; NULL for other tags */
     struct tag_place place;
-    double strength, decay; /* s and o of Algorithm 1 of Kim & Suh (field/field.h): the tag's own values, otherwise the group's */
+    /* parameters s and o of the interpolation (Algorithm 1 of Kim & Suh, field/field.h): the tag's own values, otherwise the group's */
+    double strength, decay;
     struct tag_validity validity;
     struct tag_alarms alarms;
     double deadband; /* maximum error of the recorded history in the tag's unit; NaN: the history's default */
     struct tag_direction direction;
-    int line, column; /* position of the tag's name in the tag list */
+    int line, column; /* position of the tag's name in the file of the tag list */
 };
 
 enum { PLANT_ENVIRONMENTS = 8 };
@@ -349,7 +352,7 @@ struct plant_conversion { /* a model that plantcast-prep makes by running anothe
 struct plant_files {
     char *path, *folder; /* path of the plant file, and its folder without trailing slash */
     char *tags_path;
-    char hash[17];       /* hash, in hexadecimal, of plant file and tag list; identifies the configuration */
+    char hash[17];       /* hash of plant file and tag list in hexadecimal, which identifies the configuration */
     bool keeps_orphans;  /* set while loading: tags of assets that do not exist are accepted (plant_load_with_orphans()) */
     bool without_models; /* set while loading: missing model files are accepted (plant_load_without_models()) */
 };
@@ -357,7 +360,7 @@ struct plant_files {
 struct plant_display { /* initial display of a client, and the choices of its user */
     struct plant_view view;
     enum plant_show show;
-    bool no_reprojection; /* clients get no depth grids of the picture */
+    bool no_reprojection; /* true: clients get no depth grids, and so cannot move a picture before the next one arrives */
     struct plant_environment environments[PLANT_ENVIRONMENTS]; /* environments (panoramas); the first one is the default */
     size_t environment_count;
     struct plant_link links[PLANT_LINKS];
@@ -391,9 +394,9 @@ struct plant {
     struct plant_source *sources;
     struct plant_tag *tags;
     size_t asset_count, group_count, source_count, tag_count;
-    /* indices of assets sorted by id, and of tags sorted by name; assets_by_id is NULL until the whole file is read */
+    /* indices sorted for binary search: of assets by id, and of tags by name; assets_by_id is NULL until the whole file is read */
     int *assets_by_id, *tags_by_name;
-    int *derived; /* indices of the derived tags, in an order in which each follows the tags in its expression */
+    int *derived; /* indices of the derived tags, ordered so that each tag comes after the tags in its expression */
     size_t derived_count;
 };
 

@@ -20,7 +20,7 @@
 #include "base/text/text.h"
 
 enum { LOOK_MS = 50 };
-/* name to which the record of a revision is renamed once its undoing is complete; the next program that locks the folder removes it */
+/* name to which a revision's record is renamed once the revision is undone completely; the next program that locks the folder removes it */
 static const char undone[] = ".import-undone";
 static const size_t max_text_bytes = (size_t)64 << 20;
 
@@ -38,7 +38,7 @@ char *revision_version_of(const char *record, const char *version, const char *n
 int plant_folder_sync(const char *folder)
 {
     int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC), status = fd < 0 ? -errno : 0;
-    if (fd >= 0 && fsync(fd) != 0 && errno != EINVAL) /* ignores the error: some file systems cannot sync a folder */
+    if (fd >= 0 && fsync(fd) != 0 && errno != EINVAL) /* EINVAL is ignored, because some file systems cannot sync a folder */
         status = -errno;
     if (fd >= 0)
         close(fd);
@@ -122,7 +122,7 @@ static int put_elsewhere(const char *from, const char *to)
 static int move_into_place(const struct revision_record *record, const char *folder, const char *from, const char *name)
 {
     char *source = revision_version_of(record->path, from, name), *target = plant_folder_file(folder, name);
-    /* no file of this version exists: it was moved already, or the revision does not change it */
+    /* the record has no file of this version if the file was moved already, or if the revision does not change it: success */
     int status = access(source, F_OK) != 0 ? 0 : *name == '/' ? put_elsewhere(source, target) : move(source, target);
     mem_free(source);
     mem_free(target);
@@ -151,7 +151,7 @@ int revision_go_on_undoing(const char *folder)
     struct revision_record record;
     char *last = plant_folder_file(folder, undone);
     int status = revision_record_read(&record, folder, REVISION_UNDOING);
-    /* no record: all files were put back, and the removal of the revision's folder had begun before the program was killed */
+    /* no record: all files are back in place, and an earlier run was killed while it removed the revision's folder */
     if (status == -ENOENT)
         status = 0;
     for (size_t i = record.count; i-- > 0 && status == 0;) {
@@ -174,7 +174,8 @@ int revision_go_on_undoing(const char *folder)
     return status;
 }
 
-/* Returns whether killed programs left work folders in the folder. now: removes them. own: path of a work folder that is left alone. */
+/* Returns whether killed programs left work folders in the folder. now: true: also removes them. own: path of a work folder of this
+   program, which stays. */
 static bool remove_left(const char *folder, const char *own, bool now)
 {
     DIR *dir = opendir(folder);
@@ -277,9 +278,9 @@ int plant_folder_lock(const struct plant_folder_params *params, char **why)
     while (status == 0 && flock(fd, LOCK_EX | LOCK_NB) != 0)
         if (errno == EWOULDBLOCK && clock_mono_ns() < until_ns)
             usleep(LOOK_MS * 1000);
-        /* this file system has no locks for folders (NFS): continues without a lock */
+        /* no lock is possible on this file system (NFS, for example): continues without one */
         else if (errno == EBADF || errno == ENOLCK || errno == EOPNOTSUPP)
-            return fd; /* without a lock, work folders stay: another program may be using them */
+            return fd; /* work folders are not removed without a lock: another program may be using them */
         else if (errno != EINTR)
             status = -errno;
     if (status == 0) {
@@ -310,7 +311,9 @@ bool plant_folder_settle(const struct plant_folder_params *params, char **why)
     int lock = plant_folder_lock(&at_once, why);
     if (lock >= 0)
         close(lock);
-    if (!killed) { /* an import is running and has not begun to replace files, or this program may not remove what a killed program left */
+    /* no revision is in progress, so failing to lock is no error: an import is running that has not begun to replace files, or this program
+       may not remove what a killed program left */
+    if (!killed) {
         mem_free(*why);
         *why = NULL;
         return true;

@@ -17,7 +17,7 @@
 
 struct plant_folder_params {
     const char *folder;
-    const char *own; /* path of a work folder in the plant's folder that must not be removed; NULL: none */
+    const char *own; /* path of this program's own work folder in the plant's folder, which is not removed; NULL: none */
     int lent;        /* descriptor with which the parent process has locked the folder, inherited by this process; 0: none */
     int wait_ms;     /* milliseconds to wait for another program to finish; 0: no waiting */
     /* receives the name of the work that was finished for a killed program: "an import", "the undoing of an import"; NULL: not wanted */

@@ -8,8 +8,8 @@
 
 #define PLANT_MAX_VALUE 1e30 /* maximum absolute value of a reading or a limit, because the field is computed in floats */
 
-/* Reads the plant file into a plant whose path and folder are set. Findings go to diag. tags_path stays NULL if there is
-   no readable tag list. */
+/* Reads the plant file into a plant whose path and folder are set. Findings go to diag. If the plant file names no tag list that can be
+   read, tags_path stays NULL. */
 void plant_file_read(struct plant *plant, struct diag *diag);
 /* Reads the value of the key `environment`; the plant's folder must be set. */
 void plant_environments_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
@@ -35,7 +35,7 @@ void plant_gp_check(struct yaml_reader *reader, const struct yaml_map *map, cons
 /* Reports keys that the interpolation `fin` needs and that are missing: the group's ambient, and the thickness of assets with sensors of
    the group. */
 void plant_influence_check(const struct plant *plant, struct diag *diag);
-/* Report views, tags, tours and plants that do not exist but are named by tour stops or wall panes. Call them after the tag list has been
+/* Report views, tags, tours and plants that tour stops or wall panes name but that do not exist. Call them after the tag list has been
    read. */
 void plant_tours_check(const struct plant *plant, struct diag *diag);
 void plant_walls_check(const struct plant *plant, struct diag *diag);
@@ -50,7 +50,7 @@ void plant_properties_read(struct yaml_reader *reader, yaml_node_t *node, struct
 void plant_properties_free(struct plant_asset *asset);
 /* Compares two assets' properties, including their order. */
 bool plant_properties_same(const struct plant_asset *a, const struct plant_asset *b);
-/* Reads the key `postgres` of `history` into a struct plant_history. */
+/* Reads the key `postgres` of the plant file's `history` into a struct plant_history. */
 void plant_postgres_read(struct yaml_reader *reader, yaml_node_t *node, void *history);
 /* Checks that the login file of `postgres` can be read; the plant's folder must be set. */
 void plant_postgres_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant,
@@ -81,7 +81,7 @@ void *plant_list_make(struct yaml_reader *reader, yaml_node_t *node, const char 
 /* Reports an id that occurs twice; call it after reading each record. */
 void plant_list_check_id(struct yaml_reader *reader, const struct yaml_map *map, const char *what, const void *things, size_t count,
                          size_t stride, size_t line_offset);
-/* Makes a relative path relative to the folder of the plant file. */
+/* Makes *path, if it is relative, a path from the folder of the plant file. */
 void plant_resolve_path(const struct plant *plant, char **path);
 
 /* Reads the tag list, plant->tags_path; assets, groups and sources must have been read. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hashes of everything a prepared file depends on, except sensors, which are compared one by one (plant/sensors.h). plantcast-prep
+/* Hashes of everything a prepared asset file depends on, except sensors, which are compared one by one (plant/sensors.h). plantcast-prep
    writes the hashes into the manifest and scene_create() compares them, so that outdated prepared files are not used. Thread: any. */
 #ifndef PLANT_RECIPE_H
 #define PLANT_RECIPE_H

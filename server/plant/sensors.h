@@ -11,9 +11,10 @@ struct plant_sensor {
     int tag; /* index in plant->tags */
     /* name of the model node that gives the position; "": the middle of the asset; NULL: position_m is used. The plant owns the text */
     const char *node;
-    /* XXH3-64 of `node`; 0: position_m is used. If the sensor's place is assumed: a hash, with another seed, of `node` or position_m */
+    /* hash (XXH3-64) of `node`; 0: position_m is used. If the sensor's place is assumed: a hash, with another seed, of `node` or
+       position_m */
     uint64_t node_hash;
-    double position_m[3]; /* position in the asset frame (metres, Z up); 0 if `node` is set */
+    double position_m[3]; /* position in the asset frame (metres, Z up); zero if `node` is set */
 };
 
 /* Returns the number of tags that have this asset and a group, and lists them in the order of the tag list; free *out with mem_free(). */

@@ -6,9 +6,11 @@
 #define PLANT_SINGLES_H
 #include "plant/plant.h"
 
-/* Returns whether triangles are subdivided for `paper` and distances also on assets with a single sensor of the group. */
+/* Returns whether triangles are subdivided so that `paper` and distances are shown correctly, even on assets with a single sensor of the
+   group. */
 bool plant_cuts_singles(const struct plant_group *group);
-/* Counts the assets with exactly one sensor of the group. Returns the count; if it is not 0, *first is the index of the first one. */
+/* Counts the assets that have exactly one sensor of the group. Returns the count; if it is not 0, *first receives the index of the first
+   such asset. */
 size_t plant_singles(const struct plant *plant, int group, int *first);
 /* Returns whether the tag is its group's only sensor on its asset. */
 bool plant_is_single(const struct plant *plant, int tag);

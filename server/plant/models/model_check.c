@@ -11,20 +11,21 @@
 #include "plant/models/model_header.h"
 #include "plant/sensors.h"
 
-#define SAME_PLACE_M 1e-3 /* same value as in plantcast-prep, which uses it to compare positions of nodes */
+#define SAME_PLACE_M 1e-3 /* distance in metres below which positions of nodes are equal; the same value as in plantcast-prep */
 /* tolerated distance of a sensor from its asset's bounding box in metres, in addition to a fraction of the box's diagonal */
 #define SLACK_M 0.5
 #define SLACK 0.05
 enum { WHY_BYTES = 400, SHOWN_NODES = 6 };
-/* Bytes of memory for serving a plant: per triangle, and a fixed amount. Measured with 20 million triangles in 3,040 assets: 3.1 GB. */
+/* Memory in bytes that serving a plant takes: TRIANGLE_BYTES for each triangle, and BASE_BYTES. Measured with 20 million triangles in 3,040
+   assets: 3.1 GB. */
 enum { TRIANGLE_BYTES = 150, BASE_BYTES = 350 << 20 };
 
 struct plant_models_check {
     const struct plant *plant;
     struct diag *diag;
     struct model_header header; /* header of the model being checked */
-    bool *taken;                /* flag by node: the node belongs to the asset being checked */
-    bool *counted;              /* flag by node: the node belongs to an asset checked so far, so its triangles are counted */
+    bool *taken;                /* by node: true: the node belongs to the asset being checked */
+    bool *counted;              /* by node: true: the node belongs to an asset checked so far, so its triangles are counted already */
     uint64_t triangles;         /* triangles of all models; a model that several assets share counts once */
     uint32_t *found;
 };
@@ -69,7 +70,8 @@ static size_t count_within(const struct model_box *box, const struct plant_senso
 
 /* --- sensors -------------------------------------------------------------------------------------------------------------------- */
 
-/* Finds other units or another axis with which at least 90 % of the sensors would be within the box. Returns whether it found any. */
+/* Finds other units, or another axis as the upward one, with which at least 90 % of the sensors would be within the asset's bounding box.
+   Returns whether it found any. */
 static bool find_better(const struct plant_asset *asset, const struct model_box *box, const struct plant_sensor *sensors, size_t count,
                         size_t within, char *out, size_t bytes)
 {
@@ -124,8 +126,8 @@ static void place_of(const struct model_header *header, uint32_t node, double ou
         out[axis] = box.low[axis] <= box.high[axis] ? (box.low[axis] + box.high[axis]) / 2 : NAN;
 }
 
-/* Returns whether all nodes of a name have the same position, considering only the asset's own nodes if it has any. *count receives the
-   number of nodes considered. */
+/* Returns whether all nodes that have a certain name have the same position. If the asset itself has nodes of that name, only these are
+   compared. *count receives the number of nodes compared. */
 static bool is_one_place(const struct plant_models_check *check, const struct plant_asset *asset, size_t *count)
 {
     size_t own = 0;
@@ -138,7 +140,7 @@ static bool is_one_place(const struct plant_models_check *check, const struct pl
     for (size_t i = 1; i < *count; i++) {
         place_of(&check->header, check->found[i], other);
         for (int axis = 0; axis < 3; axis++)
-            /* an unknown coordinate (NaN) makes the comparison false, so it counts as equal */
+            /* a coordinate that is unknown is NaN: the comparison is then false, and the coordinate counts as equal */
             if (fabs(other[axis] - first[axis]) * asset->unit_m > SAME_PLACE_M)
                 return false;
     }

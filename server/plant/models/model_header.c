@@ -114,7 +114,7 @@ static double divisor_of(const json_t *accessor)
     }
 }
 
-/* Returns the bounding box that an accessor states; returns false if the accessor states none. */
+/* Reads the bounding box that a glTF accessor states (min and max). Returns false if the accessor states none. */
 static bool range_of(const json_t *accessor, struct model_box *out)
 {
     const json_t *low = json_object_get(accessor, "min"), *high = json_object_get(accessor, "max");

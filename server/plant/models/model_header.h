@@ -4,7 +4,7 @@
 #define PLANT_MODELS_MODEL_HEADER_H
 #include "plant/models/nodes.h"
 
-struct model_box { /* bounding box; empty if a low coordinate is greater than the high one */
+struct model_box { /* axis-aligned bounding box; empty if a coordinate of its low corner is greater than that of the high corner */
     double low[3], high[3];
 };
 

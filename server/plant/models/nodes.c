@@ -18,9 +18,9 @@ enum pattern_kind { NAME, GLOB, NUMBER, MESH, PATH };
 struct pattern {
     enum pattern_kind kind;
     bool excludes;
-    char *text; /* text of the pattern without ! and mesh:; for a PATH, the text is cut into segments */
+    char *text; /* the pattern's text without its prefixes ! and mesh:; a PATH is cut into segments in place */
     uint64_t number;
-    bool from_root; /* the PATH begins with a slash */
+    bool from_root; /* true: the PATH begins with a slash, so it starts at the scene's root */
     const char *segments[SEGMENTS_MAX];
     size_t segment_count;
 };
@@ -100,8 +100,8 @@ static bool is_instance(const struct model_node *nodes, int node)
     return nodes[node].parent >= 0 && nodes[nodes[node].parent].number == nodes[node].number;
 }
 
-/* Returns whether the first `left` segments of the pattern match the names on the path from the root to this node (-1: the scene
-   itself). */
+/* Returns whether the first `left` segments of a path pattern match the names of the nodes on the path from the root to this node (-1: the
+   scene itself). */
 static bool path_matches(const struct pattern *pattern, size_t left, const struct model_node *nodes, int node)
 {
     if (left == 0)
@@ -196,8 +196,8 @@ static bool mark(const struct pattern *pattern, const struct node_list *model, b
     return any;
 }
 
-/* Applies to `taken` either the patterns that include nodes, or those that exclude nodes (with !). Returns false with the reason in `why`
-   if a pattern matches no node. *done grows by the number of patterns applied. */
+/* Applies either the patterns that include nodes, or those that exclude nodes (with !), to the flags `taken`. Returns false with the reason
+   in `why` if a pattern matches no node. *done is increased by the number of patterns applied. */
 static bool mark_all(const char *patterns, bool excludes, const struct node_list *model, bool *taken, size_t *done, char *why, size_t bytes)
 {
     bool good = true;
@@ -224,7 +224,8 @@ bool nodes_take(const char *patterns, const struct model_node *nodes, size_t cou
     memset(taken, 0, count * sizeof(*taken));
     bool good = !patterns || mark_all(patterns, false, &model, taken, &including, why, why_bytes);
     if (good && including == 0)
-        memset(taken, 1, count * sizeof(*taken)); /* without an including pattern, exclusion starts from all nodes */
+        /* no pattern includes nodes, so all nodes are included before the excluding patterns are applied */
+        memset(taken, 1, count * sizeof(*taken));
     return good && (!patterns || mark_all(patterns, true, &model, taken, &excluding, why, why_bytes));
 }
 

@@ -7,11 +7,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-struct model_node {          /* nodes are stored depth first: the sub-tree of a node is the range [node, end) */
+struct model_node { /* node of a model. The array of nodes is in depth-first order: the sub-tree of a node is the range [node, end) */
     const char *name, *mesh; /* names of the node and its mesh; "": none */
     int parent;              /* index of the parent node, or -1 */
     uint32_t end;
-    uint32_t number; /* node's index in the file; nodes that were added for instances have the index of their node */
+    uint32_t number; /* node's index in the file; a node that was added for an instance has the index of the instanced node */
 };
 
 #define NODES_SEPARATOR '\n' /* separates the patterns of an asset */

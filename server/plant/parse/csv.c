@@ -162,7 +162,8 @@ static void check_header(struct csv *csv)
 
 static const char WANTED[] = "a table (CSV)";
 
-/* Takes ownership of `text` and reads the header row. text NULL: the file could not be read. */
+/* Takes ownership of `text`, the content of the file, and reads the header row. text NULL: the file could not be read, so the function
+   returns false. */
 static bool begin(struct csv *csv, const char *path, char *text, struct diag *diag)
 {
     if (!text)

@@ -19,10 +19,10 @@ struct csv_row {
     size_t count, capacity;
 };
 
-struct csv { /* state of the reader; callers may read the members but not change them */
+struct csv { /* state of the CSV reader; callers may read its members but not change them */
     char *path;
     struct diag *diag;
-    char *bytes, *at; /* the whole file, and the read position in it */
+    char *bytes, *at; /* bytes: content of the file; at: the read position in it */
     int line, column; /* line and column of `at` */
     char separator;
     struct csv_row header, row;
@@ -43,7 +43,8 @@ char csv_separator(const char *text);
 int csv_find(const struct csv *csv, const char *name);
 /* Returns the text of a cell of the current row; "" if column is -1 or the row is shorter. Valid until csv_close(). */
 const char *csv_text(const struct csv *csv, int column);
-/* csv_cell_line() returns the line, csv_cell_column() the column of a cell; of the row's first cell if the row has no such cell. */
+/* csv_cell_line() returns the line and csv_cell_column() the column of a cell of the current row. If the row is too short to have that
+   cell, they return the position of the row's first cell. */
 int csv_cell_line(const struct csv *csv, int column);
 int csv_cell_column(const struct csv *csv, int column);
 #define csv_error(csv, col, ...) diag_error((csv)->diag, (csv)->path, csv_cell_line(csv, col), csv_cell_column(csv, col), __VA_ARGS__)

@@ -51,7 +51,8 @@ static const char *kind_of(const char *text, size_t count)
         return "a DWG drawing";
     if (count > 6 && !memcmp(text, "solid ", 6) && has(text, count, "facet"))
         return "an STL model";
-    if (count > 80 && text[72] == 'S' && text[79] == '1' && !memchr(text, '\n', 72)) /* matches the first line of an IGES start section */
+    /* recognises the first line of an IGES file: 80 characters, with S in column 73 and 1 in column 80 */
+    if (count > 80 && text[72] == 'S' && text[79] == '1' && !memchr(text, '\n', 72))
         return "an IGES model";
     return NULL;
 }

@@ -61,7 +61,7 @@ static bool is_blank(const char *text, size_t bytes)
     return true;
 }
 
-/* Reads the file. Returns NULL after an error (reported). */
+/* Reads a text file into memory. Returns NULL after an error (reported). */
 static char *read_bytes(const char *path, const char *wanted, struct diag *diag, size_t *bytes)
 {
     const char *kind = file_kind_of(path);
@@ -77,7 +77,7 @@ static char *read_bytes(const char *path, const char *wanted, struct diag *diag,
     return text;
 }
 
-/* Checks `text` and takes ownership of the text. Returns NULL after an error (reported). */
+/* Takes ownership of a file's text, and checks its encoding. Returns NULL after an error (reported). */
 static char *check_text(char *text, size_t bytes, const char *path, const char *wanted, struct diag *diag)
 {
     if (is_blank(text, bytes))

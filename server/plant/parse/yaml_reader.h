@@ -18,24 +18,24 @@ struct text_position {
     int line, column; /* position in the file, from 1 */
 };
 
-struct yaml_choice { /* one allowed text and its value; a table of choices ends with { 0 } */
+struct yaml_choice { /* allowed value of a key, as text and as number; a table of choices ends with { 0 } */
     const char *name;
     double value;
 };
 
 enum key_kind {
     KEY_TEXT,   /* char *, any text */
-    KEY_NAME,   /* type of the member: char *, for text that is not empty */
+    KEY_NAME,   /* member of type char *: a text that is not empty */
     KEY_NUMBER, /* double */
     KEY_INT,    /* int */
-    KEY_CHOICE, /* type of the member: int (or an enum), by a name from `choices` */
+    KEY_CHOICE, /* member of type int or of an enum: one of the names in `choices` */
     KEY_FLAG,   /* bool, from `choices` */
     KEY_FACTOR, /* double, from `choices` */
     KEY_POINT,  /* double[3] */
-    KEY_CUSTOM  /* any type; the function `read` reads the value */
+    KEY_CUSTOM  /* member of any type: the function `read` reads the value */
 };
 
-struct yaml_key { /* one key of a mapping; a table of keys ends with { 0 } */
+struct yaml_key { /* key of a YAML mapping; a table of keys ends with { 0 } */
     const char *name;
     enum key_kind kind;
     bool required;
@@ -46,7 +46,7 @@ struct yaml_key { /* one key of a mapping; a table of keys ends with { 0 } */
 };
 
 #define YAML_MAP_MAX_KEYS 56
-struct yaml_map { /* for a mapping that was read: the position of the mapping and of its values, and which values were good */
+struct yaml_map { /* result of reading a mapping: the position of the mapping and of each value, and whether each value was good */
     const struct yaml_key *keys;
     struct text_position place;
     struct text_position values[YAML_MAP_MAX_KEYS];

@@ -29,7 +29,7 @@ struct notify_recipient {
     char *id;
     enum notify_kind kind;
     struct notify_list addresses; /* e-mail addresses */
-    char *url;                    /* URL of a webhook, or of Alertmanager without /api/v2/alerts */
+    char *url;                    /* URL of a webhook; for Alertmanager, its URL without /api/v2/alerts */
     char *token_file, *ca_file;   /* paths; NULL: none */
     int line;
 };
@@ -41,7 +41,7 @@ struct notify_shift {     /* shift: a time span in the plant's time zone */
 
 struct notify_step {
     double after_min; /* minutes since the alarm: 0 in the first step, ascending in the later ones */
-    uint32_t to;      /* bit mask, by index, of the recipients that this step notifies */
+    uint32_t to;      /* bit mask of the recipients that this step notifies; bit n: recipient with index n */
 };
 
 struct notify_rule {
@@ -55,7 +55,7 @@ struct notify_rule {
 };
 
 struct plant_notify {
-    char *link; /* URL of the page; NULL: not stated */
+    char *link; /* URL of this plant's page, for links in notifications; NULL: not stated */
     double gather_s, pause_s, timeout_s;
     struct notify_mail mail;
     struct notify_recipient *recipients;

@@ -11,7 +11,7 @@
 
 struct alarm_reference {
     char *text;
-    size_t tag; /* index of the tag whose row refers to another tag */
+    size_t tag; /* index of the tag whose row names another tag in an alarm cell */
     enum tag_column column;
     int line, at_column;
 };

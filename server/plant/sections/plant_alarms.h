@@ -5,7 +5,8 @@
 #include "plant/plant_impl.h"
 #include "plant/tags/tag_columns.h"
 
-/* Names of other tags found in rows; resolved later, since those tags may follow. Zero-initialise. */
+/* Names of other tags that alarm cells of rows contain. They are resolved later, since the named tags may come later in the list.
+   Zero-initialise. */
 struct alarm_references {
     struct alarm_reference *at;
     size_t count, capacity;

@@ -210,7 +210,8 @@ static void read_assets(struct yaml_reader *reader, yaml_node_t *node, void *rec
         read_asset(reader, yaml_list_item(reader, node, i), plant, &plant->assets[plant->asset_count++]);
 }
 
-/* In a plant with Y up, keeps assets without a rotation upright. */
+/* Turns assets from Z up (asset frame) to the upward axis of the plant: in a plant with Y up, an asset without a rotation thus stands
+   upright. */
 static void stand_upright(struct plant *plant)
 {
     static const double y_up_from_z_up[16] = { 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1 };

@@ -71,7 +71,7 @@ int data_type_registers(enum data_type type)
 bool byte_order_parse(const char *text, enum byte_order *out)
 {
     static const struct {
-        const char *name, *suffix; /* suffix: the two letters after # in the address, which name the byte order */
+        const char *name, *suffix; /* letters after # in a Modbus address that name the byte order */
         enum byte_order order;
     } orders[] = {
         { "ABCD", "LL", BYTE_ORDER_ABCD },
@@ -101,8 +101,8 @@ static int read_digits(const char **p, long *value)
     return count;
 }
 
-/* Parses addresses such as hr:0, whose register numbers count from 0, as on the wire. Returns false with the reason in `why` if the text is
-   no such address. */
+/* Parses an address that names its table, such as hr:0. Its register number counts from 0, as in Modbus messages. Returns false with the
+   reason in `why` if the text is no such address. */
 static bool read_named_table(const char **p, struct modbus_address *out, char why[200])
 {
     static const struct {

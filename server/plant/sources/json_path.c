@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Paths are not compiled: each evaluation parses the path step by step. */
+/* JSONPath evaluation without compiling: each evaluation parses the path step by step. */
 #include "plant/sources/json_path.h"
 
 #include <stdio.h>
@@ -63,7 +63,7 @@ static bool add_escape(char out[JSON_PATH_TEXT_BYTES], size_t *count, const char
     return name && add_byte(out, count, (unsigned char)bytes[name - names]);
 }
 
-/* Reads a string in single or double quotes. Returns false with the reason in `why` if there is none. */
+/* Reads a string literal in single or double quotes. Returns false with the reason in `why` if the text does not begin with one. */
 static bool read_string(const char **at, char out[JSON_PATH_TEXT_BYTES], char why[200])
 {
     const char *begin = *at, *p = begin + 1;

@@ -12,7 +12,7 @@
 enum address_field { FIELD_TAG, FIELD_ASSET, FIELD_GROUP, FIELD_ADDRESS, FIELD_COUNT };
 static const char *const field_names[FIELD_COUNT] = { "{tag}", "{asset}", "{group}", "{address}" };
 
-/* Returns the template field at the beginning of the text, or FIELD_COUNT. */
+/* Returns the placeholder (enum address_field) of a topic template with which the text begins, or FIELD_COUNT if it begins with none. */
 static enum address_field field_at(const char *text)
 {
     enum address_field field = FIELD_TAG;
@@ -35,7 +35,8 @@ bool mqtt_template_check(const char *text, char why[200])
     return true;
 }
 
-/* Returns the text that replaces a field, NULL if the tag has none. address: the part of the address before the #. */
+/* Returns the tag's text for a placeholder in a topic template, or NULL if the tag has none. address: the part of the tag's address before
+   the #. */
 static const char *field_text(const struct plant *plant, const struct plant_tag *tag, const char *address, enum address_field field)
 {
     switch (field) {

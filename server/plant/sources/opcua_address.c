@@ -61,8 +61,8 @@ static bool check_identifier(const char *text)
     return true;
 }
 
-/* Returns the namespace from the prefix nsu=URI; or else the source's namespace. Returns NULL with the reason in `why` if there is
-   neither. */
+/* Returns the namespace URI of an address: the one in its prefix nsu=URI, or else the source's. Returns NULL with the reason in `why` if
+   neither is given. */
 static char *read_namespace(const char **at, const char *of_source, char why[200])
 {
     const char *end = strchr(*at, ';');

@@ -8,10 +8,11 @@
 
 /* Returns true if the host name in a URL means this machine (localhost or a loopback address). */
 bool url_is_here(const char *url);
-/* Reports an invalid URL as the value of a key: a scheme other than `plain` and `secure`, no server, a password or white space in it. */
+/* Reports a key whose value is not a valid URL: it must begin with `plain` or `secure` (schemes such as http:// and https://), name a
+   server, and contain neither a password nor white space. */
 void url_check(struct yaml_reader *reader, const struct yaml_map *map, const char *key, const char *url, const char *plain,
                const char *secure);
-/* Reports a `token_file` of a URL to which no token may be sent: a token needs https://, or a URL of this machine. */
+/* Reports a URL that has a `token_file` but to which no token may be sent: only https:// URLs and URLs of this machine may get tokens. */
 void url_check_token(struct yaml_reader *reader, const struct yaml_map *map, const char *url);
 
 #endif

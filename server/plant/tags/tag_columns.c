@@ -8,13 +8,13 @@
 #include "plant/parse/number.h"
 #include "plant/parse/suggest.h"
 
-struct column_name { /* the name must be the first member, as suggest_nearest() expects */
+struct column_name { /* must be the first member, because suggest_nearest() expects a name there */
     const char *name;
     enum tag_column column;
 };
 
 static const struct column_name column_names[] = {
-    /* names of columns; messages use the first name of each */
+    /* accepted names of the columns; messages use the first name of each column */
     { "Tag Name", COL_NAME },
     { "Address", COL_ADDRESS },
     { "Data Type", COL_DATA_TYPE },
@@ -90,7 +90,7 @@ static void report_unknown(struct tag_columns *columns, const struct csv_cell *c
         header_warning(columns, cell, "a column without a name is ignored");
 }
 
-/* Reports two different names of one column; equal names are reported by csv_open(). */
+/* Reports a column that the list has twice under two of its accepted names. csv_open() reports equal names. */
 static void check_doubled(struct tag_columns *columns, const struct csv_cell *cell, int before)
 {
     const struct csv_cell *first = before >= 0 ? &columns->csv.header.cells[before] : NULL;

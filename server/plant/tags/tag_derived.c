@@ -30,7 +30,8 @@ static bool parse(const struct tag_link *link, struct plant *plant, struct diag 
     return tag->expression != NULL;
 }
 
-/* Warns if inputs of one quantity are in different units: an expression computes in the units that the rows state, without conversion. */
+/* Warns if tags of one quantity, such as two temperatures, enter an expression in different units: expressions compute in the units of the
+   tags' rows, without conversion. */
 static void check_units(const struct tag_link *link, const struct plant *plant, struct diag *diag)
 {
     const struct plant_tag *tag = &plant->tags[link->tag];
@@ -90,7 +91,7 @@ void tag_derived_resolve(const struct tag_links *derived, struct plant *plant, s
             continue;
         diag_error(diag, plant->files.tags_path, link->line, link->column, "Address: '%.60s' is computed from itself",
                    plant->tags[link->tag].name);
-        break; /* reports a cycle for one tag only: visiting the other tags of the cycle would report it again */
+        break; /* stops at the first cycle: visiting the other tags of the cycle would report it again */
     }
     mem_free(walk.marks);
 }

@@ -14,7 +14,7 @@
 enum edited { EDIT_NAME, EDIT_ASSET, EDIT_GROUP, EDIT_NODE, EDIT_PLACE, EDIT_X, EDIT_Y, EDIT_Z, EDIT_COLUMNS };
 static const char *const names[EDIT_COLUMNS] = { "Tag Name", "Asset", "Group", "Node", "Place", "X", "Y", "Z" };
 
-struct cell_span { /* a cell's range in the text, including quotes and blanks */
+struct cell_span { /* range of one cell in the text of the tag list, including quotes and blanks */
     const char *begin, *end;
 };
 

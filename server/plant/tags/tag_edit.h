@@ -17,7 +17,7 @@ struct tag_edit {
 };
 
 struct tag_line {         /* one line that differs between two texts */
-    int line;             /* line number from 1 in the new text; for a removed line, in the old text */
+    int line;             /* line number, from 1, in the new text; if the line was removed, in the old text */
     char *before, *after; /* the line without its line end; NULL: the text has no such line */
 };
 struct tag_lines { /* zero-initialise */
@@ -26,8 +26,8 @@ struct tag_lines { /* zero-initialise */
 };
 enum { TAG_LINES = 200 };
 
-/* Returns the new text; free with mem_free(). Returns NULL if a tag is missing or the list is invalid, with the reason in *why
-   (mem_free()). */
+/* Returns the text of the tag list with the edits applied; free with mem_free(). Returns NULL if a tag is missing or the list is invalid,
+   with the reason in *why (mem_free()). */
 char *tag_edit(const char *text, const struct tag_edit *edits, size_t count, struct refusal *why);
 /* Appends the lines in which two texts differ to *out, at most TAG_LINES lines. If both texts have the same number of lines, they are
    compared one by one; otherwise all lines between the first and the last difference are listed, including equal ones: removed lines

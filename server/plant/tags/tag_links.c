@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "plant/parse/suggest.h"
 
-/* Parses an integer in C notation and moves *text past it. Returns false if there is none. */
+/* Parses an integer in C notation and moves *text past it. Returns false if the text does not begin with an integer. */
 static bool take_number(const char **text, uint64_t *out)
 {
     char *end;

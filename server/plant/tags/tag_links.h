@@ -7,7 +7,7 @@
 
 struct tag_link {
     size_t tag;
-    char *to;         /* name of the other tag; NULL: the reference is a derived tag's address, an expression */
+    char *to;         /* name of the tag that is referred to; NULL: `tag` is a derived tag, whose address is an expression */
     int line, column; /* position of the cell */
     bool direction;   /* true: the name is from the column Direction; false: from the column Quality Tag */
 };

@@ -16,7 +16,7 @@
 struct tag_list {
     struct plant *plant;
     struct tag_columns columns;
-    struct plant_tag *tag;           /* the tag of the current row */
+    struct plant_tag *tag;           /* tag that the current row of the file describes */
     const struct plant_group *group; /* group of the tag, or NULL */
     struct tag_links links, derived;
     size_t capacity; /* of plant->tags */
@@ -47,7 +47,8 @@ static bool is_lost(const struct tag_list *list)
     return *id && plant_find_asset(list->plant, id) < 0;
 }
 
-/* Reads group and asset of a row. A plant file without any groups or assets is reported once elsewhere, so not for each row. */
+/* Reads group and asset of a tag's row. If the plant file has no groups or no assets at all, that is reported once elsewhere and not for
+   each row. */
 static void read_group_and_asset(struct tag_list *list)
 {
     const struct plant *plant = list->plant;

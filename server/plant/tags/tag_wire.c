@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the part of a row that says where the value is on the wire, what type it has, and how it is converted to engineering units. */
+/* Reads the part of a tag's row that says where the device has the value, which data type it has, and how it is converted to engineering
+   units. */
 #include "plant/tags/tag_wire.h"
 
 #include <math.h>
@@ -23,7 +24,7 @@ struct tag_wire {
 
 /* --- address and type ------------------------------------------------------------------------------------------------------------ */
 
-/* Reads the byte order that the row states, in the column or in the address. Returns false after an error (reported). */
+/* Reads the byte order of a tag's value, which its row may state in a column or in the address. Returns false after an error (reported). */
 static bool read_stated_order(struct tag_wire *wire, const struct modbus_address *address, enum byte_order *out)
 {
     const char *text = cell_text(wire->columns, COL_BYTE_ORDER);
@@ -84,7 +85,8 @@ static bool read_type(struct tag_wire *wire, const struct modbus_address *addres
     return one_bit == (tag->signal.type == DATA_BIT);
 }
 
-/* Returns true if the value at the address already is a number in engineering units: from a file, or computed from other tags. */
+/* Returns true if the value at the tag's address is already a number in engineering units, because it comes from a file or is computed from
+   other tags. */
 static bool is_number(const struct tag_wire *wire)
 {
     const char *kind = wire->tag->source >= 0 ? wire->plant->sources[wire->tag->source].kind : NULL;
@@ -112,7 +114,7 @@ static bool comes_from(const struct tag_wire *wire, const char *kind)
     return !tag_is_derived(wire->columns) && its_kind && !strcmp(its_kind, kind);
 }
 
-/* Reads type and address of a published value: the type is a number, unless the row states bool. */
+/* Reads type and address of a value that is published over MQTT or OPC UA: its type is a number, unless the row states bool. */
 static void read_published(struct tag_wire *wire)
 {
     struct plant_tag *tag = wire->tag;

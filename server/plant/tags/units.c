@@ -297,7 +297,8 @@ static bool has_name(const struct unit_entry *unit, const char *name, bool exact
     return false;
 }
 
-/* Finds a unit by name. Ignoring case is tried second, and counts only if a single unit matches: MPA could be MPa or mPa. */
+/* Finds a unit by name: first exactly, then ignoring case. The second search counts only if it finds a single unit: MPA could be MPa or
+   mPa. */
 static const struct unit_entry *look_up(const char *name)
 {
     const struct unit_entry *found = NULL;
@@ -343,8 +344,8 @@ static bool find_pressure(const char *name, struct unit_entry *out)
     return false;
 }
 
-/* Finds the unit of a temperature difference, such as deltaK; the zero point of the scale does not matter. Returns false if there is no
-   such unit. */
+/* Finds the unit of a temperature difference, such as deltaK. Its conversion has no offset, because the zero point of the scale does not
+   matter for a difference. Returns false if the name is no such unit. */
 static bool find_difference(const char *name, struct unit_entry *out)
 {
     const struct unit_entry *unit = strncasecmp(name, "delta", 5) == 0 ? look_up(name + 5) : NULL;

@@ -5,16 +5,16 @@
 #define PLANT_TAGS_UNITS_H
 #include <stdbool.h>
 
-/* A conversion: to = from * factor + offset. All zero: no conversion. */
+/* A conversion of units: converted value = value * factor + offset. All members zero: no conversion is needed or possible. */
 struct unit_change {
     bool converts;
     double factor, offset;
 };
 
 enum unit_match {
-    UNITS_SAME, /* the same unit; also two unknown units whose names are spelled alike */
+    UNITS_SAME, /* equal units; also two unknown units whose names are spelled alike */
     UNITS_CONVERT,
-    UNITS_OTHER_KIND, /* two known units of different quantities, including absolute and gauge pressure */
+    UNITS_OTHER_KIND, /* units of different quantities, including absolute and gauge pressure; both units are known */
     UNITS_UNKNOWN     /* at least one of the units is unknown */
 };
 
@@ -24,15 +24,15 @@ enum unit_match units_compare(const char *from, const char *to, struct unit_chan
 /* Returns the quantity that a unit measures, such as "volume flow" (static); NULL if the unit is unknown. */
 const char *unit_kind(const char *name);
 enum { UNIT_NAME_BYTES = 16 };
-/* Finds a known unit with a name similar to a wrong one; returns false if there is none. */
+/* Finds a known unit whose name is similar to a mistyped one. Returns false if no name is similar. */
 bool unit_suggest(const char *name, char near[UNIT_NAME_BYTES]);
 
-/* Converts a value from `from` to `to`. */
+/* Converts a value from the first to the second unit that units_compare() compared. */
 static inline double unit_change_value(const struct unit_change *change, double from)
 {
     return change->converts ? from * change->factor + change->offset : from;
 }
-/* Converts a value back, from `to` to `from`. */
+/* Converts a value back, from the second to the first unit that units_compare() compared. */
 static inline double unit_change_back(const struct unit_change *change, double to)
 {
     return change->converts ? (to - change->offset) / change->factor : to;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Offset that moves the whole content of a wall display slowly, against burn-in. The page uses the same function
-   (clients/web/core/wall.js). Pure. */
+/* Slow shift of the whole content of a wall display, against burn-in. The page uses the same function (clients/web/core/wall.js). Pure. */
 #ifndef PLANT_WALLS_BURN_SHIFT_H
 #define PLANT_WALLS_BURN_SHIFT_H
 #include <stdint.h>
@@ -10,7 +9,7 @@
 struct burn_shift {
     int x_px, y_px; /* offset in pixels to the right and down */
 };
-/* Returns the offset at a time of the plant's clock, by which all displays of a wall move together. */
+/* Returns the offset at a time of the plant's clock. All displays of a wall use the same time, so their contents move together. */
 struct burn_shift burn_shift_at(int64_t utc_ns);
 
 #endif

@@ -23,7 +23,7 @@ static void add_item(struct wall_pane *pane, const yaml_node_t *node)
     pane->items[pane->item_count++] = mem_strdup(yaml_text(node));
 }
 
-/* Reads one text, or a list of texts. */
+/* Reads a key's value that is one text or a list of texts. */
 static void read_items(struct yaml_reader *reader, yaml_node_t *node, struct wall_pane *pane)
 {
     const char *name = pane_kind_names[pane->kind];
@@ -215,7 +215,7 @@ static void read_panes(struct yaml_reader *reader, yaml_node_t *node, void *reco
         read_pane(reader, yaml_list_item(reader, node, i), display, &display->panes[display->pane_count++]);
 }
 
-/* Reads one number, or two: horizontal and vertical. */
+/* Reads a key's value that is one number, for both directions, or two numbers: horizontal and vertical. */
 static void read_bezel(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     double *bezel_mm = ((struct wall_tile *)record)->bezel_mm;
@@ -305,7 +305,7 @@ static void pane_copy(const struct wall_pane *from, struct wall_pane *to)
         to->items[i] = mem_strdup(from->items[i]);
 }
 
-/* Puts the displays of the tiled picture before the wall's other displays. */
+/* Adds the displays of the wall's tiled picture (one picture across several displays) before the wall's other displays. */
 static void add_tiles(struct yaml_reader *reader, const struct yaml_map *map, struct wall *wall)
 {
     size_t tiles = (size_t)(wall->tile.columns * wall->tile.rows), others = wall->display_count;

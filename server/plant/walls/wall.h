@@ -21,9 +21,9 @@ struct named_view {
 };
 
 struct tour_stop {
-    char *view, *text; /* id of a view; text that a tour shows with the view, or NULL */
+    char *view, *text; /* view: id of a view; text: shown with the view, NULL: no text */
     double dwell_s;
-    struct text_position place; /* position of the view's id in the file */
+    struct text_position place; /* position of the view's id in the plant file, for messages */
 };
 
 struct tour {
@@ -54,13 +54,13 @@ struct wall_pane {
     char *items[PANE_ITEMS];
     size_t item_count;
     int item_lines[PANE_ITEMS], item_columns[PANE_ITEMS];
-    double every_s; /* seconds for which each view is shown */
+    double every_s; /* seconds for which the pane shows each of its views */
     double hours;   /* hours that a trend covers */
-    bool on_alarm;  /* for panes of views and tours: when an alarm is raised, the pane shows the alarm's view */
+    bool on_alarm;  /* true: when an alarm is raised, the pane shows the alarm's view; only for panes of views and tours */
 };
 
 struct wall_display {
-    char *rows[WALL_ROWS]; /* rows of the grid: area names separated by blanks */
+    char *rows[WALL_ROWS]; /* rows of the display's grid of panes, each with area names separated by blanks */
     size_t row_count;
     struct wall_pane panes[WALL_PANES];
     size_t pane_count;
@@ -73,8 +73,8 @@ struct day_span {
 
 /* One picture across the first columns * rows displays of a wall, row by row. */
 struct wall_tile {
-    int columns, rows;     /* number of displays; 0: the wall has no such picture */
-    double bezel_mm[2];    /* millimetres between the pictures of two neighbouring displays: horizontally, vertically */
+    int columns, rows;     /* number of displays horizontally and vertically; 0: the wall has no picture across displays */
+    double bezel_mm[2];    /* millimetres between the picture areas of two neighbouring displays: horizontally, vertically */
     struct wall_pane pane; /* content of the picture: views or a tour */
 };
 
@@ -82,9 +82,9 @@ struct wall {
     char *id;
     double inches, metres; /* diagonal of each display in inches, and viewing distance in metres */
     struct wall_tile tile;
-    struct day_span dim;           /* time of day when the displays are dimmed; equal ends: never */
+    struct day_span dim;           /* time of day while the displays are dimmed; equal ends: they are never dimmed */
     double dim_percent;            /* brightness in percent while dimmed */
-    struct wall_display *displays; /* displays; the displays of `tile` come first, each with a single pane `main` */
+    struct wall_display *displays; /* all displays of the wall; those of `tile` come first, each with a single pane `main` */
     size_t display_count;
     int line;
 };
@@ -92,15 +92,15 @@ struct wall {
 /* Returns whether an id may be part of a URL: letters, digits, `_`, `-` and `.`, at most NAMED_VIEW_ID_BYTES - 1. */
 bool named_view_id_valid(const char *id);
 struct plant;
-/* Return the entry of the plant file with that id, or NULL. */
+/* Each function returns the entry of the plant file that has this id, or NULL. */
 const struct named_view *named_view_find(const struct plant *plant, const char *id);
 const struct tour *tour_find(const struct plant *plant, const char *id);
 const struct wall *wall_find(const struct plant *plant, const char *id);
 int other_plant_find(const struct plant *plant, const char *id); /* Returns an index, or -1. */
 /* Returns a display of a wall of the plant file, NULL if the wall has no such display. number: from 1. */
 const struct wall_display *wall_display_find(const struct plant *plant, const char *wall, int number);
-/* Return whether a display has a pane of views or a tour; whether one of its trends or tiles shows the tag; whether one of its panes
-   shows the view with that id. A NULL display gives false. */
+/* Each function answers one question about a display, and returns false for a NULL display: whether it has a pane of views or a tour;
+   whether one of its trends or tiles shows the tag; whether one of its panes shows the view with that id. */
 bool wall_display_has_pictures(const struct wall_display *display);
 bool wall_display_shows_tag(const struct wall_display *display, const char *tag);
 bool wall_display_shows_view(const struct plant *plant, const struct wall_display *display, const char *id);
