@@ -21,8 +21,10 @@
 #include "helper_program.h"
 
 enum { MAX_FIRST_VIEWS = 16 }; /* maximum number of views that are drawn with the new plant before the switch */
-static const int64_t SETTLE_NS = NS_PER_S; /* time limit for an action to be on disk; after it, its user is told that it is not kept */
-static const int64_t FOLLOW_NS = 120 * NS_PER_S, LOOK_NS = 20 * NS_PER_MS; /* time limit for the core to switch; interval of looks */
+/* time limit until a user's action is on disk; after it, the user is told that the action is not kept */
+static const int64_t SETTLE_NS = NS_PER_S;
+/* FOLLOW_NS: time limit until the core has switched to its new plant; LOOK_NS: interval at which this is checked */
+static const int64_t FOLLOW_NS = 120 * NS_PER_S, LOOK_NS = 20 * NS_PER_MS;
 enum { WAIT_MS = 3000 };       /* maximum wait in milliseconds until another program has finished changing the plant's folder */
 
 struct reload {
@@ -36,16 +38,18 @@ struct reload {
     char by[TOKEN_NAME_BYTES];     /* user who asked for the running reload */
     const struct tag_save *saving; /* tag list that the running reload saves; NULL: none */
     const char *kept;              /* path under which the previous version of the tag list is kept */
-    struct refusal refusal;        /* reason why the tag list was not saved; REFUSAL_NONE: it was saved */
-    /* held while the runtime is replaced, or takes the lead (becomes the core that polls devices): the two must not overlap */
+    struct refusal refusal;        /* reason why the running reload could not save the tag list; REFUSAL_NONE: it was saved */
+    /* held while the runtime is replaced, and while it takes the lead (becomes the one that polls devices): the two must not overlap */
     pthread_mutex_t put_lock;
-    bool ended; /* protected by put_lock: this core's lead has ended, so no plant may be put in force */
-    struct thread leader; /* thread that makes this core the leader, and ends its lead, without waiting for a running reload */
-    bool leads, ends;     /* protected by leader.lock: what the thread must do */
+    bool ended; /* true: this core's lead has ended, so no new plant may be put in force; protected by put_lock */
+    /* thread that makes this core the leader, and ends its lead; a thread of its own, so that neither waits for a running reload */
+    struct thread leader;
+    bool leads, ends; /* orders for that thread: take the lead; end the lead; protected by leader.lock */
     struct thread thread;
     /* --- below: protected by thread.lock */
     bool asked, imports;
-    uint64_t follows; /* connection that the core ends when it has loaded its plant, too; 0: the reload does not wait for the core */
+    /* connection that this daemon's core ends once the core has loaded the plant, too; 0: the reload does not wait for the core */
+    uint64_t follows;
     char who[TOKEN_NAME_BYTES]; /* user who asked for the next reload */
     struct tag_save *save;      /* tag list to be saved; NULL: none */
 };
@@ -66,7 +70,7 @@ struct verdict {
     bool good;
     char *text;
     uint64_t client; /* id of the client that saved a tag list */
-    char *saved;     /* message for that client about the saved tag list; NULL: no tag list was saved */
+    char *saved;     /* message about the saved tag list for the client that saved it; NULL: no tag list was saved */
 };
 
 static void say(void *arg)
@@ -164,7 +168,7 @@ static void look_at_views(void *arg)
     swap->first_count = net_views(swap->net, &swap->after->services, swap->first, MAX_FIRST_VIEWS);
 }
 
-/* Starts the new plant's render service while the old one still draws, so that the new one's first frames come quickly. */
+/* Starts the new plant's render service while the old one still draws, so that the first frames of the new plant come quickly. */
 static bool start_render_service(struct reload *reload, struct plant_runtime *after)
 {
     struct swap swap = { .net = reload->net, .after = after };
@@ -182,7 +186,8 @@ static void release_recording(void *arg)
 static void swap(void *arg)
 {
     struct swap *swap = arg;
-    /* The new plant reads the files that users' actions change. put_in_force() has waited already for all but the newest of these. */
+    /* The new plant reads the files that users' actions change. Only the newest of these actions may still be unwritten, because
+       put_in_force() has waited for the others. */
     file_writer_wait(swap->after->context->file_writer, SETTLE_NS);
     file_writer_collect(swap->after->context->file_writer);
     plant_runtime_open_lists(swap->after);
@@ -259,18 +264,18 @@ static void announce(void *arg)
     net_announce_reload(arg);
 }
 
-/* Returns whether the running reload must wait, because its core has not switched yet. */
+/* Returns whether the running reload must wait, because this renderer's core has not switched to its new plant yet. */
 static bool must_wait(struct reload *reload)
 {
-    pthread_mutex_lock(&reload->put_lock); /* a standby that takes the lead frees its link */
+    pthread_mutex_lock(&reload->put_lock); /* locks, because a standby that takes the lead frees its link to the core */
     struct core_link *link = (*reload->runtime)->services.core_link;
     bool waits = reload->following && link && core_link_session(link) == reload->following;
     pthread_mutex_unlock(&reload->put_lock);
     return waits;
 }
 
-/* Waits until the core, which loads the plant too, ends the connection because it has switched: a renderer that switches earlier is
-   refused. Returns false if the core does not switch. */
+/* On a renderer, waits until the core, which loads the plant too, has switched and therefore ended the connection: the core refuses a
+   renderer that switches earlier. Returns false if the core does not switch. */
 static bool wait_for_core(struct reload *reload)
 {
     struct thread *thread = &reload->thread;
@@ -441,7 +446,7 @@ static void import_locked(struct reload *reload, struct import_order *order, int
                                               .stop = is_cancelled,
                                               .arg = reload };
     struct import_job *job = import_job_begin(&params);
-    if (order->anew) /* a plant file made from scratch gets the data source of the present plant */
+    if (order->anew) /* an import that makes a new plant file keeps the present plant's data source */
         order->source = import_source_of_plant((*reload->runtime)->plant);
     char *remark, *why = import_job_run(job, order, &remark);
     if (!why) {
@@ -643,7 +648,8 @@ void reload_end_leading(struct reload *reload)
 void reload_save(struct reload *reload, struct tag_save *save)
 {
     pthread_mutex_lock(&reload->thread.lock);
-    tag_save_free(reload->save); /* normally NULL here, because the event loop accepts only one save at a time */
+    /* the earlier order is normally NULL, because the event loop accepts only one save of a tag list at a time */
+    tag_save_free(reload->save);
     reload->save = save;
     pthread_cond_signal(&reload->thread.wake);
     pthread_mutex_unlock(&reload->thread.lock);

@@ -15,9 +15,9 @@ struct reload *reload_create(const struct plant_runtime_context *context, struct
 void reload_destroy(struct reload **reload);
 /* Asks for a reload and does not wait; if a reload is running, another one follows it. who: the user who asks, copied. Thread: any. */
 void reload_ask(struct reload *reload, const char *who);
-/* Asks for a reload because this daemon's core loads its plant. The new plant is put in force when the core has ended the connection
-   `session` (core_link_session()) to switch to its own plant, and dropped if the core does not switch. session 0: the core has switched.
-   Does not wait. Thread: any. */
+/* On a renderer, asks for a reload because its core loads the plant. The new plant is put in force once the core has ended the connection
+   `session` (core_link_session()), which it does to switch to its own new plant; if the core does not switch, the new plant is dropped.
+   session 0: the core has switched already. Does not wait. Thread: any. */
 void reload_follow(struct reload *reload, uint64_t session);
 /* Makes this core take the lead from the core that it followed, even while a reload is reading or preparing; does not wait. Thread: any. */
 void reload_lead(struct reload *reload);

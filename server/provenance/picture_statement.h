@@ -10,8 +10,10 @@
 #define PICTURE_SIGNATURE_KEYWORD "Plantcast signature"
 #define PICTURE_JSON (JSON_COMPACT | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(17))
 enum {
-    PICTURE_STATEMENT_VERSION = 2,          /* version 1 lacks `overlay` and `tier`, which were then `full` (or `bare`) and `refined` */
-    PICTURE_STATEMENT_MAX_BYTES = 64 << 20, /* maximum length of a statement: three sets of readings of 100,000 tags */
+    /* current version of the statement. Version 1 lacks two members: `overlay`, which was then `full` (or `bare`), and `tier`, which was
+       then `refined` */
+    PICTURE_STATEMENT_VERSION = 2,
+    PICTURE_STATEMENT_MAX_BYTES = 64 << 20, /* maximum length of a statement in bytes; enough for three sets of readings of 100,000 tags */
     PICTURE_SIGNATURE_BYTES = 128,
     PICTURE_HASH_BYTES = 65
 };

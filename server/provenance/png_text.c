@@ -105,7 +105,7 @@ static bool next_chunk(const uint8_t *png, size_t count, size_t *at, struct png_
     return true;
 }
 
-/* A kind of chunk that our PNG writer emits. `bytes`: exact content of the chunk; NULL: any content of at least one byte. */
+/* Kind of PNG chunk that our writer emits. `bytes`: exact content of the chunk; NULL: any content of at least one byte. */
 struct plain_chunk {
     char type[5];
     bool required, repeats;

@@ -10,7 +10,7 @@
 #include "render/frame_record.h"
 #include "scene/scene.h"
 
-struct picture_origin { /* data for the statement of a picture that the picture itself does not contain */
+struct picture_origin { /* facts for a picture's signed statement that the picture itself does not contain */
     const struct scene *scene;
     const char *const *args; /* the query that the picture answers, as name=value */
     size_t arg_count;

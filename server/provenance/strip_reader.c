@@ -12,8 +12,8 @@
 enum { RUNS = 5, FINDER_CELLS = 7, GREY = 128 };
 /* tolerance for the lengths of a finder pattern's runs of dark and light pixels, as a fraction of a cell */
 static const double SLACK = 0.6;
-static const double STRANGE = 7; /* CIELAB distance beyond which a colour is not in the legend */
-/* CIELAB distance within which two colours cannot be told apart; the picture's noise is added to this */
+static const double STRANGE = 7; /* CIELAB distance beyond which a colour counts as not in the legend */
+/* CIELAB distance within which two colours count as equal; the picture's noise is added to it */
 static const double INDISTINCT = 1.2;
 static const double NOISES = 1.5;
 
@@ -222,8 +222,8 @@ static double to_segment(const double p[3], const double a[3], const double b[3]
     return sqrt(square);
 }
 
-/* Returns the CIELAB distance of a colour from a legend column. Lighting moves a colour along the line through the three shades in which
-   the legend shows that colour. */
+/* Returns the CIELAB distance of a colour from a column of the legend. A column shows its colour in three shades; the distance is measured
+   to the line through these, along which lighting moves a colour. */
 static double off_of(const struct strip_found *found, int column, const double lab[3])
 {
     return fmin(to_segment(lab, found->ramp[0][column], found->ramp[1][column]),
@@ -268,8 +268,8 @@ bool strip_read(const struct strip_picture *picture, const struct strip_found *f
     else if (best >= STRIP_BEYOND + STRIP_RAMP)
         out->state = STRIP_ABOVE;
     else {
-        /* Colours at both ends of the scale may be similar. The mean of their positions on the scale would then be meaningless, so the
-           position of the best match is used. */
+        /* A pixel's colour may match columns at both ends of the scale, if their colours are similar. The mean of their positions on the
+           scale would then be meaningless, so the position of the best match is used. */
         double place = abs(high - low) > STRIP_RAMP / 4 ? best - STRIP_BEYOND + 0.5 : sum / total;
         out->value = value_of(&found->strip, place / STRIP_RAMP);
         out->low = value_of(&found->strip, (double)(low - STRIP_BEYOND - 1) / STRIP_RAMP);

@@ -24,7 +24,8 @@ struct strip_found {
 
 enum strip_state { STRIP_VALUE, STRIP_BELOW, STRIP_ABOVE, STRIP_NO_COLOR };
 struct strip_value {
-    enum strip_state state; /* STRIP_NO_COLOR: not a colour of the legend: background, a label, no data */
+    /* kind of result. STRIP_NO_COLOR: the pixel's colour is not in the legend, as with background, a label, or no data */
+    enum strip_state state;
     /* only for STRIP_VALUE: value: the pixel's value; low, high: bounds of all values whose colours cannot be told from the pixel's
        colour */
     double value, low, high;

@@ -16,13 +16,13 @@ enum { ESCAPE = 255, MOST_SYMBOL_BYTES = 3 };
 enum { PART_DIVIDED, PART_BACK, PART_NEAR, PART_MASKS, PARTS }; /* of the payload */
 /* maximum number of bytes that the ends of deflate blocks add to a payload */
 enum { MOST_BLOCK_BYTES = 100 };
-/* Movement of the camera, as a part of the distance to the surfaces, up to which a client's pictures must be right to a fraction of a
-   pixel. It corresponds to an orbit by six degrees. */
+/* Camera movement up to which pictures that a client makes from a depth grid must be right to a fraction of a pixel, as a part of the
+   distance to the surfaces. It corresponds to an orbit by six degrees. */
 static const double MOVEMENT = 0.1;
-/* Shifts in pixels that a camera movement by MOVEMENT causes. STEP_SHIFT_PX: smallest shift between two depths that makes a step between
-   them. UNIT_SHIFT_PX: shift between two depths whose codes differ by 1. */
+/* Shifts in pixels on the screen that a camera movement by MOVEMENT causes. STEP_SHIFT_PX: smallest shift between two depths that counts as
+   a step between them. UNIT_SHIFT_PX: shift between two depths whose codes differ by 1. */
 static const double STEP_SHIFT_PX = 2, UNIT_SHIFT_PX = 1.5;
-/* smallest 1 / distance of ground, in 1/m: ground farther away than 100 km counts as background */
+/* 1 / distance, in 1/m, below which ground counts as background: 100 km */
 static const double LEAST_INVERSE = 1e-5;
 
 /* --- from the depth buffer to metres ----------------------------------------------------------------------------------------- */
@@ -78,7 +78,8 @@ void depth_lens_init(struct depth_lens *lens, const struct view_constants *const
         aim_at_ground(lens, constants->clip_from_plant, plant_from_ground, width_px, height_px);
 }
 
-/* Returns the depth of the ground at a pixel; -INFINITY: no ground is seen there, or it is too far away to seem to move. */
+/* Returns the depth of the ground at a pixel. Returns -INFINITY if no ground is seen there, or if it is so far away that it does not move
+   with the camera. */
 static float ground_at(const struct depth_lens *lens, double x, double y)
 {
     double at[3];
@@ -99,7 +100,7 @@ struct coder {
     const struct depth_lens *lens;
     int width_px, height_px, columns, rows;
     float *nears, *fars; /* depths; -INFINITY: background */
-    uint8_t *swapped;    /* 1: the ground, which the mask leaves out, is nearer than the surface */
+    uint8_t *swapped;    /* 1: the cell's ground is nearer than its surface, although the mask marks only the surface */
     uint16_t *near, *far, *masks; /* masks: of divided cells */
     uint8_t *data;
     size_t data_bytes;
@@ -128,15 +129,16 @@ static void coder_finish(struct coder *coder)
     mem_free(coder->data);
 }
 
-/* Returns the middle of the pixels of a row or column of cells that lie within the frame. */
+/* Returns the pixel coordinate of the middle of a cell along one axis. A cell at the frame's border counts only as far as it lies within
+   the frame. */
 static double middle(int cell, int px)
 {
     int begin = cell * DEPTH_CELL_PX, end = begin + DEPTH_CELL_PX;
     return 0.5 * (begin + (end < px ? end : px));
 }
 
-/* Adds the ground to cells that show background: behind their surface, or as their only depth. Then finds the range of depths of all
-   cells. */
+/* Adds the ground to cells that show background: as the cell's far depth behind its surface, or as its only depth. Then finds the range of
+   depths of all cells. */
 static void find_depths(struct coder *coder)
 {
     float low = INFINITY, high = -INFINITY;
@@ -205,7 +207,8 @@ static uint8_t *put_divided(const struct coder *coder, uint8_t *out)
     return out + bytes;
 }
 
-/* Predicts a code from its neighbours, as the median of left, up and the plane through the three (LOCO-I; Weinberger et al., 2000). */
+/* Predicts a cell's depth code as the median of three predictions: the left neighbour, the upper neighbour, and the plane through the left,
+   upper and upper left neighbours (LOCO-I; Weinberger et al., 2000). */
 static inline int predicted_back(int left, int up, int corner)
 {
     if (!left || !up || !corner)
@@ -214,7 +217,7 @@ static inline int predicted_back(int left, int up, int corner)
     return corner >= most ? least : corner <= least ? most : left + up - corner;
 }
 
-/* Writes the code of each cell's farthest surface. */
+/* Writes the depth code of the farthest surface of each cell, as its difference from the prediction. */
 static uint8_t *put_back(const struct coder *coder, uint8_t *out)
 {
     int columns = coder->columns;
@@ -243,11 +246,13 @@ static uint8_t *put_near(const struct coder *coder, uint8_t *out)
     return out;
 }
 
-/* Reduces a cell's mask to MASK_SIDE x MASK_SIDE bits: 1 where at least one of the 2 x 2 pixels is near. So some pixels of the far side
-   move with the near side, which is less visible than the opposite: a thin near object, such as a handrail, would appear twice. */
+/* Reduces a cell's mask to MASK_SIDE x MASK_SIDE bits, each 1 if at least one of 2 x 2 pixels belongs to the near surface. Some pixels of
+   the far surface thus move with the near one. The opposite would be more visible: a thin near object, such as a handrail, would appear
+   twice. */
 static unsigned coarse_mask(uint64_t mask)
 {
-    mask |= mask >> 1; /* afterwards bits 0, 2, 4 and 6 of every second row say whether one of the 2 x 2 pixels there is near */
+    /* after this and the next line, bits 0, 2, 4 and 6 of every second row say whether one of the 2 x 2 pixels there is near */
+    mask |= mask >> 1;
     mask |= mask >> DEPTH_CELL_PX;
     mask &= 0x0055005500550055;
     mask = (mask | mask >> 1) & 0x0033003300330033;
@@ -256,8 +261,8 @@ static unsigned coarse_mask(uint64_t mask)
     return (unsigned)((mask | mask >> 24) & 0xffff);
 }
 
-/* Returns the mask of a neighbour of cell `i`. For a neighbour without a step, returns all ones if its depth is more like the near side of
-   cell `i`, and 0 if it is more like the far side. */
+/* Returns the mask of a neighbour of cell `i`, from which the mask of cell `i` is predicted. A neighbour without a depth step has no mask:
+   the result is all ones if its depth is closer to the near depth of cell `i`, else 0. */
 static unsigned mask_beside(const struct coder *coder, size_t neighbour, size_t i)
 {
     int back = coder->far[neighbour];

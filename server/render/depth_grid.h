@@ -8,16 +8,16 @@
 
 enum { DEPTH_CELL_PX = 8 };
 
-/* A square of pixels. Depths are those of the depth buffer: above 0, larger is nearer; 0: background. */
+/* Square of DEPTH_CELL_PX x DEPTH_CELL_PX pixels. Depths are those of the depth buffer: above 0, larger is nearer; 0: background. */
 struct depth_cell {
-    /* near: depth at the centre of the cell, or, if a step in depth divides the cell, before the step; far: depth behind the step, equal to
-       `near` if there is no step */
+    /* near: depth at the centre of the cell; if a step in depth divides the cell, depth of the nearer side. far: depth of the farther side,
+       equal to `near` if there is no step */
     float near, far;
-    uint64_t mask; /* one bit per pixel, row by row: 1: before the step */
+    uint64_t mask; /* one bit per pixel, row by row; 1: the pixel belongs to the nearer side of the step */
 };
 
-/* Depth of a point as a function of the depth buffer: (depth - offset) / factor is 1 / distance in a perspective view, and the distance in
-   an orthographic one, in metres along the direction of view. */
+/* Conversion of values in the depth buffer to distances. (depth - offset) / factor is 1 / distance in a perspective view, and the distance
+   in an orthographic one, in metres along the direction of view. */
 struct depth_lens {
     bool orthographic;
     double offset, factor;
@@ -46,7 +46,7 @@ void depth_lens_init(struct depth_lens *lens, const struct view_constants *const
 struct depth_grid *depth_grid_create(const struct depth_cell *cells, const struct depth_lens *lens, int width_px, int height_px);
 struct depth_grid *depth_grid_ref(struct depth_grid *grid); /* accepts NULL */
 void depth_grid_unref(struct depth_grid **grid);            /* accepts a pointer to NULL */
-/* Returns whether a client that has the grid `a` needs no other for `b`; both may be NULL. */
+/* Returns whether both depth grids are equal, so that a client that has `a` need not be sent `b`; both may be NULL. */
 bool depth_grid_equal(const struct depth_grid *a, const struct depth_grid *b);
 
 #endif

@@ -126,8 +126,8 @@ void frame_unref(struct frame **frame_ptr)
     mem_free(frame);
 }
 
-/* Moves a marker's position into the part's coordinates. Returns whether any of its symbol may show there: a symbol on the edge of a part
-   shows in both parts. */
+/* Moves a marker's position into the coordinates of a part of the frame. Returns whether any pixel of its symbol may lie in that part: a
+   symbol on the border between two parts is drawn in both. */
 static bool is_near(const struct frame_part *part, float *x_px, float *y_px)
 {
     *x_px -= (float)part->x_px;
@@ -146,7 +146,7 @@ static uint64_t hash_part(uint64_t content, const struct frame_part *part)
 struct frame *frame_cut(struct frame *whole, const struct frame_part *part)
 {
     struct frame *frame = mem_new(sizeof(*frame));
-    /* members before `view` are not copied, because they hold the reference count, which other threads change meanwhile */
+    /* copies the members from `view` on; those before it hold the reference count, which other threads change meanwhile */
     size_t plain = offsetof(struct frame, view);
     assert(part->x_px >= 0 && part->y_px >= 0 && part->x_px + part->width_px <= whole->width_px &&
            part->y_px + part->height_px <= whole->height_px);
@@ -177,8 +177,8 @@ struct frame *frame_cut(struct frame *whole, const struct frame_part *part)
 
 /* The baseline that one half of a split view subtracts from its readings, if the half shows differences. */
 struct then {
-    /* wanted: the half shows differences; distance: the half shows distances, which its markers already hold and which are not computed
-       from readings */
+    /* wanted: the half shows differences from a baseline; distance: the half shows distances from a sensor, which are not computed from
+       readings and which its markers already hold */
     bool wanted, distance;
     const struct snapshot *snapshot; /* readings of the baseline; NULL: the baseline no longer exists */
 };

@@ -7,15 +7,15 @@
 
 #include "render/view.h"
 
-#define FRAME_BEHIND_PX (-1e4f) /* value of x_px for a marker behind the eye */
+#define FRAME_BEHIND_PX (-1e4f) /* value of x_px of a marker that is behind the camera */
 
 struct frame_marker {
     int tag;
     float x_px, y_px; /* pixels from the top left of the frame; may lie outside the frame */
     uint8_t occluded; /* 1: a surface hides the marker, or it lies outside the frame; 0: visible */
     uint32_t quality; /* OPC UA quality of the reading shown; for a difference the worse of the two readings */
-    /* reading in engineering units, 0 where the quality is Bad; SHOW_DIFFERENCE: now minus baseline; SHOW_DISTANCE: metres, NAN if
-       unknown */
+    /* reading in engineering units, 0 if its quality is Bad. If the view shows differences: reading minus baseline; if it shows distances:
+       metres, NAN if unknown */
     double value;
     uint8_t half; /* half of a split view that the marker is in: 0 left, 1 right */
 };
@@ -23,15 +23,15 @@ struct frame_marker {
 struct frame_label { /* a visible point on an isoline, where the label of the isoline may be drawn; or the position of an arrow */
     double value;
     float x_px, y_px;
-    /* arrows: direction in the frame; its length is up to 1, less where the arrow points towards or away from the viewer; 0, 0: direction
-       unknown */
+    /* direction of an arrow in the frame. Its length is 1 if the arrow lies in the picture plane, and less if it points towards or away
+       from the viewer. 0, 0: direction unknown */
     float dx, dy;
     uint8_t half, arrow, uncertain;
     /* index of the stroke (a short streamline) within its half of the view, equal for all points of the stroke; 0: not a stroke but an
        arrow */
     uint16_t stroke;
 };
-/* minimum distance between arrows in pixels; the longest arrow is almost as long */
+/* minimum distance between the arrows of a frame in pixels; the longest arrow is almost that long */
 #define FRAME_ARROW_PX(width_px) fmax(48, (width_px) / 24.0)
 
 struct frame_part { /* a rectangle of a frame, in pixels from the top left. width_px 0: the whole frame */
@@ -48,19 +48,19 @@ struct frame {
     struct frame *whole;          /* reference to the frame that owns the pixels; NULL: this frame owns them */
     struct frame_marker *markers; /* sensors of the shown group */
     size_t marker_count;
-    /* visible points on isolines where the line's value may be written (more than can be drawn without overlap), and the arrows of
-       fields that have a direction */
+    /* visible points on isolines at which the isoline's value may be written (more points than labels fit), and the arrows of fields that
+       have a direction */
     struct frame_label *labels;
     size_t label_count;
-    int64_t data_utc_ns;   /* UTC of the snapshot that the frame shows */
+    int64_t data_utc_ns;   /* UTC time in nanoseconds of the snapshot of readings that the frame shows */
     bool clock_unset;      /* true if the clock that gave data_utc_ns was not synchronised */
-    int64_t oldest_age_ns; /* age of the oldest reading used, ns; INT64_MAX: no reading contributes */
+    int64_t oldest_age_ns; /* age in nanoseconds of the oldest reading that the frame uses; INT64_MAX: it uses none */
     /* largest error, in engineering units and rounded up, of values in areas that the frame marks as uncertain; 0: no area is marked */
     double drawn_error;
     int64_t field_ns, render_ns, readback_ns; /* duration of each stage */
     /* time that the render thread spent on this frame, waiting for the GPU included; 0: not drawn by a render thread */
     int64_t turn_ns;
-    struct baseline baseline;    /* the baseline that a difference is taken from; id 0: none */
+    struct baseline baseline;    /* baseline from which the frame shows differences; id 0: none */
     struct frame_record *record; /* readings that the frame was drawn from (render/frame_record.h); NULL: not requested */
     struct depth_grid *depth[2]; /* depth grid of the frame, or of each half of a split view; NULL: none */
     uint64_t content;            /* equal for equal frames: hash of view and field versions, without sequence numbers and times */

@@ -15,12 +15,12 @@ struct frame_record {
     struct {
         struct baseline what;
         struct snapshot *readings;
-    } baselines[FRAME_RECORD_BASELINES]; /* baselines that differences are taken from, without duplicates */
+    } baselines[FRAME_RECORD_BASELINES]; /* baselines from which the frame's differences are computed, each once */
     int baseline_count;
 };
 
-/* Copies the readings, the baselines that the view takes differences from, and which tags no loop check has proven. baselines, loop_checks:
-   NULL: there are none. The caller owns the record (frame_record_unref). */
+/* Copies the readings, the baselines from which the view shows differences, and which tags no loop check has proven. baselines NULL: there
+   are no baselines; loop_checks NULL: there are no loop checks. The caller owns the record (frame_record_unref). */
 struct frame_record *frame_record_create(const struct view *view, const struct snapshot *readings, struct baselines *baselines,
                                          const struct loop_checks *loop_checks);
 /* Returns a record in which no tag has a reading. The caller fills it in before other threads see it. */

@@ -14,10 +14,10 @@ struct depth_query {
     int width_px, height_px; /* size of the frame; 0: the frame gets no depth grid */
 };
 
-/* Starts to find the cells, if the frame gets a grid, after the frame is resolved; the previous frame that used the query must be complete.
-   Returns false on a GL error, logged. */
+/* Starts to find the cells of the frame's depth grid on the GPU, if the frame gets a grid. Call it after the frame is resolved; the
+   previous frame that used the query must be complete. Returns false on a GL error, logged. */
 bool depth_query_start(struct depth_query *query, const struct frame_context *context, const struct light *light);
-/* Returns the grid once the GPU is done, owned by the caller. NULL: the frame gets none, or out of memory. */
+/* Returns the frame's depth grid once the GPU has found its cells; the caller owns it. NULL: the frame gets no grid, or memory ran out. */
 struct depth_grid *depth_query_get(const struct depth_query *query);
 void depth_query_finish(struct depth_query *query);
 

@@ -10,8 +10,8 @@
 #include "render/gl/model.h"
 
 struct draw_instance { /* as in shaders/instance.glsl */
-    /* rows of the matrix eye_from_normal. The fourth elements of the three rows are indices of blocks in the buffers of draw_batch_state:
-       light, field, unused */
+    /* rows of the matrix that turns normals of the asset into eye space. The fourth elements of the three rows hold block indices into the
+       buffers of draw_batch_state: light, field, unused */
     float normals[3][4];
     float clip_from_file[16];
     float from_file[3][4]; /* rows */
@@ -36,8 +36,9 @@ struct draw_command { /* for glMultiDrawElementsIndirect */
 
 struct draw_batch {
     struct draw_batch_state state;
-    size_t first, count; /* range of the batch's commands in `sorted`, valid after draw_batches_upload() */
-    size_t older;        /* index of the previous batch of the same model; SIZE_MAX: none */
+    /* commands of this batch: index of the first and number, in the array `sorted`; valid after draw_batches_upload() */
+    size_t first, count;
+    size_t older; /* index of the previous batch of the same model; SIZE_MAX: none */
 };
 
 struct draw_batches { /* zero-initialise, then set log */
@@ -63,15 +64,15 @@ uint32_t draw_batches_add_instance(struct draw_batches *batches, const struct dr
 /* Returns the index of a batch with that state, and makes one if there is none. model: the model's index. in_order: draws must keep the
    order in which they are added, so only the batch made last may be joined. */
 size_t draw_batches_choose(struct draw_batches *batches, const struct draw_batch_state *state, size_t model, bool in_order);
-/* Adds the draw of a whole submesh. shown: 1: drawn; 0: not drawn unless an occlusion test on the GPU enables the draw
+/* Adds the draw of a whole submesh. shown: 1: the submesh is drawn; 0: it is drawn only if an occlusion test on the GPU enables the draw
    (render/gl/occlusion.h). */
 void draw_batches_add_submesh(struct draw_batches *batches, size_t batch, const struct model_submesh *submesh, uint32_t instance,
                               uint32_t shown);
 /* Adds draws of those clusters of a submesh that culling does not remove. Returns the number of triangles added. */
 int draw_batches_add_seen(struct draw_batches *batches, size_t batch, const struct model_submesh *submesh, uint32_t instance,
                           const struct culling *culling);
-/* Sorts the commands by batch and uploads commands and instances; if `places` is true, also place_buffer (the index in `sorted` of each
-   command). Returns false when the GPU is out of memory, logged. */
+/* Sorts the draw commands by batch, and uploads commands and instances to the GPU. places: also uploads, for each command, its index in
+   `sorted` (place_buffer). Returns false when the GPU is out of memory, logged. */
 bool draw_batches_upload(struct draw_batches *batches, bool places);
 /* Draws one batch. The caller has set the batch's state and bound its mesh. */
 void draw_batches_draw(const struct draw_batches *batches, const struct draw_batch *batch);

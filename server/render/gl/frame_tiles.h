@@ -7,10 +7,11 @@
 
 struct frame_tiles {
     int width_px, height_px;
-    /* block_px: side of a square block of cells; columns, rows: number of blocks. Cells of a block are in Z-order, so that tiles of any
-       size are contiguous */
+    /* block_px: side of a square block of cells in pixels; columns, rows: number of blocks. The cells of a block are in Z-order, so that
+       the cells of a tile of any size are contiguous */
     int block_px, columns, rows;
-    /* next: index of the next cell, counted through both passes (enum gl_pass); span: number of cells in its tile, 0: not chosen yet */
+    /* next: index of the next cell to draw, counted through both passes (enum gl_pass); span: number of cells in that cell's tile, 0: not
+       chosen yet */
     int next, span;
     int *in_tile; /* indices of the assets that the current tile shows */
 };

@@ -43,7 +43,8 @@ static void fill_scale(struct frame_uniforms *block, const struct frame_context 
     block->lines[2] = block->lines[3] = 0;
 }
 
-/* Sets how brightness maps to a row of the colour map: over all rows, or always to the middle row where light must not change colours. */
+/* Sets how the brightness of a surface selects a row of the colour map: any row, or always the middle row in views where light must not
+   change colours. */
 static void fill_shade(struct frame_uniforms *block, const struct view *view)
 {
     /* brightness range that the colour map's rows cover; darker or brighter surfaces are clamped */

@@ -16,14 +16,15 @@
 #include "render/renderer_impl.h"
 
 enum { REFINED_SAMPLES = 4 };
-/* Target duration of a tile where GL runs on the processor, and expected time per triangle there, both in nanoseconds. */
+/* TILE_NS: target duration of drawing a tile where GL runs on the processor; TRIANGLE_NS: expected time per triangle there; both in
+   nanoseconds. */
 static const int64_t TILE_NS = 4 * NS_PER_MS;
 static const double TRIANGLE_NS = 36;
 enum { TILE_TRIANGLES = 80000 };
-/* A refined frame whose last GPU time was below this is drawn in one call, like a preview, instead of in steps. */
+/* GPU time in nanoseconds of the last refined frame, below which the next one is drawn in one call, like a preview, instead of in steps. */
 static const int64_t MAX_QUICK_NS = 12 * NS_PER_MS;
-/* Occlusion culling runs for frames with at least this many triangles, about half a millisecond of a slow GPU. On a processor, testing
-   boxes costs more than it saves. */
+/* Minimum number of triangles in a frame for occlusion culling: a slow GPU needs about half a millisecond to draw them. Where GL runs on
+   the processor, testing boxes costs more than it saves. */
 enum { OCCLUSION_MIN_TRIANGLES = 250000 };
 /* Expected time per pixel and pass of GL on a processor in nanoseconds, until measured. */
 static const double INITIAL_PIXEL_NS[GL_PASSES] = { 200, 20 };
@@ -31,7 +32,7 @@ static const double INITIAL_PIXEL_NS[GL_PASSES] = { 200, 20 };
 struct gl_job {
     struct target target;
     struct frame_tiles tiles;
-    struct frame_in_flight *in_flight; /* slot of the frame once it is submitted to the GPU as a whole; NULL: not yet */
+    struct frame_in_flight *in_flight; /* slot of the frame, once the whole frame is submitted to the GPU; NULL: not submitted yet */
     size_t drawn;                      /* number of assets of the current tile drawn so far, nearest first */
     bool short_of_memory;              /* true: the GPU ran out of memory while drawing, so the frame's content is undefined */
 };
@@ -121,7 +122,7 @@ static bool begin(struct renderer *renderer, struct render_job *job, const struc
     job->of.gl = mem_new(sizeof(*job->of.gl));
     job->of.gl->target = target;
     job->context.target = &job->of.gl->target;
-    /* One tile for the whole frame: a GPU draws the whole frame in the time that a processor needs for one tile. */
+    /* a GPU gets one tile for the whole frame, which it draws in the time that a processor needs for one small tile */
     frame_tiles_init(&job->of.gl->tiles, &job->context, at_once || !renderer->gl->software);
     renderer_upload_fields(renderer, plan, &job->context, job->frame);
     return true;
@@ -206,8 +207,8 @@ static struct drawn_tile draw_tile(struct renderer *renderer, struct render_job 
     return drawn;
 }
 
-/* Updates the measured time per pixel. took_ns: CPU time of this process, not wall time, so that other load on the machine does not make
-   tiles smaller. */
+/* Updates the measured time per pixel of a pass. took_ns: CPU time of this process, not wall time, so that other load on the machine does
+   not make tiles smaller. */
 static void update_pixel_time(struct renderer *renderer, const struct drawn_tile *drawn, int64_t took_ns)
 {
     double *pixel_ns = &renderer->by_gl->pixel_ns[drawn->pass], now_ns = ((double)took_ns - drawn->triangles_ns) / fmax(drawn->pixels, 1);
@@ -222,7 +223,7 @@ static bool step(struct renderer *renderer, struct render_job *job, int64_t budg
     int cells = count_cells(job);
     unsigned shortages = gl_out_of_memory_count();
     if (own->tiles.next < cells && !take_up(renderer, job))
-        own->tiles.next = cells; /* a failed take_up() ends the steps: end() repeats the call and reports the error */
+        own->tiles.next = cells; /* if take_up() fails, no further steps are made: end() repeats the call and reports the error */
     while (own->tiles.next < cells && (spent_ns == 0 || spent_ns + (last_ns > TILE_NS ? last_ns : TILE_NS) <= budget_ns)) {
         int64_t work_ns = clock_work_ns();
         struct drawn_tile drawn = draw_tile(renderer, job);

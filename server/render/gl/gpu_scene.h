@@ -34,7 +34,7 @@ void gpu_scene_draw_depth(const struct gpu_scene *gpu_scene, const double clip_f
 /* Enables and disables the clip distances of the view's section planes around draws with programs that clip. */
 void gpu_scene_clip_begin(const struct clip *clip);
 void gpu_scene_clip_end(const struct clip *clip);
-/* Sets the front-face winding for an asset: a mirrored placement reverses it. */
+/* Tells GL which winding of triangles is the front for an asset: a mirrored placement reverses the winding. */
 void gpu_scene_set_front_face(const struct scene_asset *asset);
 
 #endif

@@ -18,7 +18,7 @@ void lines_finish(struct gl_lines *lines);
 void lines_draw_edges(const struct gl_lines *lines, const struct frame_context *context);
 /* Returns the width in pixels of the outline's dark line; the light line next to it has the same width. Pure. */
 double lines_outline_px(const struct view *view);
-/* Draws the outline of view->selected_asset, also where other surfaces hide it. */
+/* Draws the outline of view->selected_asset, even where other surfaces hide the asset. */
 void lines_draw_outline(struct gl_lines *lines, const struct frame_context *context);
 
 #endif

@@ -46,7 +46,7 @@ static void texture_mean(const struct asset_view *view, const struct asset_textu
         mean[c] = (float)(sum[c] / (double)taken);
 }
 
-/* Averages the vertex colours of the triangles that use this material. */
+/* Averages the vertex colours of the triangles that use a material. */
 static void tint_mean(const struct asset_view *view, uint32_t material, float mean[3])
 {
     double sum[3] = { 0 };

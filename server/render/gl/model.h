@@ -8,7 +8,7 @@
 #include "scene/asset.h"
 
 enum model_map { MODEL_BASE_COLOR, MODEL_METALLIC_ROUGHNESS, MODEL_NORMAL, MODEL_OCCLUSION, MODEL_EMISSIVE, MODEL_MAPS };
-/* two colour ramps (tables of colours from dark to bright) per material: MUTED: greyed, for assets without a field; OWN: the material's own
+/* colour ramps of a material (tables of colours from dark to bright). MUTED: greyed, for assets without a field; OWN: the material's own
    colours */
 enum { MODEL_MUTED, MODEL_OWN, MODEL_RAMPS };
 enum { MODEL_LIGHT_STEPS = 64 }; /* texels of a material's ramp */
@@ -61,11 +61,11 @@ void model_draws_finish(struct model_draws *draws);
    must still be called. */
 bool model_init(struct gl_model *model, struct gl *gl, const struct asset *file);
 void model_finish(struct gl_model *model);
-/* Returns the coarsest level of detail with an error of at most error_m. */
+/* Returns the model's coarsest level of detail whose error is at most error_m metres. */
 const struct model_level *model_level(const struct gl_model *model, double error_m);
 /* Draws one submesh; the model's mesh must be bound. */
 void model_draw_submesh(const struct model_submesh *submesh);
-/* Draws the triangles of the closed bodies of a level of detail (scene/closed_bodies.h) and nothing else. */
+/* Draws only those triangles of a level of detail that belong to closed bodies (scene/closed_bodies.h). */
 void model_draw_closed(struct model_draws *draws, const struct gl_model *model, const struct model_level *level);
 
 #endif

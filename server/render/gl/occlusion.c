@@ -13,9 +13,10 @@ enum { BIND_COMMANDS = 1, BIND_PLACES = 2, STRIP_VERTICES = 14 };
 /* Occlusion culling draws assets in rounds, nearest first, and tests the boxes of the next round against the depth so far. The first round
    draws 1/8 of all triangles untested; each later round draws as many as all rounds before. */
 enum { FIRST_ROUND_DIVISOR = 8 };
-static const int MIN_TESTED_TRIANGLES = 200; /* an asset with fewer triangles costs no more than testing its box */
-static const double MARGIN_PART = 1e-3;      /* margin around a box, relative to its size, since positions are 32-bit floats */
-/* additional margin around a box: pixels, at the distance of its farthest corner; GPUs round sample coverage */
+/* minimum number of triangles of an asset whose box is tested: drawing fewer costs no more than the test */
+static const int MIN_TESTED_TRIANGLES = 200;
+static const double MARGIN_PART = 1e-3; /* margin around an asset's box, as a part of its size, because positions are 32-bit floats */
+/* additional margin around an asset's box in pixels, at the distance of the box's farthest corner: GPUs round sample coverage */
 static const double MARGIN_PX = 1;
 
 bool occlusion_init(struct occlusion *occlusion, struct log *log)
@@ -60,8 +61,8 @@ static double rim_of(const struct view_constants *constants, const struct scene_
     return MARGIN_PART * sqrt(size) + MARGIN_PX * pixel_m;
 }
 
-/* Computes an asset's bounding box with margins, for the test. Returns false if the box crosses the near plane, which would clip the faces
-   that the test draws. */
+/* Computes an asset's bounding box with margins, for the occlusion test. Returns false if the box crosses the near plane, which would clip
+   the box faces that the test draws. */
 static bool make_box(const struct view_constants *constants, const struct scene_asset *asset, struct occlusion_box *box)
 {
     double rim_m = rim_of(constants, asset), clip_from_box[16];

@@ -7,7 +7,7 @@
 #include "render/matrix.h"
 #include "render/gl/surface_pass.h"
 
-/* number of pixels of the largest frame that is supersampled; larger frames use one texel per pixel */
+/* maximum number of pixels of a frame that is supersampled; larger frames use one texel per pixel */
 enum { MAX_SUPERSAMPLED_PIXELS = 4 * 1024 * 1024 };
 
 bool section_caps_init(struct section_caps *caps, struct log *log)
@@ -51,9 +51,9 @@ static void count_asset(struct section_caps *caps, const struct frame_context *c
     model_draw_closed(&caps->draws, model, frame_level(context, asset));
 }
 
-/* Enables clipping by those section planes through which view rays enter the space that the planes leave. Geometry beyond a plane through
-   which rays leave that space stays, because a ray that leaves a body there was inside it. In clip space, the sign of a plane's depth
-   coefficient tells whether rays enter or leave, for all pixels alike; a plane through the eye is ignored. */
+/* Sets up clipping for counting bodies along view rays. Enables those section planes through which rays enter the visible side. Geometry
+   beyond a plane through which rays leave the visible side is kept, because a ray that leaves a body there was inside it. In clip space,
+   the sign of a plane's depth coefficient tells whether rays enter or leave, for all pixels alike; a plane through the eye is ignored. */
 static void clip_entries(const struct frame_context *context)
 {
     const struct clip *clip = &context->view->visibility.clip;
@@ -68,8 +68,8 @@ static void clip_entries(const struct frame_context *context)
     }
 }
 
-/* Counts, into a texture, the bodies that contain each pixel's ray at the plane. Returns the number of texels along a pixel's side; 0: no
-   memory for the texture. */
+/* Counts, into a texture, the bodies that contain each pixel's view ray where the ray meets the section plane. Returns the number of texels
+   along a pixel's side; 0: no memory for the texture. */
 static int count_bodies(struct section_caps *caps, const struct frame_context *context)
 {
     const struct target *target = context->target;

@@ -95,7 +95,8 @@ static int choose_variant(const struct frame_context *context, const struct mode
     int variant = field ? SURFACE_FIELD : 0;
     if (field && (context->colormap.lines || view->color_scale.log))
         variant |= SURFACE_RICH;
-    /* assets without a field are grey here (RICH without FIELD): no material may have a colour close to those that mean alarm limits */
+    /* in the operator's display, assets without a field are grey (RICH without FIELD): no material may have a colour close to those that
+       mean alarm limits */
     if (!field && view_is_operator(view))
         variant |= SURFACE_RICH;
     if (field && view->look == LOOK_GLOSSY)
@@ -220,7 +221,8 @@ static void set_material(const struct frame_context *context, const struct draw_
         glBindTextures(UNIT_MAPS, MODEL_MAPS, material->maps);
 }
 
-/* Sets the GL state in which the batch differs from the present one. was: the present state; NULL: unknown, everything is set. */
+/* Sets those parts of the GL state in which a batch (`is`) differs from the present state (`was`). was NULL: the present state is unknown,
+   so everything is set. */
 static void set_state(const struct draw_batches *batches, const struct frame_context *context, const struct draw_batch_state *is,
                       const struct draw_batch_state *was)
 {

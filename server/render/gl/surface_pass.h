@@ -6,8 +6,8 @@
 #include "render/gl/occlusion.h"
 #include "render/frame_context.h"
 
-/* Features that a program is compiled with, or'ed. Each draw uses the program with the fewest features, since a software GL runs every
-   branch. RICH: isolines and non-linear scales; without FIELD: grey only. */
+/* Features with which a shader program is compiled, or'ed. Each draw uses the program with the fewest features, since a software GL runs
+   every branch. RICH: isolines and non-linear scales; RICH without FIELD: the surface is grey. */
 enum surface_variant {
     SURFACE_FIELD = 1,
     SURFACE_RICH = 2,
@@ -34,7 +34,7 @@ struct surface_pass {
     /* minimum number of triangles in a frame for occlusion culling; INT_MAX: no occlusion culling, clusters outside the frustum are still
        culled */
     int least_hiding;
-    bool one_by_one; /* draws each asset with GL calls of its own; for comparison in tests */
+    bool one_by_one; /* true: each asset is drawn with GL calls of its own instead of in batches; for comparison in tests */
     struct draw_batches opaque, blended;
     int triangles;                                       /* triangles submitted so far, not counting culled ones; the caller resets it */
     GLuint programs[SURFACE_KINDS][2][SURFACE_VARIANTS]; /* [kind][refined][features]; 0: not compiled yet */

@@ -32,7 +32,7 @@ size_t targets_bytes(const struct targets *targets)
     return bytes;
 }
 
-/* Frees the oldest targets beyond the bound; the newest one stays. */
+/* Frees the oldest render targets until the rest fits the memory limit; the newest target always stays. */
 static void keep_bound(struct targets *targets)
 {
     for (int i = TARGETS - 1; i > 0 && targets->bound_bytes && targets_bytes(targets) > targets->bound_bytes; i--)

@@ -13,11 +13,11 @@ struct targets {               /* zero-initialise */
 /* Takes a target of that size from the cache, or creates one; the caller owns it until targets_give(). Returns false when the GPU is out of
    memory, logged. */
 bool targets_take(struct targets *targets, struct log *log, int width_px, int height_px, int samples, struct target *out);
-/* Puts a target back; the least recently used one is deleted when the cache is full. */
+/* Puts a render target back into the cache; if the cache is full, the least recently used target is deleted. */
 void targets_give(struct targets *targets, const struct target *target);
 /* Returns the bytes of GPU memory that the free targets take. */
 size_t targets_bytes(const struct targets *targets);
-/* Sets the memory limit and deletes the targets beyond it. */
+/* Sets the memory limit, and deletes the targets that exceed it. */
 void targets_bound(struct targets *targets, size_t bytes);
 /* Deletes all free targets. */
 void targets_finish(struct targets *targets);

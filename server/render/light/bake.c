@@ -13,18 +13,18 @@
 #include "render/matrix.h"
 
 enum { SKY_DIRECTIONS = 32, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096 };
-/* constant openness (0..255) of every point in a rough light set, which is baked without openness */
+/* openness (0..255) of every point in a rough light set, which is baked without computing openness */
 static const uint8_t ROUGH_OPENNESS = 190;
-/* minimum length of the longest edge of a large triangle, in texels of the sky's depth maps. Light is sampled also inside such triangles,
-   because one vertex in a dark corner would darken the whole triangle */
+/* length, in texels of the sky's depth maps, from which the longest edge of a triangle makes it a large one. Light is also sampled inside
+   large triangles: otherwise one vertex in a dark corner would darken the whole triangle */
 static const double LARGE_FACE_TEXELS = 8;
 /* empty border of the sun's shadow map, as a fraction of its width, because a lookup also reads texels around its point */
 static const double SUN_MARGIN = 0.002;
-/* lower bound of openness (0: no sky is visible, 1: all) where the hidden assets are as large as the plant; proportionally less where they
-   are smaller */
+/* lower bound of openness (0: no sky is visible from a point, 1: the whole sky) if the hidden assets are as large as the plant;
+   proportionally less if they are smaller */
 static const double OPEN_AT_LEAST = 0.6;
-/* Size of a step where GL runs on a processor: number of vertices, or of points in large faces, and number of rows of the ground. SKY_:
-   openness is baked, too; SUN_: only sunlight. A GPU takes everything in one step. */
+/* Size of one step of the bake where GL runs on a processor. VERTICES: number of vertices, or of sample points in large triangles; ROWS:
+   number of rows of the ground. SKY_: openness is baked, too; SUN_: only sunlight. A GPU bakes everything in one step. */
 enum { SKY_VERTICES = 4096, SUN_VERTICES = 65536, SKY_ROWS = 8, SUN_ROWS = 128 };
 
 /* Must match shaders/bake.comp. */
@@ -38,7 +38,7 @@ struct bake {
     const struct bake_programs *programs;
     const double *plant_from_ground;
     struct light_set set;
-    /* which assets are visible at the start, as set in the plant file; the sky's depth maps are drawn with these */
+    /* visibility of assets as set in the plant file; the sky's depth maps are drawn with it */
     struct visibility start;
     bool with_sky;
     struct directions_block *directions;

@@ -38,12 +38,14 @@ bool bake_programs_init(struct bake_programs *programs, struct log *log);
 void bake_programs_finish(struct bake_programs *programs);
 
 struct bake;
-/* Returns the lower bound of openness, 0..1, for this visibility: it keeps surfaces that are next to hidden assets from staying dark. */
+/* Returns the lower bound of openness, 0..1, if these assets are visible. The bound keeps surfaces next to hidden assets from staying
+   dark. */
 double bake_least_open(const struct gpu_scene *gpu_scene, const struct visibility *shown);
-/* Begins to bake a light set for `key`. from: a light set to copy openness from, read during the call only. `from` must not be rough, and
-   bake_least_open() of its visibility must not exceed that of the key's. kept: the plant's openness file, used if `from` is NULL; read
-   during the call only. Both NULL: openness is baked as well, which is most of the work, unless the key is rough. The caller ends the bake
-   with bake_end() or bake_abandon(). Returns NULL when the GPU is out of memory, logged. */
+/* Begins to bake a light set for `key`. Openness is most of the work, so it is taken from elsewhere if possible. from: a light set to copy
+   openness from, read during the call only. `from` must not be rough, and bake_least_open() of its visibility must not exceed that of the
+   key's. kept: the plant's openness file, used if `from` is NULL; read during the call only. If both are NULL, openness is baked as well,
+   unless the key is rough. The caller ends the bake with bake_end() or bake_abandon(). Returns NULL when the GPU is out of memory,
+   logged. */
 struct bake *bake_begin(const struct gpu_scene *gpu_scene, const struct bake_programs *programs, const double plant_from_ground[16],
                         const struct light_key *key, const struct light_set *from, struct openness *kept);
 /* Returns the key that the bake was begun with. */

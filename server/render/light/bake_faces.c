@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the large triangles of an asset. */
+/* Finds the large triangles of an asset, inside of which light is sampled too. */
 #include "render/light/bake_faces.h"
 
 #include "base/mem.h"

@@ -14,8 +14,8 @@ struct bake_faces {
     GLuint sums;    /* GL buffer with three sums per vertex: weight, openness and sun, in units of 1/256 */
 };
 
-/* Finds the triangles of the finest level with an edge of at least least_m. Returns false when the GPU is out of memory, logged; `count` is
-   0 then. */
+/* Finds the triangles of an asset's finest level of detail that have an edge of at least least_m metres. Returns false when the GPU is out
+   of memory, logged; `count` is 0 then. */
 bool bake_faces_init(struct bake_faces *faces, const struct gpu_scene *gpu_scene, size_t asset, double least_m);
 /* Deletes the buffers and sets count to 0. */
 void bake_faces_finish(struct bake_faces *faces);

@@ -9,11 +9,12 @@
 #include "base/mem.h"
 #include "render/light/ggx.h"
 
-/* size in pixels of the built-in sky's image. The sky varies with elevation only, but integrating the spherical harmonics needs a few
-   columns */
+/* size in pixels of the built-in sky's image. The sky varies with elevation only, so a few columns suffice to integrate its spherical
+   harmonics */
 enum { SKY_WIDTH = 8, SKY_HEIGHT = 256 };
 enum { BASE_PX = 256, PYRAMID = 6, SAMPLES = 128 };
-/* radiance is clipped at this multiple of the mean: brighter spots are sun or lamps, and the renderer adds the sun as a separate light */
+/* factor of the mean radiance at which radiance is clipped: brighter spots are sun or lamps, and the renderer adds the sun as a separate
+   light */
 static const double MAX_RADIANCE_FACTOR = 24;
 /* Side in pixels of the reflection map for each roughness layer: rough layers are smooth, so they are computed at low resolution and
    enlarged. */
@@ -24,7 +25,8 @@ static const int layer_px[ENVIRONMENT_LAYERS] = { 128, 128, 128, 64, 64, 32, 32,
 struct environment_source {
     const float (*pixels)[4];
     int width, height;
-    bool y_up, even;        /* y_up: +y of the plant is up, else +z; even: radiance depends on elevation only, as in the built-in sky */
+    /* y_up: true: +y of the plant is up, false: +z; even: true: radiance depends on elevation only, as in the built-in sky */
+    bool y_up, even;
     /* factor: exposure and white balance, by colour channel; most: upper limit of the brightest channel before the factor is applied */
     double factor[3], most;
     float (*pyramid[PYRAMID])[4];
@@ -127,8 +129,8 @@ static void terms_of(const double n[3], double terms[ENVIRONMENT_TERMS])
     memcpy(terms, all, sizeof(all));
 }
 
-/* For each of these harmonics: the square of its constant factor, times the cosine lobe's coefficient of its order (Ramamoorthi and
-   Hanrahan, 2001), divided by pi. */
+/* For each spherical harmonic that terms_of() computes: the square of its constant factor, times the cosine lobe's coefficient of its
+   order (Ramamoorthi and Hanrahan, 2001), divided by pi. */
 static const double term_factors[ENVIRONMENT_TERMS] = {
     0.079577472,
     0.238732415 * 2 / 3,
@@ -168,7 +170,7 @@ static void add_up(const struct environment_source *source, struct sums *sums)
     sums->mean /= sums->solid_angle;
 }
 
-/* Clips bright spots, then applies exposure and white balance. Returns false if no light comes from above. */
+/* Clips bright spots of the environment map, then applies exposure and white balance. Returns false if no light comes from above. */
 static bool expose(struct environment_source *source, struct environment *environment)
 {
     struct sums sums;
@@ -207,8 +209,8 @@ struct environment_job {
     const struct lobe *lobe; /* sample rays of the roughness layer; NULL for layer 0, a perfect mirror */
 };
 
-/* Returns the index of the texel that represents this one: texels with equal light are computed once. A sky that depends on elevation only
-   repeats in the octahedral map: in eight equal triangles, or, with y up, in two halves. */
+/* Returns the index of the texel that stands for texel `i`: texels with equal light are computed once. In a sky that depends on elevation
+   only, the octahedral map repeats in eight equal triangles or, with y up, in two halves. */
 static size_t twin_of(const struct environment_source *source, int side_px, size_t i)
 {
     int x = (int)(i % (size_t)side_px), y = (int)(i / (size_t)side_px);
@@ -287,7 +289,7 @@ static int level_of(double alpha, double n_h)
     return level < PYRAMID - 1 ? level : PYRAMID - 1;
 }
 
-struct lobe { /* sample rays around a normal, the same for each texel of a layer */
+struct lobe { /* sample rays around a normal, which all texels of one roughness layer share */
     int count, level[SAMPLES];
     double n_l[SAMPLES], flat[SAMPLES], cosine[SAMPLES], sine[SAMPLES];
 };
