@@ -16,7 +16,8 @@ struct environment {
     /* Coefficients of irradiance over pi, in the order of the terms 1, y, z, x, xy, yz, 3zz-1, xz, xx-yy of a direction's components, with
        the basis functions' constant factors multiplied in. */
     float irradiance[ENVIRONMENT_TERMS][4];
-    /* Octahedral maps (shaders/environment.glsl), one per roughness from 0 to 1, of the mean radiance around the reflected ray. */
+    /* Reflection maps: octahedral (shaders/environment.glsl), one per roughness from 0 to 1. A texel holds the mean radiance around the
+       reflected ray. */
     float (*mirrored)[4];
 };
 
@@ -26,8 +27,9 @@ struct environment {
 bool environment_init(struct environment *environment, const struct image_float *image, bool y_up, struct workers *workers);
 void environment_finish(struct environment *environment);
 
-/* Computes scale and bias of F0 for the reflection of a uniform environment (split-sum approximation). side x side texels:
-   cosine to the viewer from left to right, roughness from top to bottom, both at texel centres of (0, 1). */
+/* Writes a table of scale and bias of F0 (reflectance at normal incidence), with which a uniform environment is reflected (split-sum
+   approximation). The table has side x side texels: cosine to the viewer from left to right, roughness from top to bottom, both at texel
+   centres of (0, 1). */
 void environment_brdf(int side, float (*scale_bias)[2]);
 
 #endif

@@ -21,7 +21,7 @@ struct environments {
     struct gl *gl;
     struct environment_slot slots[1 + PLANT_ENVIRONMENTS];
     int count;
-    /* texture of the result of environment_brdf(), ENVIRONMENT_BRDF_PX wide and high; the table is shared by all renderers */
+    /* texture of the table that environment_brdf() computes, ENVIRONMENT_BRDF_PX wide and high; all renderers share the table */
     const float (*brdf_texels)[2];
     GLuint brdf; /* texture of brdf_texels */
 };
@@ -36,8 +36,8 @@ struct environment_light { /* image-based light for shading */
    the GPU is out of memory, logged. */
 bool environments_init(struct environments *environments, struct gl *gl, const struct plant *plant, struct workers *workers);
 void environments_finish(struct environments *environments);
-/* Waits up to timeout_ns for an environment to load. Returns true once its state is final: loaded, or unreadable, which is logged; the sky
-   is used then. */
+/* Waits up to timeout_ns for an environment to load. Returns true once the environment's state is final: it is loaded, or its image cannot
+   be read (logged), and the built-in sky is used instead. */
 bool environments_wait(struct environments *environments, int number, int64_t timeout_ns);
 /* Returns an environment's light, or the built-in sky's until the environment is loaded. Valid until environments_finish(). */
 struct environment_light environments_get(const struct environments *environments, int number);

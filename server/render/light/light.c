@@ -107,8 +107,8 @@ void light_drop(struct light *light, const struct light_key *usual)
             drop(light, &light->sets[i]);
 }
 
-/* Returns an empty slot of the cache. Before, drops light sets that exceed the memory bound and that nobody holds. NULL: all slots are
-   held. */
+/* Returns an empty slot of the cache of light sets. First drops light sets that exceed the memory limit and that nobody holds. NULL: all
+   slots are held. */
 static struct light_set *make_room(struct light *light, size_t bytes)
 {
     for (;;) {
@@ -149,8 +149,8 @@ static bool begin(struct light *light, const struct light_key *key)
     return light->bake != NULL;
 }
 
-/* Starts to write openness to its file, if that was not done before. Sets baked while assets were hidden are never written, because their
-   openness was raised to a lower bound. */
+/* Starts to write openness to its file, unless that was done already. Openness of a set that was baked while assets were hidden is never
+   written, because it was raised to a lower bound. */
 static void keep_openness(struct light *light, const struct light_set *set)
 {
     if (light->kept || set->key.rough || bake_least_open(light->gpu_scene, &set->key.shown) > 0)
@@ -166,7 +166,7 @@ static void drop_rough(struct light *light)
             drop(light, &light->sets[i]);
 }
 
-/* Ends a bake whose work is all issued and puts the light set (baked light) into the cache. Returns NULL on failure, logged. */
+/* Ends a bake, whose work must all be issued, and puts its light set (baked light) into the cache. Returns NULL on failure, logged. */
 static struct light_set *end(struct light *light)
 {
     struct light_set baked, *set;
@@ -212,7 +212,8 @@ bool light_step(struct light *light, const struct light_key *key, int64_t budget
     if (!environments_wait(light->environments, key->environment, budget_ns / 2))
         return false;
     if (!light->bake && !begin(light, key))
-        return true; /* the bake could not begin. "Ready" makes the caller call light_get(), which tries again and reports the failure */
+        /* the bake could not begin. Returning true (ready) makes the caller call light_get(), which tries again and reports the failure */
+        return true;
     environments_bind(light->environments, bake_key(light->bake)->environment);
     while (!issued && spent_ns + last_ns <= budget_ns) {
         issued = bake_step(light->bake);

@@ -13,8 +13,9 @@ struct light {
     struct bake_programs programs;
     /* matrix to the plant frame, from the ground's texture coordinates (x, y) and the height above the ground (z) */
     double plant_from_ground[16];
-    double ground_height_m;    /* coordinate of the ground along the up axis */
-    size_t bound_bytes, bytes; /* bytes: limit, and sum over all light sets; a held set is never dropped, even above the limit */
+    double ground_height_m; /* coordinate of the ground along the up axis */
+    /* bytes of GPU memory: limit, and sum over all light sets; a set that is held is never dropped, even above the limit */
+    size_t bound_bytes, bytes;
     struct light_set sets[LIGHT_SETS];
     struct bake *bake; /* in progress; NULL: none */
     uint64_t uses, last_id;

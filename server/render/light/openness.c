@@ -4,7 +4,7 @@
 #include "render/light/openness.h"
 
 #include <string.h>
-#define XXH_STATIC_LINKING_ONLY /* lets XXH3 keep its hash state on the stack */
+#define XXH_STATIC_LINKING_ONLY /* this macro makes the size of XXH3's hash state known, so that the state can be on the stack */
 #include <xxhash.h>
 
 #include "base/mem.h"

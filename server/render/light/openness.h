@@ -8,14 +8,14 @@
 #include "gpu/pool.h"
 #include "render/gl/gpu_scene.h"
 
-enum { OPENNESS_GROUND_PX = 256 }; /* width and height of the ground's texture */
+enum { OPENNESS_GROUND_PX = 256 }; /* size of the ground's texture in texels */
 
 struct openness { /* the mapped file: openness of the ground's texels, then of the vertices, asset by asset */
     struct cache_file file;
     size_t vertex; /* index, counted through all assets, of the next vertex to upload */
 };
 
-/* Opens the plant's file. Returns false if there is no valid one; openness_close() is then not needed. */
+/* Opens the openness file of the plant. Returns false if there is no valid file; openness_close() is then not needed. */
 bool openness_open(struct openness *openness, const struct gpu_scene *gpu_scene);
 void openness_close(struct openness *openness); /* a zeroed struct is fine */
 /* Uploads the next asset's openness into byte 2 of each texel of `slice`, the asset's range in the buffer of baked light. Returns false

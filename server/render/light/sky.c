@@ -8,7 +8,8 @@
 #include "gpu/program.h"
 #include "render/matrix.h"
 
-/* Backdrop colour (sRGB) by elevation, -1 to 1: even and bright, for an operator's screen rather than a game. */
+/* Backdrop colour (sRGB) by elevation, from -1 (straight down) to 1 (straight up). The colours are even and bright, to suit an operator's
+   screen. */
 static double backdrop(double height, bool dark, int channel)
 {
     static const double zenith[2][3] = { { 0.757, 0.816, 0.870 }, { 0.090, 0.110, 0.135 } };
@@ -18,8 +19,8 @@ static double backdrop(double height, bool dark, int channel)
     return from + (end - from) * pow(fmin(height > 0 ? height : -1.6 * height, 1), 0.65);
 }
 
-/* Fills the backdrop table. Each row adds another dither offset, for the 16 pixels of a 4x4 tile, so that the slow gradients show no
-   bands. */
+/* Fills the table of backdrop colours. Each row adds another dither offset, one for each of the 16 pixels of a 4x4 tile, so that the slow
+   gradients show no bands. */
 static void make_backdrops(struct sky *sky)
 {
     static const int bayer[SKY_ROUNDINGS] = { 0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5 };

@@ -11,7 +11,8 @@
 enum { TRIED_ANGLES = 32 }; /* number of angles tried in a quarter turn */
 
 struct sun_extent {
-    double low[3], high[3]; /* bounds relative to the scene's centre, along three axes: across, up, and towards the sun */
+    /* bounds along three axes, relative to the scene's centre, in metres: across and up as seen from the sun, and towards the sun */
+    double low[3], high[3];
 };
 
 static void axes_of(const double towards[3], double turn, double axes[3][3])

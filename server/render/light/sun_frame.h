@@ -5,8 +5,8 @@
 #include "render/gl/gpu_scene.h"
 
 struct sun_frame {
-    double clip_from_plant[16]; /* depth 1 nearest to the sun, 0 farthest */
-    double width_m, depth_m;    /* width_m: length of the longer side; depth_m: length along the light's direction */
+    double clip_from_plant[16]; /* matrix from the plant to the clip space of the shadow map; depth is 1 nearest to the sun, 0 farthest */
+    double width_m, depth_m;    /* width_m: length of the frustum's longer side; depth_m: its length along the light's direction */
 };
 
 /* Fits the frustum around the shown assets. towards: direction to the sun. margin: space added on every side, as a fraction of the

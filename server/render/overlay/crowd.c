@@ -14,7 +14,8 @@ static const double NEIGHBOUR_UNITS = 30, HELD_FACTOR = 0.8;
 struct item_buckets {
     const struct crowd_item *items;
     double cell;
-    /* heads: index of the last item (marker) of each hash bucket; next: by item, index of the previous item in its bucket; -1: none */
+    /* hash table of markers by grid cell. heads: by bucket, index of the marker added last; next: by marker, index of the previous marker
+       in its bucket; -1: none */
     int *heads, *next;
     size_t mask;
 };

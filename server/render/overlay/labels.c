@@ -52,7 +52,8 @@ static bool fits(const struct label_layout *layout, int index, int slot)
 static void place(struct label_layout *layout, int index)
 {
     const struct label_item *item = &layout->items[index];
-    /* first tries the slot that the label had in the previous frame, unless that was a call-out's (a label shared by several markers) */
+    /* the slot (candidate position) that the label had in the previous frame is tried first, unless that label was a call-out (a label
+       shared by several markers) */
     for (int n = is_held(item) && item->held < LABEL_SLOTS ? -1 : 0; n < LABEL_SLOTS; n++) {
         int slot = n < 0 ? item->held : n;
         if (!fits(layout, index, slot))

@@ -31,8 +31,9 @@ struct label_area {
 };
 struct label_place {
     struct label_box box;
-    int slot;    /* LABEL_NONE: no label */
-    int callout; /* index of the first item of the call-out that contains this item; LABEL_NONE: a label of its own */
+    int slot; /* LABEL_NONE: no label */
+    /* index of the first item of the call-out (shared label) that contains this item; LABEL_NONE: the item has a label of its own */
+    int callout;
 };
 
 /* Sets places[i] for items[i]. */

@@ -4,10 +4,10 @@
 #define RENDER_OVERLAY_LABELS_IMPL_H
 #include "render/overlay/labels.h"
 
-#define LABEL_CLEARANCE 3.0 /* free space, in units, around a label that was not in the previous frame */
+#define LABEL_CLEARANCE 3.0 /* free space required around a label that was not in the previous frame, in units (pixels at 1280x720) */
 
-/* Boxes that a label may cover; each value includes those before. take() stores with each occupied box the smallest value whose labels may
-   cover that box. */
+/* Kinds of occupied boxes that a label may cover; each value includes the ones before. take() stores with each occupied box the smallest
+   value that allows a label to cover the box. */
 enum label_over {
     OVER_NOTHING,
     OVER_MARKS, /* markers without an alarm ring */
@@ -25,7 +25,7 @@ struct label_layout {
     const struct label_item *items;
     const struct label_area *area;
     struct label_place *places;
-    int columns, rows, *heads; /* grid over the frame; heads: for each grid cell, the index of the first of its occupied boxes; -1: none */
+    int columns, rows, *heads; /* grid over the frame. heads: by grid cell, index of the cell's first occupied box; -1: the cell has none */
     struct cell_entry *entries;
     size_t entry_count, entry_capacity;
     int *labelled; /* indices of items (markers) that have a label */
@@ -41,7 +41,7 @@ void layout_init(struct label_layout *layout, const struct label_item *items, si
 struct label_box layout_box(const struct label_item *item, int slot, double unit, double across, double down);
 /* Returns whether a box lies within the label area. */
 bool layout_is_inside(const struct label_layout *layout, const struct label_box *box);
-/* Returns whether a box overlaps no occupied box. Boxes of `owner` and boxes that `over` allows to cover are ignored. */
+/* Returns whether a box overlaps no occupied box. Ignored are the boxes of `owner`, and boxes that `over` allows a label to cover. */
 bool layout_is_free(const struct label_layout *layout, const struct label_box *box, int owner, enum label_over over);
 /* Places one label for these items (markers) in `box` and marks the box as occupied; more than one item makes the label a call-out (one
    label for several alarm rings). slot: the label's position relative to the marker, as an index of the candidate positions; stored, so

@@ -7,15 +7,15 @@
 #include "base/mem.h"
 #include "render/overlay/labels_impl.h"
 
-/* CLOSE: alarm rings nearer to each other than this, in units, share a call-out; STILL_CLOSE: this distance for rings that shared one in
-   the previous frame */
+/* CLOSE: distance in units (pixels at 1280x720) below which alarm rings share a call-out (one label); STILL_CLOSE: the same for rings that
+   shared a call-out in the previous frame */
 static const double CLOSE = 26, STILL_CLOSE = 34;
 static const double GROWTH = 1.25; /* factor by which CLOSE and STILL_CLOSE grow, repeatedly, until at most MAX_GROUPS labels remain */
 enum { MAX_GROUPS = 24 };
-/* largest distance of a label from the bounding box of its alarm rings, in units; does not apply if only one label remains */
+/* largest distance of a label from the bounding box of its alarm rings, in units; ignored if only one label remains */
 static const double MAX_DISTANCE = 60;
-/* Grid of further label positions, tried nearest first: STEP_X, STEP_Y: its spacing in units; STEPS: its steps to each side of the centre
-   of the rings. */
+/* Grid of further label positions around the centre of the rings, tried nearest first. STEP_X, STEP_Y: spacing in units; STEPS: number of
+   steps to each side of the centre. */
 enum { STEP_X = 24, STEP_Y = 15, STEPS = 60, SIDE = 2 * STEPS + 1, OFFSETS = SIDE * SIDE, NOWHERE = -2, FORCED = 1000000 };
 
 struct offset {
@@ -23,12 +23,12 @@ struct offset {
 };
 
 struct ring_group {         /* rings that share a label */
-    struct label_item item; /* x, y: centre of the rings; width, height: size of their label */
+    struct label_item item; /* the group as one label item. x, y: centre of its rings; width, height: size of its label */
     double across, down;    /* half the width and height of the rectangle that encloses the centres of the group's alarm rings */
     int *members;           /* indices of the group's items (markers), most important first; points into rings.members */
     size_t count;
     struct label_box box;
-    /* mate: if the label of this group of alarm rings found no room: index of the group with which to merge; else LABEL_NONE */
+    /* mate: index of the group with which to merge this one, if its label found no room; LABEL_NONE: the label has room */
     int slot, mate;
 };
 
@@ -36,9 +36,9 @@ struct rings {
     struct label_layout *layout;
     const int *order;
     size_t count, group_count;
-    double least; /* pixels by which CLOSE and STILL_CLOSE are multiplied: one unit, or more if that leaves too many labels */
+    double least; /* pixels per unit of CLOSE and STILL_CLOSE; more than the size of a unit if that would leave too many labels */
     struct ring_group *groups;
-    int *group_of;          /* by index in `order`: index of the group of that item */
+    int *group_of;          /* by index in `order`: index of the group that contains the item's alarm ring */
     int *members;           /* indices of the items (markers) of all groups of alarm rings, group after group */
     struct offset *offsets; /* sorted by distance */
 };
@@ -88,7 +88,7 @@ static void join(int *first, int i, int k)
     first[a > b ? a : b] = a < b ? a : b;
 }
 
-/* Joins rings that are close to each other into groups. first: by ring: parent in a union-find forest. Returns the number of groups. */
+/* Groups alarm rings that are close to each other. first: union-find forest; by ring: index of its parent. Returns the number of groups. */
 static size_t join_close(const struct rings *rings, int *first)
 {
     size_t groups = 0;
@@ -116,8 +116,8 @@ static void measure(struct rings *rings, struct ring_group *group)
         right = fmax(right, item->x);
         top = fmin(top, item->y);
         bottom = fmax(bottom, item->y);
-        /* the slot (candidate position) only counts if the label was of the same kind in the previous frame: of a single ring, or a
-           call-out */
+        /* ignores the label's previous slot (candidate position) if the label was then of another kind: of a single ring instead of a
+           call-out, or the reverse */
         if ((item->callout == LABEL_NONE) == (group->count == 1))
             group->item.held = item->held;
     }
@@ -170,7 +170,7 @@ static struct label_box box_at(const struct rings *rings, const struct ring_grou
                                item->height };
 }
 
-/* Returns whether a label is near the rings of its group. */
+/* Returns whether a label is at most MAX_DISTANCE away from the rings of its group. */
 static bool is_near(const struct rings *rings, const struct ring_group *group, const struct label_box *box)
 {
     double aside = fmax(0, fmax(box->x - group->item.x, group->item.x - box->x - box->width) - group->across);
@@ -206,7 +206,7 @@ static int find_slot(const struct rings *rings, const struct ring_group *group)
     for (int i = 0; i < 2 * LABEL_SLOTS; i++)
         if (is_free(rings, group, i % LABEL_SLOTS, clearance, i < LABEL_SLOTS ? OVER_NOTHING : OVER_MARKS))
             return i % LABEL_SLOTS;
-    /* OVER_RINGS: as a last resort the label may cover the alarm rings of its own group */
+    /* if only one group is left, OVER_RINGS finally allows its label to cover alarm rings */
     for (int over = OVER_MARKS; over <= (alone ? OVER_RINGS : OVER_MARKS); over++)
         for (int slot = LABEL_SLOTS; slot < LABEL_SLOTS + OFFSETS; slot++)
             if (is_free(rings, group, slot, clearance, (enum label_over)over))
@@ -214,8 +214,8 @@ static int find_slot(const struct rings *rings, const struct ring_group *group)
     return alone ? FORCED : NOWHERE;
 }
 
-/* Returns the label's box at the centre of its rings, moved into the label area. It may cover other things there: this is used when no free
-   position was found. */
+/* Returns the box of a group's label, centred on the group's rings and moved into the label area. The box may cover anything: it is used
+   only if no free position was found. */
 static struct label_box forced_box(const struct rings *rings, const struct ring_group *group)
 {
     const struct label_box *area = &rings->layout->area->box;

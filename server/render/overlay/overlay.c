@@ -54,8 +54,8 @@ static double header_height(const struct pen *pen, int lines)
     return (1.25 + 1.35 * lines) * pen->text_px + 12 * pen->unit;
 }
 
-/* Draws the header: plant name; its clock and the age of the oldest reading used; and warnings on a line of their own, which keeps the card
-   narrow: clock not set, simulated values. */
+/* Draws the header: the plant's name, its clock, and the age of the oldest reading used. Warnings (clock not set, simulated values) get a
+   line of their own, which keeps the header narrow. */
 static void draw_header(struct pen *pen)
 {
     char clock[CLOCK_BYTES], lines[2][160], age[AGE_BYTES];
@@ -119,7 +119,8 @@ static void draw_banner(struct pen *pen, const char *text, const double rgb[3])
 
 static const double NO_DATA_RGB[3] = { 0.66, 0.12, 0.10 }, PAST_RGB[3] = { 0.36, 0.18, 0.56 };
 
-/* Draws a border around the frame and a banner, so that a past picture is recognised even where the banner is cropped. */
+/* Draws a border around the frame and a banner, which mark a picture of the past. The border is recognised even where the banner is
+   cropped. */
 static void draw_past(struct pen *pen)
 {
     char text[CLOCK_BYTES + 80], clock[CLOCK_BYTES];
@@ -153,7 +154,7 @@ static void draw_rest(struct pen *pen)
     bool shared = pen->frame->view.split && overlay_legend_is_shared(pen);
     for (int half = shared ? 1 : 0; half < halves; half++) {
         pen_choose_half(pen, half);
-        if (pen->view.look != LOOK_MATERIALS) /* without a field there is no legend */
+        if (pen->view.look != LOOK_MATERIALS) /* a half of the view that shows no field gets no legend */
             overlay_legend(pen);
     }
     if (!pen->bare)

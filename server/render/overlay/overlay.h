@@ -5,8 +5,9 @@
 #include "loopcheck/loop_checks.h"
 #include "render/frame.h"
 
-/* Draws over frame->bgrx. The frame must not be shared yet. The clock is in the time zone of the process (TZ), which main() sets to the
-   plant's. loop_checks: marks unproven tags; NULL: none is marked. A frame with a record uses the record's flags instead. */
+/* Draws legend, markers, labels, clock and data age over frame->bgrx. The frame must not be shared yet. The clock is in the time zone of
+   the process (TZ), which main() sets to the plant's. loop_checks: marks unproven tags; NULL: none is marked. A frame with a record uses
+   the record's flags instead. */
 void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct loop_checks *loop_checks);
 
 /* Draws like overlay_draw() but without markers, sensor labels and alarms, for users who may see the picture but no readings. */

@@ -9,7 +9,8 @@
 #include "value/quality.h"
 
 enum { MAX_ROWS = 5 };
-static const double ROW = 1.5, MAX_HEIGHT = 0.3; /* ROW: row height in text_px; MAX_HEIGHT: largest part of the frame's height */
+/* ROW: height of a row, as a multiple of text_px; MAX_HEIGHT: largest part of the frame's height that the list may take */
+static const double ROW = 1.5, MAX_HEIGHT = 0.3;
 
 struct unseen {
     int tag, priority;

@@ -7,7 +7,7 @@
 
 enum { MAX_TICKS = 40 };
 struct ticks {
-    double values[MAX_TICKS], places[MAX_TICKS]; /* places: position of each tick's text on the bar, 0 at MIN, 1 at MAX */
+    double values[MAX_TICKS], places[MAX_TICKS]; /* positions of the ticks' texts along the bar: 0 at MIN, 1 at MAX */
     int count;
 };
 static const double LINE_GAP = 1.12; /* minimum distance between lines of text, as a multiple of text_px */
@@ -56,7 +56,7 @@ static void line_ticks(struct ticks *ticks, const struct scale *scale, const dou
     add_tick(ticks, scale, scale->max);
 }
 
-/* Chooses both ends of the range and all isolines as ticks, if their texts fit; else round numbers. */
+/* Chooses the ticks of the colour bar: both ends of the range and all isolines, if their texts fit; otherwise round numbers. */
 static void choose_ticks(struct ticks *ticks, const struct view *view, double most)
 {
     struct scale scale;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Captions of a split view's halves: differences that no legend shows, such as how the field is computed. */
+/* Captions of a split view's halves: they list differences between the halves that no legend shows, such as how the field is computed. */
 #include <math.h>
 #include <string.h>
 

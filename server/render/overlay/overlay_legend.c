@@ -54,8 +54,8 @@ static void write_title(const struct pen *pen, struct legend *legend)
     snprintf(legend->title, sizeof(legend->title), *unit ? "%s [%s]" : "%s", what, unit);
 }
 
-/* Returns the priorities of all active alarms as bits (1 << priority), also of hidden sensors, since these are listed. Without readings
-   one priority is returned, so that the legend is as wide as with readings. */
+/* Returns the priorities of all active alarms as bits (1 << priority). Alarms of hidden sensors count, because they are listed. Without
+   readings one priority is returned, so that the legend is as wide as with readings. */
 static unsigned priorities_shown(const struct pen *pen)
 {
     const struct plant *plant = pen->scene->plant;
@@ -87,7 +87,8 @@ static bool shows_assumed(const struct pen *pen)
     return false;
 }
 
-/* Returns whether either half of the frame shows a cross for an unknown direction: a legend that both halves share explains both. */
+/* Returns whether either half of the frame has a cross for an unknown direction. If both halves share a legend, it must explain the crosses
+   of both. */
 static bool shows_unknown_direction(const struct pen *pen)
 {
     for (size_t i = 0; i < pen->frame->label_count; i++)
@@ -96,8 +97,8 @@ static bool shows_unknown_direction(const struct pen *pen)
     return false;
 }
 
-/* Chooses the rows below the bar. Distances, and quantities that depend on no reading, are never uncertain, and have a row "below" only if
-   the range does not begin at their minimum. */
+/* Chooses the rows of the legend below the colour bar. Distances, and quantities computed without readings, have no row "uncertain", and a
+   row "below range" only if the view's range does not begin at their minimum. */
 static void choose_rows(const struct pen *pen, struct legend *legend)
 {
     const struct view *view = &pen->view;
@@ -116,7 +117,8 @@ static void choose_rows(const struct pen *pen, struct legend *legend)
         legend->rows[legend->row_count++] = ROW_UNPROVEN;
     if (shows_assumed(pen))
         legend->rows[legend->row_count++] = ROW_ASSUMED;
-    if (overlay_has_arrows(pen)) { /* arrows alone have a row: strokes (short streamlines) have none, since their length has no meaning */
+    /* only arrows have a row that explains their length; the length of strokes (short streamlines) has no meaning */
+    if (overlay_has_arrows(pen)) {
         if (view->directions == DIRECTIONS_ARROWS)
             legend->rows[legend->row_count++] = ROW_ARROW;
         if (shows_unknown_direction(pen))
@@ -154,7 +156,8 @@ static void write_hot_spot(const struct pen *pen, struct legend *legend)
     add_note(legend, legend->since);
 }
 
-/* Adds the error bound of the places marked with dots: how far values interpolated over a triangle may deviate from the field. */
+/* Adds the error bound of places that are marked with dots: how far values interpolated over a triangle may deviate from the exact
+   field. */
 static void write_drawn_error(const struct pen *pen, struct legend *legend)
 {
     const char *unit = view_is_operator(&pen->view) ? "" : view_unit(pen->scene->plant, &pen->view);
@@ -239,8 +242,8 @@ static void lay_out(struct pen *pen, struct legend *legend)
         width = fmax(width, beside + pen_text_width(pen, row_text(pen, legend, legend->rows[i])));
     for (int i = 0; i < legend->note_count; i++)
         width = fmax(width, pen_text_width(pen, legend->notes[i]));
-    /* the width of the row "unknown direction" counts even if the row is not listed: the free rectangle is computed before it is known
-       whether there are crosses */
+    /* the card is wide enough for the row "unknown direction" even if the row is not listed: the space beside the card is computed before
+       it is known whether the frame has crosses */
     if (overlay_has_arrows(pen))
         width = fmax(width, beside + pen_text_width(pen, row_text(pen, legend, ROW_NOWHERE)));
     width = fmax(width, overlay_bar_width(pen));
@@ -332,7 +335,7 @@ static void draw_swatch(struct pen *pen, const struct label_box *box, enum row r
         overlay_outline(pen, box->x + box->width / 2, box->y + box->height / 2, 0.27 * box->height, false);
         overlay_outline(pen, box->x + box->width / 2, box->y + box->height / 2, 0.47 * box->height, false);
         break;
-    case ROW_ARROW: /* draw_longest() draws this row's arrow next to the text */ break;
+    case ROW_ARROW: /* left to draw_longest(), which draws an arrow next to the row's text */ break;
     case ROW_NOWHERE: overlay_unknown_direction(pen, box->x + box->width / 2, box->y + box->height / 2); break;
     default:
         overlay_ring(pen, box->x + box->width / 2, box->y + box->height / 2, 0.5 * box->height, (int)row - ROW_ALARM + 1, ALARM_ACTIVE);

@@ -57,7 +57,7 @@ static void draw_mark(struct pen *pen, const struct frame_marker *marker, bool b
 void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_status word)
 {
     static const double colors[ALARM_PRIORITIES][3] = {
-        /* the colours of the page (clients/web/core/alarms.js), which no colour map comes near */
+        /* colours of alarm priorities, equal to those of the page (clients/web/core/alarms.js); no colour map has similar colours */
         { 0xaf / 255.0, 0x0c / 255.0, 0x4a / 255.0 },
         { 0xff / 255.0, 0xff / 255.0, 0x96 / 255.0 },
         { 0xb6 / 255.0, 0x46 / 255.0, 0xaa / 255.0 },
@@ -67,7 +67,7 @@ void overlay_ring(struct pen *pen, double x, double y, double radius, int priori
     double wide = word == ALARM_ACKNOWLEDGED ? 0.22 : 0.42;
     cairo_new_path(pen->cairo);
     cairo_arc(pen->cairo, x, y, radius, 0, 2 * M_PI);
-    cairo_set_source_rgb(pen->cairo, 1, 1, 1); /* light rim outside the dark one */
+    cairo_set_source_rgb(pen->cairo, 1, 1, 1); /* white rim outside the ring's dark rim */
     cairo_set_line_width(pen->cairo, fmax(4.6, (wide + 0.4) * radius));
     cairo_stroke_preserve(pen->cairo);
     pen_dark(pen, 1);
@@ -101,7 +101,8 @@ static void draw_alarm(struct pen *pen, const struct frame_marker *marker)
     overlay_ring(pen, marker->x_px, marker->y_px, 9.5 * pen->unit, priority, (enum alarm_status)reading->alarm_status);
 }
 
-/* Returns whether the marker's asset has no known distance to the chosen sensor; of such a marker only the alarm is drawn. */
+/* Returns true if the view shows distances from a sensor and no distance is known on the marker's asset. For such a marker only the alarm
+   is drawn. */
 static bool is_elsewhere(const struct pen *pen, const struct frame_marker *marker)
 {
     return pen->view.field.show == SHOW_DISTANCE && isnan(marker->value);
@@ -161,7 +162,7 @@ static void draw_leader(struct pen *pen, const struct label_item *item, const st
         return;
     cairo_move_to(pen->cairo, item->x + (x - item->x) * rim, item->y + (y - item->y) * rim);
     cairo_line_to(pen->cairo, x, y);
-    cairo_set_source_rgba(pen->cairo, 1, 1, 1, 0.85); /* light outline of the line, visible on dark ground */
+    cairo_set_source_rgba(pen->cairo, 1, 1, 1, 0.85); /* light outline of the leader line, which makes it visible on dark ground */
     cairo_set_line_width(pen->cairo, fmax(2.5, 2.5 * pen->unit));
     cairo_stroke_preserve(pen->cairo);
     cairo_set_line_width(pen->cairo, fmax(1, pen->unit));
@@ -205,7 +206,7 @@ static bool is_inside(const struct pen *pen, const struct frame_marker *marker)
            marker->y_px < area->height;
 }
 
-/* Label items for every visible marker that no card (box of the overlay) covers. The caller owns both arrays. */
+/* Makes a label item for every visible marker that no card (box of the overlay such as the legend) covers. The caller owns both arrays. */
 struct marker_labels {
     struct label_item *items;
     struct label_text *texts;
@@ -254,7 +255,7 @@ static void write_callout(const struct marker_labels *wanted, const int *members
     int asset = plant->tags[wanted->tags[members[0]]].asset, worst = -1, least = 0;
     for (size_t i = 0; i < count; i++) {
         int tag = wanted->tags[members[i]], word = (int)readings[tag].alarm_status;
-        /* alarms that have returned to normal, or are latched, rank behind all others */
+        /* in a call-out, alarms that have returned to normal or are latched rank behind all others */
         bool gone = word == ALARM_RETURNED || word == ALARM_LATCHED;
         int grave = alarm_priority(&plant->tags[tag], (enum alarm_kind)readings[tag].alarm) + (gone ? ALARM_PRIORITIES : 0);
         if (worst < 0 || grave < least || (grave == least && tag < worst)) {
@@ -286,7 +287,7 @@ static void measure_callout(void *arg, const int *members, size_t count, double 
     size[1] = (0.95 + LINE) * pen->text_px + 8 * pen->unit;
 }
 
-/* Draws a call-out. lead: index of its first item. */
+/* Draws a call-out (one label for the alarms of several rings). lead: index of the call-out's first item. */
 static void draw_callout(const struct marker_labels *wanted, const struct label_place *places, size_t lead)
 {
     struct pen *pen = wanted->pen;
@@ -343,7 +344,8 @@ static bool is_under(const struct pen *pen, int cards, const struct label_box *m
     return false;
 }
 
-/* Draws values on isolines wherever there is room; labels of the same value are far apart. */
+/* Draws the values of isolines at those label points where there is room; labels of the same value keep a large distance from each
+   other. */
 static void label_isolines(struct pen *pen)
 {
     const struct frame *frame = pen->frame;

@@ -20,8 +20,8 @@ struct pen {
     cairo_t *cairo;
     const struct frame *frame;
     struct view view;      /* view of the half being drawn */
-    int half;              /* index of the half of a split view; else 0 */
-    struct label_box area; /* area of that half, in pixels of the frame */
+    int half;              /* index of the half of a split view that is being drawn: 0 left, 1 right; 0 if the view is not split */
+    struct label_box area; /* area of the half being drawn, in pixels of the frame */
     const struct scene *scene;
     const struct snapshot *snapshot;
     const struct loop_checks *loop_checks; /* NULL: none */
@@ -31,7 +31,7 @@ struct pen {
     int taken_count;
 };
 
-/* Selects the half of a split view to draw on. */
+/* Selects the half of a split view on which the following calls draw. */
 void pen_choose_half(struct pen *pen, int half);
 /* Returns whether a box lies inside the pen's area and overlaps no box that is occupied already. */
 bool pen_is_free(const struct pen *pen, const struct label_box *box);
@@ -41,7 +41,8 @@ void pen_take(struct pen *pen, const struct label_box *box);
 void pen_card(struct pen *pen, const struct label_box *box);
 /* Sets the path to the outline of a box with rounded corners. */
 void pen_rounded_path(struct pen *pen, const struct label_box *box);
-/* pen_rgb sets an sRGB colour, pen_ink the colour of text on cards, pen_dark that of marks, which have light rims. */
+/* pen_rgb sets an sRGB colour. pen_ink sets the colour of text on cards. pen_dark sets the colour of markers and lines, which have light
+   rims. */
 void pen_rgb(struct pen *pen, const uint8_t rgb[3]);
 void pen_ink(struct pen *pen, double alpha);
 void pen_dark(struct pen *pen, double alpha);
@@ -74,12 +75,12 @@ int overlay_strip_height(int width_px, int height_px);
 void overlay_strip(struct pen *pen, uint8_t *bgrx, int stride_bytes);
 /* Draws the legend of the selected half. */
 void overlay_legend(struct pen *pen);
-/* Returns whether the legends of both halves of a split view are the same. Leaves the pen on the right half. */
+/* Returns whether both halves of a split view have equal legends. Afterwards the pen draws on the right half. */
 bool overlay_legend_is_shared(struct pen *pen);
 /* Returns the width of the legend with its margins. */
 double overlay_legend_width(struct pen *pen);
-/* Draws a caption in each half of a split view with its differences from the other half that no legend shows. The view must be split.
-   Leaves the pen on the right half (pen_choose_half). */
+/* Draws a caption in each half of a split view: how it differs from the other half, as far as no legend shows that. The view must be split.
+   Afterwards the pen draws on the right half (pen_choose_half). */
 void overlay_halves(struct pen *pen);
 /* Draws the outline of a marker. broken: dashed, for a tag that no loop check has proven. */
 void overlay_outline(struct pen *pen, double x, double y, double radius, bool broken);

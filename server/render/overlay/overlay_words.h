@@ -11,7 +11,7 @@
 #define OVERLAY_MEMBER(name, ...) WORD_##name,
 enum overlay_word {
     OVERLAY_WORDS(OVERLAY_MEMBER) OVERLAY_WORDS,
-    WORD_LOOKS = WORD_LOOK_DEFAULT, /* word for the first look; add an enum look for the others */
+    WORD_LOOKS = WORD_LOOK_DEFAULT, /* index of the word for the first look; adding an enum look gives the words for the others */
     WORD_INTERPOLATIONS = WORD_INTERPOLATION_SHEPARD,
     WORD_DISTANCES = WORD_DISTANCE_GEODESIC,
 };

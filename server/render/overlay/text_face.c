@@ -11,13 +11,13 @@
 enum { FIRST_UNCOVERED = 0x590 }; /* first code point that DejaVu Sans may lack: Hebrew */
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-/* --- protected by the lock. The last fonts found: [0] regular, [1] bold */
+/* --- protected by the lock: the last fonts found; [0] regular, [1] bold */
 static struct found_face {
     FcCharSet *letters; /* NULL: no search yet */
     cairo_font_face_t *face;
 } found[2];
 
-/* Returns the set of a text's letters; the caller frees it. NULL: DejaVu Sans covers the text. */
+/* Returns the set of the letters in a text; the caller frees it. NULL: DejaVu Sans has all of them. */
 static FcCharSet *letters_beyond(const char *text)
 {
     FcCharSet *letters = FcCharSetCreate();
