@@ -34,7 +34,7 @@ void matrix_point(const double m[16], const double p[3], double out[4])
         out[r] = m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r];
 }
 
-/* Gauss-Jordan elimination; the pivot is the largest element of each column. */
+/* Inverts by Gauss-Jordan elimination; the pivot is the largest element of each column. */
 void matrix_invert(const double m[16], double out[16])
 {
     double a[4][8];

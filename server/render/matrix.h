@@ -12,7 +12,7 @@ void matrix_point(const double m[16], const double p[3], double out[4]);
 void matrix_invert(const double m[16], double out[16]);
 /* Writes the matrix that transforms normals if m transforms points: the inverse transpose of the 3x3 part of m, column-major. */
 void matrix_normals(const double m[16], float out[9]);
-/* Transforms a plane (n . p + d = 0, given as n.x, n.y, n.z, d) into the coordinates from which m maps. */
+/* Transforms a plane (n . p + d = 0, given as n.x, n.y, n.z, d). The matrix m maps points from the result's coordinates to the plane's. */
 void matrix_plane(const double m[16], const double plane[4], float out[4]);
 void matrix_to_float(const double m[16], float out[16]);
 /* Writes the orthographic projection that fits a sphere, seen from infinity along `towards`. Clip depth is 1 nearest to the viewer, 0

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Divides one bound on memory among the caches of a renderer. */
+/* Divides a renderer's memory limit among its caches. */
 #include "render/memory.h"
 
 #include "render/gl/gl_backend.h"
@@ -8,10 +8,10 @@
 
 const char *const render_store_names[RENDER_STORES] = { "shown fields", "light", "still pictures", "targets", "drawing", "models" };
 
-/* Share of the bound for each store, after the working memory is subtracted. Half of the fields' share is in main memory, half on the
-   GPU. */
+/* Part of the memory limit that each cache gets, after the working memory is subtracted. Half of the fields' part is for main memory, half
+   for the GPU. */
 static const double FIELDS_SHARE = 0.35, LIGHT_SHARE = 0.3, REFINED_SHARE = 0.15, PREVIEWS_SHARE = 0.1, TARGETS_SHARE = 0.1;
-/* Working memory beyond this share of the bound is freed after each frame and allocated again. */
+/* Part of the memory limit beyond which working memory is freed after each frame and allocated again for the next. */
 static const double WORKING_SHARE = 0.4;
 
 static size_t room_bytes(const struct renderer *renderer)

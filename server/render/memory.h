@@ -15,11 +15,12 @@ enum render_store {
 };
 extern const char *const render_store_names[RENDER_STORES];
 
-/* Writes the present bytes of each store into `out`. */
+/* Writes the number of bytes that each cache takes now into `out`. */
 void renderer_measure_memory(const struct renderer *renderer, size_t out[RENDER_STORES]);
-/* Sets the bound for all stores but the models. The frame being drawn may exceed it. Call between frames. */
+/* Sets the memory limit for all caches; geometry (models) is not limited. The frame being drawn may exceed the limit. Call between
+   frames. */
 void renderer_bound_memory(struct renderer *renderer, size_t bytes);
-/* Frees all caches but the models and the default light. Called when no client watches; no job may be under way. */
+/* Frees all caches; keeps the geometry (models) and the default light. Called when no client watches; no job may be under way. */
 void renderer_drop_caches(struct renderer *renderer);
 
 #endif

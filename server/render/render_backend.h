@@ -14,14 +14,14 @@ struct renderer;
 struct render_backend {
     const char *name;
     bool draws_from_gpu; /* true: the backend reads fields from GPU memory, so a render job must copy them there; false: in main memory */
-    /* Creates the backend's resources before its first frame; a no-op afterwards. Returns false on failure, logged. */
+    /* Creates the resources that the backend needs for its first frame; later calls do nothing. Returns false on failure, logged. */
     bool (*init)(struct renderer *renderer);
     void (*finish)(struct renderer *renderer);
     /* Returns whether the backend can draw this frame. */
     bool (*can)(const struct frame_context *context);
     /* Returns whether the backend draws this frame in about the time of a preview. */
     bool (*is_quick)(struct renderer *renderer, const struct frame_context *context);
-    /* Begins to draw the job's frame. at_once: the caller goes straight to end or submit; otherwise other frames may be drawn in between.
+    /* Begins to draw the job's frame. at_once: true: the caller calls end or submit next; false: it may draw other frames in between.
        Returns false on failure, logged; abandon frees what was begun. */
     bool (*begin)(struct renderer *renderer, struct render_job *job, const struct frame_plan *plan, bool at_once);
     /* Draws at least one step and continues for about budget_ns. The job's light must be ready. Returns true when only end is left to

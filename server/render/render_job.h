@@ -13,20 +13,20 @@ struct render_backend;
 
 struct render_job {
     const struct render_backend *backend;
-    union { /* the backend's state of this job; NULL: none */
+    union { /* state of the job that belongs to the backend; NULL: none */
         struct gl_job *gl;
         struct soft_job *soft;
     } of;
     struct frame_context context; /* context of the frame; its view, fields and visible list point into this struct */
     struct view view;
     struct frame *frame;
-    struct light_set *light;            /* reference to the light, held once the light is ready; NULL: not yet */
+    struct light_set *light;            /* light set that the job uses (a reference), held once the light is ready; NULL: not ready yet */
     const struct fields_entry **fields; /* by asset: its field; NULL: the asset shows no field */
     /* copies of the shown fields, per asset; NULL: the frame is drawn in a single call and needs no copies */
     struct fields_entry *copies;
     int *visible;
     struct isoline_points isolines;
-    bool keeps; /* true: once the job has ended, a frame of the same view with other readings is drawn in about the time of a preview */
+    bool keeps; /* true: after this job, a frame of the same view with other readings is drawn in about the time of a preview */
 };
 
 /* Takes ownership of the frame; copies the context's lists and view. */

@@ -92,7 +92,7 @@ static double drawn_error_of(const struct frame_context *context)
     return unit * (parts <= 1 ? 1 : parts <= 2 ? 2 : parts <= 5 ? 5 : 10);
 }
 
-/* Returns a frame without pixels drawn, with all metadata from the plan. NULL: out of memory, logged. */
+/* Returns a new frame with all metadata from the plan; its pixels are not drawn yet. NULL: out of memory, logged. */
 static struct frame *start_frame(struct renderer *renderer, const struct frame_plan *plan, const struct frame_context *context)
 {
     const struct view *view = &plan->view;

@@ -19,8 +19,8 @@ void renderer_destroy(struct renderer **renderer);
 /* Returns the planner that makes this renderer's frame plans (render/plan/frame_planner.h). Owned by the renderer. */
 const struct frame_planner *renderer_planner(const struct renderer *renderer);
 
-/* Returns whether renderer_draw() takes about the time of a preview: the frame is a preview, or differs only in values and colours from a
-   recently drawn refined frame, or the GPU is fast enough. */
+/* Returns whether renderer_draw() takes about the time of a preview. That is so if the frame is a preview, if it differs only in values and
+   colours from a refined frame drawn recently, or if the GPU is fast enough. */
 bool renderer_is_quick(struct renderer *renderer, const struct frame_plan *plan);
 /* Draws the frame in a single call. The caller owns it (frame_unref). NULL on failure, logged. */
 struct frame *renderer_draw(struct renderer *renderer, const struct frame_plan *plan);
@@ -44,9 +44,9 @@ struct render_job *renderer_submit(struct renderer *renderer, const struct frame
 /* Returns whether renderer_end() would return without waiting, for a submitted job. */
 bool renderer_is_complete(const struct render_job *job);
 
-/* Sets for how long each preview bakes light that is not ready yet. Until it is ready, previews use the most similar ready light; if no
-   light is ready, this call bakes a rough one. With 0, the initial value, a preview waits until its light is baked. Refined frames always
-   wait. Returns false when the GPU is out of memory, logged. */
+/* Sets for how long each preview bakes light that is not ready yet. Meanwhile previews use the most similar light that is ready; if none is
+   ready, this call bakes a rough light. With 0, the initial value, a preview waits until its light is baked. Refined frames always wait.
+   Returns false when the GPU is out of memory, logged. */
 bool renderer_set_bake_budget(struct renderer *renderer, int64_t bake_ns);
 /* Bakes the default light for about budget_ns; call while no client wants a frame. Returns true when nothing is left to bake. */
 bool renderer_bake_idle(struct renderer *renderer, int64_t budget_ns);
@@ -54,7 +54,7 @@ bool renderer_bake_idle(struct renderer *renderer, int64_t budget_ns);
 /* Chooses whether frames that are begun later get depth grids (render/depth_grid.h); initially they do not. */
 void renderer_set_depth(struct renderer *renderer, bool gives_depth);
 bool renderer_gives_depth(const struct renderer *renderer);
-/* Argument true: GL draws all frames, also those that the software backend would draw on machines without a GPU. */
+/* Sets whether GL draws all frames (true), even those that the software backend would draw on machines without a GPU. */
 void renderer_use_gl(struct renderer *renderer, bool always);
 /* Chooses how the field is computed: per_fragment true: at each fragment, over all sensors, on the finest level
    (render/reference/reference.h), which is slow; false: interpolated between vertices. */

@@ -36,11 +36,11 @@ struct renderer {
 /* Fills in the context that every pass gets. Light, colour map and target are set later. The context points into the plan, which must
    outlive it. */
 void renderer_init_context(struct renderer *renderer, const struct frame_plan *plan, struct frame_context *context);
-/* Uploads the context's fields to the GPU; context->fields must belong to the caller. A field that does not fit is replaced by one that
-   shows no data, and the frame's content hash and age are updated. */
+/* Uploads the fields of the context to the GPU. The array context->fields must belong to the caller, because a field that does not fit is
+   replaced in it by one that shows no data; the frame's content hash and age are then updated. */
 void renderer_upload_fields(struct renderer *renderer, const struct frame_plan *plan, const struct frame_context *context,
                             struct frame *frame);
-/* Finds the context's light, unless it is set already, and its colour map. Returns false when out of GPU memory, logged. */
+/* Finds light and colour map for the context; keeps a light that is set already. Returns false when out of GPU memory, logged. */
 bool renderer_find_light(struct renderer *renderer, struct frame_context *context);
 /* Finds light and colour map for a job, which holds a reference to the light from then on. Returns false when out of GPU memory, logged. */
 bool renderer_light_job(struct renderer *renderer, struct render_job *job);

@@ -30,7 +30,7 @@ struct shaded_colormap {
     uint32_t (*texels)[COLORMAP_COLUMNS]; /* COLORMAP_ROWS rows: blue | green << 8 | red << 16 | 0xff000000 */
     float *nearest;       /* for each position on the scale, the nearest position that has an isoline; NULL: there are no isolines */
     GLuint colors, lines; /* colors: texture of `texels`; lines: texture of `nearest`, 0: there are no isolines */
-    uint64_t version;     /* id, unique among all colour maps made, from 1 up */
+    uint64_t version;     /* number of the colour map, from 1 up, different for every colour map made */
 };
 /* Computes both tables and uploads them as textures. lines: values of isolines; line_count may be 0. The caller checks for GL errors and
    calls shaded_colormap_finish(). */

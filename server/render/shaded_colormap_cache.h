@@ -14,8 +14,8 @@ struct shaded_colormap_cache_entry {
 
 enum { SHADED_COLORMAPS = 16 };
 struct shaded_colormap_cache { /* zero-initialise */
-    /* shaded colours, by index of the colour map in the protocol, followed by those of the operator display; an entry is NULL until first
-       used */
+    /* tables of shades: those of the colour maps of the protocol, by their index there, then those of the operator's display; an entry is
+       NULL until first used */
     struct colormap_shades **shades;
     struct shaded_colormap_cache_entry at[SHADED_COLORMAPS];
     int count;

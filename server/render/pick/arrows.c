@@ -51,7 +51,7 @@ static void add_triangle(struct arrow_candidates *candidates, const uint32_t cor
         return;
     int cuts = (int)min_of(ceil(2 * longest_m / candidates->spacing_m), MAX_CUTS);
     for (int i = 0; i < cuts; i++)
-        for (int j = 0; j < 2 * (cuts - i) - 1; j++) { /* for odd j, the part is an upside-down triangle */
+        for (int j = 0; j < 2 * (cuts - i) - 1; j++) { /* every second part (odd j) is an upside-down triangle */
             double third = j % 2 ? 2.0 / 3 : 1.0 / 3, a = (i + third) / cuts, b = (j / 2 + third) / cuts;
             mem_grow(&candidates->at, &candidates->capacity, candidates->count + 1, sizeof(*candidates->at));
             candidates->at[candidates->count++] =
@@ -69,14 +69,15 @@ static bool is_apart(const struct arrow_set *set, const struct asset_view *view,
     for (size_t i = 0; i < set->count; i++) {
         const float *a = set->places[i].normal, *b = place->normal;
         point_of(view, &set->places[i], there);
-        /* positions with opposite normals lie on the two sides of a thin wall, so their distance does not matter */
+        /* opposite normals: the positions lie on the two sides of a thin wall, so they may be close to each other */
         if (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > 0 && vec_distance(here, there) < least_m)
             return false;
     }
     return true;
 }
 
-/* Chooses positions in rounds with halved minimum distance, so that any prefix of the list is evenly spread. */
+/* Chooses arrow positions in rounds, each with half the minimum distance of the round before. Any prefix of the list is thus evenly
+   spread. */
 static void select_spread(struct arrow_set *set, const struct arrow_candidates *candidates)
 {
     set->places = mem_array(MAX_POSITIONS, sizeof(*set->places));

@@ -11,14 +11,14 @@ struct arrow_set {                  /* arrows of one asset; zero-initialise, fre
     struct direction *found;
     size_t count;
     double spacing_m; /* approximate distance in metres between neighbouring arrows if all are drawn */
-    float error_m;    /* error of the level of detail that contains the positions */
+    float error_m;    /* error in metres of the level of detail on whose triangles the positions lie */
     bool sought;      /* `places` has been computed */
     uint64_t content; /* hash of the sensor directions from which the directions in `found` were computed */
 };
 
 /* Returns n: the first n vertices of the asset must have current field values, because arrows read them. Pure. */
 size_t arrows_vertex_count(const struct scene_asset *asset);
-/* Updates the directions from the field entry. */
+/* Updates the directions of the arrows from the asset's field entry. */
 void arrows_update(struct arrow_set *set, const struct scene *scene, int asset, const struct fields_entry *field);
 /* Returns the field's value at the position with index `place`, in the field's unit; NaN where there is no data. */
 double arrows_value(const struct arrow_set *set, size_t place, const struct asset_view *file, const struct fields_entry *field);

@@ -12,10 +12,10 @@
 #include "render/pick/markers.h"
 
 enum { POINTS_PER_LINE = 16, MAX_POINTS = 2048, MAX_LABELS = 128, MAX_ARROWS = 192, MAX_STROKES = 48 };
-/* MAX_PIECES: pieces into which an edge is divided at most; MAX_BISECTIONS: steps of the bisection within one piece. */
+/* MAX_PIECES: maximum number of pieces into which an edge is divided; MAX_BISECTIONS: steps of bisection within one piece. */
 enum { MAX_BISECTIONS = 24, MAX_PIECES = 16 };
 static const double SPACING = 0.1; /* minimum distance between points on isolines, relative to the asset's size */
-/* on a frame, labels of the same isoline keep this multiple of the distance that labels of different isolines keep */
+/* minimum distance between labels of the same isoline on a frame, as a multiple of that between labels of different isolines */
 static const double SAME_LINE_FACTOR = 4;
 
 void isolines_init(struct isolines *isolines, size_t asset_count)
@@ -119,7 +119,8 @@ static void search_piece(struct isoline_search *search, const struct edge_piece 
             add_point(search, i, piece);
 }
 
-/* Searches the edges of a field that is evaluated at pixels piece by piece, because lines cross long edges more than once. */
+/* Searches the edges of triangles for isolines, for a field that is evaluated at pixels. An isoline may cross a long edge more than once,
+   so each edge is searched piece by piece. */
 static void search_evaluated(struct isoline_search *search, const struct edge_piece *edge)
 {
     double length_m = (double)vecf_distance(edge->ends_m[0], edge->ends_m[1]);
@@ -256,15 +257,15 @@ static void add_stroke(const struct isolines *isolines, size_t place, const stru
     }
 }
 
-/* Collects the first position of each asset, then the second of each, and so on up to a limit. So all assets get a share, and each share is
-   evenly spread over its asset, because the first n positions of an asset always are. */
+/* Collects arrow positions of all assets up to a limit: first the first position of each asset, then the second of each, and so on. Each
+   asset thus gets a share, which is evenly spread over it, because any first n positions of an asset are. */
 static void collect_arrows(struct isolines *isolines, const struct frame_context *context, struct isoline_points *out)
 {
     const struct scene *scene = context->gpu_scene->scene;
     const size_t most = out->count + 2 * MAX_POINTS;
     size_t longest = 0;
-    /* a view with a trial shows no arrows: fields of assets that the trial leaves unchanged would still have directions from before the
-       trial */
+    /* a view with trial sensor positions shows no arrows: assets that the trial leaves unchanged would still show directions from before
+       the trial */
     if (!isolines_has_arrows(scene, context->view))
         return;
     for (size_t i = 0; i < context->visible_count; i++) {

@@ -9,8 +9,9 @@
 #include "render/pick/strokes.h"
 
 struct isoline_point {
-    double value, place_m[3]; /* value of the isoline, or of the field at an arrow; place_m: in the plant frame */
-    double along[3];          /* direction of an arrow, plant frame; 0: unknown */
+    /* value: of the isoline, or of the field at an arrow, in the field's unit; place_m: position in the plant frame */
+    double value, place_m[3];
+    double along[3]; /* direction of an arrow in the plant frame; zero: unknown */
     bool arrow, uncertain;
     uint16_t stroke; /* index of the stroke in this frame, from 1 up, equal for all of its points; 0: the point belongs to no stroke */
     float slack_m;   /* depth tolerance in metres: how far the point may lie behind the drawn surface */
@@ -43,12 +44,13 @@ void isolines_finish(struct isolines *isolines);
 size_t isolines_vertex_count(const struct scene_asset *asset);
 /* Collects the candidate points of all visible assets. context->fields must hold the fields shown. */
 void isolines_collect(struct isolines *isolines, const struct frame_context *context, struct isoline_points *out);
-/* isolines_start() begins the visibility test on the GPU, after the frame is resolved. It returns false when the GPU is out of memory,
-   logged. isolines_get() stores the result in the frame once the GPU is done. */
+/* isolines_start() begins the visibility test of the points on the GPU; call it after the frame is resolved. It returns false when the GPU
+   is out of memory, logged. isolines_get() stores the result in the frame once the GPU is done. */
 bool isolines_start(struct point_visibility *queries, const struct frame_context *context, const struct isoline_points *points);
 void isolines_get(const struct point_visibility *queries, const struct frame_context *context, const struct isoline_points *points,
                   struct frame *frame);
-/* Tests visibility and stores the result on the CPU, from the frame's depth buffer: rows from the top, pitch_px floats apart. */
+/* Tests the visibility of the points on the CPU and stores the result in the frame. Uses the frame's depth buffer: rows from the top,
+   pitch_px floats apart. */
 void isolines_find(const struct frame_context *context, const struct isoline_points *points, const float *depth, size_t pitch_px,
                    struct frame *frame);
 

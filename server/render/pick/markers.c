@@ -101,8 +101,8 @@ static const struct scene_sensor *sensor_on(const struct marker_iterator *iterat
     return NULL;
 }
 
-/* Returns the marker's distance from the view's chosen sensor. NAN: the marker is on another asset, no path exists, or the distance is not
-   computed yet. */
+/* Returns the marker's distance in metres from the sensor chosen in the view. NAN: the marker is on another asset, no path exists, or the
+   distance is not computed yet. */
 static double distance_m(const struct marker_iterator *iterator, const struct marker_place *place, const struct field_params *params)
 {
     const struct trial_sensor *tried = trial_find(iterator->trial, params->sensor);
@@ -114,7 +114,8 @@ static double distance_m(const struct marker_iterator *iterator, const struct ma
         return NAN;
     if (place->tag == params->sensor)
         return 0;
-    /* heat distances are not available here, and the geodesic distances of the asset file differ from them, so the distance is unknown */
+    /* distance unknown: the view uses heat distances, which are not available here, and the geodesic distances of the asset file differ
+       from them */
     if (params->distance == DISTANCE_HEAT)
         return NAN;
     if (params->distance == DISTANCE_EUCLIDEAN) {
@@ -156,7 +157,8 @@ void markers_measure(const struct frame_context *context, struct frame *frame)
 void markers_get(const struct point_visibility *queries, const struct frame_context *context, struct frame *frame)
 {
     size_t count = count_shown(context);
-    /* skips the results if more markers are shown now than the buffer holds: a trial may have ended since the test was started */
+    /* ignores the test's results if more markers are shown now than its buffer holds, because a trial (sensors moved on the model) has
+       ended since the test began */
     if (count > 0 && count <= queries->capacity)
         emit_markers(context, queries->places, count, frame);
 }

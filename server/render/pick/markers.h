@@ -17,21 +17,23 @@ struct marker_place {
 };
 /* Gives the next sensor. Returns false at the end. */
 bool marker_next(struct marker_iterator *iterator, struct marker_place *out);
-/* Returns whether the view shows a marker for this sensor: its group is shown and its asset is neither hidden nor cut away there. */
+/* Returns whether the view shows a marker for this sensor: the view shows the sensor's group, and the sensor's asset is neither hidden nor
+   cut away by a section plane at the sensor. */
 bool marker_is_shown(const struct scene *scene, const struct view *view, const struct marker_place *place);
 
 /* Returns the depth tolerance of an asset's markers: how far the drawn surface may lie in front of the position of a sensor on it. */
 double markers_slack_m(const struct scene_asset *asset);
-/* markers_start() begins the visibility test on the GPU, after the frame is resolved. It returns false when the GPU is out of memory,
-   logged. markers_get() stores the result in the frame once the GPU is done. */
+/* markers_start() begins the visibility test of the markers on the GPU; call it after the frame is resolved. It returns false when the GPU
+   is out of memory, logged. markers_get() stores the result in the frame once the GPU is done. */
 bool markers_start(struct point_visibility *queries, const struct frame_context *context);
 void markers_get(const struct point_visibility *queries, const struct frame_context *context, struct frame *frame);
-/* Recomputes the distances that a frame's markers show; their positions stay. */
+/* Recomputes the distances that a frame's markers show, and leaves the markers' positions unchanged. */
 void markers_measure(const struct frame_context *context, struct frame *frame);
-/* Tests visibility and stores the result on the CPU, from the frame's depth buffer: rows from the top, pitch_px floats apart. */
+/* Tests the visibility of the markers on the CPU and stores the result in the frame. Uses the frame's depth buffer: rows from the top,
+   pitch_px floats apart. */
 void markers_find(const struct frame_context *context, const float *depth, size_t pitch_px, struct frame *frame);
-/* Tests one point as shaders/point_visibility.comp does. place: in, eye-space position and depth tolerance in metres; out, x and y in
-   pixels, then 1 if hidden, else 0. */
+/* Tests the visibility of one point, as shaders/point_visibility.comp does. place, before the call: eye-space position and depth tolerance
+   in metres; after it: x and y in pixels, then 1 if the point is hidden, else 0. */
 void markers_look(const struct frame_context *context, const float *depth, size_t pitch_px, float place[4]);
 
 #endif

@@ -11,8 +11,9 @@
 #include "scene/raycast.h"
 #include "value/quality.h"
 
-static const double MARKER_PX = 9; /* a marker is picked if it is nearer to the click than this, in pixels */
-/* a pick whose distance from a sensor is below the larger of these (pixels, metres) shows a measured value, not an interpolated one */
+static const double MARKER_PX = 9; /* maximum distance in pixels between a click and the marker that the click picks */
+/* distance from a sensor, in pixels and in metres (the larger counts), within which a pick shows the measured value instead of an
+   interpolated one */
 static const double MEASURED_PX = 3, MEASURED_M = 0.005;
 
 struct pick_spot { /* state of one pick */

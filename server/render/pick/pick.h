@@ -7,27 +7,29 @@
 #include "render/view.h"
 
 enum pick_state {
-    /* the pixel shows no value of the group: an asset without a sensor of the group, the inner side of a cut, or background */
+    /* the picked pixel shows no value of the group: it shows an asset without a sensor of the group, the inner side of a cut, or
+       background */
     PICK_CONTEXT,
     PICK_NO_DATA,
     PICK_BETWEEN,
-    PICK_MEASURED /* the pixel is at a contributing sensor, whose reading the interpolation reproduces */
+    PICK_MEASURED /* the picked pixel is at a contributing sensor, whose reading the interpolation reproduces */
 };
 enum { PICK_NEAREST = 4 };
 
 struct pick {
-    int asset; /* asset at the pixel; -1: none; then, of the members below, only `sensor` and the times are set */
+    int asset; /* asset at the pixel; -1: no asset; of the members below, only `sensor` and the times are then set */
     double position_m[3], normal[3];
     enum pick_state state;
     bool uncertain, inside;
-    /* field value for PICK_BETWEEN and PICK_MEASURED, in the view's unit. SHOW_OPERATOR: the reading, not its position between limits */
+    /* value of the field at the pixel, in the view's unit, for PICK_BETWEEN and PICK_MEASURED. In a view of values relative to alarm limits
+       (SHOW_OPERATOR), it is still the reading's value */
     double value;
-    /* error bound of `value`, in its unit, which frames state for this point if they mark it as uncertain; 0: not marked */
+    /* error bound of `value` in its unit, if frames mark this point as uncertain; 0: the point is not marked */
     double drawn_error;
     int nearest_count;
     struct pick_sensor {
         int tag;
-        double distance_m; /* metres, in the view's kind of distance (straight or geodesic) */
+        double distance_m; /* distance of the sensor in metres, of the kind that the view uses (straight or geodesic) */
         double value;
         uint32_t quality;
     } nearest[PICK_NEAREST]; /* sensors that contribute to the value, nearest first */

@@ -8,7 +8,7 @@
 struct point_visibility {
     GLuint program; /* program of shaders/point_visibility.comp, owned by the caller; zero-initialise all other members */
     GLuint buffer;
-    float (*places)[4]; /* GPU memory mapped into this process: input, then result, of the test */
+    float (*places)[4]; /* GPU memory mapped into this process: holds the input of the test, and later its result */
     size_t capacity;
 };
 

@@ -13,7 +13,7 @@
 
 #define STROKE_NONE UINT32_MAX
 enum { MAX_CROSSINGS = 64 };          /* edges crossed within one step */
-static const double STEP_PART = 0.35; /* step length, relative to the distance between arrows */
+static const double STEP_PART = 0.35; /* length of a step along a stroke, as a part of the distance between arrows */
 /* smallest cosine between directions of consecutive steps (120 degrees): a faster turn is a vortex too small to follow */
 static const double MIN_DOT = -0.5;
 
@@ -21,7 +21,7 @@ static const double MIN_DOT = -0.5;
 
 struct triangle_side { /* one side of a triangle */
     float low[3], high[3];
-    uint32_t at; /* side of a triangle: 3 * index of the triangle + number (0 to 2) of the corner where the side begins */
+    uint32_t at; /* identity of the side: 3 * index of the triangle + number (0 to 2) of the corner where the side begins */
 };
 
 static int compare_sides(const void *a, const void *b)
@@ -73,7 +73,7 @@ static void find_neighbours(struct stroke_set *set, const struct asset_view *vie
 struct tracing {
     const struct asset_view *view;
     const struct stroke_set *set;
-    const uint32_t (*tris)[3]; /* vertex indices of the level's triangles */
+    const uint32_t (*tris)[3]; /* vertex indices of the triangles of the level of detail on which strokes are traced */
 };
 
 static void corners_of(const struct tracing *tracing, uint32_t tri, double out[3][3], double normal[3])
@@ -145,8 +145,8 @@ static bool step(const struct tracing *tracing, struct direction_place *place, c
         const uint32_t next = tracing->set->across[tri][edge];
         if (next == STROKE_NONE)
             return false;
-        /* The neighbour's corners run along this edge in the opposite direction, or in the same direction if the triangles are wound
-           inconsistently. */
+        /* The side is found in the neighbour by its corners: they run in the opposite direction there, or in the same direction if the
+           triangles are wound inconsistently. */
         double mirror[3], there[3][3], turned[3], share = weights[(edge + 1) % 3] / max_of(weights[edge] + weights[(edge + 1) % 3], 1e-30);
         from = (int)(next % 3);
         corners_of(tracing, next / 3, there, mirror);
@@ -170,7 +170,8 @@ static double dot(const float a[3], const float b[3])
     return (double)(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
 }
 
-/* Returns the direction half a step ahead, turned back into the plane of the step's start (midpoint rule); strokes then stay on circles. */
+/* Returns the direction of the field half a step ahead, turned back into the plane of the step's start (midpoint rule). With this rule,
+   strokes around a centre stay on circles. */
 static struct direction midway(const struct stroke_point *last, const struct direction_place *half, const struct direction *there)
 {
     double v[3], from[3], to[3];

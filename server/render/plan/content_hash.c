@@ -28,7 +28,7 @@ static void add_color_scale(XXH3_state_t *state, const struct color_scale *color
     add(state, color_scale->lines, (size_t)color_scale->line_count * sizeof(*color_scale->lines));
 }
 
-/* Hashes visibility. All assets count, also those out of sight, since a hidden asset casts no shadow. */
+/* Hashes the visibility of all assets, even of those outside the view, because a hidden asset casts no shadow. */
 static void add_visibility(XXH3_state_t *state, const struct frame_plan *plan)
 {
     const struct visibility *visibility = &plan->view.visibility;
@@ -41,7 +41,7 @@ static void add_visibility(XXH3_state_t *state, const struct frame_plan *plan)
     add(state, visibility->clip.planes, planes * sizeof(visibility->clip.planes[0]));
 }
 
-/* Hashes everything except the field and its colours. */
+/* Hashes everything that a frame shows except the field and its colours. */
 static void add_shape(XXH3_state_t *state, const struct frame_plan *plan)
 {
     const struct view *view = &plan->view;

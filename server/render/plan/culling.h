@@ -4,7 +4,7 @@
 #define RENDER_PLAN_CULLING_H
 #include "render/plan/view_constants.h"
 
-struct culling { /* planes and eye in the coordinates of one asset's file */
+struct culling { /* frustum planes and eye position, in the coordinates of one asset's file */
     float planes[6][4];
     float eye_m[3];
     bool cones; /* true: the asset's triangles are wound consistently, so back faces are recognised and normal cones may be used */

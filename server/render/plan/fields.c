@@ -12,7 +12,7 @@
 #include "plant/influence.h"
 #include "render/reference/reference.h"
 
-/* content hash of fields->lost, the placeholder for fields without memory; no other entry has it */
+/* content hash of fields->lost, the entry that stands for fields without memory; no other entry has this hash */
 static const uint64_t LOST = 0x6c6f7374;
 /* default bound of the cache, once for main memory and once for the GPU: enough for about 700 assets of 66,000 vertices */
 static const size_t BOUND_BYTES = (size_t)384 << 20;
@@ -77,7 +77,7 @@ static struct fields_entry *entry_create(struct fields *fields, int asset, const
     return entry;
 }
 
-/* Takes a slice (range of a GPU buffer) for the entry. Returns false when there is none, logged; the entry is then destroyed. */
+/* Takes a slice (range of a GPU buffer) for the entry. If no slice is free, logs that, destroys the entry and returns false. */
 static bool take_slice(struct fields *fields, struct fields_entry *entry)
 {
     size_t at = 0;
@@ -121,7 +121,7 @@ static bool can_be_seen(struct fields_entry *entry, const struct scalars *now, c
     return error >= half;
 }
 
-/* Copies the newest values into the entry and hashes them. Any thread. */
+/* Copies the newest values of a field into its entry and hashes them. Any thread. */
 static void show(struct fields_entry *entry)
 {
     const struct scalars *now = entry->behind;
@@ -142,8 +142,8 @@ static void show(struct fields_entry *entry)
     }
 }
 
-/* Uploads the entry. A slice (range of a GPU buffer) that a frame under way still uses is left unchanged and replaced. Returns false when
-   there is no room for another slice, logged. */
+/* Uploads the entry's values to the GPU. If a frame in progress still uses the entry's slice (range of a GPU buffer), that slice stays
+   unchanged and a new one is taken. Returns false when there is no room for another slice, logged. */
 static bool upload(struct fields *fields, struct fields_entry *entry)
 {
     if (entry->slice->holds > 1) {
@@ -205,7 +205,7 @@ static struct fields_entry *look(struct fields *fields, const struct fields_ask 
         return &fields->lost;
     struct pixel_field pixels;
     field_pixels(fields->field, asset, params, &pixels);
-    /* the field is not evaluated at pixels, because at most one sensor is left: all vertices need values */
+    /* at most one sensor is left, so the field is not evaluated at pixels, and all vertices need values */
     if (pixels.count == 0 && count < all) {
         count = all;
         scalars = field_scalars_of(fields->field, asset, params, ask->snapshot, count);
@@ -230,8 +230,8 @@ static struct fields_entry *look(struct fields *fields, const struct fields_ask 
     return entry;
 }
 
-/* Takes slices (ranges of a GPU buffer) for all entries without one, after announcing them together to the pool, so that they lie next to
-   each other. */
+/* Takes slices (ranges of a GPU buffer) for all entries without one. Announces all of them to the pool before, so that the slices lie next
+   to each other. */
 static void make_room(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries)
 {
     size_t texels = 0, slices = 0;

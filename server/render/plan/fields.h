@@ -17,8 +17,8 @@ struct fields_entry {
     struct field_params params;
     double step;            /* smallest value step that can be seen (scale_step) */
     uint64_t flags_version; /* scalars->flags_version of the shown values */
-    /* scalars->travel (sum of all changes so far) when the shown values were computed, less their known error. `scalars->travel - travel`
-       is an upper bound of the error of any shown value */
+    /* value of scalars->travel (sum of all changes so far) when the shown values were computed, less the error known then. `scalars->travel
+       - travel` is an upper bound of the error of any shown value */
     double travel;
     uint64_t content; /* hash of the first `hashed` shown scalars, as many as the last request needed */
     size_t hashed;          /* SIZE_MAX: `content` is out of date */
@@ -32,7 +32,7 @@ struct fields_entry {
     int64_t oldest_age_ns;
     double drawn_error; /* largest error of the shown values (field/scalars.h) */
     uint64_t used;
-    struct sensor_direction *directions; /* sensor directions of the group, NULL if it has none (field/directions.h) */
+    struct sensor_direction *directions; /* directions of the group's sensors (field/directions.h); NULL: the group has none */
     size_t direction_count;
     uint64_t directions_content;  /* hash of the directions */
     const struct scalars *behind; /* newer values that must be copied into `shown`; NULL: `shown` is up to date */
@@ -45,7 +45,7 @@ struct fields {
     struct field *field;
     struct pool *pool;
     struct fields_entry **entries;
-    struct fields_entry lost; /* placeholder entry for every field that there is no room for */
+    struct fields_entry lost; /* entry that stands for every field for which there is no memory */
     size_t count, capacity, bytes, bound_bytes;
     uint64_t uses, trimmed; /* uses: number of fields_get() lookups so far; trimmed: value of `uses` at the last fields_trim() */
 };
@@ -60,15 +60,15 @@ struct fields_ask {
     double step;
     const struct snapshot *snapshot;
 };
-/* Writes the entry of each requested asset into `entries` (indexed by asset). NULL: the asset has nothing to show. An asset that there is
-   no room for gets an entry that shows no data; logged. Valid until the next fields_trim(). */
+/* Writes the entry of each requested asset into `entries` (indexed by asset). NULL: the asset shows no field. If memory does not suffice
+   for an asset, it gets an entry that shows no data; logged. The entries are valid until the next fields_trim(). */
 void fields_get(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries);
 /* Returns how many of `count` vertices of an asset need values for fields_get(). */
 size_t fields_vertices(const struct fields *fields, int asset, const struct field_params *params, size_t count);
 /* Uploads the entries of these assets; call before the GPU draws with them. Returns false if an entry did not fit, which is logged: its
    element of `entries` then points to an entry that shows no data. */
 bool fields_upload(struct fields *fields, const int *assets, size_t count, const struct fields_entry **entries);
-/* Evicts entries beyond the bound. Call between frames. */
+/* Evicts entries that exceed the memory limit. Call between frames. */
 void fields_trim(struct fields *fields);
 void fields_drop(struct fields *fields); /* evicts all entries */
 

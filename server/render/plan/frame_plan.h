@@ -11,7 +11,8 @@ struct frame_plan {
     const struct gpu_scene *gpu_scene;
     struct view view; /* view that the frame shows; never a split one, because a split view has one plan per half */
     struct view_constants constants;
-    struct light_key lit_by; /* key of the light used: the one that the view asks for, or the most similar light that is ready */
+    /* key of the light set that the frame uses: the one that the view asks for or, while that is not ready, the most similar one */
+    struct light_key lit_by;
     double error_px; /* largest error of a level of detail's surface, in pixels of the frame (lod_selection.h); 0: finest levels only */
     int *visible;    /* indices of visible assets, nearest first */
     size_t visible_count;

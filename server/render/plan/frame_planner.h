@@ -18,8 +18,8 @@ void frame_plan_destroy(struct frame_plan **plan); /* frees the plan and sets *p
 /* Computes the plan's fields for about budget_ns. Returns true when the fields are ready: frame_plan_complete() is then fast. With
    INT64_MAX returns true immediately, and frame_plan_complete() computes the fields. */
 bool frame_plan_prepare(struct frame_plan *plan, const struct frame_planner *planner, const struct snapshot *snapshot, int64_t budget_ns);
-/* Brings the plan's fields up to date with the snapshot and fills in the remaining members. A field that there is no room for shows no
-   data; logged. Plans with equal content give equal frames. */
+/* Computes the plan's fields from the newest readings in the snapshot and fills in the remaining members. A field for which there is no
+   memory shows no data; logged. Plans with equal content give equal frames. */
 void frame_plan_complete(struct frame_plan *plan, const struct frame_planner *planner, const struct snapshot *snapshot);
 /* Returns the key of the light that the view asks for, baked or not. */
 struct light_key frame_plan_wanted_light(const struct view *view);

@@ -2,11 +2,12 @@
 /* Chooses levels of detail with the error bound under which a frame has few enough triangles. */
 #include "render/plan/lod_selection.h"
 
-/* Upper limit of the error bound in pixels, per tier: silhouettes may be displaced by this much. */
+/* Upper limit, by tier (preview or refined), of the error bound of levels of detail, in pixels: silhouettes may be displaced by this
+   much. */
 static const double MAX_ERROR_PX[] = { [TIER_PREVIEW] = 1.0, [TIER_REFINED] = 0.7 };
-/* Triangle budget per tier: the largest number of triangles for which the error bound is lowered below MAX_ERROR_PX. The budget of refined
-   frames is generous, because people read values from them. A preview that draws more than a few assets in their finest level would take
-   too long. */
+/* Triangle budget by tier (preview or refined). A frame lowers its error bound below MAX_ERROR_PX as long as it has at most this many
+   triangles. The budget of refined frames is generous, because people read values from them. A preview that draws more than a few assets in
+   their finest level would take too long. */
 static const int TRIANGLE_BUDGET[] = { [TIER_PREVIEW] = 300000, [TIER_REFINED] = 3000000 };
 
 static bool has_room(const struct lod_params *params, double error_px)
@@ -19,7 +20,8 @@ static bool has_room(const struct lod_params *params, double error_px)
 
 double lod_error_px(const struct lod_params *params)
 {
-    /* Few, widely spaced error bounds: while a camera moves, an asset then seldom changes its level because of other assets. */
+    /* Error bounds to choose from, in pixels: few and widely spaced, so that an asset seldom changes its level of detail because of other
+       assets while a camera moves. */
     static const double parts[] = { 0, 0.125, 0.25, 0.5 };
     double max_error_px = MAX_ERROR_PX[params->tier];
     for (size_t i = 0; i < sizeof(parts) / sizeof(parts[0]); i++)

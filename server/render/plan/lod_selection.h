@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Chooses levels of detail: the error bound of a frame, and each asset's level under it. The finest level shows the field exact to one
-   colour step; the values of a coarser level are wrong by as much as its surface is displaced: several colour steps at some pixels. So a
-   frame with few triangles uses finer levels than its silhouettes need. Thread: any. */
+/* Chooses levels of detail: the error bound of a frame, and each asset's level under that bound. The finest level shows the field exact to
+   one colour step. The values of a coarser level are wrong by as much as its surface is displaced, which is several colour steps at some
+   pixels. So a frame with few triangles uses finer levels than its silhouettes need. Thread: any. */
 #ifndef RENDER_PLAN_LOD_SELECTION_H
 #define RENDER_PLAN_LOD_SELECTION_H
 #include "render/gl/gpu_scene.h"

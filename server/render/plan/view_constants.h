@@ -11,9 +11,9 @@ struct view_constants { /* matrices and planes of a view. Eye space has the axes
     double clip_from_plant[16];
     double pixel_per_radian;
     double pixel_per_metre; /* orthographic cameras; 0: perspective */
-    double back[3];         /* orthographic: unit vector towards the viewer; zero: perspective */
-    /* orthographic: distance from the near to the far plane, divided by camera_parallel_m() (the viewing distance of an equivalent
-       perspective camera); 0: perspective */
+    double back[3];         /* orthographic view: unit vector towards the viewer; perspective view: zero */
+    /* orthographic view: distance from the near to the far plane, divided by camera_parallel_m() (the viewing distance of an equivalent
+       perspective camera); perspective view: 0 */
     double depth_scale;
     double planes[6][4]; /* frustum planes, normals inward, in the plant frame */
 };

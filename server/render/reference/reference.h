@@ -31,7 +31,7 @@ void reference_bind_pixel_sensors(GLuint sensors);
 /* Binds the asset's distances and a buffer of reference_sensors() for the next draws of that asset. Returns false when out of GPU memory,
    logged. */
 bool reference_bind(struct reference *reference, int asset, GLuint sensors);
-/* draws these commands; the current program must be compiled with PER_FRAGMENT */
+/* draws the given commands with per-fragment field values; the current program must be compiled with PER_FRAGMENT */
 void reference_draw(const struct draw_command *commands, size_t count);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Section caps: where a section plane cuts a closed body, the plane is drawn as if the body were solid. For each pixel's ray, behind the
-   cut, exits from bodies count up and entries down: a positive count means that the ray began inside a body. */
+/* Section caps: where a section plane cuts a closed body, the plane is drawn as if the body were solid. Along the view ray of each pixel,
+   behind the cut, each exit from a body counts +1 and each entry -1. A positive sum means that the ray began inside a body, so the pixel
+   shows the cap. */
 #include <math.h>
 #include <string.h>
 
@@ -84,7 +85,7 @@ bool soft_parts_close(struct soft_parts *parts, const struct asset_view *file, c
     }
     for (size_t r = 0; r < closed->run_count; r++)
         for (uint32_t i = 0; i < closed->runs[r].index_count; i++)
-            /* one flag per vertex suffices, because no vertex belongs to both a closed body and another one */
+            /* one flag per vertex is enough: no vertex belongs to both a closed and an open body */
             of_file[file->indices[closed->runs[r].first_index + i]] = 1;
     parts->closed = mem_try_array(parts->vertex_count, 1);
     for (size_t i = 0; i < parts->vertex_count && parts->closed; i++)

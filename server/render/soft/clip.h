@@ -9,11 +9,12 @@
 /* NEAR_CORNERS, NEAR_TRIANGLES: largest number of corners, and of triangles, into which clipping by all planes turns one triangle. */
 enum { NEAR_PLANES = 5, NEAR_CORNERS = 3 + NEAR_PLANES + CLIP_MAX_PLANES, NEAR_TRIANGLES = NEAR_CORNERS - 2 };
 
-/* a corner of a clipped triangle: position in clip space, with x and y in pixels; a and b: colour map column and row, or light, as in
-   struct soft_vertex */
+/* corner of a clipped triangle. at: position in clip space, with x and y in pixels; a and b: column and row of the colour map, or light, as
+   in struct soft_vertex */
 struct near_corner {
     float at[4], a, b;
-    struct near_patterns { /* how much of each pattern (field/scalars.h) the corner has, 0..1, from its flags; linear between corners */
+    /* part, 0..1, of each pattern (field/scalars.h) at the corner, from the vertex's flags; interpolated linearly between corners */
+    struct near_patterns {
         float no_data, uncertain, no_limits;
     } patterns;
 };

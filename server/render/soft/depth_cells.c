@@ -6,8 +6,8 @@
 
 #include "render/soft/lanes.h"
 
-/* A cell is divided only if the gap between the depths before and behind its middle depth is at least this part of the range of its depths.
-   Depths of a plane are closer together. */
+/* Smallest gap between the two sides of a depth step within a cell, as a part of the range of the cell's depths; with a smaller gap the
+   cell is not divided. In a single tilted plane, depths are closer together than that. */
 static const float LEAST_GAP = 0.25f;
 
 SOFT_INLINE float least_of_all(lanes x)
@@ -47,7 +47,8 @@ SOFT_INLINE bool divide(const float *depth, size_t pitch_px, float low, float bo
     return true;
 }
 
-/* Returns the least depth of the surfaces in a cell. */
+/* Returns the depth of the farthest surface in a cell, ignoring background. Larger depths are nearer, so this is the least depth above
+   0. */
 SOFT_INLINE float farthest_surface(const float *depth, size_t pitch_px, float high)
 {
     lanes most = { 0 }, least = most + high;
@@ -79,7 +80,7 @@ SOFT_INLINE void find_cell(const struct depth_lens *lens, const float *depth, si
         divide(depth, pitch_px, 0, 0, high, cell);
 }
 
-/* Finds a cell that reaches beyond the frame: repeats the pixels at the edge. */
+/* Finds the depths of a cell that reaches beyond the frame: there the pixels at the frame's edge are repeated. */
 static void find_edge_cell(const struct depth_source *source, int row, int column, struct depth_cell *cell)
 {
     float depth[DEPTH_CELL_PX * DEPTH_CELL_PX];

@@ -5,7 +5,7 @@
 #include "render/depth_grid.h"
 
 struct depth_source {
-    const float *depth; /* 1 near, 0 far and background */
+    const float *depth; /* depth buffer of the frame: 1 near, 0 far and background */
     size_t pitch_px;
     int width_px, height_px;
     const struct depth_lens *lens;

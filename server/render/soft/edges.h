@@ -9,12 +9,12 @@
 #include "render/soft/lanes.h"
 
 struct raster_edge {
-    float x, y, dx, dy; /* upper end of the edge, and vector to its lower end */
-    int32_t negative;   /* -1: pixels with negative values of the edge function are inside; 0: those with non-negative values */
+    float x, y, dx, dy; /* (x, y): upper end of the edge in pixels; (dx, dy): vector from there to the lower end */
+    int32_t negative;   /* -1: pixels inside the triangle have negative values of the edge function; 0: they have non-negative values */
 };
 
-/* a value that is linear over the frame: at: value at the first corner; dx, dy: change per pixel; low, high: smallest and largest value at
-   the corners */
+/* value that is linear over the frame. at: value at the triangle's first corner; dx, dy: change per pixel; low, high: smallest and largest
+   value at the corners */
 struct plane {
     float at, dx, dy, low, high;
 };
@@ -38,14 +38,14 @@ SOFT_INLINE void edge_init(struct raster_edge *edge, const struct soft_vertex *p
     *edge = (struct raster_edge){ upper->x, upper->y, lower->x - upper->x, lower->y - upper->y, swap ? -1 : 0 };
 }
 
-/* Returns the part of the edge function that is the same for all pixels of a row. y: the row's pixel centres. */
+/* Returns the part of the edge function that is the same for all pixels of a row. y: y of the row's pixel centres. */
 SOFT_INLINE float edge_row(const struct raster_edge *edge, float y)
 {
     return edge->dx * (y - edge->y) + edge->dy * edge->x;
 }
 
-/* Returns lanes that are negative for pixels outside the edge. Only the sign bit counts, so a pixel with the value -0 also is on exactly
-   one side. x: pixel centres. */
+/* Returns a negative lane for each pixel outside the edge. Only the sign bit counts, so a pixel whose value is -0 is on exactly one side,
+   too. x: x of the pixel centres. */
 SOFT_INLINE lanes_int edge_side(const struct raster_edge *edge, float row, lanes x)
 {
     return (lanes_int)(row - edge->dy * x) ^ edge->negative;

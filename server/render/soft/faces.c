@@ -5,12 +5,12 @@
 
 #include "render/soft/kernels.h"
 
-#define FARTHEST 1e6f /* columns of the colour map are clamped to this absolute value, which is far outside the scale */
+#define FARTHEST 1e6f /* maximum absolute value of a colour map column; larger values, which are far outside the scale, are clamped */
 
 /* --- vertices --------------------------------------------------------------------------------------------------------------- */
 
-/* Prefetches field values and light of eight vertices. The caller then projects the vertices and finds faces, and reads these data
-   afterwards. */
+/* Prefetches field values and light of eight vertices into the cache. The caller uses them only after it has projected the vertices and
+   found the faces. */
 SOFT_INLINE void fetch_carried(const struct soft_mesh *mesh, const uint32_t vertices[LANES])
 {
     for (int l = 0; l < LANES && mesh->scalars && mesh->pixels < 0; l++)
@@ -204,8 +204,8 @@ SOFT_INLINE bool is_hidden(const struct soft_tile *tile, const struct soft_face 
 struct eight { /* eight triangles */
     lanes_int corners[3];
     lanes_int left, right, top, bottom;
-    /* kept: -1: the triangle is drawn. doubtful: -1: the depth blocks at the corners of its rectangle hide the triangle, but the rectangle
-       has other blocks between them */
+    /* flags of each triangle, -1: true. kept: the triangle is drawn. doubtful: the depth blocks at the four corners of its rectangle hide
+       the triangle, but the rectangle has more blocks, which are not tested yet */
     lanes_int kept, doubtful;
     lanes nearest;
 };
@@ -239,7 +239,7 @@ SOFT_INLINE lanes_int may_face(const float *planes, int rounded, const float eye
     return x * eye_m[0] + y * eye_m[1] + z * eye_m[2] + slack_m >= *(const lanes *)(planes + 3 * rounded);
 }
 
-/* Appends the kept ones of eight triangles to the tile's list of faces. first: index, in the part, of the first of the eight. back:
+/* Appends those of eight triangles that are kept to the tile's list of faces. first: index of the first of the eight within the part. back:
    FACE_BACK for triangles that look away from the eye, else 0. */
 SOFT_INLINE void keep_faces(struct soft_tile *tile, const struct eight *eight, int first, lanes_int back)
 {

@@ -7,7 +7,7 @@
 #include "base/system/huge_pages.h"
 #include "render/soft/soft_impl.h"
 
-/* number of rows of tiles, and of texels, of the sun map that are read at a time (2 MB) */
+/* height of one band of the sun's shadow map, which is read at once (2 MB): in tiles, and in texels */
 enum { SUN_BAND_TILES = 32, SUN_BAND_ROWS = SUN_BAND_TILES * SUN_TILE_STEP_PX + 1 };
 
 static bool fail(const struct soft *soft, const char *what)
@@ -45,7 +45,7 @@ static bool read_baked(const struct soft *soft, struct soft_light *light, const 
     return true;
 }
 
-struct sun_band { /* the band's rows of the sun map, plus the first row of the next band */
+struct sun_band { /* one band of the sun's shadow map: its rows of texels, and the first row of the next band */
     uint16_t *rows;
     int width_px, row_count;
 };
