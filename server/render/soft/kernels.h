@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Table of the loops that take most of a frame's time. Their files are compiled once for any machine and, for x86, again for AVX2 and
-   AVX-512 (Makefile): the suffixes are _plain, _wide and _widest. All give identical bits. Private to soft/. */
+/* Table of kernels: the loops that take most of a frame's time. Their files are compiled once for any machine and, for x86, again for AVX2
+   and AVX-512 (Makefile): the suffixes are _plain, _wide and _widest. All three give identical bits. Private to soft/. */
 #ifndef RENDER_SOFT_KERNELS_H
 #define RENDER_SOFT_KERNELS_H
 #include "render/soft/tile.h"
@@ -15,13 +15,14 @@ struct soft_kernels {
        listed faces. If some faces are clipped, it does so for all vertices of the part. */
     void (*place_part)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
     void (*carry_part)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
-    /* Lists those faces (front-facing triangles) of the part (group of triangles) whose corners are all projected and need no clipping. */
+    /* Lists the faces (front-facing triangles) of a part (group of triangles) that need no clipping and whose corners are all projected. */
     void (*find_faces)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_found *found, const struct soft_part *part);
     /* Draws depth and marks (contents of pixels, soft_impl.h) of all listed faces. */
     void (*raster_faces)(const struct soft_tile *tile, uint32_t mark);
-    /* Counts in the marks, for all listed faces: +1 per pixel where a face looks away from the eye, -1 where it faces the eye. */
+    /* Counts closed bodies along the view ray of each pixel, in the pixels' marks: a listed face that looks away from the eye adds 1, a
+       face that faces the eye subtracts 1. */
     void (*count_faces)(const struct soft_tile *tile);
-    /* Recomputes tile->farthest for these blocks (8 x 8 pixels) of the tile. */
+    /* Recomputes tile->farthest, the farthest depth in a block of 8 x 8 pixels, for these blocks of the tile. */
     void (*look_again)(struct soft_tile *tile, const struct soft_rect *blocks);
     /* Turns the marks (contents of pixels, soft_impl.h) in a rectangle into colours. The rectangle begins at a multiple of
        SOFT_STRETCH_MOST pixels. */
@@ -31,10 +32,10 @@ struct soft_kernels {
        `out`. */
     void (*shade_field)(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                         const struct shaded_items *out);
-    /* Shades surfaces of the field in the glossy look: as shade_field, and also writes reflected light to out->gloss. */
+    /* Shades surfaces that show the field in the glossy look. Works like shade_field, and also writes reflected light to out->gloss. */
     void (*shade_gloss)(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                         const struct shaded_items *out);
-    /* Shades all other surfaces and writes their colours. alphas: receives their opacity, 0..1; NULL: not needed. */
+    /* Shades the surfaces that show no field and writes their colours. alphas: receives their opacity, 0..1; NULL: not needed. */
     void (*shade_surfaces)(const struct refined *refined, const struct refined_item *items, size_t count, uint32_t *colors, float *alphas);
     void (*shade_sky)(const struct refined *refined, int row, const uint8_t *wanted, uint32_t *colors);
     /* Draws the feature edges of a band (group of pixel rows) into the visibility buffer's ink (lines drawn over pixels). */
@@ -42,7 +43,7 @@ struct soft_kernels {
     /* Colours bands of a visibility buffer: a task of workers_for(). arg: struct resolve_job */
     void (*color_bands)(void *arg, size_t begin, size_t end);
 };
-/* _wide (AVX2) and _widest (AVX-512) exist on x86 only */
+/* the variants _wide (AVX2) and _widest (AVX-512) exist on x86 only */
 extern const struct soft_kernels soft_kernels_plain, soft_kernels_wide, soft_kernels_widest;
 
 #define soft_kernels_of_set SOFT_IN_SET(soft_kernels, SOFT_SET)

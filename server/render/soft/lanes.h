@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Eight numbers at a time by the compiler's vector extensions, and by intrinsics where the compiler would not find the right instruction.
+/* Vectors of eight numbers, by the compiler's vector extensions, and by intrinsics where the compiler would not find the right instruction.
    Results are bit-identical on every machine. Private to soft/. */
 #ifndef RENDER_SOFT_LANES_H
 #define RENDER_SOFT_LANES_H
@@ -12,7 +12,7 @@
 
 #define SOFT_KERNEL SIMD_CLONES("avx2")
 #define SOFT_INLINE SIMD_BODY
-#ifndef SOFT_SET /* suffix of the functions that are compiled once for each instruction set (kernels.h) */
+#ifndef SOFT_SET /* suffix of functions whose files are compiled once for each instruction set (kernels.h) */
 #define SOFT_SET _plain
 #endif
 #define SOFT_JOIN(name, set) name##set
@@ -107,7 +107,7 @@ SOFT_INLINE lanes_int lanes_whole(lanes x)
     return __builtin_convertvector(x, lanes_int);
 }
 
-/* log2 with an error of 1e-7; x below 1e-30 counts as 1e-30. Same polynomial as in field/kernels.c. */
+/* Returns log2(x) with an error of at most 1e-7; x below 1e-30 counts as 1e-30. Uses the same polynomial as field/kernels.c. */
 SOFT_INLINE lanes lanes_log2(lanes x)
 {
     lanes tiny = (lanes){ 0 } + 1e-30f;
@@ -123,7 +123,7 @@ SOFT_INLINE lanes lanes_log2(lanes x)
     return __builtin_convertvector(exponent, lanes) + r * p;
 }
 
-/* 2^x for x <= 0: 1 at 0, 0 below -126. As exp2_down in field/kernels.c. */
+/* Returns 2^x for x <= 0; below -126 the result is 0. Uses the same polynomial as exp2_down in field/kernels.c. */
 SOFT_INLINE lanes lanes_exp2_down(lanes x)
 {
     x = lanes_most(x, (lanes){ 0 } - 127.0f);

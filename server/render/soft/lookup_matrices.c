@@ -14,7 +14,7 @@ static void copy_columns(const double from[16], float to[4][4])
             to[c][r] = (float)from[4 * c + r];
 }
 
-/* Computes the matrix from (x, y in pixels, depth, 1) to clip space with w = 1. */
+/* Computes the matrix that maps (x in pixels, y in pixels, depth, 1) of the frame to clip space with w = 1. */
 static void clip_from_pixel(const struct raster *raster, double out[16])
 {
     matrix_identity(out);
@@ -62,7 +62,8 @@ static void aim_rays(struct raster *raster, const double clip[16])
    interpolation deviates from the sine of a ray's elevation by at most 0.15 n^2 / f^2. */
 static void choose_stretch(struct raster *raster)
 {
-    /* largest error in columns of the backdrop table: half a grey level at the horizon, where the backdrop changes most */
+    /* largest permitted error of the interpolation, in columns of the backdrop table: half a grey level at the horizon, where the backdrop
+       changes most */
     static const double most = 1;
     const float(*m)[3] = raster->ray_from_pixel;
     double step2 = 0, area2 = 0, volume = 0;

@@ -31,9 +31,9 @@ SOFT_INLINE lanes byte_of(lanes_int packed, int number)
     return __builtin_convertvector(packed >> (8 * number) & 0xff, lanes);
 }
 
-/* Positions of eight points on the sun's shadow map. The smallest and largest depth of each tile of the map decide most points without
-   reading texels. The lookup has three steps with other work between them, each prefetching the memory of the next: sun_aim, sun_bound,
-   sun_look. */
+/* Lookup of eight points in the sun's shadow map. The smallest and largest depth of each tile of the map decide for most points, without
+   reading texels, whether they are lit. The lookup has three steps, sun_aim, sun_bound and sun_look. Each step prefetches the memory that
+   the next one reads, so the caller does other work in between. */
 struct sun_aim {
     lanes u_part, v_part, place; /* u_part, v_part: position between the four texels, 0..1; place: depth in units of the map */
     lanes_int tile, at;          /* tile: index of the tile of the map; at: index of the upper left of the four texels */
@@ -67,7 +67,8 @@ SOFT_INLINE void sun_prefetch_bounds(const struct soft_light *light, const struc
         __builtin_prefetch(light->sun_bounds + tile[i]);
 }
 
-/* Decides the lanes that the smallest and largest depth of their tile of the map decide. Undecided lanes stay in `open`. */
+/* Decides whether points are lit, where the smallest and largest depth of their tile of the map suffice. Lanes that stay undecided remain
+   in `open`. */
 SOFT_INLINE void sun_bound(const struct soft_light *light, struct sun_aim *aim)
 {
     lanes_int bounds = gather(light->sun_bounds, aim->tile & aim->open);
@@ -85,10 +86,12 @@ SOFT_INLINE void sun_prefetch(const struct soft_light *light, const struct sun_a
         __builtin_prefetch(light->sun_map + at[i]);
 }
 
-/* Compares depth with four texels and weights the results, like a GL shadow sampler with linear filter. at: indices as in aim->at. */
+/* Compares the depth of each point with four texels and weights the results, like a GL shadow sampler with linear filter. at: indices as in
+   aim->at. */
 SOFT_INLINE lanes sun_compare(const struct soft_light *light, const struct sun_aim *aim, lanes_int at)
 {
-    uint32_t pairs[2][LANES]; /* each element holds two texels, left and right, in 16 bits each; [0]: upper row, [1]: lower row */
+    /* texels of the shadow map; each element holds a left texel and its right neighbour, in 16 bits each; [0]: upper row, [1]: lower row */
+    uint32_t pairs[2][LANES];
     for (int i = 0; i < LANES; i++) {
         memcpy(&pairs[0][i], light->sun_map + at[i], 4);
         memcpy(&pairs[1][i], light->sun_map + at[i] + SUN_TILE_PX, 4);
@@ -110,8 +113,8 @@ SOFT_INLINE lanes sun_look(const struct soft_light *light, const struct sun_aim 
     return lanes_choose(aim->open, sun_compare(light, aim, aim->at & aim->open), aim->lit);
 }
 
-/* Looks up a shadow in a single step, without the bounds of tiles. Refined frames use this: their four neighbouring lookups per point do
-   not profit from the bounds. */
+/* Looks up a shadow in a single step, without using the depth bounds of tiles. For refined frames: their four neighbouring lookups per
+   point do not profit from the bounds. */
 SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lanes depth)
 {
     struct sun_aim aim;
@@ -119,7 +122,7 @@ SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lane
     return sun_compare(light, &aim, aim.at);
 }
 
-/* A pixel row's elevations over the horizon as columns of the backdrop table, interpolated linearly between the ends of a stretch of
+/* Elevations over the horizon along a row of pixels, as columns of the backdrop table. They are interpolated linearly within a stretch of
    raster->stretch_px pixels (choose_stretch bounds the error). */
 struct heights {
     float first, step; /* elevation at the centre of the first pixel, and its change per pixel */

@@ -10,7 +10,7 @@
 enum { MAX_REACH_PX = 32 };
 static const double dark_rgb[3] = { RIM_RGB };
 
-struct brush { /* brush that is drawn around each pixel on the rim of the asset; reach_px: half the brush's width */
+struct brush { /* brush drawn around each pixel on the rim of the outlined asset; reach_px: half the brush's width */
     int reach_px;
     uint8_t rim[2 * MAX_REACH_PX + 1][2 * MAX_REACH_PX + 1];
 };

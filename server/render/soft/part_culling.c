@@ -10,9 +10,10 @@
 #include "render/matrix.h"
 #include "render/gl/ghosts.h"
 
-#define SLACK_PX 0.02f        /* boxes and vertices round differently */
-#define SLACK_DEPTH 1e-5f     /* tolerance of depth, relative to the depth */
-#define IN_FRONT_OF_NEAR 2.0f /* depth that is used for points in front of the near plane; larger than any real depth */
+#define SLACK_PX 0.02f    /* boxes and vertices round differently */
+#define SLACK_DEPTH 1e-5f /* tolerance for rounding errors in a depth, as a part of the depth */
+/* depth used for points in front of the near plane; larger than any real depth, so that they count as nearest */
+#define IN_FRONT_OF_NEAR 2.0f
 
 /* Computes a bounding rectangle, in pixels, of a box in the frame, and the box's nearest depth. Returns false if the box is outside the
    frame. */
@@ -128,7 +129,7 @@ static void find_eye(const struct raster *raster, double eye_m[3])
                        : constants->eye_m[c];
 }
 
-/* Adds the mesh's field to raster->pixels, for evaluation at pixels. Positions there are relative to the centre of the mesh, where 32-bit
+/* Adds a mesh whose field is evaluated at pixels to raster->pixels. Positions there are relative to the centre of the mesh, where 32-bit
    floats are most precise. clip: matrix from the asset file to clip space. */
 static void add_pixels(struct raster *raster, struct soft_mesh *mesh, const struct pixel_field *field, const double clip[16])
 {

@@ -11,7 +11,8 @@ enum { PART_TRIANGLES = 256, PART_VERTICES = 256 };
 struct soft_part {
     struct asset_cluster cluster; /* bounding box and normal cone */
     uint32_t first_vertex;        /* index of the part's first vertex in soft_parts.vertices */
-    /* the part's first index in soft_parts.corners, which holds all first corners, then all second ones, then all third ones */
+    /* index of the part's first value in soft_parts.corners. A part has three consecutive lists there, each with one corner of all its
+       triangles: first corners, second corners, third corners */
     uint32_t first_corner;
     uint16_t vertex_count, triangle_count;
     uint16_t rounded; /* triangle_count rounded up to a multiple of LANES; the padding triangles have no area */
@@ -22,12 +23,13 @@ struct soft_part {
 
 struct soft_parts {
     struct soft_part *parts;
-    uint32_t *vertices; /* indices of vertices in the file; the list of each part is padded to a multiple of LANES with its last vertex */
-    float *places_m;    /* positions of `vertices` in metres; the list of each part has all x, then all y, then all z */
-    uint8_t *corners;   /* corners of triangles: indices of vertices within the part; see soft_part.first_corner for the order */
-    float *planes;      /* planes of triangles (n . p + d = 0); the list of each part has all n.x, then all n.y, all n.z, all d */
-    uint8_t *closed;    /* by index in `vertices`: 1: the vertex belongs to a closed body, 0: not. NULL: not computed yet */
-    bool blended;       /* true: at least one part is blended */
+    /* indices of vertices in the asset file, part by part; each part's list is padded to a multiple of LANES with its last vertex */
+    uint32_t *vertices;
+    float *places_m;  /* positions of `vertices` in metres, part by part; for each part first all x, then all y, then all z */
+    uint8_t *corners; /* corners of triangles: indices of vertices within the part; see soft_part.first_corner for the order */
+    float *planes; /* planes of the triangles (n . p + d = 0), part by part; for each part first all n.x, then all n.y, all n.z and all d */
+    uint8_t *closed; /* by index in `vertices`: 1: the vertex belongs to a closed body; 0: it belongs to none. NULL: not computed yet */
+    bool blended;    /* true: at least one part is blended */
     size_t part_count, vertex_count, corner_count;
     size_t part_capacity, vertex_capacity, place_capacity, corner_capacity, plane_capacity;
 };

@@ -97,7 +97,7 @@ SOFT_INLINE vec reflected_more(vec f0, struct brdf brdf)
     return (vec){ out[0], out[1], out[2] };
 }
 
-struct sky_light { /* light that a surface gets from sky and surroundings, before the surface's colour is applied */
+struct sky_light { /* light that a surface receives from sky and surroundings, not yet multiplied by the surface's colour */
     struct brdf brdf;
     vec irradiance, seen;
 };

@@ -11,8 +11,8 @@ struct eight_values {
     lanes_int no_data, uncertain, no_limits; /* -1: yes */
 };
 
-/* squared distance, m^2, to the nearest sensor of each state: used: its reading counts; lost: no usable reading; no_limits: no alarm
-   limits. PIXEL_FAR2: no sensor has that state */
+/* squared distance in m^2 to the nearest sensor of each state: used: its reading counts; lost: it has no usable reading; no_limits: it has
+   no alarm limits. PIXEL_FAR2: there is no sensor of that state */
 struct eight_nearest {
     lanes used, lost, no_limits;
 };
@@ -84,8 +84,8 @@ SOFT_INLINE lanes pixel_polynomial(const float of[PIXEL_TERMS], const lanes u[3]
     return of[0] + x + u[1] * (of[2] + u[1] * of[7] + u[2] * of[8]) + u[2] * (of[3] + u[2] * of[9]);
 }
 
-/* Adds the polynomials of a list's far sensors. part: by point: factor that converts the polynomials to the unit of the weights there
-   (2^top / unit). */
+/* Adds the polynomials of a list's far sensors to the sums. part: for each point, the factor that converts the polynomials to the unit of
+   the weights at that point (2^top / unit). */
 SOFT_INLINE void pixel_add_far(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3], lanes near2, lanes part,
                                struct eight_sums *sums)
 {
@@ -121,8 +121,8 @@ SOFT_INLINE void pixel_sum_shepard(const struct pixel_field *field, const struct
         pixel_add_far(field, list, at, near2, lanes_exp2(0.5f * field->power * near_log2 + list->top), sums);
 }
 
-/* Sums inverse squares of the distances, of lists whose sensors are all used. Unlike other weights these need no nearest sensor: they are
-   small enough for a float even at a sensor. */
+/* Sums the weights 1 / distance^2 of a list whose sensors are all used. Other weights are computed relative to the nearest sensor; these
+   need not be, because they fit into a float even at a sensor. */
 SOFT_INLINE void pixel_sum_inverse_square(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3],
                                           struct eight_sums *sums)
 {
@@ -213,8 +213,8 @@ SOFT_INLINE void pixel_lanes_at(const struct pixel_field *field, const struct pi
     const float reach2 = field->reach_m < 1e15f ? field->reach_m * field->reach_m : 0.5f * PIXEL_FAR2;
     lanes_int reached = nearest.used <= reach2, lost = nearest.lost < nearest.used;
     pixel_value_of(field, &sums, out);
-    /* height of the smallest hot spot that is detectable: seen * 2^(log2(e)/2 (near/s)^2), where near is the distance of the nearest sensor
-       and s the size of a hot spot; `most` limits the result */
+    /* `show: blind`: height of the smallest hot spot that is detectable at the point, seen * 2^(log2(e)/2 (near/s)^2), where near is the
+       distance of the nearest sensor and s the size of a hot spot; `most` limits the result */
     if (field->show == PIXEL_BLIND) {
         lanes down = nearest.used * (-0.72134752f / (field->hot_spot_m * field->hot_spot_m));
         out->value = lanes_least(field->seen / lanes_exp2_down(lanes_most(down, none - 100.0f)), none + field->most);

@@ -9,28 +9,30 @@
 
 #include "base/mem.h"
 
-/* DEPTH: levels of squares, 128 to 16 pixels; SHORT_LIST: lists of at most this many sensors are not shortened */
+/* DEPTH: number of levels of squares, which have sides from 128 to 16 pixels; SHORT_LIST: number of sensors up to which a list is not
+   shortened further */
 enum { DEPTH = 4, SHORT_LIST = 8 };
 static const float FAR_M = 1e15f, MOST_SHARE = 0.0625f, LOG2_E = 1.44269504f;
 
 enum node_column { PLACE_X, PLACE_Y, PLACE_Z, VALUE, STRENGTH, DECAY, STATE, INDEX, COLUMNS };
 
 struct node {
-    float *columns[COLUMNS]; /* sensors that are not far yet, padded to LANES. STATE and INDEX (index in field->sensors) are
-                                 stored as integers */
+    /* table of the sensors that are not far yet, by enum node_column, padded to LANES. The columns STATE and INDEX (index in
+       field->sensors) hold integers */
+    float *columns[COLUMNS];
     int count;
-    struct pixel_list far; /* polynomials of the far sensors; far.sensors is not set */
+    struct pixel_list far; /* polynomials that replace the far sensors; its member `sensors` is not set */
     float least;           /* lower bound of the sum of the weights of the far sensors */
-    float left;            /* error budget that is left: share of the sum of all weights by which the sum may still err */
+    float left;            /* error budget that is left: part of the sum of all weights by which polynomials may still deviate */
 };
 
 struct building {
     const struct pixel_field *field;
-    /* For the interpolation `shepard`: an error of a sensor's weight changes a value by no more than that error times (1/2 + away *
-       |reading - middle|) times the spread of the readings. For `paper`, away is 0 */
+    /* Bound for the interpolation `shepard`: if a sensor's weight is wrong by an error e (a part of the sum of all weights), a value
+       changes by at most e * (1/2 + away * |reading - middle|) * spread of the readings. For `paper`, away is 0 */
     float middle, away;
-    /* by index in the parent's list: largest change of a value if this sensor becomes far, as a multiple of the readings' spread; INFINITY:
-       the sensor must stay near; -1: it has no weight */
+    /* by index in the parent's list: largest change of a value if this sensor is replaced by a polynomial (becomes far), as a multiple of
+       the readings' spread; INFINITY: the sensor must stay near; -1: the sensor has no weight */
     float *errors;
     struct node nodes[DEPTH + 1]; /* by level; [0]: all sensors */
 };
@@ -49,7 +51,7 @@ float pixel_lists_step(const float *scale)
 
 struct eight_sensors {
     lanes at[3], value, strength, decay;
-    /* masks of the sensors in each state; counts: mask of the lanes that hold a sensor, 0 beyond the list's end */
+    /* masks of the sensors in each state; counts: mask of the lanes that hold a sensor (lanes beyond the list's end hold none) */
     lanes_int used, lost, no_limits, uncertain, counts;
 };
 
@@ -73,8 +75,8 @@ SOFT_INLINE lanes all(float x)
     return (lanes){ 0 } + x;
 }
 
-/* Returns the weight at a distance, times 2^-top so that it fits in a float. term (paper only): returns the weight times nearness^decay
-   instead, also times 2^-top. */
+/* Returns the weight of a sensor at a distance, times 2^-top so that it fits in a float. term: true (paper only): returns the weight times
+   nearness^decay, also times 2^-top. */
 SOFT_INLINE lanes weight_at(const struct pixel_field *field, const struct eight_sensors *of, lanes distance, bool term, float top)
 {
     lanes log, zero = { 0 };
@@ -97,8 +99,9 @@ SOFT_INLINE lanes weight_at(const struct pixel_field *field, const struct eight_
     return field->paper ? weight : weight * of->strength;
 }
 
-struct jet { /* a weight as a quadratic function of the place: value and derivatives by the distance at the box's centre, a bound of the
-                error in the box, and the smallest weight in the box. tilt: added to the slope to lower the error */
+/* quadratic approximation of a sensor's weight in the box: value and derivatives by the distance, at the box's centre; a bound of the
+   error; and the smallest weight in the box. tilt: added to the slope to lower the error */
+struct jet {
     lanes value, first, second, tilt, error, least;
 };
 
@@ -119,7 +122,7 @@ SOFT_INLINE void inverse_square_jet(const struct eight_sensors *of, lanes distan
     out->least = strength * last * last;
 }
 
-/* Derivatives of a weight's logarithm by the distance: the first, second and third. Each is a sum of terms of one sign. */
+/* First, second and third derivative of a weight's logarithm by the distance. Each is a sum of terms of one sign. */
 struct logarithm {
     lanes first, second, third;
 };
@@ -219,7 +222,8 @@ SOFT_INLINE float least_of(lanes x)
     return least;
 }
 
-/* Adds the quadratic functions of the chosen sensors of eight to the polynomial `to`. away: unit vectors from the sensors to the centre. */
+/* Adds the quadratic approximations of the chosen sensors, among eight, to the polynomial `to`. away: unit vectors from the sensors to the
+   box's centre. */
 SOFT_INLINE void add_terms(lanes to[PIXEL_TERMS], const struct jet *jet, lanes_int chosen, lanes times, lanes distance, const lanes away[3])
 {
     const lanes zero = { 0 }, first = lanes_choose(chosen, times * jet->first, zero);
@@ -252,9 +256,10 @@ SOFT_INLINE lanes distances_of(const struct eight_sensors *of, const struct box 
     return distance;
 }
 
-struct nearest_bounds { /* upper bounds of the distance to the nearest sensor of each state, anywhere in the box; FAR_M: there is none */
+/* upper bounds, for any place in the box, of the distance to the nearest sensor of each state; FAR_M: there is no sensor of that state */
+struct nearest_bounds {
     float used, lost, no_limits;
-    float top; /* logarithm (base 2) of about the largest weight in the box */
+    float top; /* base-2 logarithm of a number close to the largest weight in the box */
 };
 
 SOFT_INLINE void bound_nearest(const struct pixel_field *field, const struct node *from, const struct box *box, struct nearest_bounds *out)
@@ -283,7 +288,8 @@ struct centre_sums {
     lanes weights, by_distance, along[3];
 };
 
-/* For inverse squares: adds to the sums from which least_by_centre() bounds the sum of all weights in the box. */
+/* For weights that are strength / distance^2: adds eight sensors to the sums from which least_by_centre() bounds the sum of all weights in
+   the box. */
 SOFT_INLINE void add_at_centre(const struct eight_sensors *of, lanes distance, float radius, float top, const lanes away[3],
                                struct centre_sums *sums)
 {
@@ -295,8 +301,9 @@ SOFT_INLINE void add_at_centre(const struct eight_sensors *of, lanes distance, f
         sums->along[c] += weight * q * (distance * over) * away[c];
 }
 
-/* Cauchy: the sum of s_i / D_i is at least (sum of p_i)^2 / (sum of p_i^2 D_i / s_i) for any p_i. Here D_i are squared distances, s_i
-   strengths and p_i the weights at the centre, so the last sum is a quadratic function of the place. */
+/* Returns a lower bound of the sum of all weights in the box. By Cauchy's inequality, the sum of s_i / D_i is at least (sum of p_i)^2 /
+   (sum of p_i^2 D_i / s_i) for any p_i. D_i are squared distances, s_i strengths and p_i the weights at the box's centre, so the last sum
+   is a quadratic function of the place. */
 SOFT_INLINE float least_by_centre(const struct centre_sums *sums)
 {
     float weights = sum_of(sums->weights), along = 0;
@@ -305,7 +312,8 @@ SOFT_INLINE float least_by_centre(const struct centre_sums *sums)
     return weights > 0 ? weights * weights / (weights + 2 * sqrtf(along) + sum_of(sums->by_distance)) : 0;
 }
 
-/* Fills building->errors. Returns a lower bound, in the box, of the sum of the weights of the list's sensors. */
+/* Fills building->errors: for each sensor, the change of a value if a polynomial replaces the sensor. Returns a lower bound, in the box, of
+   the sum of the weights of the list's sensors. */
 SOFT_INLINE float bound_errors(const struct building *building, const struct node *from, const struct box *box,
                                const struct nearest_bounds *nearest)
 {
@@ -410,7 +418,8 @@ SOFT_INLINE void split(const struct building *building, const struct node *from,
     to->least = from->least * times + sum_of(sums.least);
 }
 
-/* Makes a node from its parent. last: the node may use all of the error that is left; other nodes leave a part for their children. */
+/* Makes the node of a smaller square from its parent's. last: true: the node may use all of the error budget that is left; false: it leaves
+   a part for its children. */
 static void make_node(const struct building *building, const struct node *from, const struct box *box, bool last,
                                   struct node *to)
 {
@@ -449,7 +458,8 @@ static void bound_cells(const struct pixel_cell *cells, size_t count, size_t fir
     out->radius = sqrtf(square) * 1.0001f + 1e-6f;
 }
 
-/* Returns the first level at which two cells that follow each other on the curve (pixel_cells_order()) are in different squares. */
+/* Returns the first level at which two cells are in different squares. The cells must follow each other on the curve of
+   pixel_cells_order(). */
 static int level_apart(const struct pixel_cell *a, const struct pixel_cell *b)
 {
     uint32_t differ = pixel_cells_order(a->column, a->row) ^ pixel_cells_order(b->column, b->row);
@@ -487,7 +497,7 @@ static void add_list(struct pixel_lists *lists, const struct node *node, const s
     list->row = cell->row;
     list->first = lists->sensor_count;
     list->unit = lanes_exp2(all(list->top))[0];
-    if (repeats) { /* the cell has the same list as the cell before */
+    if (repeats) { /* the cell has the same sensors as the cell before: both lists share one range of sensor indices */
         list->first = list[-1].first;
         list->all_used = list[-1].all_used;
         return;

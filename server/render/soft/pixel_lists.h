@@ -13,9 +13,9 @@
 /* PIXEL_FEW: largest number of sensors of a field that are all summed at each pixel, without lists. */
 enum { PIXEL_FEW = 8, CELL_SHIFT = 4, CELL_PX = 1 << CELL_SHIFT, SQUARE_CELLS = 8, PIXEL_TERMS = 10 };
 
-struct pixel_cell { /* pixels of one mesh in a cell, a square of CELL_PX pixels */
+struct pixel_cell {        /* one cell (a square of CELL_PX pixels), as far as its pixels show one mesh */
     float low[3], high[3]; /* box around the surface points that the pixels show, metres */
-    uint16_t column, row;  /* position of the cell, in cells */
+    uint16_t column, row;  /* position of the cell in the frame, in cells from the top left */
     uint32_t mesh;
 };
 
@@ -23,11 +23,12 @@ struct pixel_list {
     const uint32_t *sensors; /* indices of the near sensors in field->sensors; NULL: the first `count` sensors */
     size_t first;            /* index of the list's first sensor in pixel_lists.sensors */
     int count;
-    bool all_used;  /* true: the readings of all listed sensors count */
+    bool all_used;  /* true: all listed sensors have a reading that counts */
     bool has_far;   /* true: at least one sensor is far, so the polynomials are not 0 */
     bool has_marks; /* true: a far sensor's reading is Uncertain */
-    /* Polynomials of the far sensors' sums: of weights, of weights times values, and of the weights of Uncertain sensors, all times 2^-top.
-       `unit` is 2^top. Coefficients of 1, x, y, z, xx, xy, xz, yy, yz, zz, with x, y, z from the centre in metres. */
+    /* Polynomials that replace sums over the far sensors: of their weights, of weights times values, and of the weights of those that are
+       Uncertain, all times 2^-top. `unit` is 2^top. Coefficients of 1, x, y, z, xx, xy, xz, yy, yz, zz, with x, y, z in metres from
+       `centre`. */
     float top, unit, centre[3], total[PIXEL_TERMS], values[PIXEL_TERMS], marked[PIXEL_TERMS];
     uint32_t mesh, column, row; /* mesh and position of the list's cell, copied from struct pixel_cell */
     uint32_t next;              /* index for the caller's own use, such as a linked list; the functions below ignore it */
@@ -46,9 +47,11 @@ struct pixel_lists {
 #define pixel_lists_settle SOFT_IN_SET(pixel_lists_settle, SOFT_SET)
 #define pixel_lists_finish SOFT_IN_SET(pixel_lists_finish, SOFT_SET)
 
-/* Returns the largest error of a list's values: three quarters of a step of 1/255 of the range. scale: from struct frame_uniforms. */
+/* Returns the largest error that a list may cause in the field's values: three quarters of a step of 1/255 of the range. scale: from struct
+   frame_uniforms. */
 float pixel_lists_step(const float *scale);
-/* Appends a list for each cell. cells: of one square of SQUARE_CELLS x SQUARE_CELLS cells, in the order of pixel_cells_order(). */
+/* Makes a list of sensors for each cell and appends it. cells: cells of one square of SQUARE_CELLS x SQUARE_CELLS cells, in the order of
+   pixel_cells_order(). */
 void pixel_lists_add(struct pixel_lists *lists, const struct pixel_field *field, float step, const struct pixel_cell *cells, size_t count);
 /* Sets the pointer `sensors` of all lists. Call it after the last pixel_lists_add(), which may move the array. */
 void pixel_lists_settle(struct pixel_lists *lists);
@@ -70,7 +73,8 @@ static inline struct pixel_list pixel_list_of_all(const struct pixel_field *fiel
     return all;
 }
 
-/* Returns the number of a cell in its square along a curve, on which each aligned square of cells is a range. */
+/* Returns the number of a cell on a space-filling curve (Z-order) through its square. The cells of each aligned smaller square have
+   consecutive numbers. */
 static inline uint32_t pixel_cells_order(uint32_t column, uint32_t row)
 {
     return (column & 1) | (row & 1) << 1 | (column & 2) << 1 | (row & 2) << 2 | (column & 4) << 2 | (row & 4) << 3;

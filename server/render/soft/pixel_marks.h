@@ -6,13 +6,13 @@
 #include "render/soft/lanes.h"
 
 struct mark_ink {
-    int32_t last_row; /* index of the last row (brightness step) of the colour map */
+    int32_t last_row; /* index of the last row of the colour map; rows are brightness steps */
     float pattern_px;
-    bool rich; /* true: there are isolines, or the scale is logarithmic */
+    bool rich; /* true: marks need the slower code path, because there are isolines or the scale is logarithmic */
     bool log;
-    float low, over;    /* logarithmic scales: position on the scale, 0..1 = (log2(value) - low) * over */
+    float low, over;    /* on a logarithmic scale, the position of a value, 0..1, is (log2(value) - low) * over */
     float line_px;      /* width of isolines in pixels; 0: there are no isolines */
-    const float *lines; /* by position on the scale: the nearest position that has an isoline, from struct raster */
+    const float *lines; /* table by position on the scale: nearest position that has an isoline; owned by struct raster */
 };
 
 SOFT_INLINE struct mark_ink ink_of(const struct raster *raster)
@@ -102,8 +102,8 @@ SOFT_INLINE bool rule(float y, float pattern_px)
     return phase < (float)-RULE_EDGE || phase > (float)RULE_EDGE;
 }
 
-/* Adds the patterns for no data, uncertain and no limits to marks. Called for faces whose corners differ in flags, or have a flag that
-   shows a pattern. */
+/* Adds the patterns for no data, uncertain and no limits to the marks of eight pixels. Called for faces whose corners have different flags,
+   or a flag that shows a pattern. */
 SOFT_INLINE lanes_int pattern_marks(lanes_int marks, lanes_int no_data, lanes_int uncertain, lanes_int no_limits, lanes row, lanes x,
                                     float y, const struct mark_ink *ink)
 {

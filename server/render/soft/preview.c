@@ -43,8 +43,8 @@ static bool complain(const struct raster *raster)
     return false;
 }
 
-/* Returns whether one of the last previews had this hash of geometry and light (content_hash_shape()), which means that the camera stands
-   still. Stores the hash. */
+/* Returns whether a recent preview had this hash of geometry and light (content_hash_shape()), which means that the camera stands still.
+   Stores the hash for later calls. */
 static bool is_still(struct soft *soft, uint64_t shape)
 {
     for (size_t i = 0; i < SOFT_SHAPES; i++)
@@ -112,7 +112,8 @@ bool preview_draw(struct soft *soft, const struct frame_context *context, const 
                   struct frame *frame)
 {
     struct raster *raster = &soft->preview;
-    /* isoline labels need the depth of each pixel, which the visibility buffers of previews do not store */
+    /* a preview with isolines keeps no visibility buffer: labels of isolines need the depth of each pixel, which visibility buffers of
+       previews do not store */
     bool lined = has_lines(context) || points->count > 0;
     if (!lined && soft_resolve_again(soft, context, points, frame))
         return true;
@@ -125,7 +126,8 @@ bool preview_draw(struct soft *soft, const struct frame_context *context, const 
     if (!raster_make_room(raster, frame))
         return complain(raster);
     frame_uniforms_fill(&raster->block, context);
-    if (context->view->look == LOOK_GLOSSY) { /* the glossy colour map has one row per brightness step */
+    /* in the glossy look, the colours come from the table soft->glossy, with one row per brightness step */
+    if (context->view->look == LOOK_GLOSSY) {
         raster->block.shade[0] = COLORMAP_ROWS - 1;
         raster->block.shade[1] = 0.5f;
     }

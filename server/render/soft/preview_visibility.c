@@ -15,7 +15,7 @@ struct keeping {
 
 struct preview_triangle { /* a triangle projected into the frame, as cached while the buffer is filled */
     uint32_t id;
-    uint32_t number; /* index in the band's list of triangles */
+    uint32_t number; /* index of the triangle in the band's list of triangles */
     /* factors of x, y and 1 that give the weight of each corner at the point (x, y), up to a common factor (soft_weights) */
     double weights[3][3];
 };
@@ -188,7 +188,7 @@ bool soft_resolve_again(struct soft *soft, const struct frame_context *context, 
     frame->markers = mem_array(buffer->marker_count, sizeof(*frame->markers));
     frame->marker_count = buffer->marker_count;
     memcpy(frame->markers, buffer->markers, buffer->marker_count * sizeof(*buffer->markers));
-    /* recomputes the distances that markers show: the chosen sensor may have changed since the buffer was kept */
+    /* recomputes the distances that markers show: the user may have chosen another sensor since the visibility buffer was stored */
     markers_measure(context, frame);
     return true;
 }

@@ -13,7 +13,7 @@ enum { WHOLE = 8 }; /* bits of a colour channel */
 struct ramp_search {
     const uint32_t *muted, *own;
     size_t steps;
-    int bits; /* WHOLE: compares all colours of two rows; a smaller value: compares only this many bits of each row's brightest colour */
+    int bits; /* how rows are compared: WHOLE: by all their colours; a smaller number: by this many bits of each row's brightest colour */
 };
 
 static int by_number(uint32_t a, uint32_t b)

@@ -23,11 +23,11 @@ struct setup {
     float x, y; /* position of the first corner in pixels, from which all linear functions below count x and y */
     struct raster_edge edges[3];
     struct plane depth, a, b, inverse_w;
-    /* how much of each pattern a pixel has, 0..1, as linear functions over the frame; only set if the face has flags */
+    /* part, 0..1, of each pattern at a pixel, as linear functions over the frame; only set if the face has flags */
     struct plane no_data, uncertain, no_limits;
     uint32_t mark, flags;
     bool flat; /* perspective is negligible */
-    bool thin; /* true: the face is so thin that rounding may give values outside the range of its corners' values */
+    bool thin; /* true: the face is so thin that rounding errors may carry interpolated values beyond the values at its corners */
 };
 
 SOFT_INLINE struct soft_vertex vertex_of(const struct soft_corners *corners, int i)
@@ -129,7 +129,7 @@ SOFT_INLINE lanes_int marks_at(const struct setup *setup, const struct mark_ink 
     return pattern_marks(marks, none > 0.5f, little > 0.5f, (free > 0.5f) & -(int32_t)ink->rich, b, x, y, ink);
 }
 
-/* Narrows left..right, the columns of a row that may be inside the face, to the columns inside all edges, plus one at each end. */
+/* Narrows the range left..right of a row's columns to those inside all edges of the face, plus one column at each end. */
 SOFT_INLINE void narrow(const struct setup *setup, float y, int *left, int *right)
 {
     for (int e = 0; e < 3; e++) {
@@ -160,8 +160,8 @@ SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_sampl
                            const struct setup *setup, const struct soft_cutout *cutout, const struct mark_ink *ink)
 {
     bool wide = face->right - face->left >= 2 * LANES;
-    /* last column at which a stamp (block of pixels drawn as a unit) may begin without reaching beyond the tile, where another thread
-       draws */
+    /* last column at which a stamp (block of pixels drawn as a unit) may begin: a later one would reach beyond the tile, into pixels of
+       another thread */
     int last = tile->rect.right + 1 - LANES;
     for (int row = face->top; row <= face->bottom; row++) {
         size_t start = place_in(tile, tile->rect.left, row);

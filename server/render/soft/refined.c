@@ -12,8 +12,8 @@
 #include "render/soft/refined_impl.h"
 #include "render/gl/ghosts.h"
 
-/* number of bands (groups of pixel rows) that one step processes per core, which takes a few milliseconds: SHADED_BANDS when shading, BANDS
-   in other work */
+/* bands (groups of pixel rows) that one step of a refined frame processes per core, in a few milliseconds. SHADED_BANDS: when shading;
+   BANDS: in other work */
 enum { SHADED_BANDS = 1, BANDS = 8 };
 static const double OFF_SURFACE_TEXELS = 1 + SUN_SPREAD; /* as sun_visibility() in shaders/shadow.glsl */
 
@@ -98,7 +98,8 @@ static void aim(struct refined *refined, const struct light *light)
     copy_columns(matrix, refined->sun_from_ground);
 }
 
-/* Prepares the frame for its next step, after other frames were drawn. Returns false when out of memory. */
+/* Prepares the refined frame for its next step; called because other frames may have been drawn since the last step. Returns false when out
+   of memory. */
 static bool take_up(struct refined *refined, const struct frame_context *context, struct frame *frame)
 {
     struct raster *raster = &refined->raster;
@@ -113,7 +114,7 @@ static bool take_up(struct refined *refined, const struct frame_context *context
     raster_aim_cuts(raster);
     raster->out = frame->bgrx;
     raster->out_stride_bytes = (size_t)frame->stride_bytes;
-    /* raster->light may be another copy than in the last step, so the pointers of the meshes into it are set again */
+    /* the copy of the light may be another one than in the last step, so the meshes' pointers into it are set again */
     if (refined->step > REFINED_FIND && refined->step < REFINED_INK)
         for (size_t m = 0; m < raster->mesh_count; m++)
             raster->meshes[m].baked = (const uint8_t(*)[4])raster->light->baked[raster->meshes[m].asset];
@@ -242,8 +243,8 @@ static void ink_some(void *arg, size_t begin, size_t end)
         piece->refined->raster.soft->kernels->ink_band(piece->refined, (int)(piece->first + band));
 }
 
-/* Chooses the range of work items (bands or rows) for this step: `some` per core, out of `all`. Returns true if the range includes the last
-   item. */
+/* Chooses the range of work items (bands or rows) that this step processes: `some` per core, from a total of `all`. Returns true if the
+   range includes the last item. */
 static bool advance(struct refined *refined, size_t all, size_t some, size_t *begin, size_t *end)
 {
     some *= (size_t)workers_count(refined->raster.soft->workers);

@@ -12,12 +12,12 @@ enum { REFINED_ROWS = 16, SAMPLES = VISIBILITY_MOST_PARTS };
 /* Sample positions relative to the pixel's centre: a rotated square, so that edges of any slope cross the samples one by one. */
 extern const float refined_samples[SAMPLES][2];
 
-/* Ids of samples that show no triangle (triangle ids: render/soft/tile.h). */
+/* Special ids of samples that show no triangle; other values are triangle ids (render/soft/tile.h). */
 #define ID_NOTHING 0xffffffffu
 #define ID_CAP 0xfffffffeu /* the sample shows a section cap: the cut face of a closed body */
 
-enum { NORMAL_X, NORMAL_Y, NORMAL_Z, AMBIENT, OPEN, TINT }; /* indices of vertex attributes in arrays of eight per vertex */
-enum { BASE, METALLIC = 3, ROUGHNESS, EMISSIVE };           /* indices of material attributes in arrays of eight per material */
+enum { NORMAL_X, NORMAL_Y, NORMAL_Z, AMBIENT, OPEN, TINT }; /* indices of vertex attributes in arrays that have eight elements per vertex */
+enum { BASE, METALLIC = 3, ROUGHNESS, EMISSIVE }; /* indices of material attributes in arrays that have eight elements per material */
 
 struct refined {
     struct raster raster;
@@ -33,7 +33,7 @@ struct refined {
         REFINED_COLOR,
         REFINED_DONE
     } step;
-    size_t at; /* number of work items (samples, bands or rows) of the step that are done */
+    size_t at; /* number of work items (samples, bands or rows) of the current step that are done */
     bool failed;
     float (*normals)[9]; /* by mesh: matrix that rotates normals from the file to the plant frame, column by column */
     size_t mesh_capacity;
@@ -43,10 +43,10 @@ struct refined {
     const struct frame_context *context;
     struct environment_light surroundings;
     float sun_from_pixel[4][4], sun_from_ground[4][4]; /* matrices, as columns */
-    /* matrix, column by column: maps a normal to an offset on the sun's map; adding it lifts the point off its own surface, against shadow
-       acne */
+    /* matrix, column by column, that maps the normal of a surface to an offset on the sun's shadow map. Adding the offset lifts a point off
+       its own surface, against shadow acne */
     float sun_from_normal[3][3];
-    float ground_step[3]; /* offset on the sun's map that lifts points off the ground, against shadow acne */
+    float ground_step[3]; /* offset on the sun's shadow map that is added to points of the ground, against shadow acne */
 };
 
 struct refined_item { /* one surface within a pixel */

@@ -19,7 +19,7 @@ struct coloring {
     const struct band_lists *lists; /* sensor lists of the band being coloured */
 };
 
-/* Returns the index of a pixel's cell in its band. */
+/* Returns the index, within the band, of the cell (square of pixels) that contains a pixel. */
 SOFT_INLINE int cell_at(const struct coloring *coloring, int x, int y)
 {
     return x / CELL_PX + y % coloring->buffer->band_rows / CELL_PX * coloring->lists->columns;
@@ -59,8 +59,8 @@ static float rule(float y, float pattern_px)
 
 static const float MIN_SLOPE = 1e-7f, MAX_LINE_COVERAGE = (float)ISOLINE_MOST;
 
-/* Returns how much the position on the scale (0..1) changes per pixel. here: carried value (colour map column; on a logarithmic scale the
-   field's value); by_x, by_y: its change per pixel. */
+/* Returns how much the position on the scale (0..1) changes per pixel. here: value at the pixel, as a colour map column, or, on a
+   logarithmic scale, as the field's value; by_x, by_y: change of that value per pixel. */
 static float slope_of(const struct coloring *coloring, float by_x, float by_y, float here)
 {
     float slope = hypotf(by_x, by_y);
@@ -185,7 +185,7 @@ static uint32_t flagged_color(const struct coloring *coloring, const struct visi
     return color_of_place(coloring, &place);
 }
 
-/* Transposes four rows of four into the first three columns. */
+/* Transposes a 4 x 4 matrix given as rows, and writes its first three columns. */
 SOFT_INLINE void transpose(const quad rows[4], quad columns[3])
 {
     quad low = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5), high = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
@@ -195,14 +195,16 @@ SOFT_INLINE void transpose(const quad rows[4], quad columns[3])
     columns[2] = __builtin_shufflevector(low, high, 0, 1, 4, 5);
 }
 
-struct eight_shown { /* eight pixels of the field: corner weights, and carried values */
+/* eight pixels that show the field: weights of triangle corners, and interpolated values (colour map columns; on a logarithmic scale field
+   values) */
+struct eight_shown {
     lanes w1, w2, carried;
-    lanes_int known; /* -1: the fast path may colour the pixel; 0: a corner or the pixel has a flag */
-    struct eight_places places; /* points at which fields are evaluated from sensors */
+    lanes_int known;            /* -1: the fast path may colour the pixel; 0: the pixel, or a corner of its triangle, has a flag */
+    struct eight_places places; /* surface points of the eight pixels, at which fields are evaluated from their sensors */
 };
 
-/* Computes the carried values (colour map columns; on a logarithmic scale values) of eight pixels, as field_color() in shaders/field.glsl
-   does. wanted: pixels that are not wanted receive arbitrary values. cells: cell of each pixel in the band. */
+/* Computes the interpolated values of eight pixels: colour map columns or, on a logarithmic scale, field values. Works as field_color() in
+   shaders/field.glsl. wanted: mask of pixels; others receive arbitrary values. cells: index of each pixel's cell in the band. */
 SOFT_INLINE void carry(const struct coloring *coloring, const struct visibility_band *band, lanes_int triangles, lanes_int weights,
                        lanes_int wanted, lanes_int cells, struct eight_shown *out)
 {
@@ -303,8 +305,8 @@ SOFT_INLINE lanes_int field_colors(const struct coloring *coloring, const struct
 /* 64-bit colour sums: blue from bit 0, red from bit 16, green from bit 32 */
 typedef uint64_t sums __attribute__((vector_size(32), aligned(8)));
 
-/* Pixels that show several surfaces: their surfaces are coloured in advance, eight at a time, in the order of storage, which is also the
-   order of use. */
+/* Colours of surfaces, for pixels that show several surfaces. They are computed in advance, eight at a time, in the order in which the
+   surfaces are stored and used. */
 enum { PARTS_AHEAD = 64 };
 struct ahead {
     size_t first, end;
@@ -319,8 +321,8 @@ static inline uint64_t spread(uint32_t color)
     return (color & 0xff00ff) | (uint64_t)(color >> 8 & 0xff) << 32;
 }
 
-/* Colours the next surfaces of pixels that show several, up to PARTS_AHEAD, and stores the colours in *ahead. pixel: index in band->mixed
-   of the pixel to which the first surface belongs. */
+/* Colours the next surfaces of pixels that show several surfaces, up to PARTS_AHEAD of them, and stores the colours in *ahead. pixel: index
+   in band->mixed of the pixel to which the first of these surfaces belongs. */
 SOFT_INLINE void color_parts(const struct coloring *coloring, const struct visibility_band *band, size_t pixel, struct ahead *ahead)
 {
     size_t first = band->mixed[pixel].first_part, left = band->part_count - first, count = left < PARTS_AHEAD ? left : PARTS_AHEAD;
@@ -390,7 +392,7 @@ static uint64_t flagged_sum(const struct coloring *coloring, const struct visibi
     return sum;
 }
 
-/* Colours the pixels that show several surfaces. color_lanes() wrote arbitrary values there before. */
+/* Colours the pixels that show several surfaces. color_lanes() has written arbitrary values to them. */
 SOFT_INLINE void color_mixed(const struct coloring *coloring, const struct visibility_band *band, int top)
 {
     static const sums wanted[] = { { 0 }, { -1ull }, { -1ull, -1ull }, { -1ull, -1ull, -1ull }, { -1ull, -1ull, -1ull, -1ull } };

@@ -11,7 +11,9 @@ struct band_lists { /* sensor lists of one band of pixel rows, for meshes whose 
     int columns;        /* number of cells in a row of cells */
 };
 
-struct eight_places { /* points on triangles; at: the point in metres; second, third: vectors from the first corner to the others */
+/* eight points on triangles. at: position of the point in metres; second, third: vectors from the triangle's first corner to its second and
+   third */
+struct eight_places {
     lanes at[3], second[3], third[3];
     lanes_int meshes; /* index of the triangle's mesh in the visibility buffer; -1: the field there is interpolated between vertices */
 };
@@ -65,7 +67,7 @@ SOFT_INLINE void evaluate_places(const struct visibility_buffer *buffer, const s
     }
 }
 
-/* Converts field values to carried values (colour map columns; on a logarithmic scale unchanged), like carried_of() in
+/* Converts field values to colour map columns; on a logarithmic scale they stay unchanged. Works like carried_of() in
    visibility_buffer.c. */
 SOFT_INLINE lanes carried_of_values(const float *scale, lanes values)
 {
@@ -75,8 +77,8 @@ SOFT_INLINE lanes carried_of_values(const float *scale, lanes values)
     return lanes_clamp((values - scale[0]) * scale[1] * COLUMNS_OF_RANGE + (1 + SLACK * COLUMNS_OF_RANGE), -farthest, farthest);
 }
 
-/* Returns the change of the carried value (colour map column; on a logarithmic scale the value) when the weights of the triangle's second
-   and third corner grow by w1 and w2. carried: value at the points. */
+/* Returns the change of the values at the points when the weights of the triangle's second and third corner grow by w1 and w2. Values are
+   colour map columns or, on a logarithmic scale, field values. carried: values at the points. */
 SOFT_INLINE lanes carried_change(const struct visibility_buffer *buffer, const struct band_lists *lists, const struct eight_places *places,
                                  lanes w1, lanes w2, lanes_int cells, lanes carried)
 {

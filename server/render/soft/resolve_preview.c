@@ -9,8 +9,8 @@
 #include "render/soft/pixel_marks.h"
 #include "render/soft/section_colors.h"
 
-/* Prefetch distances in pixels: first the shadow bounds, then the texels that the bounds leave undecided; both are scattered in memory.
-   AIMS: size of the ring buffer of started lookups. */
+/* Prefetch distances in pixels: BOUNDS_AHEAD for the depth bounds of shadow map tiles, SHADOWS_AHEAD for the texels of tiles that the
+   bounds leave undecided. AIMS: size of the ring buffer of started shadow lookups. */
 enum { BOUNDS_AHEAD = 8 * LANES, SHADOWS_AHEAD = 4 * LANES, AIMS = 16 };
 
 /* Computes positions on the sun's shadow map, 0..1, and depths there, of the surfaces that eight pixels show. */
@@ -198,7 +198,7 @@ SOFT_INLINE void values_at(const struct pixel_row *row, lanes x, lanes y, lanes 
     pixel_lanes_at(&row->pixels->field, row->list, at, out);
 }
 
-/* Converts field values to carried values (colour map columns; on a logarithmic scale unchanged), as carry_field() in faces.c. */
+/* Converts field values to colour map columns; on a logarithmic scale they stay unchanged. Works like carry_field() in faces.c. */
 SOFT_INLINE lanes carried_of(const struct pixel_row *row, lanes value)
 {
     const float slack = 1e-5f, columns = COLORMAP_PLACES / (1 + 2 * slack), farthest = 1e6f, *scale = row->raster->block.scale;
@@ -214,8 +214,8 @@ static float depth_step(const float *at, ptrdiff_t step, bool before, bool after
     return fabsf(ahead) < fabsf(behind) ? ahead : behind;
 }
 
-/* Writes the change of the carried values (colour map columns; on a logarithmic scale values) from pixel to pixel, in x and y. rect: the
-   thread's own pixels; depth outside is not read, because other threads may write there. */
+/* Writes how much the values of eight pixels change from pixel to pixel, in x and y. Values are colour map columns or, on a logarithmic
+   scale, field values. rect: the thread's own pixels; depth outside is not read, because other threads may write there. */
 SOFT_INLINE void carried_steps(const struct pixel_row *pixels, const struct soft_rect *rect, int column, int row, lanes carried,
                                lanes *by_x, lanes *by_y)
 {
@@ -234,8 +234,8 @@ SOFT_INLINE void carried_steps(const struct pixel_row *pixels, const struct soft
     *by_y = carried_of(pixels, values.value) - carried;
 }
 
-/* Returns the marks (contents of pixels) of eight pixels as if all showed the field of `pixels`; the caller ignores those of other
-   pixels. */
+/* Computes the marks (contents of pixels) of eight pixels as if all of them showed the field `pixels`; the caller ignores the results of
+   pixels that show something else. */
 SOFT_INLINE lanes_int marks_of_field(const struct pixel_row *pixels, const struct soft_rect *rect, lanes_int marks, int column, int row)
 {
     const struct raster *raster = pixels->raster;
@@ -254,8 +254,8 @@ SOFT_INLINE lanes_int marks_of_field(const struct pixel_row *pixels, const struc
     return pattern_marks(marks, values.no_data, values.uncertain, no_limits, light, x, (float)row + 0.5f, ink);
 }
 
-/* Replaces each mark MARK_PIXELS among eight pixels by the MARK_FIELD of the evaluated field. Pixels are evaluated together if they show
-   the same field. */
+/* Among eight pixels, replaces each mark MARK_PIXELS (field to be evaluated at the pixel) by the MARK_FIELD of the evaluated field. Pixels
+   that show the same field are evaluated together. */
 SOFT_INLINE void evaluate_eight(const struct raster *raster, const struct soft_rect *rect, const struct mark_ink *ink, int column, int row)
 {
     lanes_int *at = (lanes_int *)(raster->marks + (size_t)row * (size_t)raster->pitch_px + (size_t)column), marks = *at, out = marks;
@@ -271,14 +271,14 @@ SOFT_INLINE void evaluate_eight(const struct raster *raster, const struct soft_r
     *at = out;
 }
 
-/* --- fields of many sensors, in squares of cells ------------------------------------------------------------------------------- */
+/* --- fields of many sensors, evaluated with sensor lists for squares of pixels ------------------------------------------------- */
 
-struct many { /* pixels of one field of many sensors within a square of cells */
+struct many { /* those pixels within a square of cells that show one field of many sensors */
     const struct raster *raster;
     const struct soft_pixels *pixels;
     const struct soft_rect *rect;
     int left, top;
-    uint32_t mark; /* mark that the field's pixels have, without the low byte (row of the colour map) */
+    uint32_t mark; /* mark of the pixels that show the field, without its low byte, which is the row of the colour map */
 };
 
 SOFT_INLINE lanes_int *marks_of_many(const struct many *many, int column, int row)
@@ -392,7 +392,7 @@ SOFT_INLINE void evaluate_fields(const struct raster *raster, const struct soft_
 SOFT_INLINE void color_row(const struct raster *raster, int left, int right, int row, uint8_t *out)
 {
     struct heights heights = { 0 };
-    struct sun_aim aims[AIMS]; /* ring buffer: by column / LANES, modulo AIMS */
+    struct sun_aim aims[AIMS]; /* ring buffer of started shadow lookups; index: column / LANES, modulo AIMS */
     for (int column = left - BOUNDS_AHEAD; column <= right; column += LANES) {
         int aimed = column + BOUNDS_AHEAD, bounded = column + SHADOWS_AHEAD;
         if (aimed <= right)

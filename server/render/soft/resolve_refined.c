@@ -97,8 +97,8 @@ static bool share_edge(const struct soft_triangle *a, const struct soft_triangle
     return a->mesh == b->mesh && shared >= 2;
 }
 
-/* Groups the samples of a pixel by surface. under: by sample: area of the pixel that it represents. triangles: receives the triangle of
-   each group. Returns the number of groups. */
+/* Groups the samples of a pixel by the surface that they show. under: by sample: area of the pixel that the sample represents. triangles:
+   receives a triangle of each group. Returns the number of groups. */
 static int group_samples(struct recent *recent, const struct soft_sample samples[SAMPLES], size_t at, const uint16_t under[SAMPLES],
                          struct soft_triangle triangles[SAMPLES], struct sample_group groups[SAMPLES])
 {
@@ -186,8 +186,8 @@ static void layers_finish(struct layers *layers)
     mem_free(layers->alphas);
 }
 
-/* Composites the fragments of one pixel. over: receives the sum of their colours times coverage; under: receives, for each sample, the area
-   (0..VISIBILITY_SHARES / SAMPLES) that stays visible behind them. */
+/* Composites the blended fragments of one pixel. over: receives the sum of their colours times coverage; under: receives, for each sample,
+   the area (0..VISIBILITY_SHARES / SAMPLES) through which the surface behind stays visible. */
 static void blend(const struct layers *layers, size_t first, size_t end, uint16_t over[3], uint16_t under[SAMPLES])
 {
     float left[SAMPLES] = { 1, 1, 1, 1 }, sum[3] = { 0 }, gone = 0;
@@ -222,9 +222,9 @@ static void add_item(const struct refined *refined, struct refined_row *row, con
     }
 }
 
-/* A pixel that shows several surfaces. */
+/* A pixel that shows several surfaces, with the transparent triangles in front of them. */
 struct mixed_pixel {
-    size_t at; /* index of the pixel in the samples */
+    size_t at; /* index of the pixel in the arrays of samples */
     int column, y;
     size_t first, end; /* range of the blended fragments over the pixel */
 };
@@ -264,8 +264,8 @@ static void add_mixed(struct recent *recent, struct refined_row *row, const stru
     row->any_sky |= mixed->sky > 0;
 }
 
-/* Sorts the pixels of a row by content: a single surface, several surfaces, sky or section cap. layered: index of the next blended
-   fragment; on return that of the first one after this row. */
+/* Sorts the pixels of a row by content: a single surface, several surfaces, sky or section cap. layered: index of the first blended
+   fragment of the row; on return, index of the first fragment after the row. */
 static void sort_row(struct recent *recent, struct refined_row *row, const struct soft_sample samples[SAMPLES], size_t start, int y,
                      const struct layers *layers, size_t *layered)
 {

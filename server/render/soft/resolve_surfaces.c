@@ -8,7 +8,8 @@
 
 /* --- textures ------------------------------------------------------------------------------------------------------------------ */
 
-/* Writes by how much the surface point moves per pixel, in plant coordinates. by: change of the three corner weights per pixel. */
+/* Writes how far the surface point moves from one pixel to the next, in plant coordinates. by: change of the three corner weights per
+   pixel. */
 static void place_slopes(const struct refined *refined, const struct soft_triangle *triangle, const float by[3], float out[3])
 {
     const struct soft_mesh *mesh = &refined->raster.meshes[triangle->mesh];
@@ -93,7 +94,8 @@ static void wear_maps(const struct refined *refined, const struct soft_triangle 
     }
 }
 
-/* Applies textures to these surfaces: colours, normals and emitted light. alphas: receives their opacity, 0..1; NULL: not needed. */
+/* Applies textures to eight surfaces: to their colours, normals and emitted light. alphas: receives their opacity, 0..1; NULL: not
+   needed. */
 SOFT_INLINE void wear(const struct refined *refined, const struct refined_item *items, size_t count, const struct eight_points *spot,
                       struct pbr_surface *surface, vec *glow, float *alphas)
 {
@@ -122,8 +124,8 @@ struct lit { /* eight surfaces */
     vec v, l, glow; /* v, l: unit vectors towards the eye and the sun; glow: light that the surface emits */
 };
 
-/* Computes the surface points, their material, and how much of the sun reaches them. alphas: receives their opacity, 0..1; NULL: not
-   needed. */
+/* Computes the surface points of eight surfaces, their material, and how much of the sun reaches them. alphas: receives their opacity,
+   0..1; NULL: not needed. */
 SOFT_INLINE void see(const struct refined *refined, const struct refined_item *items, size_t count, struct lit *lit, float *alphas)
 {
     struct eight_points *spot = &lit->spot;
@@ -183,8 +185,8 @@ SOFT_INLINE vec glossy_light(const struct lit *lit, const struct sky_light *sky,
                 times(sun_shade(&surface, lit->v, lit->l), all((float)GLOSSY_SUN)));
 }
 
-/* Stores reflected light in two parts: light from a black surface, and the additional light from a white one. Light from a non-metal is
-   linear in its colour, so these give the light for every colour of the field. */
+/* Stores the light that a surface reflects in two parts: the light from a black surface, and the additional light from a white one. Light
+   from a non-metal is linear in the surface's colour, so the two parts give the light for every colour of the field. */
 void refined_shade_gloss(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                          const struct shaded_items *out)
 {

@@ -12,7 +12,8 @@ typedef int32_t sixteen_int __attribute__((vector_size(64), aligned(4)));
 
 enum { MANY = 16 };
 
-/* Loads a stamp of 16 pixels from rows of `width` (4, 8 or 16) pixels that are `pitch` elements apart. width: a compile-time constant. */
+/* Loads the values of a stamp (block of 16 pixels drawn as a unit) from rows of `width` (4, 8 or 16) pixels that are `pitch` elements
+   apart. width: a compile-time constant. */
 SOFT_INLINE sixteen many_floats(const float *at, size_t pitch, int width)
 {
     if (width == MANY)
@@ -96,7 +97,8 @@ SOFT_INLINE sixteen_int many_within(sixteen x, int32_t high)
     return (sixteen_int)_mm512_min_epi32(whole, _mm512_set1_epi32(high));
 }
 
-/* Draws one stamp of 16 pixels, in rows of `width`; same rules as draw_stamp(), which draws eight. l: index of the face in `small`. */
+/* Draws one stamp (block of 16 pixels drawn as a unit), in rows of `width` pixels, by the same rules as draw_stamp() draws a stamp of
+   eight. l: index of the face in `small`. */
 SOFT_INLINE void draw_many(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                            const struct small *small, int l, int left, int top, uint32_t mark, const struct mark_ink *ink, int width,
                            bool thin)

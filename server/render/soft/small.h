@@ -31,16 +31,16 @@ SOFT_INLINE bool is_plain(const struct soft_corners *corners, const struct soft_
 
 struct small { /* eight faces, as structure of arrays: lane i belongs to face i */
     lanes x, y;
-    /* edge functions, with members as in struct raster_edge; edge_row: edge_dy * x of the edge's upper end */
+    /* edge functions of the faces; members as in struct raster_edge, and edge_row: edge_dy * x of the edge's upper end */
     lanes edge_y[3], edge_dx[3], edge_dy[3], edge_row[3];
     lanes_int negative[3];
-    /* values interpolated over the face: [0] depth, [1] a, [2] b of struct soft_vertex; at: value at (x, y); dx, dy: change per pixel; low,
-       high: limits */
+    /* functions that are linear over the face: [0] depth, [1] a, [2] b of struct soft_vertex. at: value at (x, y); dx, dy: change per
+       pixel; low, high: bounds of the value */
     lanes at[3], dx[3], dy[3], low[3], high[3];
     lanes_int thin;
 };
 
-struct eight_faces { /* indices of the corners, and sizes, of eight faces, one lane each */
+struct eight_faces { /* eight faces, one per lane: indices of their corners, and their sizes */
     lanes_int corners[3];
     lanes_int width, height; /* size in pixels, minus 1 */
 };
@@ -65,8 +65,8 @@ SOFT_INLINE struct eight_faces read_faces(const struct soft_face *const faces[LA
     };
 }
 
-/* Sets up the edge functions of eight faces and interpolation of their depth; shaded: also of a and b (colour map column and row, or
-   light). at: corners, as indices in `corners`. */
+/* Sets up the edge functions of eight faces, and the interpolation of depth; shaded: true: also of a and b (colour map column and row, or
+   light). at: for each face, its corners as indices in `corners`. */
 SOFT_INLINE void small_init(struct small *small, const struct soft_corners *corners, const lanes_int at[3], bool shaded)
 {
     lanes x[3], y[3];
@@ -101,7 +101,7 @@ SOFT_INLINE void small_init(struct small *small, const struct soft_corners *corn
     }
 }
 
-/* Loads eight pixels: a row of eight, or with `two` two rows of four. two: a compile-time constant. */
+/* Loads the values of eight pixels: one row of eight or, if `two` is true, two rows of four. two: a compile-time constant. */
 SOFT_INLINE lanes stamp_floats(const float *at, size_t pitch, bool two)
 {
     if (!two)
@@ -168,8 +168,8 @@ SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_samp
     lanes_int side = small_side(small, l, 0, x, y) | small_side(small, l, 1, x, y) | small_side(small, l, 2, x, y);
     lanes depth = stamp_floats(sample->depth + place, pitch, two), here = small_value(small, l, 0, from_x, from_y, thin), none = { 0 };
     lanes_int seen = (side >= 0) & (here >= depth);
-    /* nearly half of all stamps (blocks of pixels drawn as a unit) show nothing. Where lanes_choose() is a single instruction, finishing
-       them costs less than a branch misprediction */
+    /* Nearly half of all stamps (blocks of pixels drawn as a unit) change no pixel. The function returns early for them, except where
+       lanes_choose() is a single instruction: there, finishing the stamp costs less than a branch misprediction */
     if (!LANES_CHOOSE_AT_ONCE && !lanes_any(seen))
         return;
     if (sample->marks) {

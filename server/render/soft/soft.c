@@ -9,7 +9,7 @@
 #include "render/soft/ramp_rows.h"
 #include "render/soft/tones.h"
 
-/* default bounds of the visibility buffers that are kept for recolouring: room for about five previews and ten refined frames of
+/* default memory limits of the visibility buffers that are kept for recolouring: room for about five previews and ten refined frames of
    1920x1080 */
 static const size_t PREVIEWS_BYTES = (size_t)128 << 20, REFINED_BYTES = (size_t)256 << 20;
 
@@ -32,7 +32,7 @@ static lanes shading_of(const struct asset_material *material)
                     material->roughness,     material->emissive[0],   material->emissive[1],   material->emissive[2] };
 }
 
-/* Copies the materials of all models; equal ramps are stored once. */
+/* Copies the materials of all models. Materials with equal colour ramps share one. */
 static void copy_materials(struct soft *soft)
 {
     const struct gpu_scene *gpu_scene = soft->gpu_scene;
@@ -66,7 +66,8 @@ struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_sc
     soft->environments = environments;
     soft->kept[TIER_PREVIEW].bound_bytes = PREVIEWS_BYTES;
     soft->kept[TIER_REFINED].bound_bytes = REFINED_BYTES;
-    /* keeps the buffer of the newest refined frame, however large, so that changed readings can always be shown by recolouring it */
+    /* the buffer of the newest refined frame is kept even if it exceeds the limit, so that changed readings can always be shown by
+       recolouring it */
     soft->kept[TIER_REFINED].keeps_newest = true;
     soft->parts = mem_array(gpu_scene->model_count, sizeof(*soft->parts));
     soft->backdrops = sky->texels[0];

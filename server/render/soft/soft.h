@@ -21,10 +21,10 @@ struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_sc
                          const struct environments *environments);
 void soft_destroy(struct soft **soft); /* frees the software renderer and sets *soft to NULL; accepts a pointer to NULL */
 
-/* sets the bound, in bytes, of the visibility buffers that a tier keeps for still cameras */
+/* sets the memory limit, in bytes, of the visibility buffers that a tier (preview or refined) keeps while cameras stand still */
 void soft_bound(struct soft *soft, enum tier tier, size_t bytes);
 size_t soft_kept_bytes(const struct soft *soft);  /* bytes of kept visibility buffers */
-size_t soft_room_bytes(const struct soft *soft);  /* bytes of working memory, not counting that of refined frames still being drawn */
+size_t soft_room_bytes(const struct soft *soft);  /* bytes of working memory, without that of refined frames that are still being drawn */
 size_t soft_light_bytes(const struct soft *soft); /* bytes of baked light copied from the GPU */
 void soft_drop_spare(struct soft *soft);          /* frees the working memory that finished refined frames left for reuse */
 void soft_rest(struct soft *soft);                /* frees working memory, copied light and kept visibility buffers */
@@ -37,8 +37,8 @@ struct refined *refined_begin(struct soft *soft);
 /* Draws one step of a refined frame: four samples per pixel find the visible triangles, then each surface in a pixel is shaded once.
    context: the same at each step, with its light and colour map. Returns true when no step is left. */
 bool refined_step(struct refined *refined, const struct frame_context *context, const struct light *light, struct frame *frame);
-/* Ends a refined frame after its last step: labels its isolines at `points` and keeps its visibility buffer for recolouring. Returns false
-   when the frame failed because memory ran out; logged. */
+/* Ends a refined frame after its last step: finds the labels of its isolines among `points`, and keeps its visibility buffer for
+   recolouring. Returns false when the frame failed because memory ran out; logged. */
 bool refined_keep(struct refined *refined, const struct frame_context *context, const struct isoline_points *points, struct frame *frame);
 void refined_end(struct refined **refined); /* frees the refined frame and sets *refined to NULL; accepts a pointer to NULL */
 

@@ -55,7 +55,7 @@ static void abandon(struct renderer *renderer, struct render_job *job)
     job->of.soft = NULL;
 }
 
-/* Continues a job after other frames were drawn meanwhile. Returns false on failure, logged. */
+/* Prepares to continue a job after other frames were drawn. Returns false on failure, logged. */
 static bool take_up(struct renderer *renderer, struct render_job *job)
 {
     if (!renderer_light_job(renderer, job))

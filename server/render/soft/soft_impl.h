@@ -18,13 +18,16 @@ enum { BAND_ROWS = 32, RAMP_STEPS = MODEL_LIGHT_STEPS, SOFT_STRETCH_MOST = 64, S
 
 /* A mark is the 32-bit content of a pixel: 0: empty; else an entry of the colour map, or a material and its light, from which the pixel's
    colour is looked up. The top bits tell the kind. */
-/* MARK_FIELD | row * COLORMAP_COLUMNS + column of the colour map (bits of MARK_PLACE) | coverage by an isoline, 0..255 << MARK_LINE */
+/* mark of a pixel that shows the field: MARK_FIELD | row * COLORMAP_COLUMNS + column of the colour map (bits of MARK_PLACE) | coverage by
+   an isoline, 0..255 << MARK_LINE */
 #define MARK_FIELD 0x40000000u
 #define MARK_PLACE 0x1ffffu
 enum { MARK_LINE = 17, MARK_LINE_WHOLE = 255 };
-/* MARK_CONTEXT | row of the colour ramps << 16 (14 bits) | ambient light << 8 (8 bits) | sunlight (8 bits) */
+/* mark of a pixel that shows an asset without a field: MARK_CONTEXT | row of the colour ramps << 16 (14 bits) | ambient light << 8 (8 bits)
+   | sunlight (8 bits) */
 #define MARK_CONTEXT 0x80000000u
-/* a section cut: MARK_CAP, or MARK_SECTION | encoded normal of a surface's inner side (section_colors.h) */
+/* marks of section cuts: MARK_CAP for the cap of a closed body; MARK_SECTION | encoded normal for the inner side of a surface
+   (section_colors.h) */
 #define MARK_SECTION 0xc0000000u
 #define MARK_CAP 0xe0000000u
 #define MARK_KIND 0xc0000000u
@@ -37,8 +40,8 @@ enum { MOST_RAMPS = 1 << 14 };
 struct soft_vertex {
     float x, y, depth; /* x, y: pixels from the top left of the frame; depth: 1 near, 0 far */
     float inverse_w;   /* 1 / clip w; 0: the vertex is in front of the near plane or beyond the guard band (clip.h) */
-    /* with a field: a: column of the colour map (logarithmic scale: the value), b: row of the colour map; without a field: a: ambient
-       light, b: sunlight */
+    /* a, b: if the vertex has a field: column of the colour map (logarithmic scale: the value) and row of the colour map; otherwise:
+       ambient light and sunlight */
     float a, b;
     uint32_t flags; /* from soft_flags() */
 };
@@ -49,14 +52,15 @@ struct soft_mesh { /* one asset in this frame */
     bool has_field;
     /* field values at the vertices; NULL: the asset has no field, or the field could not be computed and shows no data */
     const struct scalar *scalars;
-    int32_t pixels; /* index in raster->pixels of the field, which is evaluated at each pixel; -1: it is interpolated between vertices */
+    /* index in raster->pixels if the mesh's field is evaluated at each pixel; -1: the field is interpolated between vertices */
+    int32_t pixels;
     const uint8_t (*baked)[4];
     /* matrix, column by column: from coordinates of the file to (x w, y w, z, w), with x and y in pixels and z, w of clip space */
     float place[4][4];
     uint32_t first_vertex, vertex_count;
     bool mirrored;
     bool cut;      /* true: section planes remove a part of the mesh, so the inner side of the rest is drawn */
-    float turn[9]; /* rotation of normals from file to plant, columns; for cut meshes only */
+    float turn[9]; /* matrix, column by column, that rotates normals from the file to the plant frame; set only for meshes that are cut */
 };
 
 struct soft_pixels { /* field of a mesh that is evaluated at pixels; positions are relative to the centre of the mesh */
@@ -84,7 +88,8 @@ struct soft_found { /* list of the parts of one mesh that may be visible; its me
     bool both_sides;
     float eye_m[3]; /* eye position in the file's coordinates */
     struct soft_rect rect;
-    uint32_t first_id; /* id of the first triangle of the first item (part); the ids of each further item begin PART_TRIANGLES higher */
+    /* id of the first triangle of the first item; an item is a part, and the ids of each next item begin PART_TRIANGLES higher */
+    uint32_t first_id;
     struct soft_item *items;
     size_t count, capacity;
 };
@@ -92,13 +97,14 @@ struct soft_found { /* list of the parts of one mesh that may be visible; its me
 struct soft_light {       /* copy of a light_set, read back from the GPU */
     uint64_t id;          /* id of the light set; 0: an empty entry */
     uint8_t (**baked)[4]; /* baked light by asset, then by vertex */
-    /* shadow map in square tiles of two cache lines, each tile row by row, so that neighbouring texels mostly share cache lines */
+    /* shadow map of the sun in square tiles; a tile takes two cache lines and is stored row by row, so that neighbouring texels mostly
+       share cache lines */
     uint16_t *sun_map;
     uint32_t *sun_bounds; /* by tile of the shadow map: smallest texel | largest texel << 16 */
     int sun_map_px;       /* width and height of the shadow map on the GPU, in texels */
     int sun_tiles;        /* number of tiles of the shadow map in a row */
-    /* brightness of the ground, four bytes per texel: of the texel itself and of its right, lower and lower right neighbours; 0..255, 255:
-       no shadow */
+    /* brightness of the ground, 0..255 (255: no shadow). Each texel has four bytes: its own brightness and those of its right, lower and
+       lower right neighbours */
     uint32_t *ground;
     uint8_t *open; /* openness of the ground to the sky, for refined frames; rows from the top */
     int ground_px; /* width and height of `ground` and `open` */
@@ -141,18 +147,21 @@ struct raster { /* source and target of one frame's rasterization; its memory is
     size_t mesh_capacity;
     struct soft_pixels *pixels;
     size_t pixels_count, pixels_capacity;
-    int row_bias;                      /* added to the row of the colour map in a MARK_PIXELS mark, so that the sum is not negative */
+    int row_bias; /* offset that is added to the row of the colour map in a MARK_PIXELS mark, so that the stored number is not negative */
     int width_px, height_px, pitch_px; /* pitch_px: row length, a multiple of LANES */
     /* largest distance of a sample from the pixel's centre along x or y; bounding rectangles of parts are enlarged by it. Previews: 0 */
     float reach_px;
     float *depth;
     uint32_t *marks;
-    uint32_t *ids; /* by pixel that has a mark: id of its triangle (first_id of the part + index in the part); NULL: not needed */
+    /* by pixel: id of the triangle that it shows (first_id of the part + index in the part); valid where the pixel has a mark; NULL: not
+       needed */
+    uint32_t *ids;
     size_t pixel_capacity;
     uint8_t *out;
     size_t out_stride_bytes;
-    /* section planes as coefficients of (x w, y w, z, w), with x and y in pixels: the dot product is a point's signed distance from the
-       plane, up to a factor; >= 0: kept. The planes through which rays enter the kept space come first: `entry_count` of `cut_count` */
+    /* section planes as coefficients of (x w, y w, z, w), with x and y in pixels. The dot product is a point's signed distance from the
+       plane, up to a factor; points with a negative distance are cut off. The first `entry_count` of the `cut_count` planes are those
+       through which view rays enter the space that is kept */
     float cuts[CLIP_MAX_PLANES][4];
     int cut_count, entry_count;
     float shift_px[2];  /* offset of the samples from pixel centres */
@@ -161,13 +170,13 @@ struct raster { /* source and target of one frame's rasterization; its memory is
     bool has_ground;
     bool greys;                                                                /* context is drawn grey */
     float sun_from_pixel[4][4], ground_from_pixel[3][3], ray_from_pixel[3][3]; /* matrices, as columns */
-    /* cells of the depth grid; finds_cells: raster_tiles() with colours fills them in */
+    /* cells of the depth grid; finds_cells: true: raster_tiles() with SOFT_COLORS computes the cells, too */
     struct depth_cell *cells;
     size_t cell_capacity;
     bool finds_cells;
     struct depth_lens lens;
-    /* pixels over which sky elevation is interpolated: a power of two from SOFT_STRETCH_LEAST to SOFT_STRETCH_MOST; 1: computed per
-       pixel */
+    /* length in pixels of the stretches over which the sky's elevation is interpolated: a power of two from SOFT_STRETCH_LEAST to
+       SOFT_STRETCH_MOST; 1: the elevation is computed for each pixel */
     int stretch_px;
 };
 
@@ -179,7 +188,8 @@ struct soft { /* shared by all frames */
     const struct environments *environments;
     size_t material_count;       /* number of materials of all models together */
     uint32_t *material_of_model; /* by model: index, among all materials, of its first material */
-    /* tables of RAMP_STEPS colours per row, from dark to bright; ramp_of_material: by index of the material: its row in both tables */
+    /* tables of colour ramps: RAMP_STEPS colours per row, from dark to bright; ramp_of_material: by index of a material: its row in
+       muted_ramps and own_ramps */
     uint32_t *muted_ramps, *own_ramps, *ramp_of_material;
     struct soft_materials materials;
     lanes *shading;            /* by material: attributes of shading, at the indices BASE, METALLIC, ROUGHNESS, EMISSIVE (refined_impl.h) */
@@ -192,11 +202,12 @@ struct soft { /* shared by all frames */
     uint64_t uses;
     struct soft_parts **parts;                      /* parts (groups of triangles) by model, then by level; made when first needed */
     struct visibility_store kept[TIER_REFINED + 1]; /* by tier: visibility buffers of views whose camera stands still */
-    /* content_hash_shape() of the last previews drawn; a repeated one means that the camera stands still */
+    /* hashes (content_hash_shape()) of the last previews drawn; if a hash is repeated, the camera stands still */
     uint64_t shapes[SOFT_SHAPES];
     size_t shape_count;
     struct raster preview;
-    struct refined *spare; /* memory that a finished refined frame left for reuse; refined frames under way own theirs */
+    /* memory that a finished refined frame left for reuse; NULL: none. Refined frames in progress own their memory */
+    struct refined *spare;
 };
 
 /* Returns the copy of a light set, read from the GPU if needed. NULL: out of memory, logged. */
@@ -208,13 +219,13 @@ void raster_finish(struct raster *raster); /* frees the raster's memory; the ras
 size_t raster_bytes(const struct raster *raster);
 void refined_destroy(struct refined **refined); /* frees the refined frame and sets *refined to NULL; accepts a pointer to NULL */
 size_t refined_bytes(const struct refined *refined);
-/* Steps of a frame, in the order in which they are called. */
+/* Steps of drawing a frame, declared in the order in which they are called. */
 void raster_aim(struct raster *raster, const struct light *light); /* computes the matrices from pixels */
 /* Prepares for the depth grid, if the frame gets one; call it after raster_aim(). Without memory for the cells, the frame has no grid. */
 void raster_aim_depth(struct raster *raster, const struct light *light);
 /* Finds the cells of a rectangle whose top left corner is the corner of a cell. Runs on a worker. */
 void raster_find_cells(const struct raster *raster, const struct soft_rect *rect);
-/* Returns the depth grid of the cells, owned by the caller. NULL: the frame gets none, or out of memory. */
+/* Returns the depth grid made from the cells found; the caller owns it. NULL: the frame gets no grid, or memory ran out. */
 struct depth_grid *raster_depth_grid(const struct raster *raster);
 /* computes the section planes in pixel coordinates; must be called before the other steps */
 void raster_aim_cuts(struct raster *raster);
@@ -232,16 +243,17 @@ float raster_entry_depth(const struct raster *raster, float x, float y);
 bool raster_find(struct raster *raster, bool bodies);
 bool raster_find_only(struct raster *raster, int asset); /* lists one asset's parts; their back faces are drawn, too */
 bool raster_find_ghosts(struct raster *raster);          /* lists the parts (groups of triangles) of ghosted assets */
-/* writes how much of each pixel a ghost line covers, 0..255, to `veil`, rows of width_px; overwrites the marks. bgr: receives the line's
-   colour. Returns false when out of memory */
+/* draws the lines of ghosted assets into `veil` (rows of width_px): by pixel, the part that a line covers, 0..255; overwrites the marks.
+   bgr: receives the lines' colour. Returns false when out of memory */
 bool raster_ghosts(struct raster *raster, uint8_t *veil, uint8_t bgr[3]);
 void raster_paint_ghosts(const struct raster *raster, const uint8_t *veil, const uint8_t bgr[3]);
-/* output of raster_tiles(): marks of section caps only; marks and depth; marks, depth and colours */
+/* output of raster_tiles(): SOFT_CAPS: only marks of section caps; SOFT_DEPTH: all marks and depth; SOFT_COLORS: marks, depth and
+   colours */
 enum soft_output { SOFT_CAPS, SOFT_DEPTH, SOFT_COLORS };
 void raster_tiles(struct raster *raster, enum soft_output output);       /* rasterizes the found parts */
 bool raster_make_room(struct raster *raster, const struct frame *frame); /* false: out of memory */
 enum soft_rim { RIM_NONE, RIM_LIGHT, RIM_DARK };
-/* returns an enum soft_rim per pixel, rows pitch_px apart: which pixels the outline of the selected asset covers; overwrites
+/* finds the pixels that the outline of the selected asset covers; returns an enum soft_rim per pixel, rows pitch_px apart; overwrites
    raster->depth */
 const uint8_t *raster_rim(const struct raster *raster);
 /* Returns a visibility buffer from which the frame can be recoloured. Call it while raster->ids is valid, and before edges, rims and

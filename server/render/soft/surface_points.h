@@ -22,17 +22,17 @@ struct eight_points {    /* eight surface points */
 
 /* --- where ------------------------------------------------------------------------------------------------------------------- */
 
-struct corners { /* corners of eight triangles relative to the points, from which weights are computed */
+struct corners { /* corners of the triangles that eight points belong to, relative to the points; weights are computed from them */
     /* a, b: x and y of the vector from the point to the corner, in pixels; multiplied by clip w if a corner of the triangle cannot be
        projected */
     float a[3][LANES], b[3][LANES];
     float w[3][LANES]; /* 1 / clip w of the corner; 1 if a corner of the triangle cannot be projected */
-    /* for interpolating depth: g is 1, or clip w if a corner of the triangle cannot be projected; z is depth * g */
+    /* for the interpolation of depth: g: 1, or clip w if a corner of the triangle cannot be projected; z: depth * g */
     float z[3][LANES], g[3][LANES];
 };
 
-/* Projects the corners of the triangle of an item (surface to shade) into lane i, as soft_place_part() in faces.c does. If a corner cannot
-   be projected, which may lie behind the eye, homogeneous coordinates are stored. */
+/* Projects the corners of an item's triangle into lane i, as soft_place_part() in faces.c does; an item is a surface to shade. If a corner
+   cannot be projected (it may lie behind the eye), homogeneous coordinates are stored. */
 SOFT_INLINE void see_corners(const struct refined *refined, const struct refined_item *item, int i, struct corners *out)
 {
     const struct raster *raster = &refined->raster;
@@ -63,8 +63,9 @@ SOFT_INLINE lanes load(const float at[LANES])
     return *(const lanes *)at;
 }
 
-/* Moves points outside their triangle to the nearest point on its rim. e: twice the areas opposite to the corners; negative: outside that
-   edge. Clamping weights at 0 instead would move a point far along a thin triangle. */
+/* Moves points that lie outside of their triangle to the nearest point on its rim. e: by corner: twice the area of the triangle between the
+   point and the opposite edge; negative: the point lies outside that edge. Clamping weights at 0 instead would move a point far along a
+   thin triangle. */
 SOFT_INLINE void keep_within(const struct corners *corners, lanes e[3])
 {
     lanes_int outside = (e[0] < 0.0f) | (e[1] < 0.0f) | (e[2] < 0.0f);
@@ -86,8 +87,8 @@ SOFT_INLINE void keep_within(const struct corners *corners, lanes e[3])
         e[k] = lanes_choose(outside, best[k], most_of(e[k], all(0)));
 }
 
-/* Computes perspective-correct weights of the corners, clamped to the triangle, and moves the point to the position that the weights
-   give. */
+/* Computes the perspective-correct weights of the triangle's corners at each point, clamped to the triangle, and moves the point to the
+   position that the weights give. */
 SOFT_INLINE void weigh(struct eight_points *spot, const struct corners *corners)
 {
     lanes e[3], sum, depth = all(0), over = all(0), x = all(0), y = all(0);

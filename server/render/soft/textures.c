@@ -47,7 +47,7 @@ static quad between_texels(const struct soft_texture *texture, int level, float 
 
 struct texture_making {
     struct soft_materials *materials;
-    uint8_t bytes[1 << 14]; /* table from linear light, 0..1, to the sRGB byte */
+    uint8_t bytes[1 << 14]; /* table that converts linear light, 0..1, to an sRGB byte */
 };
 
 static void make_level(const struct texture_making *making, const struct soft_texture *texture, int level, uint8_t (*out)[4])

@@ -9,9 +9,9 @@
 enum { TEXTURE_LEVELS = 16 };
 
 struct soft_texture {
-    const uint8_t (*levels[TEXTURE_LEVELS])[4]; /* mipmap levels; the finest one points into the file */
+    const uint8_t (*levels[TEXTURE_LEVELS])[4]; /* mipmap levels; the finest level points into the asset file */
     uint8_t (*coarse)[4];                       /* memory of the coarser levels; owned */
-    const float *linear;                        /* table from byte to 0..1: linear light for sRGB textures, else proportional */
+    const float *linear; /* table that converts a byte to 0..1: to linear light for sRGB textures, otherwise in proportion */
     int width_px, height_px, level_count;
     bool repeat;
 };
@@ -47,7 +47,7 @@ void soft_spread_at(const double weights[3][3], double x, double y, struct soft_
 void soft_spread_coordinates(const float (*coordinates)[2], const uint32_t vertices[3], const struct soft_spread *spread, float uv[3][2]);
 /* Samples a texture. uv: from soft_spread_coordinates(). rgba: linear red, green, blue, and alpha, all 0..1. */
 void soft_texture_color(const struct soft_texture *texture, float uv[3][2], float rgba[4]);
-/* Returns the alpha of a surface point: material times vertex colour times texture. */
+/* Returns the alpha (opacity) of a surface point: the product of the alphas of material, vertex colour and texture. */
 float soft_alpha(const struct soft_material *material, const struct asset_view *file, const uint32_t vertices[3],
                  const struct soft_spread *spread);
 

@@ -10,15 +10,16 @@ enum { TILE_WIDTH_PX = 320, TILE_HEIGHT_PX = 184, BLOCK_SHIFT = 3, BLOCK_PX = 1 
 enum { BLOCK_COLUMNS = TILE_WIDTH_PX / BLOCK_PX, BLOCK_ROWS = TILE_HEIGHT_PX / BLOCK_PX };
 enum { MOST_FACES = NEAR_TRIANGLES * PART_TRIANGLES, MOST_CORNERS = PART_VERTICES + NEAR_CORNERS * PART_TRIANGLES };
 
-/* faces whose nearest and farthest corner differ in depth by less than this factor are drawn without perspective correction */
+/* largest ratio between the depths of a face's nearest and farthest corner at which the face is drawn without perspective correction */
 #define SOFT_LITTLE 1.02f
 
 struct soft_corners { /* vertices of a part with the members of struct soft_vertex, followed by the vertices that clipping added */
     float x[MOST_CORNERS], y[MOST_CORNERS], depth[MOST_CORNERS], inverse_w[MOST_CORNERS], a[MOST_CORNERS], b[MOST_CORNERS];
-    /* vertices that clipping added have only the flags SOFT_PATTERNS; how much of each pattern they have is in cut_patterns */
+    /* flags of the vertices; a vertex that clipping added has only flags of SOFT_PATTERNS, and cut_patterns has the part of each pattern
+       there */
     uint32_t flags[MOST_CORNERS];
     struct near_patterns cut_patterns[MOST_CORNERS - PART_VERTICES];
-    int count, placed;  /* placed: number of vertices that clipping did not add; they come first */
+    int count, placed;  /* number of vertices; placed: those that clipping did not add, which come first */
     uint32_t all_flags; /* the OR of all flags */
     bool flat;          /* perspective is negligible */
     bool cut;           /* true: some vertices are in front of the near plane or beyond the guard band (clip.h), so faces must be clipped */
@@ -34,9 +35,9 @@ struct soft_face { /* a triangle that faces the eye and covers a pixel centre of
 enum { FACE_BACK = 0x8000, FACE_TRIANGLE = PART_TRIANGLES - 1 }; /* FACE_BACK: the triangle looks away from the eye */
 
 enum { MOST_SAMPLES = 4 };
-struct soft_sample { /* one sample of every pixel of a tile, row by row from the tile's upper left */
+struct soft_sample { /* one sample per pixel of a tile, stored row by row from the tile's upper left */
     float *depth;
-    uint32_t *marks; /* mark of each sample; NULL (marks, ids): not needed */
+    uint32_t *marks; /* mark of each sample; NULL: not needed (`ids` may be NULL, too) */
     uint32_t *ids;   /* id of the triangle at each sample: first_id of the part + index in the part, and the flag ID_BACK */
     float x, y;      /* offset from the pixel's centre */
 };
@@ -67,7 +68,8 @@ struct soft_tile {
     uint32_t first_id; /* id, in raster->ids, of the first triangle of the part (group of triangles) that is being drawn */
     int cuts;          /* number of section planes, from the first in raster->cuts, that clip the part (group of triangles) */
     enum { DRAW_ALL, DRAW_OPAQUE, DRAW_BLENDED } draws;
-    /* list to which DRAW_BLENDED appends the transparent triangles at each sample; it writes neither depth nor ids */
+    /* list to which DRAW_BLENDED appends a fragment for each transparent triangle at each sample; in this mode neither depth nor ids are
+       written */
     struct soft_fragments *fragments;
     /* --- the part that is being drawn --- */
     const struct soft_mesh *mesh;
@@ -95,7 +97,7 @@ struct soft_cutout {
     double weights[3][3];
 };
 void soft_cutout_init(struct soft_cutout *cutout, const struct soft_tile *tile, const struct soft_face *face);
-/* returns whether the texture has a hole there; x, y: pixels from the upper left corner of the frame */
+/* returns whether the texture has a hole at the point (x, y), in pixels from the upper left corner of the frame */
 bool soft_is_hole(const struct soft_cutout *cutout, float x, float y);
 /* Appends a fragment to tile->fragments. column, row: pixel of the frame. */
 void soft_add_fragment(const struct soft_tile *tile, int sample, const struct soft_face *face, int column, int row, float depth);
