@@ -11,7 +11,7 @@ struct split_plan { /* immutable */
     struct frame_plan *halves[2];
     uint64_t content; /* hash of what all halves show; frames with equal content look the same */
 };
-struct split_view; /* a frame being drawn: one job per half */
+struct split_view; /* frame being drawn, with one render job for each half of the view */
 
 /* Plans a frame of this view: one frame plan per half. Computes the field of each half for about budget_ns (INT64_MAX: until it is ready).
    The caller owns the plan (split_plan_destroy). Returns NULL if a field is not ready yet. */

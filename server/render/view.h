@@ -26,7 +26,7 @@ enum tier { TIER_PREVIEW, TIER_REFINED };
 #define VIEW_MAX_PIXELS (16 * 1024 * 1024)
 
 enum { VIEW_LINES = PLANT_ISOLINES };
-struct color_scale { /* colours and isolines of a scale, in addition to colour map, range and colour step. All zero: the defaults */
+struct color_scale { /* settings of a view's scale besides colour map, range and colour step. All zero: the defaults */
     bool log;
     double breaks[SCALE_BREAKS]; /* ascending values that separate bands of uniform colour; used instead of a continuous ramp */
     int break_count;
@@ -51,11 +51,12 @@ struct view {
     uint32_t camera_seq; /* the client's sequence number of this camera, echoed in the frame */
     uint32_t params_seq; /* the client's sequence number of the parameters, echoed in the frame */
     int64_t input_ns;    /* monotonic time at which the newest input arrived */
-    double pixel_ratio;  /* device pixels per CSS pixel, used only for the size of the area in which a click picks a marker; 0: 1 */
+    /* device pixels per CSS pixel of the page, from which the size of the area follows in which a click picks a marker; 0: counts as 1 */
+    double pixel_ratio;
     struct field_params field;
     int colormap;                /* index of the colour map */
     double ramp_interval;        /* width of a colour step in engineering units; 0: continuous */
-    double range_min, range_max; /* values at both ends of the colour map; those of the group unless the client sets others */
+    double range_min, range_max; /* values at both ends of the colour map: the group's range unless the client sets other values */
     struct color_scale color_scale;
     enum look look;
     enum tier tier;
@@ -78,8 +79,8 @@ void view_default(const struct scene *scene, int width_px, int height_px, struct
 /* Sets the default scale of what the view shows: the group's range, isolines and logarithm, or those of a distance or of a difference from
    a baseline. */
 void view_default_scale(const struct scene *scene, struct view *view);
-/* Returns whether the view shows values relative to alarm limits (SHOW_OPERATOR). Such a view has its own colours, lines and legend,
-   whatever the rest of the view says. */
+/* Returns whether the view shows values relative to their alarm limits (SHOW_OPERATOR). Such a view has colours, lines and a legend of its
+   own, and ignores the view's other settings of these. */
 bool view_is_operator(const struct view *view);
 void view_scale(const struct view *view, struct scale *scale);
 /* Fills `lines` with the ascending values at which a line is drawn: isolines, and edges of colour bands within the range. Returns the
@@ -96,7 +97,7 @@ void view_set_instant(struct view *view, int64_t at_us, int slot);
    replacing the field parameters. */
 void view_set_trial(struct view *view, uint32_t trial);
 int view_left_px(const struct view *view); /* width of the left half, which is the x of the right half; pixels */
-/* Splits the view. right: what the right half shows: a view that is not split, for example one from view_half(). */
+/* Splits the view into two halves. right: a view that is not split, for example one from view_half(); the right half shows its content. */
 void view_split(struct view *view, const struct view *right);
 /* Returns whether both views ask for the same picture, regardless of session and time. A new member that changes the picture must be
    compared here. */

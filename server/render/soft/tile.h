@@ -105,8 +105,9 @@ void soft_add_fragment(const struct soft_tile *tile, int sample, const struct so
 /* Counts, in the marks of pixels, the closed bodies to which the triangles of a part (group of triangles) belong: +1 where a ray leaves a
    body, -1 where it enters one. */
 void soft_count_part(struct soft_tile *tile, const struct soft_found *found, const struct soft_item *item);
-void soft_cap_tile(struct soft_tile *tile); /* turns the counts of soft_count_part() into marks and depth of section caps */
-/* Marks those vertices of the tile's part (group of triangles) that a section plane cuts off, by setting inverse_w to 0. */
+/* converts the counts of closed bodies that soft_count_part() left in the marks into section caps: their marks and depth */
+void soft_cap_tile(struct soft_tile *tile);
+/* Marks the vertices of the tile's current part (group of triangles) that a section plane cuts off, by setting their inverse_w to 0. */
 void soft_cut_corners(struct soft_tile *tile);
 /* Clips the faces of the tile's current part (group of triangles) and appends the resulting faces to the tile's list. The vertices must be
    projected and carry field and light. */

@@ -54,7 +54,7 @@ static void fill_list(const struct soft_tile *tile, struct tile_list *list)
         qsort(list->entries, list->count, sizeof(*list->entries), by_order);
 }
 
-/* Returns the blocks of the tile that a rectangle touches. */
+/* Returns the range of the tile's blocks (8 x 8 pixels) that a rectangle touches. */
 static struct soft_rect blocks_of(const struct soft_tile *tile, const struct soft_rect *rect)
 {
     const struct soft_rect *all = &tile->rect;
@@ -207,7 +207,7 @@ static int columns_of(const struct raster *raster)
 
 static void draw_tile(const struct raster *raster, int number, enum soft_output output, struct tile_list *list)
 {
-    struct soft_tile tile; /* the struct is not zeroed: its arrays of corners and faces are large, and mostly little used */
+    struct soft_tile tile; /* not zeroed as a whole, because its arrays of corners and faces are large and mostly unused */
     int left = number % columns_of(raster) * TILE_WIDTH_PX, top = number / columns_of(raster) * TILE_HEIGHT_PX;
     tile.raster = raster;
     tile.rect = (struct soft_rect){ left, top, left + TILE_WIDTH_PX - 1, top + TILE_HEIGHT_PX - 1 };

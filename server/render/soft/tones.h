@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Conversion of linear light to colours, for eight pixels at a time; ports shaders/light.glsl. Also light on glossy fields, stored apart
-   from their colours. Private to soft/. */
+/* Conversion of linear light to colours, for eight pixels at a time; ports shaders/light.glsl. Also packs the light on glossy fields, which
+   is stored apart from the field's colours. Private to soft/. */
 #ifndef RENDER_SOFT_TONES_H
 #define RENDER_SOFT_TONES_H
 #include "render/soft/vectors.h"
@@ -10,7 +10,7 @@ struct visibility_gloss;
 
 enum { TONES = 4096 };
 struct soft_tones {
-    float srgb[TONES + 1]; /* sRGB by linear light; both 0..1 */
+    float srgb[TONES + 1]; /* table of sRGB values by linear light; both range from 0 to 1 */
     float linear[256];     /* linear light by sRGB byte */
 };
 void soft_tones_init(struct soft_tones *tones);
@@ -40,7 +40,7 @@ SOFT_INLINE vec tone_map(vec c)
     return (vec){ lanes_choose(low, c.x, rolled.x), lanes_choose(low, c.y, rolled.y), lanes_choose(low, c.z, rolled.z) };
 }
 
-/* Packs light of 0..65408 into nine bits per channel and a shared exponent, as GL_RGB9_E5. */
+/* Packs light of 0..65408 into 32 bits: nine bits for each channel and a shared exponent, as GL_RGB9_E5. */
 uint32_t soft_pack_light(const float light[3]);
 
 SOFT_INLINE vec unpack_light(lanes_int packed)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Visibility buffer: for each pixel the triangle it shows, the position on the triangle and the light there. While the camera stands still,
-   new readings only need their colours looked up again. Thread: the one of the GL context, except functions marked as running on a
-   worker. */
+   a frame with new readings is made from the buffer by looking up colours again. Thread: the one of the GL context, except functions marked
+   as running on a worker. */
 #ifndef RENDER_SOFT_VISIBILITY_BUFFER_H
 #define RENDER_SOFT_VISIBILITY_BUFFER_H
 #include "base/workers.h"
@@ -9,25 +9,25 @@
 #include "render/frame_context.h"
 #include "render/soft/pixel_lists.h"
 
-/* surfaces[] of a pixel is one of: VISIBILITY_FIXED | a colour that no reading changes (blue | green << 8 | red << 16); VISIBILITY_MIXED |
-   index of a struct visibility_mixed in the band; or, without flag, the index in the band of the triangle of a field that the pixel
-   shows. */
+/* Values of surfaces[], by pixel. VISIBILITY_FIXED | a colour that no reading changes (blue | green << 8 | red << 16); VISIBILITY_MIXED |
+   index of a struct visibility_mixed in the band; or, without a flag, the pixel shows a field, and the value is the index of its triangle
+   in the band. */
 #define VISIBILITY_FIXED 0x80000000u
 #define VISIBILITY_MIXED 0x40000000u
 
-/* Ink of a pixel: lines drawn over its colour. 0 to VISIBILITY_INK: coverage by a dark line; above: dark or light rim of the selected
-   asset. */
+/* Ink of a pixel: lines drawn over its colour. 0 to VISIBILITY_INK: coverage by a dark line; VISIBILITY_RIM_DARK, VISIBILITY_RIM_LIGHT: the
+   rim of the selected asset. */
 enum { VISIBILITY_INK = 253, VISIBILITY_RIM_DARK, VISIBILITY_RIM_LIGHT };
 
 struct soft_tones;
 
-/* light on a pixel in the glossy look, packed (tones.h); of_color: light that a white surface reflects in addition to a black one; besides:
-   light independent of the surface's colour */
+/* light that a pixel reflects in the glossy look, packed (tones.h); besides: light that does not depend on the surface's colour, as from a
+   black surface; of_color: additional light from a white surface */
 struct visibility_gloss {
     uint32_t of_color, besides;
 };
 
-struct visibility_part { /* one of the surfaces with a field in a pixel that shows several surfaces */
+struct visibility_part { /* surface with a field, in a pixel that shows several surfaces */
     uint32_t triangle, weights;
     uint8_t row;
     uint16_t share; /* area of the pixel that the surface covers, 0..VISIBILITY_SHARES */
@@ -49,18 +49,21 @@ struct visibility_slopes {
     float w1_x, w1_y, w2_x, w2_y, sum_x, sum_y, sum;
 };
 
-struct visibility_place { /* a triangle: first corner, and vectors from it to the others; metres, in the asset file's frame */
+/* position of a triangle in the asset file's frame, in metres: its first corner, and the vectors from there to the second and third */
+struct visibility_place {
     float first[3], second[3], third[3];
 };
 
 struct visibility_band { /* a band: group of pixel rows; written by one worker */
-    /* indices of the corners: among all vertices of the frame, and after visibility_buffer_settle() among the kept (visible) ones */
+    /* indices of the triangles' corners: at first among all vertices of the frame; visibility_buffer_settle() changes them to indices among
+       the visible vertices */
     uint32_t (*triangles)[3];
-    /* present field values of each triangle: value at the first corner, difference of the second corner's from it, difference of the
-       third's; fourth: 0, or 1 + index of the mesh if its field is evaluated at pixels */
+    /* by triangle: field value at the first corner, difference of the second corner's value from it, difference of the third corner's;
+       fourth element: 0, or, if the mesh's field is evaluated at pixels, 1 + index of the mesh */
     float (*corners)[4];
-    struct visibility_place *places;  /* corner position and edges of each triangle; only filled in if a field is evaluated at pixels */
-    struct visibility_slopes *slopes; /* slopes of each triangle's corner weights; only filled in where there are isolines */
+    struct visibility_place *places; /* corner position and edges of each triangle; only filled in if a field is evaluated at pixels */
+    /* by triangle: slopes of the corner weights over the frame; only filled in where there are isolines */
+    struct visibility_slopes *slopes;
     struct visibility_part *parts;
     struct visibility_gloss *gloss; /* by index in `parts`; only filled in for the glossy look */
     struct visibility_mixed *mixed;
@@ -74,10 +77,10 @@ struct visibility_band { /* a band: group of pixel rows; written by one worker *
 struct visibility_mesh { /* an asset with a field */
     int asset;
     const struct asset_view *file;
-    /* range of vertices that the mesh uses: indices among all of the frame, after visibility_buffer_settle() among the kept (visible)
+    /* range of the mesh's vertices: at first indices among all vertices of the frame; after visibility_buffer_settle() among the visible
        ones */
     uint32_t first_vertex, vertex_count;
-    bool read;                 /* true if `carried` holds the values of the field version `content` */
+    bool read;                 /* true: the array `carried` of the buffer holds values of the field version `content` */
     uint64_t content;          /* hash from struct fields_entry */
     struct pixel_field pixels; /* copy from struct fields_entry, owned */
     struct pixel_list every;   /* all sensors of `pixels` */
@@ -86,7 +89,7 @@ struct visibility_mesh { /* an asset with a field */
 struct visibility_buffer {
     int width_px, height_px, band_rows, band_count;
     uint32_t *surfaces;             /* per pixel, as described above */
-    uint32_t *weights;              /* by pixel: corner weights of its triangle, 16 bits each: second corner | third corner << 16 */
+    uint32_t *weights;              /* by pixel: weights of two corners of its triangle, 16 bits each: second corner | third corner << 16 */
     uint8_t *rows;                  /* row of the colour map (brightness) for each pixel */
     struct visibility_gloss *gloss; /* by pixel: light on it in the glossy look; NULL: another look, in which `rows` holds the brightness */
     const struct soft_tones *tones; /* set with gloss; not owned */
@@ -100,12 +103,13 @@ struct visibility_buffer {
     struct visibility_band *bands;
     struct visibility_mesh *meshes;
     size_t mesh_count, mesh_capacity, vertex_count;
-    bool evaluates;     /* true: the field of at least one mesh is evaluated at pixels */
-    bool finds_cells;   /* true: resolve_read() must find the cells again, because other meshes than before have many sensors */
-    float scale[4];     /* struct frame_uniforms.scale at the time when the vertices' values were read */
-    uint32_t *vertices; /* kept (visible) vertices, mesh by mesh: index in the asset's file */
-    /* carried value of each kept (visible) vertex: column of the colour map (logarithmic scale: the field's value); NAN: a flag of the
-       vertex selects a pattern */
+    bool evaluates; /* true: the field of at least one mesh is evaluated at pixels */
+    /* true: resolve_read() must find the cells (squares of pixels) again, because the set of meshes with many sensors has changed */
+    bool finds_cells;
+    float scale[4];     /* value of struct frame_uniforms.scale with which the vertices' values were converted */
+    uint32_t *vertices; /* vertices that some pixel shows, mesh by mesh: index of each in the asset's file */
+    /* value at each visible vertex, which is interpolated over triangles: column of the colour map (on a logarithmic scale the field's
+       value); NAN: a flag of the vertex selects a pattern */
     float *carried;
     float *plain;                 /* the same without NAN */
     uint32_t *flags;              /* from soft_flags() */
@@ -123,8 +127,8 @@ size_t visibility_buffer_bytes(const struct visibility_buffer *buffer);
 struct resolve_paint {        /* colours, patterns and isolines of a frame */
     const uint32_t *colormap; /* COLORMAP_ROWS x COLORMAP_COLUMNS texels */
     float pattern_px;         /* cell size of patterns */
-    float line_px;            /* width of isolines in pixels; 0: there are none */
-    const float *nearest;     /* from struct shaded_colormap: for each position on the scale, the nearest one that has an isoline */
+    float line_px;            /* width of isolines in pixels; 0: the frame has no isolines */
+    const float *nearest;     /* table of struct shaded_colormap: by position on the scale, the nearest position that has an isoline */
 };
 
 /* Adds a triangle to the band's list, unless it equals the triangle added last. Returns its index in the list. Runs on a worker. */

@@ -32,7 +32,7 @@ static inline bool is_log(const float *scale)
     return scale[2] > 0.5f;
 }
 
-/* Fills the cells of band number `number`. The band's `places` and `corners` must be set. */
+/* Finds the cells (squares of pixels) of a band whose fields have many sensors. The band's `places` and `corners` must be set. */
 void visibility_find_cells(const struct visibility_buffer *buffer, int number);
 
 static inline bool has_ink(const struct visibility_buffer *buffer, size_t pixel)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the cells of kept pictures that show fields of many sensors, and boxes around the surface points there (pixel_lists.h). */
+/* Finds, in stored visibility buffers, the cells (squares of pixels) that show fields of many sensors, and the boxes around the surface
+   points there (pixel_lists.h). */
 #include <math.h>
 #include <stdlib.h>
 
@@ -9,7 +10,9 @@
 struct cell_search {
     const struct visibility_buffer *buffer;
     struct visibility_band *band;
-    size_t first; /* index in band->cells of the first cell at `column`, `row`; meshes that meet there have a cell each */
+    /* index in band->cells of the first cell at this column and row; if several meshes are visible there, each has a cell, one after the
+       other */
+    size_t first;
     uint16_t column, row;
 };
 

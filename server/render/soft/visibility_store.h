@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Store of visibility buffers of frames from still cameras, keyed by content_hash_shape(), so that new values only need new colours. The
-   store does not know what a buffer contains. Beyond its bound the least recently used buffers are evicted. Thread: the one of the GL
-   context. */
+/* Store of visibility buffers of frames from still cameras, keyed by content_hash_shape(), so that a frame with new values only needs new
+   colours. The store does not know what a buffer contains. If the buffers exceed the memory limit, the least recently used ones are
+   evicted. Thread: the one of the GL context. */
 #ifndef RENDER_SOFT_VISIBILITY_STORE_H
 #define RENDER_SOFT_VISIBILITY_STORE_H
 #include <stdbool.h>
@@ -18,7 +18,8 @@ struct visibility_slot {
 };
 struct visibility_store { /* zero-initialise, then set bound_bytes */
     size_t bound_bytes, bytes;
-    /* the newest buffer is kept, as the only one, even if it alone exceeds the bound, until visibility_store_bound() is called */
+    /* true: the newest buffer is kept, as the only one, even if it alone exceeds the memory limit; until visibility_store_bound() is
+       called */
     bool keeps_newest;
     struct visibility_slot buffers[VISIBILITY_SLOTS];
     uint64_t uses;
