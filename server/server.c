@@ -38,7 +38,7 @@
 #include "version.h"
 
 enum { TOKEN_FILE_BYTES = 1 << 24 };
-enum { SETTLE_MS = 3000 }; /* maximum wait in milliseconds for an import that is replacing files */
+enum { SETTLE_MS = 3000 }; /* time in milliseconds to wait for an import that is replacing files */
 
 struct server {
     struct server_params params;
@@ -51,14 +51,14 @@ struct server {
     struct node_id node_id;      /* unique identity of this core, even among cores of the same name (corelink/node_id.h) */
     struct lease_keeper *keeper; /* keeps the lease that decides which of two cores leads; NULL: this core is alone */
     bool follows, lost;          /* follows: another core polls the devices; lost: this core had the lease to lead and lost it */
-    bool divided;                /* true: child processes that read files get cgroups of their own */
+    bool divided;                /* true: child processes that read files run in cgroups (resource limits) of their own */
     struct supervision *supervision;
     struct agent *agent;             /* answers load balancers; NULL: off */
     struct signing_key *signing_key; /* NULL: pictures are not signed */
     struct audit *audit;             /* NULL: nothing is recorded */
     struct file_writer *file_writer;
     struct plant_import *import;     /* NULL: import is off */
-    pthread_mutex_t wake_lock;       /* held while the render thread wakes the event loop, so that `net` is not destroyed in the meantime */
+    pthread_mutex_t wake_lock; /* locked while the render thread wakes the event loop, so that `net` is not destroyed in the meantime */
     struct net *net;
     char *web;        /* folder of the web client's files; NULL: none */
     int64_t begun_ns; /* monotonic time when the daemon began to start */
@@ -67,7 +67,7 @@ struct server {
 static struct net *_Atomic to_stop;
 static _Atomic bool preparing, told_to_end;
 
-/* Handles signals until the event loop runs: without a handler, a daemon that is process 1 of a container would ignore them. */
+/* Handles signals before the event loop runs. Without a handler, a daemon that is process 1 of a container would ignore them. */
 static void on_early_signal(int number)
 {
     atomic_store(&told_to_end, true);
@@ -492,7 +492,7 @@ static void server_finish(struct server *server)
     plant_import_destroy(&server->import);
     plant_runtime_destroy(&server->runtime);
     file_writer_destroy(&server->file_writer);
-    lease_keeper_destroy(&server->keeper); /* gives the lease back; nothing polls devices any more */
+    lease_keeper_destroy(&server->keeper); /* gives the leadership lease back, now that nothing polls devices any more */
     node_id_release(&server->node_id);
     workers_destroy(&server->workers);
     supervision_destroy(&server->supervision);
@@ -586,7 +586,7 @@ static void print_left_out(struct log *log, const struct plant *plant, const cha
     manifest_finish(&manifest);
 }
 
-/* Returns whether no line of the file of tokens is refused; net_access_good() logs refused lines. */
+/* Returns whether every line of the file of tokens is accepted; net_access_good() logs lines that are refused. */
 static bool token_lines_good(const char *path)
 {
     struct token_holder holder;
@@ -600,7 +600,7 @@ static bool token_lines_good(const char *path)
     return good;
 }
 
-/* Reads the files of the options, such as --tokens and --openid. Returns false, after logging each fault, if one has a fault. */
+/* Reads the files that options such as --tokens and --openid name. Logs each fault and returns false if there was one. */
 static bool check_option_files(const struct server_params *params)
 {
     struct server server = { .params = *params, .log = log_create(LOG_WARN) };
@@ -620,7 +620,8 @@ static bool check_option_files(const struct server_params *params)
 static int check_prepared(const struct server_params *params, const struct plant *plant)
 {
     char *folder = plant_runtime_prepared_folder(params, plant), *manifest = mem_printf("%s/manifest.json", folder);
-    bool exists = access(manifest, F_OK) == 0; /* written last: the folder alone exists while plantcast-prep runs for the first time */
+    /* checks the manifest, because plantcast-prep writes it last: the folder alone also exists during the first preparation */
+    bool exists = access(manifest, F_OK) == 0;
     struct log *log = log_create(LOG_WARN);
     if (exists)
         print_left_out(log, plant, folder);
@@ -636,7 +637,8 @@ static int check_prepared(const struct server_params *params, const struct plant
     struct scene *scene = plant_runtime_open_scene(log, params, plant);
     int status = scene ? 0 : 1;
     for (size_t i = 0; scene && i < scene->asset_count; i++)
-        status |= scene->assets[i].missing != NULL; /* the reason why it is missing was logged */
+        /* an asset that is missing is an error; its reason was logged when the scene was opened */
+        status |= scene->assets[i].missing != NULL;
     if (scene) {
         size_t count;
         struct far_sensor *far = far_sensors_find(scene, &count);

@@ -24,24 +24,25 @@ struct server_params {
     struct gl_device gl_device;
     bool has_gl_device;
     const char *prepared; /* folder of the prepared assets; NULL: next to the plant file */
-    const char *history;  /* folder of the history; NULL: as the plant file says */
+    const char *history;  /* folder of the history; NULL: the folder named in the plant file, or its default */
     const char *web;      /* folder of the web client's files; NULL: found relative to the program */
     enum log_level log_level;
     enum log_format log_format;
     const char *h264;    /* name of a libavcodec encoder for H.264, or "off"; NULL: the default one */
-    size_t memory_bytes; /* limit of memory use; 0: chosen for the machine */
+    size_t memory_bytes; /* limit in bytes for all caches together; 0: chosen to suit the machine */
     int threads;         /* number of worker threads; 0: one per core */
     struct access_params access;
     const char *signing_key;   /* PEM file of the key that signs pictures; NULL: pictures are not signed */
     struct audit_params audit; /* audit trail; its path NULL: nothing is recorded */
-    bool imports, imports_now; /* imports: engineers may import plants; imports_now: import the exports folder at the start */
+    /* imports: engineers may import plants; imports_now: the exports folder is imported when the daemon starts */
+    bool imports, imports_now;
     enum server_role role;
     const char *cores[CORE_URLS]; /* for SERVER_RENDER: URLs of one core or of a pair; the renderer uses one at a time */
     int core_count;
     /* core_token: file of the token that the core demands, NULL: none; core_ca: file of trusted certificates, NULL: the system's */
     const char *core_token, *core_ca;
     int agent_port;    /* port for the agent checks of load balancers; 0: none */
-    const char *node;  /* name of this daemon among several; without --node the host name */
+    const char *node;  /* name of this daemon among several; the host name unless --node is given */
     bool per_fragment; /* true: compute the field at each fragment, for comparison with the field at vertices */
 };
 

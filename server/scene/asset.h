@@ -15,14 +15,16 @@ struct asset {
     void *made;
     uint16_t *distances; /* distances unpacked from the file; NULL: the file stores them unpacked */
     size_t bytes;
-    /* mapped file KEY.influence (influence of sensors), which lies in the folder of the asset's file; all zero: not opened */
+    /* mapped file KEY.influence, with the influence of each sensor on each vertex, in the folder of the asset's file; all zero: not
+       opened */
     struct cache_file influence_file;
     struct influence_view influence;
-    /* bit l set: preparation subdivided the triangles of level l until they show the field without visible error (field/drawn_error.h) */
+    /* bit mask by level of detail: plantcast-prep subdivided the level's triangles until they show the field without visible error
+       (field/drawn_error.h) */
     uint64_t resolved_levels;
     _Atomic int refs;
-    /* by level of detail: the triangles that bound closed bodies, whose cut sections are drawn solid (closed_bodies.h); NULL: not
-       computed */
+    /* by level of detail: triangles that bound closed bodies, which are drawn solid where they are cut (closed_bodies.h); NULL: not
+       computed yet */
     struct closed_bodies *_Atomic *closed;
 };
 

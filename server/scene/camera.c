@@ -7,7 +7,7 @@
 
 #include "base/math/vec.h"
 
-#define FIT_MARGIN 1.06  /* margin: a fitted box fills 1/1.06 of the picture */
+#define FIT_MARGIN 1.06  /* factor by which a picture is larger than the box fitted into it */
 #define LEAST_BOX_M 1e-4 /* side in metres of the smallest box that is framed; a smaller or empty box is framed as if it had this size */
 #define LEAST_NEAR_M 1e-6
 #define LEAST_HEIGHT_M 1e-5 /* smallest height of an orthographic picture, metres */
@@ -98,13 +98,13 @@ static void side_add(struct clip_side *side, double x, double z)
     side->low = fmax(side->low, -x + z * side->from);
 }
 
-/* Returns the smallest distance of the eye from the box's centre at which the box fits along this axis. */
+/* Returns the smallest distance of the eye from the box's centre at which the box fits into the picture along one axis. */
 static double side_back(const struct clip_side *side)
 {
     return (side->low + side->high) / (side->to - side->from);
 }
 
-/* Returns the sideways shift of the eye that centres the box, at this distance. */
+/* Returns how far the eye must be shifted sideways to centre the box, if the eye is at this distance from it. */
 static double side_shift(const struct clip_side *side, double back_m)
 {
     return (side->high - side->low - back_m * (side->to + side->from)) / 2;
@@ -233,7 +233,7 @@ static void depth_range(const struct camera *camera, const struct basis *basis, 
         *far_m = farthest + margin_m;
         return;
     }
-    /* if the box is behind the camera, nothing is visible, and the range only has to be valid */
+    /* a box entirely behind the camera is not visible, so any valid range of depths will do */
     *far_m = fmax(farthest * 1.001, 2 * LEAST_NEAR_M);
     *near_m = fmax(fmax(nearest * 0.999, *far_m * CAMERA_NEAR_TO_FAR), LEAST_NEAR_M);
     if (*near_m >= *far_m) /* a box without depth */

@@ -6,7 +6,8 @@
 
 #include "plant/plant.h"
 
-#define CAMERA_NEAR_TO_FAR 1e-4 /* smallest ratio of near to far plane, limited by 24 bits of depth */
+/* smallest ratio of the distances of near and far plane; a smaller one would exceed the precision of a depth buffer of 24 bits */
+#define CAMERA_NEAR_TO_FAR 1e-4
 
 struct camera {
     double eye_m[3], target_m[3], up[3];
@@ -20,7 +21,7 @@ bool camera_valid(const struct camera *camera);
 /* Frames the whole box from the plant's raised south-west corner: x points east; y points north in a Z-up frame, -z in a Y-up frame. Sets
  * every member. */
 void camera_fit_up(struct camera *camera, enum axis up, const double min_m[3], const double max_m[3], double aspect);
-struct camera_window { /* a rectangle of the picture, in coordinates from -1 to 1 along each axis; all zero: the whole picture */
+struct camera_window { /* rectangle of the picture, in coordinates from -1 to 1 along each axis; all zero: the whole picture */
     double left, right, bottom, top;
 };
 /* Frames the box within a window of the picture, along `forward`, which must not be along camera->up. Keeps lens and up vector of the

@@ -9,10 +9,11 @@
 #include "base/mem.h"
 
 enum { MAX_INDICES = 3 * 1000 * 1000 };
-static const float WELD_PART = 1e-5f; /* welding distance of vertices, relative to the asset's size */
+static const float WELD_PART = 1e-5f; /* distance within which vertices are welded (treated as one), relative to the asset's size */
 
 struct edge_count {
-    /* indices of the edge's two vertices, the lower one in the upper half; 0: a free slot, because no edge joins a vertex to itself */
+    /* key of an edge: index of its lower-numbered vertex << 32 | index of the other; 0: free slot of the hash table, because no edge joins
+       a vertex to itself */
     uint64_t ends;
     int32_t balance;
 };
@@ -65,8 +66,8 @@ static size_t slot_of(const struct bodies *bodies, const int32_t cell[3])
     return XXH3_64bits(cell, 3 * sizeof(*cell)) & bodies->table_mask;
 }
 
-/* Returns the vertex at a welded position (vertices nearer than the welding distance share one) in a grid cell; UINT32_MAX: none. Cells are
-   four times as wide as the welding distance. */
+/* Looks up one cell of the grid in which vertices are hashed. Returns the welded vertex at the given position in the cell, or UINT32_MAX if
+   the cell has none. Cells are four times as wide as the welding distance, within which vertices share one position. */
 static uint32_t find_place(const struct bodies *bodies, const int32_t cell[3], const float at[3])
 {
     for (size_t slot = slot_of(bodies, cell); bodies->table[slot]; slot = (slot + 1) & bodies->table_mask) {
@@ -90,7 +91,7 @@ static uint32_t find_place_near(const struct bodies *bodies, const float at[3], 
     }
     for (int k = 0; k < 8; k++) {
         int32_t cell[3];
-        bool again = false; /* true: this k gives the same cell as a smaller k, so the cell was searched already */
+        bool again = false; /* true: the cell for this k equals the cell for a smaller k, which was searched already */
         for (int i = 0; i < 3; i++) {
             cell[i] = k >> i & 1 ? beside[i] : own[i];
             again |= (k >> i & 1) && beside[i] == own[i];

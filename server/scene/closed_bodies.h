@@ -16,8 +16,8 @@ struct closed_bodies {
     size_t run_count, run_capacity;
 };
 
-/* Finds the closed bodies of opaque materials. Finds none when out of memory, or when the level is too large to examine while a user
-   waits. */
+/* Finds the closed bodies among the triangles with opaque materials. Finds none when out of memory, or when the level of detail is too
+   large to be examined while a user waits. */
 void closed_bodies_find(const struct asset_view *view, uint32_t level, struct closed_bodies *out);
 void closed_bodies_finish(struct closed_bodies *closed);
 

@@ -9,12 +9,12 @@
 #include "base/mem.h"
 #include "plant/models/transform.h"
 
-/* tolerances within which two faces lie in one plane: distance in metres, and difference of unit normals; from the accuracy of CAD
-   positions stored as floats */
+/* tolerances within which two faces count as lying in one plane: distance in metres, and difference of their unit normals; both follow from
+   the accuracy of CAD positions stored as floats */
 static const double SAME_PLANE_M = 2e-4, SAME_NORMAL = 1e-3;
 static const double MIN_AREA_M2 = 1e-4, MIN_OVERLAP_M = 1e-3;
-/* shift towards the viewer per rank, relative to the distance: larger than the depth error of frames for surfaces seen at 6 degrees or
- * more, with positions rounded to 1/256 pixel */
+/* shift of an asset towards the viewer per step of its rank, as a part of its distance. It exceeds the depth error of frames for surfaces
+   seen at an angle of 6 degrees or more, with positions rounded to 1/256 pixel */
 static const double SHIFT_PER_STEP = 4e-5;
 enum { MAX_STEPS = 7 };
 
@@ -126,8 +126,8 @@ static bool on_one_plane(const struct coincident_face *a, const struct coinciden
     return true;
 }
 
-/* Returns whether a face of one asset coincides with a face of the other. Nearly parallel planes may differ in offset by their angle times
- * the region's size. */
+/* Returns whether a face of one asset coincides with a face of the other. For planes that are only nearly parallel, the permitted
+   difference of offsets grows with their angle times the region's size. */
 static bool coincide(const struct faces *a, const struct faces *b, const struct region *region)
 {
     double slack_m = SAME_PLANE_M;
@@ -163,8 +163,8 @@ static bool meet(const struct scene_asset *a, const struct scene_asset *b, struc
     return coincide(&faces[0], &faces[1], &region);
 }
 
-/* Assigns ranks (`front`) to assets from back to front: each asset gets a higher rank than all earlier ones with which its faces coincide,
- * up to MAX_STEPS. */
+/* Assigns ranks (scene_asset.front) to assets, from back to front. An asset gets a higher rank than all earlier assets with whose faces its
+   own coincide, up to MAX_STEPS. */
 void coincident_find(struct scene *scene)
 {
     struct faces faces[2] = { 0 };

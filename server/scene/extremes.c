@@ -12,11 +12,13 @@
 enum { DIRECTIONS = 96 };
 /* Limits for recognising an asset as the plant's ground: it has no sensor, is low for its size, including lamps and kerbs, and covers most
  * of the plant's area. */
-/* GROUND_HEIGHT: largest height of the ground, relative to its larger side; GROUND_PART: smallest area, relative to the plant's */
+/* GROUND_HEIGHT: largest height of ground, as a part of its larger side; GROUND_PART: smallest area of ground, as a part of the plant's
+   area */
 static const double GROUND_HEIGHT = 0.25, GROUND_PART = 0.8;
-static const double GROUND_LEAST_M = 5; /* smallest larger side of ground, metres: a smaller plate counts as equipment */
-/* largest error of the level whose vertices are searched, relative to the asset's size; with a coarser level the view would crop the
- * asset */
+/* length in metres from which the larger side of a plate makes it ground; a smaller plate counts as equipment */
+static const double GROUND_LEAST_M = 5;
+/* largest error of the level of detail whose vertices are searched, relative to the asset's size; with a coarser level, a view fitted to
+   the vertices would crop the asset */
 static const double LEVEL_ERROR = 0.005;
 
 static double area_of(const double min_m[3], const double max_m[3], int up)
@@ -51,7 +53,7 @@ static void add_asset(const struct scene *scene, const struct scene_asset *asset
     const struct asset_view *view = &asset->file->view;
     const double *m = asset->placement;
     uint32_t count = level_vertices(asset);
-    char *held = NULL; /* by vertex: whether it lies within the main part; NULL: all vertices do */
+    char *held = NULL; /* by vertex: 1 if the vertex lies within the main part of the plant; NULL: all vertices do */
     if (asset->stray) {
         held = mem_array(count, 1);
         for (uint32_t v = 0; v < count; v++) {

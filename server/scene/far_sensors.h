@@ -7,10 +7,11 @@
 struct far_sensor {
     const struct scene_asset *asset;
     const struct scene_sensor *sensor;
-    double limit_m; /* distance from the surface above which a sensor is far: the smaller one of 0.25 m and 5 % of the asset's size */
+    /* distance in metres from the surface above which the sensor counts as far: the smaller one of 0.25 m and 5 % of the asset's size */
+    double limit_m;
 };
 
-/* Returns the sensors beyond the limit, farthest first. Free with mem_free. */
+/* Returns the sensors that are farther from their asset's surface than the limit, farthest first. Free with mem_free. */
 struct far_sensor *far_sensors_find(const struct scene *scene, size_t *count);
 /* Returns the distance from the asset's surface beyond which a sensor deserves a warning: the smaller one of 0.25 m and 5 % of the diagonal
  * of the asset's bounds. The sensor may belong to another asset, or its coordinates may be wrong. */

@@ -10,7 +10,7 @@
 /* Tilt of the views straight down and up against the vertical, as a tangent. In an exactly vertical view, north would have no direction in
  * the picture. With the tilt, the camera's up vector stays the plant's, and orbiting continues smoothly. */
 static const double VERTICAL_TILT = 1e-3;
-static const double DEFAULT_ASPECT = 16 / 9.0; /* aspect ratio assumed for the plant file's view */
+static const double DEFAULT_ASPECT = 16 / 9.0; /* aspect ratio for which the initial view in the plant file is made */
 /* size of the surroundings shown around a sensor, as a part of the asset's size */
 static const double SENSOR_PART = 0.35;
 static const double SENSOR_MIN_M = 0.3, SENSOR_MAX_M = 3; /* limits of that size */

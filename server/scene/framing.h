@@ -9,12 +9,13 @@
 enum side { SIDE_NOW, SIDE_TOP, SIDE_BOTTOM, SIDE_FRONT, SIDE_BACK, SIDE_LEFT, SIDE_RIGHT, SIDE_ISO };
 
 struct framing {
-    int asset, tag;              /* index of the asset and of the tag to frame; -1: none; both -1: the whole plant */
-    enum side side;              /* SIDE_NOW: keeps the camera's direction; a sensor is viewed from outside its asset */
+    int asset, tag;              /* indices of the asset or tag to show; -1: none; both -1: the whole plant */
+    enum side side;              /* SIDE_NOW: keeps the camera's direction, but a sensor is viewed from outside its asset */
     struct camera_window window; /* rectangle of the picture to fill */
 };
 
-/* Finds an asset, else a tag on an asset, by name; NULL: the whole plant. Sets every member. Returns false if there is no such name. */
+/* Finds what a name means: an asset, otherwise a tag that is on an asset. NULL means the whole plant. Sets every member of the framing.
+   Returns false if there is no such name. */
 bool framing_find(const struct plant *plant, const char *name, struct framing *framing);
 /* Moves the camera to show the framing's subject completely; keeps its lens. */
 void framing_look(const struct scene *scene, const struct framing *framing, double aspect, struct camera *camera);

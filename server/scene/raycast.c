@@ -9,7 +9,8 @@
 #include "plant/models/transform.h"
 #include "scene/coincident.h"
 
-static const double MIN_WEIGHT = 1e-9; /* triangles are enlarged by this barycentric weight, so that rays do not slip between them */
+/* barycentric weight by which each triangle is enlarged, so that no ray slips through between two triangles */
+static const double MIN_WEIGHT = 1e-9;
 
 void ray_init(struct ray *ray, const struct camera *camera, double aspect, double x, double y)
 {
@@ -27,7 +28,7 @@ void ray_init(struct ray *ray, const struct camera *camera, double aspect, doubl
     ray->parallel_m = camera_parallel_m(camera);
 }
 
-/* Clips low..high to the ray's part within the box. Returns false if nothing is left. */
+/* Reduces the range low..high of the ray's parameter to the part within the box. Returns false if no part lies within. */
 static bool cross_box(const double origin[3], const double direction[3], const double min[3], const double max[3], double *low,
                       double *high)
 {
@@ -107,7 +108,7 @@ static bool cluster_crossed(const struct raycast_search *search, const struct as
     return cross_box(search->origin, search->direction, min, max, &low, &high);
 }
 
-/* Searches the finest level: its primitives and their clusters come first in the file. */
+/* Searches the finest level of detail for the first hit: its primitives and their clusters come first in the asset file. */
 static void search_asset(struct raycast_search *search)
 {
     const struct asset_view *view = search->view;
@@ -190,13 +191,13 @@ static int count_bodies(const struct raycast_search *search, const struct asset 
     return count;
 }
 
-/* Returns whether the ray meets a section cap (render/gl/section_caps.h): where it passes the section plane, its point is inside a closed
- * body. */
+/* Returns whether the ray meets a section cap (render/gl/section_caps.h), that is, whether the point where the ray passes the section plane
+   lies inside a closed body. */
 static bool hits_cap(const struct scene *scene, const struct visibility *visibility, const struct ray *ray, double low, double high,
                      struct raycast_hit *hit)
 {
     int bodies = 0;
-    /* the ray starts in the space that is not cut away, so it enters that space through no section plane and meets no cap */
+    /* the ray starts in the space that is kept, so it passes no section plane on its way in, and meets no cap */
     if (!(low > ray->low))
         return false;
     for (size_t i = 0; i < scene->asset_count; i++) {
@@ -217,7 +218,7 @@ static bool hits_cap(const struct scene *scene, const struct visibility *visibil
     return true;
 }
 
-/* Sets the normal to that of the section plane at the hit. */
+/* Sets the hit's normal to the normal of the section plane that the ray meets. */
 static void find_cap_normal(const struct clip *clip, const struct ray *ray, struct raycast_hit *hit)
 {
     double least = INFINITY;

@@ -8,16 +8,16 @@
 #include "scene/visibility.h"
 
 struct ray {
-    double origin[3], direction[3]; /* in the plant frame; the points of the ray are origin + t direction */
+    double origin[3], direction[3]; /* ray in the plant frame; its points are origin + t direction */
     double low, high;               /* range of t */
     double parallel_m;              /* as camera_parallel_m() returns; 0: perspective */
 };
 
 struct raycast_hit {
-    int asset; /* asset that was hit; -1: none, and the other members are unset */
+    int asset; /* asset that was hit; -1: no asset was hit, and the other members are not set */
     double t;
     uint32_t corners[3]; /* indices of the hit triangle's vertices in the asset file */
-    double weights[3];   /* barycentric weights of the corners at the hit; sum 1; all 0 for a section plane */
+    double weights[3];   /* weights of the triangle's corners at the hit (barycentric, sum 1); all 0 if a section plane was hit */
     bool inside;         /* true: the ray hit the inner side of a cut-open surface, or a section plane */
     double normal[3];    /* unit normal of the surface at the hit, in the plant frame, on the side of the ray's origin */
 };

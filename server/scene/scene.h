@@ -11,7 +11,7 @@
 
 struct scene_sensor {
     int tag;              /* index in plant->tags */
-    int column;           /* index of the sensor in the asset file */
+    int column;           /* index of the sensor among the sensors of the asset file */
     double position_m[3]; /* plant frame, as configured */
     double surface_m[3];  /* plant frame, on the surface */
     double surface_distance_m;
@@ -19,7 +19,7 @@ struct scene_sensor {
 
 struct scene_asset {
     const struct plant_asset *plant;
-    struct asset *file;                      /* prepared file, shared by all instances of the asset */
+    struct asset *file;                      /* prepared file, shared by all assets that use the same file */
     double placement[16];                    /* matrix from file coordinates to the plant frame (includes origin_m), column-major */
     double bounds_min_m[3], bounds_max_m[3]; /* plant frame, axis-aligned */
     struct scene_sensor *sensors;            /* sensors of all groups, in the order of the tag list */
@@ -30,7 +30,7 @@ struct scene_asset {
     double stray_at_m[3], stray_away_m;
     /* reason why the asset could not be prepared; it then has no sensors and is invisible; NULL: it was prepared */
     char *missing;
-    int front; /* rank where faces of two assets coincide: the asset with the higher value is visible (scene/coincident.h) */
+    int front; /* rank in places where faces of two assets coincide: the asset with the higher rank is visible there (scene/coincident.h) */
 };
 
 struct scene {
@@ -42,7 +42,7 @@ struct scene {
     /* box of all assets including stray pieces (scene/main_part.h); min equal to max: the same box as bounds_min_m, bounds_max_m */
     double whole_min_m[3], whole_max_m[3];
     struct scene_outside {
-        size_t triangles; /* number of triangles outside the main part */
+        size_t triangles; /* number of triangles outside of the main part */
         int assets;       /* number of assets that have triangles outside the main part */
         double away_m;    /* distance of the farthest triangle from the main part, metres */
     } outside;

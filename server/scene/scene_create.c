@@ -186,8 +186,8 @@ static void place_sensor(const struct scene_asset *asset, int column, int tag, s
     transform_point(asset->placement, surface, out->surface_m);
 }
 
-/* Sets up a missing asset: it is neither drawn nor measured and not part of the plant's box, but it is known with the reason for its
-   absence. */
+/* Sets up an asset that plantcast-prep could not prepare. The asset is neither drawn nor part of the plant's box, but the scene has it,
+   with the reason why it is missing. */
 static bool create_missing(struct log *log, const struct scene *scene, struct scene_asset *asset, const struct manifest_entry *entry)
 {
     log_warn(log, "asset %s is missing: %s; repair the model and run plantcast-prep %s", asset->plant->id, entry->missing,
@@ -224,7 +224,7 @@ static bool create_asset(struct log *log, struct scene *scene, int index)
 /* --- files ------------------------------------------------------------------------------------------------------------------ */
 
 struct file_use {
-    const char *name; /* name of the file in the prepared folder */
+    const char *name; /* name of the asset's file in the prepared folder */
     int asset;
     uint64_t resolved_levels; /* as in struct asset */
 };
@@ -246,7 +246,8 @@ static int compare_assets(const void *a, const void *b)
     return ((const struct file_use *)a)->asset - ((const struct file_use *)b)->asset;
 }
 
-/* Opens files for all assets: uses are sorted by name; the first use of a name opens the file, and the following ones share it. */
+/* Opens the files of all assets. The array of uses is sorted by file name: the first use of a name opens the file, and those that follow
+   share it. */
 static void open_some(void *arg, size_t begin, size_t end)
 {
     const struct file_uses *uses = arg;
@@ -293,7 +294,7 @@ static bool find_file(struct file_uses *uses, const struct manifest *manifest, u
 
 /* --- all assets of the scene ------------------------------------------------------------------------------------------------ */
 
-/* Gives missing assets the bounds of the plant, so that framing one shows the plant. Returns false if there is no other asset. */
+/* Gives missing assets the bounds of the plant, so that a view of one shows the plant. Returns false if all assets are missing. */
 static bool bound_missing(struct scene *scene)
 {
     for (size_t i = 0; i < scene->asset_count; i++)
@@ -391,13 +392,14 @@ void scene_home(const struct scene *scene, double aspect, struct camera *camera)
     memcpy(camera->eye_m, view->eye_m, sizeof(camera->eye_m));
     memcpy(camera->target_m, view->target_m, sizeof(camera->target_m));
     camera->fov_deg = view->fov_deg;
-    if (!camera_valid(camera)) /* the camera is invalid if the view is straight down along `up`; `up` is then north, as on a map */
+    if (!camera_valid(camera)) /* a camera that looks straight down, along `up`, is invalid: `up` is then set to north, as on a map */
         memcpy(camera->up, scene->plant->up == AXIS_Y ? (double[]){ 0, 0, -1 } : (double[]){ 0, 1, 0 }, sizeof(camera->up));
 }
 
 void scene_depth_box(const struct scene *scene, const double eye_m[3], double min_m[3], double max_m[3])
 {
-    /* away_m: distance from the eye to the main part; farthest_m2: squared distance from the eye to the farthest corner of everything */
+    /* away_m: distance from the eye to the main part; farthest_m2: squared distance from the eye to the farthest corner of the box of
+       everything */
     double away_m = 0, farthest_m2 = 0;
     for (int c = 0; c < 3; c++) {
         away_m = fmax(away_m, fmax(scene->bounds_min_m[c] - eye_m[c], eye_m[c] - scene->bounds_max_m[c]));

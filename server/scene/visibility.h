@@ -20,8 +20,8 @@ struct clip { /* section planes; the space on the inner side of all planes is ke
     bool is_box;
     double planes[CLIP_MAX_PLANES][4]; /* (n.x, n.y, n.z, d): points p with n . p + d >= 0 are kept; n: unit normal in the plant frame */
 };
-/* Writes the plane that is used for cutting: slightly farther out than the set plane, so that a surface in the plane itself is kept
- * whole. */
+/* Writes the plane at which geometry is cut: slightly farther out than the plane that was set, so that a surface exactly in that plane is
+   kept whole. */
 void clip_plane(const struct clip *clip, int index, double out[4]);
 void clip_box(struct clip *clip, const double min_m[3], const double max_m[3]);
 void clip_get_box(const struct clip *clip, double min_m[3], double max_m[3]);
@@ -40,7 +40,7 @@ struct visibility {
 enum asset_look {
     ASSET_SHOWN,
     ASSET_GHOST, /* transparent, without a field */
-    ASSET_HIDDEN /* the user has hidden the asset, or has isolated other assets without ghosting this one */
+    ASSET_HIDDEN /* true: the asset is not shown: the user has hidden it, or has isolated other assets without ghosting this one */
 };
 enum asset_look visibility_of(const struct visibility *visibility, int asset);
 struct plant;
