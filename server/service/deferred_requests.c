@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A short list of deferred request groups, oldest first. */
+/* A queue of deferred request groups (requests whose frame cannot be drawn yet), oldest first. */
 #include "service/deferred_requests.h"
 
 #include <string.h>

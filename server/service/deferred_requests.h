@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Deferred requests: groups of requests whose frame cannot be drawn yet. They wait for their next turn of the render thread (in each turn
-   it draws a frame, or a step of one). Pure. Thread: the render thread. */
+/* Deferred requests: groups of requests whose frame cannot be drawn yet, for example because a field is not computed. They wait for a later
+   turn of the render thread; in each turn it draws a frame, or a step of one. Pure. Thread: the render thread. */
 #ifndef SERVICE_DEFERRED_REQUESTS_H
 #define SERVICE_DEFERRED_REQUESTS_H
 #include "service/request_group.h"
@@ -18,8 +18,8 @@ struct deferred_requests { /* zero-initialise; free with deferred_requests_finis
 bool deferred_requests_push(struct deferred_requests *deferred, struct request_group *group);
 /* Replaces the content of `group` by the oldest deferred group; there must be one. */
 void deferred_requests_pop(struct deferred_requests *deferred, struct request_group *group);
-/* Returns whether the render thread's next turn belongs to a deferred group. others: there is other work; deferred groups then get every
-   second turn, otherwise every turn. */
+/* Returns whether the render thread's next turn belongs to a deferred group. others: there is other work to do. Deferred groups get every
+   second turn if there is other work, otherwise every turn. */
 bool deferred_requests_due(struct deferred_requests *deferred, bool others);
 /* Frees the memory. */
 void deferred_requests_finish(struct deferred_requests *deferred);

@@ -98,7 +98,7 @@ void drift_text_begin(struct text *out, const struct plant *plant, int group, in
                              (json_int_t)(begin_of(to_us) + DRIFT_HOURS * HOUR_US), "group", string(plant->groups[group].id), "unit",
                              string(plant->groups[group].unit));
     char *text = json_text(head, EXACT);
-    text_add_bytes(out, text, strlen(text) - 1); /* leaves out the closing brace, because the callers append further members */
+    text_add_bytes(out, text, strlen(text) - 1); /* the closing brace of the JSON object is left out, because more members follow */
     text_add(out, ",\"sensors\":[");
     mem_free(text);
 }

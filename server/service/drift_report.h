@@ -23,8 +23,8 @@ bool drift_report_read(struct drift_report *report, struct history_reader *reade
                        int64_t to_us);
 void drift_report_finish(struct drift_report *report);
 
-/* drift_text_begin() appends the beginning of the text, drift_text_add() one report, drift_text_end() the end. tag: lists only that tag,
-   with its hours; -1: all. *any: set to true once a sensor is listed, since the next one needs a comma. */
+/* drift_text_begin() appends the beginning of the JSON text, drift_text_add() one report, drift_text_end() the end. tag: lists only that
+   tag, with its hourly values; -1: lists all. *any: set to true once a sensor is listed, so that a comma comes before the next one. */
 void drift_text_begin(struct text *out, const struct plant *plant, int group, int64_t to_us);
 void drift_text_add(struct text *out, const struct plant *plant, const struct drift_report *report, int tag, bool *any);
 void drift_text_end(struct text *out);

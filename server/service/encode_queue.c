@@ -26,7 +26,8 @@ struct encode_queue {
     struct idle_encoder *idle;
     struct encode_streams streams;
     int jobs;
-    int heavy; /* number of running jobs for HTTP or signed frames; these are limited because they may be large and lossless */
+    /* number of running jobs that encode frames for HTTP or frames to be signed; limited, because these frames may be large and lossless */
+    int heavy;
     struct encode_job *heavy_waiting, **heavy_last;
     struct request_group rest; /* scratch memory of encode_queue_submit() */
     struct encode_plan plan;
@@ -36,7 +37,7 @@ struct encode_job {
     struct encode_queue *queue;
     struct encode_stream *stream;
     struct frame *frame;        /* NULL: nothing needs encoding */
-    struct request_group group; /* requests with the same codec and quality; one encoded frame answers them all */
+    struct request_group group; /* requests with equal codec and quality, which are all answered with one encoded frame */
     struct encoder_params quality;
     bool again;
     uint64_t number, *from;
@@ -46,8 +47,9 @@ struct encode_job {
 
 struct stream_work {                  /* state of the encoding of one stream */
     struct encode_job *first, **last; /* queue of jobs, protected by the lock; the first job is running */
-    struct encoder *encoder; /* encoder of a codec that keeps state between frames; this and the members below belong to the running job */
-    struct frame *before;    /* the newest frame of the stream, in this quality: clients that keep up show it */
+    /* encoder, for codecs that keep state between frames; this member and those below belong to the job that is running */
+    struct encoder *encoder;
+    struct frame *before; /* newest frame of the stream, as encoded in this quality; clients that have all packets show it */
     struct encoder_params quality;
 };
 
@@ -221,8 +223,8 @@ static bool encode(struct encode_job *job, struct packet **out)
     return good;
 }
 
-/* Returns the lowest sequence number of a packet that this job or a later one of its stream still has to deliver. The caller holds the
-   lock. */
+/* Returns the lowest sequence number of a packet that this job, or a later job of the same stream, has to deliver to a client. The caller
+   holds the lock. */
 static uint64_t still_needed(const struct encode_job *job)
 {
     uint64_t least = UINT64_MAX;
@@ -234,7 +236,7 @@ static uint64_t still_needed(const struct encode_job *job)
 
 struct packet_run {
     struct packet *packets[ENCODE_STREAM_KEPT];
-    int count; /* number of packets to deliver; negative: some packets are no longer kept */
+    int count; /* number of packets to deliver; negative: some of the packets were dropped already */
 };
 
 static void take_run(struct encode_job *job, size_t ticket, struct packet_run *run)
@@ -269,7 +271,7 @@ static void job_destroy(struct encode_job *job)
 
 static void run_job(void *arg);
 
-/* Starts a job on a worker. Frames over HTTP and signed frames may use only half of the workers. */
+/* Starts a job on a worker. Frames for HTTP and frames to be signed may use only half of the workers. */
 static void start(struct encode_queue *queue, struct encode_job *job)
 {
     int most = workers_count(queue->params.workers) / 2;

@@ -13,11 +13,11 @@ struct encode_queue_params {
     struct workers *workers;
     struct counters *counters;
     const char *h264_library; /* name of the libavcodec encoder */
-    /* Called on a worker for each ticket (request whose drawing has begun), with the packets that bring its client up to date, oldest
-       first. count 0: the client already shows this content, or, if `failed` is true, the frame could not be encoded. The packets are
-       borrowed for the duration of the call. */
+    /* Callback on a worker, for each ticket (request whose drawing has begun). It gets the packets that bring the ticket's client up to
+       date, oldest first. count 0: the client already shows this content, or, if `failed` is true, the frame could not be encoded. The
+       packets are valid only during the call. */
     void (*done)(void *arg, const struct request_ticket *ticket, struct packet *const *packets, int count, bool failed);
-    void (*all_done)(void *arg); /* called after the last ticket of a frame */
+    void (*all_done)(void *arg); /* callback on a worker after the last ticket of a frame */
     void *done_arg;              /* argument of both callbacks */
 };
 
@@ -27,9 +27,9 @@ void encode_queue_destroy(struct encode_queue **queue);
 /* Queues jobs that encode the frame: one for each codec and quality in the group, and one for each client that cannot share a packet
    stream. Takes its own reference to the frame; empties the group. */
 void encode_queue_submit(struct encode_queue *queue, struct frame *frame, struct request_group *group);
-/* Destroys encoders that no stream uses. */
+/* Destroys the encoders that no stream uses any more. */
 void encode_queue_drop_idle(struct encode_queue *queue);
-/* Removes the client from its stream: it gets no more packets. */
+/* Removes a client from its encode stream: it gets no more packets. */
 void encode_queue_forget(struct encode_queue *queue, uint64_t client);
 /* Frees streams without clients. Call it after encode_queue_forget(), without holding any lock. */
 void encode_queue_sweep(struct encode_queue *queue);

@@ -8,11 +8,12 @@
 #include "base/math/search.h"
 #include "base/mem.h"
 
-/* time between key frames that are made only so that clients can join a stream; doubles for clients that often fall behind */
+/* minimum time between key frames that are made only so that clients can join a stream; the time doubles for clients that often fall
+   behind */
 static const int64_t JOIN_NS = 2 * NS_PER_S, JOIN_MAX_NS = 64 * NS_PER_S;
 /* maximum number of packets that a client may lag behind and still catch up; also the maximum number of frames planned but not encoded */
 enum { MAX_LAG_PACKETS = ENCODE_STREAM_KEPT / 2 };
-/* half of the limit on the bytes of packets kept per stream; if the last key frame alone is larger, its size is the limit's half */
+/* limit on the bytes of packets kept per stream, divided by two; a last key frame that is larger replaces this number */
 static const size_t KEPT_BYTES = 64 * 1024;
 
 /* --- members of streams ----------------------------------------------------------------------------------------------- */
@@ -94,13 +95,13 @@ static struct encode_stream *most_common(struct encode_streams *streams, const s
     return best;
 }
 
-/* Returns whether a client of the group wants the frame's depth grid, and the stream's newest packet has none. */
+/* Returns whether a client of the group wants the frame's depth grid, which no packet of the stream's newest content contains. */
 static bool brings_depth(const struct encode_stream *stream, const struct frame *frame, const struct request_group *tickets)
 {
     return frame->depth[0] && !stream->has_depth && request_group_wants_depth(tickets);
 }
 
-/* Returns whether the stream already shows this frame, and its packets are still kept. */
+/* Returns whether the stream's newest content equals this frame, and the packets from the key frame on are still kept. */
 static bool shows(const struct encode_stream *stream, const struct frame *frame, const struct request_group *tickets)
 {
     const struct frame_request *request = &tickets->tickets[0].request;
@@ -108,7 +109,8 @@ static bool shows(const struct encode_stream *stream, const struct frame *frame,
            stream->content == frame->content && same_coding(stream, frame, request) && !brings_depth(stream, frame, tickets);
 }
 
-/* Returns a stream that already shows this frame; NULL: none. whole: accept only a stream whose newest packet is a key frame. */
+/* Returns a stream whose newest content equals this frame; NULL: there is none. whole: accepts only a stream whose newest packet is a key
+   frame. */
 static struct encode_stream *showing(const struct encode_streams *streams, const struct frame *frame, const struct request_group *tickets,
                                      bool whole)
 {
@@ -171,8 +173,8 @@ static size_t count_outside(struct outsiders *outsiders, const struct request_gr
     return count;
 }
 
-/* Returns whether clients outside of the stream may join it now. Joining takes a key frame, which costs bandwidth of the clients already in
-   the stream. If not, moves the joining clients' tickets to `rest`. */
+/* Returns whether clients from outside of the stream may join it now. Joining takes a key frame, which uses bandwidth of the stream's other
+   clients. If they may not, moves the joining clients' tickets to `rest`. */
 static bool let_in(struct encode_streams *streams, const struct encode_stream *stream, struct request_group *tickets, int64_t now_ns,
                    struct request_group *rest)
 {
@@ -202,7 +204,7 @@ static void join(struct encode_stream_member *link, struct encode_stream *stream
     link->join_after_ns = now_ns + link->patience_ns;
 }
 
-/* Determines the packets that each client needs. A client that has got them is up to date. */
+/* Determines the packets that each client needs to show the newest frame. A client that has received them is up to date. */
 static void give(struct encode_streams *streams, const struct request_group *tickets, int64_t now_ns, struct encode_plan *plan)
 {
     struct encode_stream *stream = plan->stream;
@@ -224,7 +226,7 @@ static struct encode_stream *choose(struct encode_streams *streams, const struct
     if (stream && !shows(stream, frame, tickets))
         other = showing(streams, frame, tickets, true);
     if (other)
-        /* the stream `other` has just made a key frame of this content, so these clients can join that stream without another key frame */
+        /* the newest packet of the stream `other` is a key frame of this content, so the clients join that stream at no extra cost */
         return other;
     if (!stream)
         stream = showing(streams, frame, tickets, false);
@@ -235,8 +237,8 @@ static struct encode_stream *choose(struct encode_streams *streams, const struct
     return stream ? stream : add_chain(streams);
 }
 
-/* Returns whether a client must get the frame again although it already shows this content. This excludes requests that must decode without
-   earlier packets (`alone`): their clients get the kept packets, from the key frame on. */
+/* Returns whether a client of the group must get the frame again although it already shows this content (`always`). Requests that must
+   decode without earlier packets (`alone`) do not count: their clients get the packets kept, from the key frame on. */
 static bool must_again(const struct request_group *tickets)
 {
     for (size_t i = 0; i < tickets->count; i++)
@@ -299,7 +301,8 @@ void encode_stream_keep(struct encode_stream *stream, struct packet *packet, uin
     while (stream->kept_count > 0 && stream->oldest < needed &&
            (key || stream->kept_count == ENCODE_STREAM_KEPT || stream->kept_bytes > most_bytes(stream)))
         drop_oldest(stream);
-    /* the list is still full: it holds more packets than a client may have in flight, so no client can need the oldest one */
+    /* if all clients' needs leave the list full, the oldest packet is dropped: the list holds more packets than a client may have in
+       flight, so no client can need that one */
     if (stream->kept_count == ENCODE_STREAM_KEPT)
         drop_oldest(stream);
     stream->kept[stream->kept_count++] = packet ? packet_ref(packet) : NULL;

@@ -10,14 +10,15 @@ enum { ENCODE_STREAM_KEPT = 32 };
 struct encode_stream {
     struct encode_stream *next;
     void *work;                 /* data that the encode queue attaches to the stream; NULL in a new stream */
-    uint64_t planned;           /* sequence number of the newest frame, counted from 1, also of frames that were not encoded */
+    uint64_t planned;           /* sequence number of the newest frame planned, from 1; frames that are then not encoded count, too */
     uint64_t oldest;            /* lowest sequence number whose packet is kept */
     uint64_t key;               /* sequence number of the newest key frame; 0: none */
     int64_t key_ns;             /* monotonic: when the newest key frame was planned */
     struct frame_request shown; /* request that caused the newest frame: its view, codec and quality */
     uint64_t content;           /* content hash of the newest frame */
     bool has_depth;             /* true: the packets that show the newest content include a depth grid */
-    /* the kept packets, of the frames with sequence numbers `oldest` to oldest + kept_count - 1; NULL where nothing had changed */
+    /* packets kept, of the frames with sequence numbers `oldest` to oldest + kept_count - 1; an element is NULL if nothing had changed in
+       its frame */
     struct packet *kept[ENCODE_STREAM_KEPT];
     int kept_count;
     size_t kept_bytes, key_bytes;
@@ -29,8 +30,8 @@ struct encode_stream_member {
     uint64_t client;
     struct encode_stream *stream;
     uint64_t position; /* sequence number of the newest packet that the client was given */
-    /* joined_ns: when the client joined; patience_ns: delay before the client may join again by a key frame, longer if it often falls
-       behind; join_after_ns: end of that delay */
+    /* joined_ns: when the client joined the stream; patience_ns: delay before a key frame is made for the client to join again, longer if
+       it often falls behind; join_after_ns: end of that delay */
     int64_t joined_ns, join_after_ns, patience_ns;
 };
 
@@ -58,8 +59,8 @@ void encode_streams_plan(struct encode_streams *streams, const struct frame *fra
 /* Stores the stream's next packet and takes a reference to it. packet NULL: nothing had changed in the frame. Packets with a sequence
    number below `needed`, the lowest that some client still has to get, may be dropped. */
 void encode_stream_keep(struct encode_stream *stream, struct packet *packet, uint64_t needed);
-/* Writes the packets from..to that bring a client up to date into out, oldest first, borrowed. Returns their count; -1: they are no
-   longer kept. */
+/* Writes the packets with sequence numbers from..to, which bring a client up to date, into `out`, oldest first, borrowed. Returns their
+   count; -1: some were dropped already. */
 int encode_stream_catch_up(const struct encode_stream *stream, uint64_t from, uint64_t to, struct packet *out[ENCODE_STREAM_KEPT]);
 /* Notes that the newest frame could not be encoded: all members need a key frame. */
 void encode_stream_break(struct encode_stream *stream);

@@ -4,8 +4,8 @@
 #define SERVICE_ENCODED_FRAME_H
 #include "service/frame_request.h"
 
-/* Why a request was answered without a packet. FRAME_SKIPPED: it was not drawn, because a later request of the client is answered instead,
-   or its instant is no longer loaded; this says nothing about what the client shows. */
+/* Reason why a request was answered without a packet. FRAME_SKIPPED: the frame was not drawn, because a later request of the client is
+   answered instead, or because the requested instant is no longer loaded. The client may then show anything. */
 enum frame_absence {
     FRAME_SKIPPED,
     FRAME_UNCHANGED, /* the client already shows this content */

@@ -6,11 +6,12 @@
 struct content_of {
     struct render_service *service;
     uint64_t content;
-    bool gives_depth; /* true: the frame has a depth grid */
+    bool gives_depth; /* true: the frame that is being shared has a depth grid */
     int64_t cost_ns; /* drawing time that is charged to each client that shares the frame */
 };
 
-/* Returns whether the client already shows this frame, with its depth grid if it wants one. The caller holds the lock. */
+/* Returns whether the ticket's client already shows the content that is being shared, with its depth grid if the client wants one. The
+   caller holds the lock. */
 static bool has_it(const struct request_ticket *ticket, void *arg)
 {
     const struct content_of *now = arg;
@@ -22,8 +23,8 @@ static bool has_it(const struct request_ticket *ticket, void *arg)
     return has;
 }
 
-/* Returns whether a frame for a later request of the client was already handed to the encoders, because a deferred request or a long job (a
-   frame drawn in steps) was drawn late. The client would not show the older frame, so its encode stream must not count it as shown. The
+/* Returns whether a later request of the ticket's client was already handed to the encoders, because this frame was drawn late (it was
+   deferred, or a long job in steps). The client would never show this older frame, so its encode stream must not count it as shown. The
    caller holds the lock. */
 static bool is_overtaken(const struct request_ticket *ticket, void *arg)
 {

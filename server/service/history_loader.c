@@ -15,7 +15,8 @@
 
 static const int64_t SPAN_INTERVAL_NS =
     60 * NS_PER_S; /* interval at which the beginning of recorded history is read again; long, as old files are removed rarely */
-static const int64_t RETRY_DELAY_NS = 2 * NS_PER_S; /* interval between checks for recorded history while nothing is recorded */
+/* interval at which the thread checks, while nothing is recorded yet, whether recorded history has begun */
+static const int64_t RETRY_DELAY_NS = 2 * NS_PER_S;
 
 struct wanted_instant {
     uint64_t client;
@@ -25,7 +26,8 @@ struct wanted_instant {
 struct history_loader {
     struct history_loader_params params;
     _Atomic bool stop;
-    /* reader of the history; NULL: history is read from the core. Only the loader's thread uses this member and those up to `thread` */
+    /* reader of the history on this machine; NULL: history is read from the core. Only the loader's thread uses this member and the ones
+       below it, down to `thread` */
     struct history_reader *reader;
     struct core_history *core; /* link to the core; NULL: the history is on this machine */
     struct history_tag *tags;
@@ -134,15 +136,15 @@ static void look_at_span(struct history_loader *loader)
                             : history_span(loader->reader, &first_us, &last_us);
     if (!any) {
         first_us = 0;
-        loader->spanned_ns = 0; /* nothing is recorded yet: 0 makes the thread check again soon, and at the next request */
+        loader->spanned_ns = 0; /* while nothing is recorded yet, spanned_ns 0 makes the thread look again soon, and at the next request */
     }
     pthread_mutex_lock(&loader->thread.lock);
     loader->first_us = first_us;
     pthread_mutex_unlock(&loader->thread.lock);
 }
 
-/* Waits for a request. Returns false if there is none because it is time to look for the beginning of recorded history again, or to
-   stop. */
+/* Waits for a request. Returns false without one if the thread must stop, or if it is time to read the beginning of recorded history
+   again. */
 static bool next_wanted(struct history_loader *loader, struct wanted_instant *out, bool *stopping)
 {
     int64_t until_ns = clock_mono_ns() + RETRY_DELAY_NS;

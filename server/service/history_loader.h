@@ -21,7 +21,7 @@ struct history_loader_params {
     const char *folder;          /* folder of the recorded history; NULL: the core has the history */
     struct core_link *core_link; /* on a renderer: link to the core, which must outlive the loader; otherwise NULL */
     struct snapshot_cache *snapshot_cache;
-    void (*notify)(void *arg); /* called on the loader's thread when there is an answer */
+    void (*notify)(void *arg); /* callback on the loader's thread when there is an answer */
     void *notify_arg;
 };
 

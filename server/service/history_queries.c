@@ -16,15 +16,16 @@
 #include "service/drift_report.h"
 #include "service/remote_history.h"
 
-enum { THREADS = 2 };                         /* each address uses one thread at a time, so that its queries do not block another address */
-static const size_t PIECE_BYTES = 256 * 1024; /* a piece of an answer ends after the tag with which it reaches this many bytes */
-/* a piece of an answer also ends after the tag with which making the piece has taken this long */
+enum { THREADS = 2 }; /* number of threads. Each client address uses one at a time, so that its queries do not block another address */
+static const size_t PIECE_BYTES = 256 * 1024; /* size in bytes at which a piece of an answer ends, after the tag that reaches it */
+/* time after which a piece of an answer ends, after the tag that is being read then */
 static const int64_t PIECE_NS = 100 * NS_PER_MS;
 
 struct pending_query {
     struct history_query query;
-    int next_tag; /* next tag to read; for drift queries, the next asset */
-    /* format of the last line of CSV output, which decides its number of columns: true: means of time buckets; false: single values */
+    int next_tag; /* index of the next tag to read; for drift queries, of the next asset */
+    /* format of the last line of CSV output, which decides how many columns the next line has: true: means of time buckets; false: single
+       values */
     bool buckets;
     bool listed;  /* true: the answer lists a drifting sensor already, so a comma comes before the next one */
     bool wanted;  /* true: the client asked for the next piece */
