@@ -81,8 +81,8 @@ static void print_json(const struct pending_query *question, const struct plant_
         text_add(out, "]}\n");
 }
 
-/* Appends the text of the query's next tag, requested from the core: the same bytes as this daemon would write. Returns false if the core
-   did not answer. */
+/* Appends the text of the query's next tag, which the core writes: the same bytes as this daemon would write. Returns false if the core did
+   not answer. */
 static bool fetch_tag(const struct history_queries *queries, struct core_history *core, struct pending_query *question, struct text *out)
 {
     const struct history_query *query = &question->query;
@@ -93,7 +93,8 @@ static bool fetch_tag(const struct history_queries *queries, struct core_history
                       : remote_history_json(core, query, tag, first, last, out);
 }
 
-/* Returns the number of steps (tags, or assets for drift) of an answer in pieces, each of which reads history once. */
+/* Returns the number of steps of an answer that is made in pieces: one per tag or, for drift queries, per asset. Each step reads history
+   once. */
 static int steps_of(const struct history_queries *queries, const struct history_query *query)
 {
     return !query->drift ? query->tag_count : query->tag >= 0 ? 1 : (int)queries->scene->asset_count;
@@ -175,7 +176,7 @@ static struct history_answer *read_piece(struct history_queries *queries, struct
                : query->drift ? read_asset(queries, reader, question, &text)
                               : read_tag(queries, reader, question, &text);
     piece->last = !good || !pieces || question->next_tag == steps_of(queries, query);
-    if (good && text.length > 0) { /* the text is copied without its spare capacity, because it may wait long for a slow client */
+    if (good && text.length > 0) { /* copies the text to release its spare capacity, because the piece may wait long for a slow client */
         piece->text = mem_array(text.length + 1, 1);
         piece->length = text.length;
         memcpy(piece->text, text.at, text.length);
@@ -208,11 +209,12 @@ static uint64_t served_of(const struct history_queries *queries, const struct pe
 static bool goes_before(const struct history_queries *queries, const struct pending_query *a, const struct pending_query *b)
 {
     uint64_t a_served = served_of(queries, a), b_served = served_of(queries, b);
-    /* the list is newest first, so among equal entries the later one in the list is the older query, which goes first */
+    /* Among equally served queries the older one goes first. The list is newest first, so that is the later one in the list */
     return a_served < b_served || (a_served == b_served && a->served <= b->served);
 }
 
-/* Removes from the list, and returns, the query whose account was served longest ago; NULL: none is due. The caller holds the lock. */
+/* Removes from the list, and returns, the query whose account (client address) was served longest ago; NULL: no query can be served now.
+   The caller holds the lock. */
 static struct pending_query *take_next(struct history_queries *queries)
 {
     struct pending_query **best = NULL;
@@ -276,7 +278,7 @@ static void *run(void *arg)
         queries->at_work[index] = 0;
         queries->working[index] = NULL;
         give(queries, question, piece);
-        /* this query's address has no thread any more, so the other thread may take another query of that address */
+        /* wakes the other threads, because another query of this query's address may be served now */
         pthread_cond_broadcast(&queries->wake);
         pthread_mutex_unlock(&queries->lock);
         queries->notify(queries->notify_arg);

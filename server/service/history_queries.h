@@ -16,10 +16,10 @@
 
 enum { HISTORY_QUERIES_MOST = 128 };
 
-struct history_answer { /* one piece of an answer; free with history_answer_free() */
+struct history_answer { /* one piece of the answer to a query; free with history_answer_free() */
     uint64_t client;
     bool csv;
-    bool first, last; /* first: this is the first piece of the answer; last: the last piece */
+    bool first, last; /* position of the piece in the answer. first: it is the first piece; last: no piece follows */
     char *text;       /* text of the piece; NULL: history could not be read, and no more pieces come */
     size_t length;
     struct history_answer *next;

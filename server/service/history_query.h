@@ -14,15 +14,15 @@ enum { HISTORY_QUERY_TAGS = 64, HISTORY_QUERY_POINTS = 20000 };
 
 struct history_query {
     uint64_t client;
-    /* id of the account that is charged for the query: the client's address; 0: one account for all queries without an address */
+    /* id of the account that the query counts for: the client's address; 0: one account for all queries without an address */
     uint64_t account;
     int tags[HISTORY_QUERY_TAGS]; /* indices into the plant's tags */
     int tag_count, max_points;
     int64_t from_us, to_us;
     bool csv;
     bool drift;     /* instead of series, the query asks which sensors drifted in the week before to_us (service/drift_report.h) */
-    /* for a drift query: index in the plant of the group whose sensors are judged, or of one tag; the other one is -1. Both are -1 in other
-       queries */
+    /* only in drift queries: index in the plant of the group whose sensors are judged, or of one tag; the other of the two is -1. In other
+       queries both are -1 */
     int group, tag;
     bool gaps;      /* instead of series, the query asks for the periods in which nothing was recorded */
     bool journal;   /* instead of series, the query asks for the alarm journal, filtered by `alarms` */

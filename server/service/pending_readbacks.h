@@ -13,12 +13,12 @@ enum { PENDING_READBACKS_MAX = 3 };
 struct pending_readbacks {
     struct pending_readback {
         struct split_view *split;
-        struct request_group group; /* the requests that this frame answers */
+        struct request_group group; /* requests that are answered with this frame */
         /* reference to the readings of a past instant; NULL: the readings are in `snapshot` */
         const struct historical_snapshot *historical;
         struct snapshot *snapshot;
         uint64_t content; /* hash of the content that the frame shows */
-        bool gives_depth; /* true: the frame gets a depth grid */
+        bool gives_depth; /* true: the frame has a depth grid, which is read back, too */
     } at[PENDING_READBACKS_MAX];
     int count;
 };
@@ -27,8 +27,8 @@ struct pending_readbacks {
 void pending_readbacks_init(struct pending_readbacks *in_flight, size_t tag_count);
 /* Frees the memory of the list's snapshots; no frame may be in the list. */
 void pending_readbacks_finish(struct pending_readbacks *in_flight);
-/* Adds a frame; the list must not be full. Takes over the frame's split view, historical snapshot and group; without a historical snapshot
-   also *snapshot. Afterwards *group is empty, and *snapshot is a different one with unspecified content. */
+/* Adds a frame to the list, which must not be full. Takes over the frame's split view, historical snapshot and group and, if there is no
+   historical snapshot, *snapshot. Afterwards *group is empty, and *snapshot is a different one with unspecified content. */
 void pending_readbacks_push(struct pending_readbacks *in_flight, const struct pending_readback *frame, struct request_group *group,
                             struct snapshot **snapshot);
 /* Returns the frame in the list with that content hash; NULL: none. Skips frames that get an overlay and, if `depth` is true, frames

@@ -6,7 +6,7 @@
 #include "base/mem.h"
 #include "service/render_service_impl.h"
 
-/* Returns the client's index in the sorted array, or where it would be inserted. The caller holds the lock. */
+/* Returns the client's index in the array sorted by id, or the index at which the client would be inserted. The caller holds the lock. */
 static size_t place_of(const struct render_service *service, uint64_t id)
 {
     size_t at;

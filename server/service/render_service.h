@@ -32,7 +32,7 @@ struct render_service_params {
     /* views that render_service_create() draws once, so that their caches and shaders are ready for requests; read only during that call */
     const struct view *first;
     size_t first_count;
-    void (*notify)(void *arg); /* called when frames or pick answers can be collected; by any thread */
+    void (*notify)(void *arg); /* callback on any thread when frames or pick answers can be collected */
     void *notify_arg;
 };
 
@@ -44,8 +44,8 @@ void render_service_destroy(struct render_service **service);
 
 enum request_outcome { REQUEST_ADDED, REQUEST_REPLACED, REQUEST_REFUSED };
 /* Queues a client's request. REQUEST_ADDED: one encoded frame will be ready for collection, unless the client is forgotten.
-   REQUEST_REPLACED: it replaced one that was not begun, and shares its answer. REQUEST_REFUSED: it was only valid as a replacement
-   (only_replace), and there was none to replace. Drawing begins with render_service_wake(). */
+   REQUEST_REPLACED: the request replaced one whose drawing had not begun; one frame answers both. REQUEST_REFUSED: the request was only
+   valid as a replacement (only_replace), but no request was waiting. Drawing begins with render_service_wake(). */
 enum request_outcome render_service_request(struct render_service *service, uint64_t client, const struct frame_request *request);
 /* Queues requests of several clients in one call: requests for equal views are begun together, so that one frame answers all these
    clients. */
@@ -54,20 +54,20 @@ void render_service_request_all(struct render_service *service, size_t count, co
 /* Wakes the render thread if requests were queued since the last call. Call it after all requests of one event, so that equal requests
    share a frame. */
 void render_service_wake(struct render_service *service);
-/* Answers the client's waiting request, if any, without a frame (FRAME_SKIPPED), and gives up its frame that is drawn in steps. For
-   clients that show no pictures for a while. */
+/* Answers the client's waiting request, if there is one, without a frame (FRAME_SKIPPED), and gives up the frame that is being drawn in
+   steps for the client. Call it for clients that show no pictures for a while. */
 void render_service_withdraw(struct render_service *service, uint64_t client);
 /* Drops all waiting requests and encoded frames of the client. */
 void render_service_forget(struct render_service *service, uint64_t client);
 /* Makes all later frames show a mark on each tag whose measuring loop was not checked, if the server draws the markers. loop_checks must
    outlive the service; NULL: no tag is marked. */
 void render_service_set_loop_checks(struct render_service *service, const struct loop_checks *loop_checks);
-/* Copies the event loop's newest snapshot: later frames show the readings that the loop sends as text. */
+/* Copies the event loop's newest snapshot to the service, so that later frames show the same readings that the loop sends as text. */
 void render_service_set_readings(struct render_service *service, const struct snapshot *readings);
 /* Returns false while a lost GL context is being rebuilt; requests wait meanwhile. */
 bool render_service_ready(struct render_service *service);
-/* Returns whether the render thread has given no sign of life for 12 s, or 2 minutes while a lost GL context is rebuilt; also requests the
-   next sign of life from it. Call it every few seconds. */
+/* Returns whether the render thread is stuck: it has given no sign of life for 12 s, or for 2 minutes while a lost GL context is rebuilt.
+   Each call requests the next sign of life, so call it every few seconds. */
 bool render_service_is_stuck(struct render_service *service, int64_t now_ns);
 /* Destroys the GL context in the middle of the next frame, like a GPU reset. For tests. */
 void render_service_lose_context(struct render_service *service);

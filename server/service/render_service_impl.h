@@ -9,12 +9,13 @@
 #include "service/time_accounts.h"
 
 struct render_client {
-    uint64_t id, number; /* id: of the client; number: sequence number of its requests, incremented when the drawing of one begins */
+    uint64_t id, number; /* id: of the client; number: sequence number of the client's newest request whose drawing has begun */
     bool pending;        /* true: `request` waits for its drawing to begin */
     bool has_content;
-    bool has_depth; /* true: the client was given the depth grid of the content */
+    bool has_depth; /* true: the client has the depth grid of the content that it was last sent */
     bool left; /* true: the client no longer wants the frame that the long job (a frame drawn in steps) draws for it */
-    /* how long changed readings wait for the client's long job (a frame drawn in steps) before they get a preview; 0: the initial delay */
+    /* time that changed readings wait for the long job (a frame drawn in steps) of this client before the client gets a preview of them; 0:
+       the initial time */
     int64_t patience_ns;
     struct frame_request request;
     /* content: content hash of the newest frame drawn for the client; content_number: sequence number of the request that this frame
@@ -39,12 +40,13 @@ struct render_service {
     struct snapshot *readings;             /* newest snapshot of the event loop */
     const struct loop_checks *loop_checks; /* loop check records; NULL: no tag is marked as unchecked */
     bool lost;                             /* true: the GL context is lost and being rebuilt */
-    int64_t asked_ns;                      /* monotonic: since when the render thread owes a sign of life; 0: none was requested */
-    bool lose;                             /* set to true by a test: the GL context is destroyed in the middle of the next frame */
+    int64_t asked_ns; /* monotonic time when a sign of life was requested from the render thread; 0: none is outstanding */
+    bool lose;        /* true: a test wants the GL context to be destroyed in the middle of the next frame */
     struct render_client **clients;        /* sorted by id, ascending */
     size_t client_count, client_capacity;
     struct time_accounts accounts;
-    /* by share (scheduler_share()): drawing time that the client served last had been charged before its turn */
+    /* by share (scheduler_share()): drawing time already charged to the client served last, before it was served; clients that enter the
+       queue start with at least this charge */
     int64_t spent_ns[SCHEDULER_SHARES];
     struct encoded_frame *done, **done_last; /* encoded frames not collected yet, oldest first */
     bool announced;                          /* params.notify was called for them */
@@ -63,7 +65,7 @@ void render_service_remove_client(struct render_service *service, uint64_t id);
 
 /* Answers each request of the group without a frame. Any thread. */
 void render_service_answer_without_frame(struct render_service *service, const struct request_group *group, enum frame_absence absence);
-/* Calls params.notify if frames or answers wait for collection and notify was not called for them yet. Any thread. */
+/* Calls params.notify if encoded frames or pick answers wait for collection and notify was not called for these yet. Any thread. */
 void render_service_announce(void *service);
 /* Takes the encode queue's result for a ticket. Thread: a worker. */
 void render_service_on_encoded(void *service, const struct request_ticket *ticket, struct packet *const *packets, int count, bool failed);

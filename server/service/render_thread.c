@@ -5,18 +5,18 @@
 #include "render/frame_record.h"
 #include "render/overlay/overlay.h"
 
-/* time for one step of a long job (a frame drawn in steps); after each step other requests are served */
+/* duration of one step of a long job (a frame drawn in steps); after each step other requests are served */
 static const int64_t STEP_NS = 10 * NS_PER_MS;
-/* drawing time that each frame of a moving session may spend on baking a light that the session chose */
+/* drawing time that each frame of a session with a moving camera may spend on baking the light that the session chose */
 static const int64_t LIGHT_NS = 4 * NS_PER_MS;
 static const int64_t FIELD_NS = 6 * NS_PER_MS; /* drawing time that each frame may spend on computing a field that takes long */
 static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S; /* delay between attempts to create a new GL context */
-/* longest wait of changed readings for a refined frame, if the view already had one; then a preview is drawn */
+/* longest time that changed readings wait for a refined frame, if the view has had one before; after it a preview is drawn */
 static const int64_t MAX_READINGS_DELAY_NS = 4 * NS_PER_S;
-/* how long to wait for a GPU of the same kind after a driver restart, before a different renderer is used */
+/* time to wait, after a driver restart, for a GPU of the same kind as before; after it any renderer is used */
 static const int64_t DRIVER_RESTART_TIMEOUT_NS = 60 * NS_PER_S;
 
-/* Makes the ticket's request wait for drawing again. Returns true if there is nothing to draw: the client has gone, or has a newer request.
+/* Puts the ticket's request back among the waiting ones. Returns true if that is not needed: the client has gone, or has a newer request.
    The caller holds the lock. */
 static bool request_again(const struct request_ticket *ticket, void *arg)
 {
@@ -28,7 +28,7 @@ static bool request_again(const struct request_ticket *ticket, void *arg)
     return false;
 }
 
-/* Answers the group's requests with a failure. If the cause is a lost GL context, makes them wait for the next context instead. */
+/* Answers the group's requests with a failure. If the cause is a lost GL context, lets the requests wait for the next context instead. */
 static void fail(struct render_thread *thread, struct request_group *group)
 {
     struct render_service *service = thread->service;
@@ -144,8 +144,8 @@ static void finish_complete(struct render_thread *thread)
 
 /* --- long jobs: frames drawn in steps ------------------------------------------------------------------------------------- */
 
-/* Clears `left` for the group's clients: the flag means that a client left the previous long job (a frame drawn in steps), and must not
-   apply to the new one. */
+/* Resets the flag `left` of the group's clients. It says that the client left the previous long job (a frame drawn in steps), and must not
+   apply to the new job. */
 static void stay(struct render_service *service, const struct request_group *group)
 {
     pthread_mutex_lock(&service->lock);
@@ -165,7 +165,8 @@ static void long_job_swap(struct render_thread *thread)
     thread->long_job = parked;
 }
 
-/* Parks (suspends) the running long job (a frame drawn in steps) if the frame of the group's first client may overtake it. */
+/* Suspends (parks) the running long job (a frame drawn in steps) if the frame of the group's first client is small enough to be drawn
+   before it. */
 static void long_job_park(struct render_thread *thread, const struct request_group *group)
 {
     struct render_service *service = thread->service;
@@ -217,8 +218,8 @@ static void long_job_begin(struct render_thread *thread, struct request_group *g
     thread->stale = true;
 }
 
-/* Redraws the refined frame with newer readings, because previews may have shown those to its clients meanwhile. Returns the new frame;
-   NULL: not possible. */
+/* Draws a finished refined frame again with newer readings, because its clients may have been shown those readings in previews meanwhile.
+   Returns the new frame; NULL: not possible. */
 static struct frame *long_job_with_new_readings(struct render_thread *thread)
 {
     struct render_service *service = thread->service;
@@ -249,8 +250,8 @@ static const struct snapshot *long_job_readings(const struct render_thread *thre
     return thread->long_job.historical ? &thread->long_job.historical->snapshot : thread->long_job.snapshot;
 }
 
-/* Limits the delay after which changed readings get a preview to MAX_READINGS_DELAY_NS, for clients that just got a refined frame. Each
-   refined frame that was given up before had doubled the delay. */
+/* Limits how long changed readings wait before they get a preview to MAX_READINGS_DELAY_NS, for clients that just got a refined frame. The
+   delay had doubled with each refined frame that was given up before. */
 static void calm(struct render_service *service, const struct request_group *group)
 {
     pthread_mutex_lock(&service->lock);
@@ -304,8 +305,8 @@ static bool has_left(const struct request_ticket *ticket, void *arg)
     return !client || client->left || (client->pending && client->request.urgency == URGENCY_INPUT);
 }
 
-/* Removes clients that no longer want the frame from the long job (a frame drawn in steps); abandons the job once it has no clients. Its
-   time is charged all the same: otherwise an address that gives up each of its frames would always go first. */
+/* Removes from the long job (a frame drawn in steps) the clients that no longer want its frame, and abandons the job once it has no
+   clients. Its drawing time is charged nevertheless: otherwise an address that gives up each of its frames would always be served first. */
 static void long_job_leave(struct render_thread *thread)
 {
     struct render_service *service = thread->service;
@@ -324,8 +325,8 @@ static void long_job_leave(struct render_thread *thread)
     long_job_forget_instant(thread);
 }
 
-/* Turns the group's refined requests into previews if the first request has or_moving set; otherwise marks them as requests for a long job
-   (a frame drawn in steps). */
+/* If the first request of the group has or_moving set, turns the group's requests for a refined frame into requests for a preview.
+   Otherwise makes them requests for a long job (a frame drawn in steps). */
 static void choose_other(struct request_group *group)
 {
     /* one frame answers all tickets (requests whose drawing has begun) of the group, so all get the same tier */
@@ -396,8 +397,8 @@ static bool draw_of(struct render_thread *thread, struct request_group *group, c
     return true;
 }
 
-/* Returns whether the group or the newest request of a client present wants depth. All frames but those of walls then get depth grids, so
-   that any client can share them. */
+/* Returns whether the group, or the newest request of any connected client, wants a depth grid. All frames except those of walls then get
+   one, so that any client can share them. */
 static bool wants_depth(struct render_service *service, const struct request_group *group)
 {
     bool wants = request_group_wants_depth(group);
@@ -551,7 +552,8 @@ static void rebuild(struct render_thread *thread)
     log_info(service->params.log, "gl: drawing with a new context after %.1f s", (double)(clock_mono_ns() - lost_ns) / NS_PER_S);
 }
 
-/* Resumes the parked long job if no other one runs. Call it at the end of each turn: without other requests there is no next turn. */
+/* Resumes the suspended (parked) long job if no other one runs. Call it at the end of each turn: if no request comes, no further turn
+   begins. */
 static void resume_parked(struct render_thread *thread)
 {
     if (!thread->long_job.split && thread->parked.split)

@@ -27,7 +27,7 @@ struct long_job {                                 /* a frame that is drawn in st
     int64_t px, spent_ns;     /* px: number of pixels of the frame; spent_ns: drawing time so far */
     uint64_t account;         /* time account that is charged */
     int64_t account_spent_ns; /* drawing time that had been charged to the address's account before the job began */
-    bool keeps; /* true: later frames with new readings will reuse the job's work, so that new readings do not abandon the job */
+    bool keeps; /* true: later frames of the same view will reuse what the job draws, so the job is continued even if readings change */
 };
 
 struct render_thread {
@@ -36,17 +36,17 @@ struct render_thread {
     struct field *field;
     struct renderer *renderer;
     struct snapshot *snapshot; /* the newest readings taken */
-    bool stale;                /* true: `snapshot` was handed to a submitted frame, so a new one must be taken before the next use */
+    bool stale; /* true: `snapshot` was handed over with a submitted frame, so a new snapshot must be taken before it is used again */
     struct request_group same; /* scratch memory: requests that are answered without drawing a frame */
     struct recent_frames recent;
     struct long_job long_job;
-    /* a suspended long job (a frame drawn in steps) for a large frame; it continues after a smaller frame of another address, which was
-       allowed to overtake it */
+    /* suspended long job (a frame drawn in steps) that draws a large frame; it continues once a smaller frame of another address, which may
+       overtake it, is drawn */
     struct long_job parked;
     bool warm;             /* the warm-up is complete */
-    int64_t turn_began_ns; /* monotonic: since when the thread has been drawing without a wait or other work */
+    int64_t turn_began_ns; /* monotonic time since when the thread draws without having waited or done other work */
     struct pending_readbacks in_flight;
-    /* groups that wait until their field is computed; in each turn that such a group gets, a part of the field is computed */
+    /* groups of requests that wait until their field is computed. In each turn for such a group, a part of the field is computed */
     struct deferred_requests deferred;
     struct thread_memory memory;
 };
@@ -56,11 +56,11 @@ struct render_thread {
 /* Submits the frame for encoding for all clients of the group that are still connected, and empties the group. cost_ns: drawing time,
    charged to them in equal parts. Takes its own reference to the frame. */
 void frame_sharing_submit(struct render_service *service, struct frame *frame, struct request_group *group, int64_t cost_ns);
-/* Answers, and removes from the group, the requests that need no drawing: clients that already show this content get no frame; others
-   share a frame of the same content, recent or in flight. content: content hash of the planned frame. */
+/* Answers those requests of the group that need no drawing, and removes them. Clients that already show this content are answered without a
+   frame; others share a frame of the same content that is recent or in flight. content: content hash of the planned frame. */
 void frame_sharing_answer_unchanged(struct render_thread *thread, uint64_t content, struct request_group *group);
-/* Answers the whole group with a recent frame of the same view, if that frame's readings are as new as those that the group's clients have
-   been told of, and empties the group. Call it before the field is updated. */
+/* Answers the whole group with a recent frame of the same view, and empties the group. Does so only if the frame's readings are at least as
+   new as those that the group's clients know. Call it before the field is updated. */
 void frame_sharing_answer_from_recent(struct render_thread *thread, struct request_group *group);
 
 /* --- render_thread_memory.c: memory of the caches --------------------------------------------------------------------- */
@@ -69,12 +69,12 @@ void frame_sharing_answer_from_recent(struct render_thread *thread, struct reque
 void render_thread_memory_init(struct thread_memory *memory, struct render_service *service);
 /* Measures the caches and shrinks them to their limit. */
 void render_thread_bound_memory(struct render_thread *thread);
-/* Call it when caches were filled: they are then kept until 10 s have passed without clients. */
+/* Notes that caches are filled now: they are kept until 10 s have passed without clients. */
 void render_thread_note_work(struct render_thread *thread);
 /* Limits the caches (at most once a second) and records that they are filled. Call it after each turn. */
 void render_thread_check_memory(struct render_thread *thread);
-/* Returns true if there has been no client for 10 s and the caches are not empty. Otherwise lowers *wait_until_ns to the time of the next
-   check. The caller holds the service's lock. */
+/* Returns true if the service has had no client for 10 s and the caches are not empty. Otherwise lowers *wait_until_ns to the time of the
+   next check. The caller holds the service's lock. */
 bool render_thread_may_release_memory(struct render_thread *thread, int64_t *wait_until_ns);
 /* Empties all caches. No frame may be in flight. */
 void render_thread_release_memory(struct render_thread *thread);
@@ -85,7 +85,8 @@ void render_thread_release_memory(struct render_thread *thread);
 void render_thread_draw_first(struct render_thread *thread);
 /* Draws a small frame of that tier and discards it, which compiles the tier's shaders. */
 void render_thread_warm_tier(struct render_thread *thread, enum tier tier);
-/* Does some milliseconds of the warm-up; sets thread->warm once it is complete. Call it while there are no requests, without the lock. */
+/* Works on the warm-up for some milliseconds; sets thread->warm once the warm-up is complete. Call it while there are no requests, without
+   the lock. */
 void render_thread_warm_up(struct render_thread *thread);
 
 /* --- render_thread_next.c: choice of what is drawn next --------------------------------------------------------------- */

@@ -8,11 +8,12 @@
 
 static const int64_t MEASURE_INTERVAL_NS = 1 * NS_PER_S; /* interval between measurements */
 static const int64_t IDLE_TIMEOUT_NS = 10 * NS_PER_S;    /* time without clients after which caches are released */
-static const double FIELD_SHARE = 0.3;                   /* share of the limit that values and weights of all fields may take */
+static const double FIELD_SHARE = 0.3; /* part of the memory limit that values and weights of all fields together may take */
 /* Minimum reserved for memory other than models and caches: shaders, threads, the plant, and temporary memory of a frame or a light. */
 static const size_t OTHER_BYTES = (size_t)576 << 20;
-static const size_t FREE_BYTES = (size_t)64 << 20; /* the heap is trimmed if this many bytes in it are free but still resident */
-static const int64_t TRIM_NS = 5 * NS_PER_S;       /* minimum time between two trims */
+/* number of bytes, free in the heap but still resident, above which the heap is trimmed (free memory is returned to the system) */
+static const size_t FREE_BYTES = (size_t)64 << 20;
+static const int64_t TRIM_NS = 5 * NS_PER_S; /* minimum time between two trims */
 /* speed at which the recorded peak of other memory decays: at each measurement it loses 1 / FADES of its excess over the present value */
 static const size_t FADES = 64;
 
@@ -51,7 +52,9 @@ static size_t other_bytes(struct thread_memory *memory, size_t all, size_t count
     size_t other = use.anonymous > counted ? use.anonymous - counted : 0;
     if (other < memory->other)
         memory->other -= (memory->other - other) / FADES;
-    else if (!loose) /* without the trim, memory that a cache has just freed would count as other memory, because the heap still holds it */
+    /* keeps the old peak until the heap is trimmed: memory that a cache has just freed is still in the heap, and would count as other
+       memory */
+    else if (!loose)
         memory->other = other;
     return memory->other > OTHER_BYTES ? memory->other : OTHER_BYTES;
 }
@@ -72,7 +75,7 @@ void render_thread_bound_memory(struct render_thread *thread)
         counted += bytes[i];
     all = all ? all : memory_default_bytes();
     size_t bound = bound_of(all, bytes[STORE_MODELS], other_bytes(memory, all, counted));
-    /* frames are not limited here: their number follows from the number of sessions */
+    /* memory of frames is subtracted instead of limited: the number of frames follows from the number of sessions */
     size_t caches = bound > 2 * frames ? bound - frames : bound / 2;
     field_set_cache_limit(thread->field, (size_t)(FIELD_SHARE * (double)caches));
     renderer_bound_memory(thread->renderer, caches - (size_t)(FIELD_SHARE * (double)caches));

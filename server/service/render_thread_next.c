@@ -3,11 +3,11 @@
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
 
-/* How long changed readings wait for a refined frame of the same client. After that the refined frame is given up for a preview and the
-   delay doubles, so that eventually a refined frame is finished. */
+/* Time that changed readings wait for a refined frame of the same client. After that time, the refined frame is given up for a preview, and
+   the time doubles, so that a refined frame is finished eventually. */
 static const int64_t OWN_DATA_NS = 1 * NS_PER_S, OWN_DATA_MAX_NS = 16 * NS_PER_S;
-/* a frame may overtake a long job (a frame drawn in steps) that has this many times its pixels: memory suffices for one more frame of the
-   smaller size, but not for two large ones */
+/* minimum ratio of pixels between a long job (a frame drawn in steps) and a frame that may overtake it: memory suffices for another frame
+   if that is small, but not for two large ones */
 enum { OVERTAKE_SMALLER = 4 };
 
 static bool long_job_is_for(const struct long_job *long_job, const struct render_client *client)
@@ -32,7 +32,7 @@ static bool waits_for_long_job(const struct render_thread *thread, const struct 
 
 struct render_turn {
     bool step;                    /* true: draw a step of the long job (a frame drawn in steps); false: serve `client` */
-    struct render_client *client; /* client to serve next; NULL: none before wait_until_ns */
+    struct render_client *client; /* client to serve next; NULL: no client before wait_until_ns */
     int64_t wait_until_ns;
 };
 
@@ -46,7 +46,7 @@ bool render_thread_overtakes(const struct render_thread *thread, const struct re
     return px * OVERTAKE_SMALLER <= long_job->px && client->account->spent_ns[kind] < long_job->account_spent_ns + long_job->spent_ns;
 }
 
-/* Returns whether the client goes before the other, because it was charged less drawing time. kind: share of drawing time
+/* Returns whether the client is served before the other client, because less drawing time was charged to it. kind: share of drawing time
    (scheduler_share()). The caller holds the lock. */
 static bool has_had_less(const struct render_client *client, const struct render_client *other, int kind)
 {
@@ -54,7 +54,8 @@ static bool has_had_less(const struct render_client *client, const struct render
                              &(struct time_claim){ other->account, other->spent_ns[kind], other->request.asked_ns }, kind);
 }
 
-/* Returns whether the client's request can be drawn now and before that of `other` (NULL: none). The caller holds the lock. */
+/* Returns whether the client's request can be drawn now, and is served before the request of `other` (NULL: there is no other). The caller
+   holds the lock. */
 static bool goes_before(const struct render_thread *thread, const struct render_client *client, const struct render_client *other,
                         int64_t now_ns)
 {
@@ -102,8 +103,8 @@ static struct render_turn next_turn(const struct render_thread *thread, const st
     return turn;
 }
 
-/* Adjusts how long changed readings wait for a refined frame of the client: an input resets the delay to its initial value; giving up a
-   refined frame because of readings doubles it. The caller holds the lock. */
+/* Adjusts the time that changed readings wait for a refined frame of the client. An input of the user resets it to its initial value;
+   giving up a refined frame for readings doubles it. The caller holds the lock. */
 static void change_patience(const struct render_thread *thread, struct render_client *client)
 {
     int64_t twice_ns = 2 * (client->patience_ns ? client->patience_ns : OWN_DATA_NS);
@@ -113,8 +114,8 @@ static void change_patience(const struct render_thread *thread, struct render_cl
         client->patience_ns = twice_ns < OWN_DATA_MAX_NS ? twice_ns : OWN_DATA_MAX_NS;
 }
 
-/* Begins the client's request. A long job (a frame drawn in steps) for the client is no longer wanted, unless it will show the new readings
-   too. The caller holds the lock. */
+/* Begins the client's request. The long job (a frame drawn in steps) that runs for the client is then no longer wanted, unless it will show
+   the new readings, too. The caller holds the lock. */
 static void begin(const struct render_thread *thread, struct render_client *client, struct request_group *group, int64_t now_ns)
 {
     enum urgency urgency = client->request.urgency;
@@ -180,7 +181,9 @@ bool render_thread_next(struct render_thread *thread, const struct scheduler *sc
             pthread_mutex_unlock(&service->lock);
             answer_pick(thread);
             pthread_mutex_lock(&service->lock);
-            if (service->state != RUNNING) /* the service was stopped while the lock was released: nothing would wake this thread again */
+            /* checks again whether the service is stopping: it may have been stopped while the lock was released, and nothing would wake
+               this thread again */
+            if (service->state != RUNNING)
                 break;
         }
         turn = next_turn(thread, scheduler);

@@ -6,9 +6,9 @@
 
 /* pause after a frame of a moving session, in which the scheduler waits for the same session's next camera */
 static const int64_t INPUT_PAUSE_NS = 150 * NS_PER_MS;
-/* long-running frames (refined ones, snapshots over HTTP) get a turn at least this often, even while cameras move */
+/* maximum time between two turns of long-running frames (refined ones, snapshots over HTTP), even while cameras move */
 static const int64_t LONG_TURN_NS = 3 * NS_PER_S;
-/* interval at which a snapshot over HTTP gets a turn; shorter, because its client has no frame to look at yet */
+/* maximum time between two turns of snapshots over HTTP; shorter, because their clients have no frame to look at yet */
 static const int64_t SNAPSHOT_TURN_NS = 1 * NS_PER_S;
 
 int scheduler_share(enum urgency urgency)

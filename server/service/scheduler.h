@@ -11,7 +11,7 @@
 enum urgency { URGENCY_INPUT, URGENCY_DATA, URGENCY_REFINE, URGENCY_SNAPSHOT, URGENCY_COUNT };
 
 struct scheduler {             /* zero-initialise */
-    int64_t input_ns, long_ns; /* monotonic: when the last frame for an input, and the last long-running frame, was finished */
+    int64_t input_ns, long_ns; /* monotonic times when frames were last finished: a frame for an input; a long-running frame */
     bool data_next, step_next; /* true: the next turn belongs to changed readings, or to a step of a long-running frame */
 };
 
@@ -19,8 +19,8 @@ struct scheduler {             /* zero-initialise */
 enum { SCHEDULER_MOVING, SCHEDULER_LONG, SCHEDULER_SHARES };
 /* Returns the index of the share (separate account of drawing time) to which frames of that urgency are charged. */
 int scheduler_share(enum urgency urgency);
-/* Returns the charge with which a client enters the queue: its own, but no less than that of the client served last, so that time left
-   unused earlier gives no advantage. */
+/* Returns the charge with which a client enters the queue: its own drawing time charged so far, but no less than that of the client served
+   last. Time that the client left unused earlier thus gives it no advantage. */
 int64_t scheduler_asked(int64_t spent_ns, int64_t served_ns);
 /* Returns whether client a goes before b: it was charged less; or it was charged the same and its request is older. */
 bool scheduler_before(int64_t a_spent_ns, int64_t a_asked_ns, int64_t b_spent_ns, int64_t b_asked_ns);

@@ -16,20 +16,20 @@ struct time_account {
 struct time_accounts { /* zero-initialise; free with time_accounts_finish() */
     struct time_account **all;
     size_t count, capacity;
-    /* by share (scheduler_share()): drawing time that the account served last had been charged before its turn */
+    /* by share (scheduler_share()): drawing time already charged to the account served last, before it was served */
     int64_t served_ns[SCHEDULER_SHARES];
 };
 
 /* Adds a client to the account with that id; creates the account if needed. Returns it; time_accounts_leave() releases it. */
 struct time_account *time_accounts_join(struct time_accounts *accounts, uint64_t id);
-/* Removes a client from the account and sets *account to NULL. An account without clients is kept until the others have been charged as
-   much, so that a client cannot clear the charge by reconnecting. */
+/* Removes a client from the account and sets *account to NULL. An account without clients is kept until as much time was charged to the
+   others, so that a client cannot clear its charge by reconnecting. */
 void time_accounts_leave(struct time_accounts *accounts, struct time_account **account);
 /* Call it when a client of the account makes a request. It raises the account's charge to that of the account served last, so that time
    left unused earlier gives no advantage. */
 void time_accounts_asked(const struct time_accounts *accounts, struct time_account *account, int share);
-/* Call it when a request of the account is drawn next. The account's charge becomes the least charge with which other accounts enter the
-   queue. */
+/* Call it when a request of the account is drawn next. The account's charge then becomes the least charge with which other accounts enter
+   the queue. */
 void time_accounts_served(struct time_accounts *accounts, const struct time_account *account, int share);
 /* Charges drawing time to the account with that id. The account may have no clients any more, for example after its last client gave up a
    frame. */
@@ -40,9 +40,9 @@ struct time_claim { /* one client's request, compared with those of others */
     /* spent_ns: drawing time charged to the client itself, not to its address; asked_ns: when the client made the request */
     int64_t spent_ns, asked_ns;
 };
-/* Returns whether `a` is served before `b`: first the request whose address was charged less; within one address, the one whose client was
-   charged less; else the older one. Drawing is charged, waiting is not. So each other address, and each other client of the same address,
-   can go before a request only until it was charged as much. */
+/* Returns whether `a` is served before `b`. First decides which address was charged less; within one address, which client was charged
+   less; if both are equal, which request is older. Only drawing is charged, not waiting. So each other address, and each other client of
+   the same address, can go before a request only until it was charged as much. */
 bool time_claim_before(const struct time_claim *a, const struct time_claim *b, int share);
 /* Frees all accounts; they must have no clients. */
 void time_accounts_finish(struct time_accounts *accounts);
