@@ -8,9 +8,10 @@ struct plant_services {
     struct store *store;
     struct render_service *render_service;
     struct baselines *baselines;
-    struct snapshot_cache *snapshot_cache; /* readings of past instants; in the event loop's copy NULL if nothing is recorded */
-    struct alarm_service *alarm_service;   /* NULL: no alarms */
-    struct placing *placing;               /* NULL: sensors cannot be placed */
+    /* cache of readings of past instants; the event loop's copy of this struct has NULL here if nothing is recorded */
+    struct snapshot_cache *snapshot_cache;
+    struct alarm_service *alarm_service; /* NULL: no alarms */
+    struct placing *placing;             /* NULL: sensors cannot be placed */
     struct named_views *named_views;
     struct short_links *short_links;
     struct notes *notes;

@@ -173,7 +173,8 @@ static bool on_resize(struct session *session, const struct message *message, st
     if (session_is_tile(session))
         session_tile_fit(session, &session->tile.place, message->width_px, message->height_px, &session->view, &session->tile.layout);
     session_scope_fit(session, &session->view);
-    /* set a view of the plant file again at its new size: if the file states no camera, the camera depends on the size */
+    /* a client that shows a view of the plant file gets that view again at its new size: if the file states no camera for it, the camera
+       depends on the size */
     if (session->scope.named[0] && session->identity.holder.views[0])
         return session_look(session, session->scope.named, &session->view, error);
     if (message->pixel_ratio > 0)
@@ -396,7 +397,7 @@ static bool in_order(const struct session *session, const struct message *messag
         message_fail(error, "hello_first", "the first message is hello");
         return false;
     }
-    /* hello needs no check here: session_hello() checks its token, which decides what the client may do */
+    /* the message hello is not checked here: session_hello() checks its token, which decides what the client may do */
     return message->type == MESSAGE_HELLO ||
            (role_may_send(session->identity.role, message, error) && session_scope_allows(session, message, error));
 }
@@ -425,8 +426,8 @@ void session_too_fast(struct session *session, int64_t count, const char *whose)
     session_reply_error(session, &error);
 }
 
-/* Starts the next second of the message rate. Messages that were read beyond the limit of one second count against the following seconds.
-   most: limit per second. */
+/* Starts a new second of the message rate. Messages that were read beyond the limit of the last second count against the new one. most:
+   limit per second. */
 static void begin_second(struct message_rate *rate, int64_t most, int64_t now_ns)
 {
     int64_t seconds = (now_ns - rate->begin_ns) / NS_PER_S, allowed = seconds * most;
@@ -459,7 +460,8 @@ static bool parse(const struct session *session, const char *text, size_t count,
     struct message_error other;
     if (message_parse(known, text, count, message, error))
         return true;
-    /* A hello that carries a token may name tags; the token decides afterwards what the role may see. */
+    /* hello: its names are looked up in the whole plant, because its token is not checked yet; afterwards the token's role decides what the
+       client may see */
     return known != plant && !session->hello && message_parse(plant, text, count, message, &other) && message->hello.token[0];
 }
 
@@ -490,7 +492,7 @@ void session_on_oversize(struct session *session, size_t count, int64_t now_ns)
     session_reply_error(session, &error);
 }
 
-static const int64_t TOKEN_NS = 3600 * NS_PER_S; /* interval at which a view token is sent again although the view has not changed */
+static const int64_t TOKEN_NS = 3600 * NS_PER_S; /* interval after which a view token is sent again even if the view has not changed */
 
 /* Sends the client a new view token if its view changed, so that another daemon can restore the view if this one dies. View tokens are
    accepted for a day, and across one restart of the core (daemon that reads the devices). */

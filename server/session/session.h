@@ -26,8 +26,8 @@ void session_introduce(struct session *session, const struct session_client *cli
 void session_leave(struct session *session, bool keep, int64_t now_ns);
 /* Records the end of the session in the audit trail. why: static text; NULL: the client left by itself. */
 void session_record_leave(const struct session *session, const char *why);
-/* Queues the answers to actions that journal, files and audit trail have on disk by now, or can never have. Returns whether it queued
-   any. */
+/* Queues the answers to actions that are written to disk by now (journal, files and audit trail), or that could not be written. Returns
+   whether it queued any. */
 bool session_settle(struct session *session);
 /* Destroys a session whose client has gone. While it is not known whether an action is on disk, the session stays in the list `gone` of its
    context, so that a failure is still recorded in the audit trail. */
@@ -38,7 +38,7 @@ void session_settle_gone(struct kept_answers *answers);
 /* Asks the event loop to close the connection once all queued texts are sent. text: static. If called more than once, the first reason
    counts. */
 void session_close(struct session *session, int code, const char *text);
-/* Returns whether the user has been inactive for longer than --lock-after allows, with *error saying so. Always false for tokens of walls
+/* Returns whether the user has been inactive for longer than --lock-after allows; if so, *error says it. Always false for tokens of walls
    and programs (unattended), and for a person who signed in with OpenID Connect: access/openid watches that person across several pages. */
 bool session_left_alone(const struct session *session, int64_t now_ns, struct message_error *error);
 /* Closes the session if its token was revoked or has expired, or if its user was inactive for too long; otherwise updates the session's
@@ -65,14 +65,14 @@ void session_view_in(const struct session *session, const struct session_context
 void session_on_message(struct session *session, const char *text, size_t count, int64_t now_ns, int64_t now_utc_ns);
 /* Refuses a message of `count` bytes, which was too long to be stored. */
 void session_on_oversize(struct session *session, size_t count, int64_t now_ns);
-/* Tells the client that it sent `count` messages, too many for one second; the event loop reads nothing more from it until this second
-   is over. whose: "" or "of this address ". */
+/* Tells the client that it sent `count` messages, too many for one second; the event loop reads nothing more from it until this second is
+   over. whose: whether the limit is the client's ("") or its address's ("of this address "). */
 void session_too_fast(struct session *session, int64_t count, const char *whose);
 /* Does the session's timed work. Call it about every 100 ms, or once a second while session_rests() is true for all sessions. */
 void session_on_tick(struct session *session, int64_t now_ns);
-/* Returns the monotonic time up to which the client's display is known to be current. If no picture is owed to the client, that is when its
-   last message arrived. Otherwise it is the later of two times: when last no picture was owed, and when the last acknowledged picture was
-   sent. */
+/* Returns the monotonic time up to which the client's display is known to be current. A picture is owed to the client if its view or a
+   reading has changed since the picture it shows. If none is owed, the time is when the client's last message arrived. Otherwise it is the
+   later of two times: when last no picture was owed, and when the last acknowledged picture was sent. */
 int64_t session_fresh_ns(const struct session *session);
 /* Returns whether session_on_tick() has nothing to do within the next second: no frame is wanted or in flight, and no text is due. */
 bool session_rests(const struct session *session, int64_t now_ns);
@@ -88,7 +88,7 @@ bool session_moves(const struct session *session, int64_t now_ns);
 /* Returns true if a frame is wanted now, with the request in *request. If the render service accepts that request, call
    session_requested(). */
 bool session_next_request(const struct session *session, int64_t now_ns, struct frame_request *request);
-/* Notes that the render service accepted the request. replaced: it replaced an earlier request of this session. */
+/* Notes that the render service accepted a frame request of this session. replaced: it replaced an earlier request of this session. */
 void session_requested(struct session *session, const struct frame_request *request, bool replaced);
 /* Sends the client, once, the reason why a frame that it wants signed comes unsigned. */
 void session_not_signed(struct session *session, const struct message_error *why);
@@ -103,14 +103,15 @@ enum session_depth { SESSION_DEPTH_NONE, SESSION_DEPTH_SENT, SESSION_DEPTH_NEW }
 /* Takes out the next frame to send and writes its sequence number to *seq. The caller owns the frame. NULL: none is ready. Call
    session_wrote() after each part of the frame is written. */
 struct encoded_frame *session_next_frame(struct session *session, int64_t now_ns, uint32_t *seq, enum session_depth *depth);
-/* Notes that the socket accepted a part of the frame being sent. all: it was the last part. */
+/* Notes that the socket accepted a part of the frame being sent. all: that was the frame's last part. */
 void session_wrote(struct session *session, bool all, int64_t now_ns);
 /* Returns whether the rest of the frame being sent is not worth sending: the view of a refined frame has changed, the page is hidden, or
    the client acknowledges nothing at all. Always false for an H.264 frame. */
 bool session_gives_up(const struct session *session, const struct encoded_frame *sending, size_t bytes_left, int64_t now_ns);
 /* Notes that the frame being sent was cut short. */
 void session_gave_up(struct session *session);
-/* Takes the first bandwidth measurement: `bytes` bytes of texts had arrived after took_ns. Chooses the quality of the first frame by it. */
+/* Takes the first bandwidth measurement: `bytes` bytes of texts had arrived took_ns after they were sent. Chooses the quality of the first
+   frame by it. */
 void session_begin(struct session *session, size_t bytes, int64_t took_ns);
 /* Returns the pacer, with the frame in pacer->acked, if the client acknowledged a frame since the last call; otherwise NULL. */
 const struct pacer *session_take_shown(struct session *session);
@@ -188,9 +189,9 @@ void session_tile_tell(struct session *session, const bool *there, const int64_t
 
 /* --- placing sensors -------------------------------------------------------------------------------------------------- */
 
-/* Redraws the session's trial sensor positions once distances for them were computed. */
+/* Shows the session's trial sensor positions again, with exact distances, once these were computed. */
 void session_on_placed(struct session *session, int64_t now_ns);
-/* Takes out the tag list that a reload is to activate; the caller owns it. NULL: none. */
+/* Removes from the session the tag list that a reload is to put in force, and returns it; the caller owns it. NULL: there is none. */
 struct tag_save *session_take_save(struct session *session);
 /* Queues the answer to the message `gaps` (sensor coverage). */
 void session_on_coverage(struct session *session, const struct sensor_coverage_answer *answer);

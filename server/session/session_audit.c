@@ -149,8 +149,8 @@ void session_record_params(const struct session *session, const struct message *
     record_baseline(session, &message->split.right);
 }
 
-/* Returns whether a refusal is not worth recording: dragging a page sends camera and params many times a second, and a token narrowed to
-   views is refused each time. */
+/* Returns whether a refused message is too frequent to be recorded: while a user drags, a page sends `camera` and `params` many times a
+   second, and a token narrowed to views is refused each time. */
 static bool is_idle(const struct session *session, const char *about)
 {
     return session->identity.holder.views[0] && (!strcmp(about, "camera") || !strcmp(about, "params"));

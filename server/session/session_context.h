@@ -16,7 +16,7 @@ enum audience_lists { LISTS_NAMED, LISTS_OPEN, LISTS_VIEWS, LISTS };
 
 /* State that all sessions share about answers that wait until their actions are on disk (session_kept.c). */
 struct kept_answers {
-    bool waiting;         /* an answer waits for the disk: call session_settle() and session_settle_gone() soon */
+    bool waiting;         /* true: an answer waits for the disk, so session_settle() and session_settle_gone() must be called soon */
     struct session *gone; /* sessions whose client has gone, kept until it is known whether their actions reached the disk */
 };
 
@@ -29,22 +29,23 @@ struct session_context {
     int64_t history_first_us;              /* UTC microseconds at which recorded history begins; 0: nothing is recorded yet */
     int64_t changed_ns;                    /* monotonic time when a snapshot last differed from its predecessor */
     struct alarm_text_cache *alarm_texts;  /* cache of alarm texts; NULL: no caching */
-    bool saving;                           /* a saved tag list is being activated by a reload */
+    bool saving;                           /* true: a reload is putting a saved tag list in force */
     /* On a renderer (daemon that draws for a core): forwards a session's message to the core, which answers later. Returns false if the
        core is not connected. NULL: this daemon is no renderer and acts on messages itself. */
     bool (*hand_on)(void *arg, const struct session *session, const char *text);
     void *hand_on_arg;
-    bool core_up;                             /* on a renderer (daemon that draws for a core): the core sends readings */
+    bool core_up; /* on a renderer (daemon that draws for a core): true: the core sends readings */
     /* keys that sign view tokens (views that another daemon can restore); NULL: clients get no view tokens */
     const struct view_token_keys *token_keys;
     const bool *links_up;                     /* connection state of each data source, by source index */
     bool imports;                             /* engineers may import plants */
     const char *signing_key;                  /* id of the key that signs pictures; NULL: pictures are not signed */
-    bool live;                                /* at least one source is connected */
+    bool live;                                /* true: at least one data source is connected */
     struct clock_state clock;                 /* whether the wall clock is set, and its error */
-    /* monotonic: until then a camera counts as moving; refined frames of other sessions wait, because they would make it stutter */
+    /* monotonic time until which some session's camera counts as moving; refined frames of other sessions wait until then, because they
+       would make its pictures stutter */
     int64_t moving_until_ns;
-    bool overloaded;  /* the render thread is too slow to refine all sessions' frames after each change of readings */
+    bool overloaded;  /* true: the render thread is too slow to draw refined frames for all sessions after each change of readings */
     unsigned codecs;  /* bit mask of the codecs that work here (1 << enum wire_codec); 0: JPEG and PNG */
     double cpu_used;  /* busy share of all processors of the machine, 0..1 */
     const char *node; /* this daemon's name behind a load balancer; NULL: it runs alone */

@@ -5,27 +5,29 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-static const int64_t STILL_NS = 200 * NS_PER_MS; /* a refined frame is due after this long without movement of the camera */
-/* while the render thread is overloaded or the network slow: a refined frame is due once no preview was requested for this long */
+static const int64_t STILL_NS = 200 * NS_PER_MS; /* time without movement of the camera after which a refined frame is due */
+/* time without a requested preview after which a refined frame is due while the render thread is overloaded or the network is slow */
 static const int64_t LOADED_STILL_NS = 1000 * NS_PER_MS;
-/* while the render thread is overloaded or the network slow: a refined frame is due if the last one is this old, even if previews
+/* age of the last refined frame at which another is due while the render thread is overloaded or the network is slow, even if previews
    continue */
 static const int64_t LOADED_SHARE_NS = 3 * NS_PER_S;
-static const int64_t MAX_POSTPONE_NS = 10 * NS_PER_S; /* a refined frame is postponed for at most this long while other cameras move */
-/* a refined frame for which the network needs longer than this is sent in two stages: draft, then full quality */
+/* maximum time for which a refined frame is postponed while other sessions' cameras move */
+static const int64_t MAX_POSTPONE_NS = 10 * NS_PER_S;
+/* expected transfer time above which a refined frame is sent in two stages: a draft, then full quality */
 static const int64_t SLOW_STILL_NS = 500 * NS_PER_MS;
 static const int64_t FULL_QUALITY_DELAY_NS = 1000 * NS_PER_MS; /* delay before the second stage */
-static const int64_t MAX_START_WAIT_NS = 1000 * NS_PER_MS;     /* maximum wait for the first bandwidth measurement */
-/* a refined frame whose view has changed is cut short if the bytes not sent yet would take longer than this */
+/* maximum time for which the first frame waits for the first bandwidth measurement */
+static const int64_t MAX_START_WAIT_NS = 1000 * NS_PER_MS;
+/* expected transfer time of the bytes not sent yet above which a refined frame is cut short if its view has changed */
 static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;
 static const int64_t RETRY_DELAY_NS = 2000 * NS_PER_MS; /* delay before a frame that failed for lack of memory is requested again */
-/* assumed size of a refined frame divided by that of a preview, until a refined frame was sent */
+/* assumed ratio between the sizes of a refined frame and of a preview, used until a refined frame was sent */
 static const double STILL_OVER_MOVING = 3;
 static const struct encoder_params STILL = { .quality = 92, .full_chroma = true }, DRAFT = { .quality = 42 };
 static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = true };
-/* camera messages that arrive within this time of each other belong to one movement */
+/* maximum time between two camera messages of one movement */
 static const int64_t CAMERA_INTERVAL_NS = 120 * NS_PER_MS;
-enum { SMALL_PX = 128 }; /* shortest side of a picture in pixels; the quality ladder does not shrink it further */
+enum { SMALL_PX = 128 }; /* shortest side in pixels to which the quality ladder may shrink a picture */
 
 /* Handles a frame that could not be drawn. A session that already shows a frame keeps it; a new session would see nothing and is closed. */
 static void on_failure(struct session *session, const struct frame_request *request)
@@ -70,8 +72,8 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded)
     if (!encoded->packet && encoded->absence == FRAME_FAILED)
         on_failure(session, &encoded->request);
     bool late = encoded->number < session->delivery.newest_number;
-    /* After a preview the shown picture is no longer refined. This holds in two more cases: a refined frame arrived while the preview was
-       drawn, or the preview equals the frame already shown and therefore has no packet. */
+    /* Notes that the shown picture is not a refined one, because a preview was drawn. This includes two special cases: a refined frame
+       arrived while the preview was being drawn; or the preview equals the frame already shown, and therefore has no packet. */
     if (encoded->request.view.tier == TIER_PREVIEW && !late)
         session->demand.refined = REFINED_NOT;
     if (is_lost(session, encoded, late)) {
@@ -94,7 +96,7 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded)
     note_refined(session, &encoded->request);
     if (session_is_tile(session))
         session_tile_came(session, &encoded->request, encoded->made_ns);
-    if (encoded_frame_stands_alone(encoded)) /* a frame that decodes on its own replaces the ready frames before it, so they are not sent */
+    if (encoded_frame_stands_alone(encoded)) /* drops the frames that are ready but not sent yet, because this frame decodes without them */
         session_drop_ready(session);
     struct encoded_frame **last = &session->delivery.ready;
     while (*last)
@@ -122,7 +124,7 @@ void session_on_data(struct session *session, int64_t data_ns)
 
 /* --- requests --------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether a refined frame would block the network for longer than SLOW_STILL_NS. */
+/* Returns whether the transfer of a refined frame would occupy the network for longer than SLOW_STILL_NS. */
 static bool is_slow(const struct session *session)
 {
     double bytes =
@@ -209,7 +211,8 @@ static bool wants(const struct session *session, int64_t now_ns, struct frame_re
         make_moving(session, request);
     } else if (refine_due(session, now_ns)) {
         request->view.input_ns = now_ns;
-        /* the frame is sent even if its content equals the picture that the client shows, because its quality is better */
+        /* a refined frame after a draft is sent even if its content equals the picture that the client shows, because its quality is
+           better */
         request->always = session->demand.refined == REFINED_DRAFT || session->demand.lost;
         request->alone = session->demand.lost;
         make_still(session, request);
@@ -342,7 +345,7 @@ bool session_wants(const struct session *session, int64_t now_ns, struct frame_r
 {
     *request = (struct frame_request){ .view = session_shown(session), .codec = session->codec.current, .asked_ns = now_ns };
     request->account = session->room.share ? session->room.share->account : 0;
-    /* readings of a past instant never change, so the request names no time up to which the client knows them */
+    /* a past instant: its readings never change, so no time is given up to which the client knows them */
     request->read_ns = request->view.at_us ? 0 : session->context->changed_ns;
     request->view.camera_seq = session->view.camera_seq;
     request->view.params_seq = session->view.params_seq;
@@ -366,7 +369,8 @@ void session_requested(struct session *session, const struct frame_request *requ
 
 /* --- frames in flight --------------------------------------------------------------------------------------------------- */
 
-/* Tiles send one frame at a time, so that the message that says when to show a frame does not queue behind the next frame. */
+/* A tile (one display's part of a wall's picture) sends one frame at a time, so that the message that says when to show a frame does not
+   wait behind the next frame. */
 bool session_has_frame(const struct session *session)
 {
     return session->delivery.ready && (!session_is_tile(session) || session->delivery.pacer.flight_count == 0);
@@ -383,7 +387,7 @@ void session_forget_depth(struct session *session)
     depth_grid_unref(&session->delivery.depth[1]);
 }
 
-/* Notes that the client will have the frame's depth grids. Returns false if it has them already. */
+/* Notes that the client will have the depth grids of this frame. Returns false if the client has them already. */
 static bool take_depth(struct session *session, const struct frame *frame)
 {
     struct depth_grid **sent = session->delivery.depth;
@@ -442,7 +446,8 @@ bool session_gives_up(const struct session *session, const struct encoded_frame 
     return moved && pacer_is_slower(&session->delivery.pacer, (double)bytes_left, GIVE_UP_NS);
 }
 
-/* The render thread counts a frame that was cut short as shown. So the next frame must be drawn even if its content is the same. */
+/* A refined frame was cut short, but the render service counts it as shown: so the next frame must be drawn even if its content is the
+   same. */
 void session_gave_up(struct session *session)
 {
     pacer_gave_up(&session->delivery.pacer);

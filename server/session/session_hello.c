@@ -147,8 +147,8 @@ static void take_over(struct session *session, const struct resumed *resumed, co
         session_close(resumed->live, 1000, "a new connection took over this view");
 }
 
-/* Finds the view to resume: by the secret if this daemon kept the view; otherwise from the signed view token, which any daemon may have
-   made. Returns false if there is none. */
+/* Finds the view that a returning client resumes. If this daemon kept the view, finds it by the secret; otherwise reads it from the signed
+   view token, which another daemon may have made. Returns false if there is none. */
 static bool find_resumed(const struct session *session, const char *token, int64_t now_ns, int64_t now_utc_ns,
                          char secret[RESUME_CHARS + 1], struct resumed *out)
 {
@@ -168,7 +168,8 @@ bool session_hello(struct session *session, const struct message *message, int64
     struct view view;
     if (!identify(session, message, now_ns, now_utc_ns, error))
         return false;
-    if (message->hello.idle_ms >= 0) /* a hello sent by an automatic reconnection is no sign of user activity */
+    /* time of the user's last activity, as the page states it: a hello that an automatic reconnection sends is not a sign of activity */
+    if (message->hello.idle_ms >= 0)
         session->identity.active_ns = now_ns - (int64_t)(message->hello.idle_ms * 1e6);
     if (session->identity.holder.role != ROLE_NOBODY && session_left_alone(session, now_ns, error))
         return false;

@@ -7,9 +7,9 @@
 
 /* --- session_answers.c ------------------------------------------------------------------------------------------------ */
 
-/* Queues a text for the client; takes ownership of the text (mem_free). */
+/* Queues a text to be sent to the client; takes ownership of the text (mem_free). */
 void session_reply(struct session *session, char *text);
-/* Counts an error and queues its text. */
+/* Counts an error and queues its text for the client. */
 void session_reply_error(struct session *session, const struct message_error *error);
 /* Notes that an input changed the view: a preview is due, and later a refined frame. */
 void session_on_input(struct session *session, int64_t now_ns);
@@ -30,9 +30,9 @@ void session_record_action(const struct session *session, const char *event, con
 void session_record_save(const struct session *session, const struct message *message, size_t moved);
 /* If the message's parameters save or remove baselines for all users, records that in the audit trail. */
 void session_record_params(const struct session *session, const struct message *message);
-/* Records that an action is not on disk. */
+/* Records in the audit trail that an action could not be written to disk. */
 void session_record_not_kept(const struct session *session, const char *event, const char *what, const char *why);
-/* Records an error if it means that the client lacks the right to do what it asked for. */
+/* Records an error in the audit trail if it means that the client lacked the right to do what it asked for. */
 void session_record_refusal(const struct session *session, const struct message_error *error);
 
 /* --- session_kept.c: answers that wait for the disk ---------------------------------------------------------------------- */
@@ -40,8 +40,8 @@ void session_record_refusal(const struct session *session, const struct message_
 struct kept_action {
     struct settling_ticket journal, file, audit;
 };
-/* Notes how many rows the alarm journal, the saved files (views, notes) and the audit trail have so far. Call this before carrying out an
-   action. session_kept_reply() takes the result and answers once the rows that the action added are on disk. */
+/* Notes how many rows the alarm journal, the saved files (views, notes) and the audit trail have before an action is carried out.
+   session_kept_reply() takes the result: it answers once the rows that the action added are on disk. */
 struct kept_action session_kept_begin(const struct session *session);
 /* Records the action in the audit trail, and queues the answer once journal, file and audit trail have the action on disk. If they cannot
    be written, or are not written within a second, the answer says so: `not_kept` for an action on alarms, otherwise `kept` false, and
@@ -62,14 +62,15 @@ bool session_apply_params(const struct session *session, const struct message *m
 
 /* Returns whether the token allows the client to send that message. If not, *error says why. */
 bool session_scope_allows(const struct session *session, const struct message *message, struct message_error *error);
-/* For a paired device: restricts the session to what the plant file shows on that display. Call it at hello, and again after a plant
-   reload. */
+/* For a paired device: limits the session to what the display of that device shows according to the plant file. Call it at hello, and again
+   after a plant reload. */
 void session_scope_begin(struct session *session);
 void session_scope_end(struct session *session);
 /* Sets the view to the one with this id in the plant file, at its present size. Returns false with *error if the token does not allow
    that view, or it cannot be shown. */
 bool session_look(struct session *session, const char *id, struct view *view, struct message_error *error);
-/* Like session_look(), for a token narrowed to views; id "": the first allowed view. Closes the session if the view cannot be set. */
+/* Works like session_look(), for a token narrowed to views; id "": shows the first view that the token allows. Closes the session if the
+   view cannot be set. */
 bool session_scope_view(struct session *session, const char *id, struct view *view, struct message_error *error);
 /* Shrinks the view of a paired display that shows no picture of the plant. */
 void session_scope_fit(const struct session *session, struct view *view);
@@ -94,17 +95,17 @@ bool session_may_be(struct session *session, const struct wall_place *place, str
 bool session_begun(const struct session *session, int64_t now_ns);
 /* Returns whether a frame is wanted now, with the request in *request. Ignores how many frames are in flight. */
 bool session_wants(const struct session *session, int64_t now_ns, struct frame_request *request);
-/* Forgets which depth grids the client has, so that the next frame's are sent. */
+/* Forgets which depth grids the client has, so that the grids of the next frame are sent in any case. */
 void session_forget_depth(struct session *session);
-/* Drops the frames that are ready and not sent yet. */
+/* Drops the frames that are encoded and not sent yet. */
 void session_drop_ready(struct session *session);
-/* Drops the frames that are ready while the client acknowledges nothing; they are requested again once it does. */
+/* Drops the frames that are encoded and not sent yet, because the client acknowledges nothing; they are requested again once it does. */
 void session_pause(struct session *session);
 /* Notes that the frame delivery.pacer.acked is on the client's screen. */
 void session_on_shown(struct session *session);
 /* Stores the client's list of codecs and uses the first that this server can encode. Returns false with *error if there is none. */
 bool session_choose_codec(struct session *session, const struct codec_list *codecs, struct message_error *error);
-/* Makes frames come signed from now on. Returns false with *error if this server cannot sign. */
+/* Makes the server sign the session's frames from now on, as the message asks. Returns false with *error if this server cannot sign. */
 bool session_choose_signed(struct session *session, enum signed_frames frames, struct message_error *error);
 /* Chooses the codec again by bandwidth and processor load, if the client leaves the choice to the server. */
 void session_choose_again(struct session *session, int64_t now_ns);
@@ -154,15 +155,16 @@ void session_look_again(struct session *session, const struct view *before, cons
 
 /* --- tile_session.c --------------------------------------------------------------------------------------------------- */
 
-/* Sets the view's size to that of the whole picture, computed from the size of one display. Returns false if the plant has no such tile any
-   more. */
+/* Sets the view of a tile (one display's part of a wall's picture) to the size of the whole picture, computed from the size of one display.
+   Returns false if the plant has no such tile any more. */
 bool session_tile_fit(const struct session *session, const struct wall_place *place, int width_px, int height_px, struct view *view,
                       struct tile_layout *layout);
-/* session_tile_unchanged(): call it when a request was answered without a picture because the client already shows it. session_tile_sent():
-   call it when a frame is being sent. */
+/* For tiles (displays that show parts of one picture). session_tile_unchanged(): call it when a request was answered without a frame
+   because the client already shows the content. session_tile_sent(): call it when a frame is being sent. */
 void session_tile_unchanged(struct session *session, uint64_t picture);
 void session_tile_sent(struct session *session, uint64_t picture, uint32_t seq);
-/* Call it when a frame arrived. If an earlier answer "unchanged" referred to this frame, the frame gets that answer's picture id too. */
+/* For tiles: call it when a frame arrived from the render service. If an earlier answer "unchanged" referred to this frame, the frame gets
+   the picture id of that answer, too. */
 void session_tile_came(struct session *session, struct frame_request *request, int64_t made_ns);
 
 /* --- session_place.c -------------------------------------------------------------------------------------------------- */

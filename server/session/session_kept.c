@@ -15,15 +15,16 @@ struct kept_answer {
     char *text;
     char *what;        /* description of the action, for the audit trail */
     const char *event; /* kind of the action, for the audit trail */
-    /* alarm service that carried out the action; NULL: its result is in journal_error, or this is no alarm action */
+    /* alarm service that carried out the action and writes its journal; NULL: journal_error has the result, or the action concerns no
+       alarm */
     const struct alarm_service *alarms;
-    int journal_error; /* 0: the action is in the alarm journal on disk; -errno: writing failed */
+    int journal_error; /* result of writing the action to the alarm journal: 0: it is on disk; -errno: writing failed */
     struct settling_ticket journal, file, audit;
     struct kept_answer *next;
 };
 
-/* Returns whether the alarm journal has the action on disk: 0, -EINPROGRESS or an error. A plant reload replaces the journal: a result that
-   the old journal has given stands; without one, the action counts as not kept (-ECANCELED). */
+/* Returns whether the action is in the alarm journal on disk: 0, -EINPROGRESS or an error. A plant reload replaces the journal. A result
+   that the old journal has given stays valid; otherwise the action counts as not kept (-ECANCELED). */
 static int journal_state(const struct session *session, struct kept_answer *kept)
 {
     struct alarm_service *service = session->context->services->alarm_service;
@@ -45,7 +46,7 @@ static int disk_state(const struct session *session, struct kept_answer *kept)
 static bool say_not_kept(json_t *answer, int error)
 {
     json_t *done = json_object_get(answer, "done");
-    if (json_integer_value(done) > 0) { /* the answer to an alarm action, which is in force although it is not on disk */
+    if (json_integer_value(done) > 0) { /* an answer to an alarm action: the action is in force, although it is not on disk */
         json_object_set(answer, "not_kept", done);
         json_object_set_new(answer, "done", json_integer(0));
     } else if (json_is_true(json_object_get(answer, "kept"))) {

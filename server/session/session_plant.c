@@ -19,7 +19,7 @@ char *session_carried_text(const struct session_context *context, const struct v
     json_object_set_new(o, "start", start);
     double low, high;
     field_default_range(context->services->scene, &view->field, &low, &high);
-    /* the range is the group's default, so it is left out: the new plant may have another default */
+    /* leaves out a range that equals the group's default, because the new plant may have another default */
     if (view->range_min == low && view->range_max == high)
         json_object_del(o, "range");
     char *dumped = json_dumps(o, JSON_COMPACT), *carried = mem_strdup(dumped);
@@ -83,8 +83,8 @@ static size_t place_in(const json_t *list, const char *id)
     return n;
 }
 
-/* Applies changed initial states (shown, hidden or ghosted). An asset that the user had left in its old initial state gets its new one; so
-   does a new asset. */
+/* Applies changes of assets' initial states (shown, hidden or ghosted) in the plant file. An asset that is still in its old initial state
+   gets the new one, and so does a new asset. */
 static void start_anew(const struct plant *plant, json_t *o)
 {
     static const char *const sets[] = { [PLANT_START_SHOWN] = "", [PLANT_START_GHOST] = "ghost", [PLANT_START_HIDDEN] = "hidden" };
@@ -162,7 +162,7 @@ void session_take_plant(struct session *session, const char *carried)
     session->owed.loop_checks_sent = 0;
     session->owed.views_sent = session->owed.notes_sent = session->owed.walls_sent = session->owed.pointers_sent = 0;
     session->demand.refined = REFINED_NOT;
-    /* the old plant's render service will not answer these requests any more, so they count as dropped */
+    /* counts the outstanding requests as dropped, because the old plant's render service will not answer them any more */
     while (session->delivery.pacer.asked > 0)
         pacer_dropped(&session->delivery.pacer);
     if (!session->hello)

@@ -7,12 +7,12 @@
 
 struct session_person {                /* the user who sent the message */
     const struct token_holder *holder; /* the user's token or sign-in, as this daemon verified it */
-    const char *refusal;               /* why the user could not be verified; NULL: verified */
+    const char *refusal;               /* reason why the user could not be verified; NULL: the user is verified */
     const char *from;                  /* the user's address, as the other daemon reports it */
     const char *through;               /* name of the other daemon and of its token, for the audit trail */
 };
-/* Acts on the message in the name of the user who sent it. If the message is not one that renderers forward, or the person may not send it,
-   the answer is an error. Returns a session that holds the answers, for session_answers_of(). */
+/* Acts on the message in the name of the user who sent it. Returns a session that holds the answers, for session_answers_of(). If renderers
+   may not forward such a message, or the user may not send it, the answer is an error. */
 struct session *session_do_for(const struct session_context *context, const struct session_person *person, const char *text, int64_t now_ns,
                                int64_t now_utc_ns);
 /* Returns NULL while an answer still waits for the disk; once all are on disk, destroys the session and returns its answers, a JSON array

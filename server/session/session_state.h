@@ -23,19 +23,19 @@ struct session_identity {
     enum role role;
     uint8_t address[16];        /* address of the client, as in struct address_usage */
     char from[64];              /* the same address as text; "": not known */
-    enum login login;           /* whether the token in the client's hello was accepted */
+    enum login login;           /* result of checking the token in the client's hello */
     struct token_holder holder; /* holder of the token; role ROLE_NOBODY: no token was given, or it was not accepted */
     /* on a renderer (daemon that draws for a core): the client's token, to be forwarded to the core; "": none, or not forwarded */
     char token[TOKEN_MAX_CHARS + 1];
     /* on a core (daemon that reads the devices): names of the renderer and of its token that forwarded the message; "": not forwarded */
     char through[192];
     char resume_secret[RESUME_CHARS + 1]; /* secret with which the client can resume its view over another connection */
-    int64_t active_ns;                    /* monotonic: when the user was last active at the page; 0: not since it connected */
-    bool tokens;                          /* the client wants its view as a signed view token after each change */
-    struct view token_view;               /* the view in the last view token that was sent */
-    int64_t token_ns;                     /* monotonic: when the last view token was sent */
-    bool resumed;                         /* this session resumed another session's view, as `welcome` says */
-    bool returned;                        /* true until the followers of the resumed session have been moved to this one */
+    int64_t active_ns; /* monotonic time when the user was last active at the page; 0: the user was not active since the page connected */
+    bool tokens;       /* true: the client wants its view as a signed view token after each change */
+    struct view token_view; /* the view in the last view token that was sent */
+    int64_t token_ns;       /* monotonic: when the last view token was sent */
+    bool resumed;           /* true: this session resumed another session's view, as `welcome` tells the client */
+    bool returned;          /* true until the followers of the resumed session have been moved to this one */
 };
 
 /* The client at the other end of a new connection, for session_introduce(). */
@@ -58,7 +58,7 @@ struct session_close {
 /* The pixels that the session's view takes from the admission budget (session_admission.c). */
 struct session_room {
     struct address_share *share; /* admission figures of the client's address; NULL: the session has no address */
-    int64_t pixels;              /* pixels counted in the admission totals; 0: returned while the page was hidden */
+    int64_t pixels; /* pixels counted for this session in the admission totals; 0: they were returned while the page was hidden */
     int64_t hidden_ns, shown_ns; /* monotonic: when the page was last hidden; when the page was last shown again, 0: never */
 };
 
@@ -68,26 +68,28 @@ struct session_codec {
     enum wire_codec current;
     struct codec_choice choice; /* state of the automatic choice of the codec, used if the client leaves the choice to the server */
     enum signed_frames signed_frames;
-    bool unsigned_said; /* the client was told why its frames are unsigned; reset by the next signed frame */
+    bool unsigned_said; /* true: the client was told why its frames are unsigned; reset when a signed frame is sent */
 };
 
 /* Why the next frame is wanted, and how refined the shown picture is (session_frames.c). */
 struct frame_demand {
-    /* input: the view changed; data: a reading changed; any: a frame is due even if its content is the same, and it must decode on its
-       own */
+    /* reasons why a frame is wanted. input: the view changed; data: a reading changed; any: a frame must come even if its content is the
+       same, and must decode without earlier frames */
     bool input, data, any;
     int64_t input_ns;               /* monotonic time of the newest change of the view */
     int64_t data_ns;                /* monotonic time of the oldest changed reading for which no frame was requested */
     int64_t preview_ns, refined_ns; /* monotonic: when the newest frame of each tier was requested */
     enum { REFINED_NOT, REFINED_DRAFT, REFINED_FULL } refined; /* best refined frame requested for the present view */
-    /* a requested refined frame is outstanding; the render thread draws it between other sessions' frames, which may take a minute */
+    /* true: a refined frame is requested and has not arrived; the render thread draws it between other sessions' frames, which may take a
+       minute */
     bool refining;
     double refined_bytes; /* size in bytes of the last frame of full quality; 0: none was acknowledged */
-    bool starting;        /* the first frame waits for the bandwidth from session_begin(), for a second at most */
+    bool starting;        /* true: the first frame waits for session_begin(), which brings the measured bandwidth, for a second at most */
     int64_t starting_ns;
-    bool failure_said; /* the client was told that the present view cannot be drawn */
+    bool failure_said; /* true: the client was told that the present view cannot be drawn */
     int64_t failed_ns; /* monotonic time of the newest request whose frame was lost, or failed for lack of memory; 0: none */
-    bool lost; /* a refined frame was lost on its way to the client, but the render service counts it as shown: it must be drawn again */
+    /* true: a refined frame was lost on its way to the client. The render service counts it as shown, so it must be drawn again */
+    bool lost;
 };
 
 /* Frames between the render service and the client (session_frames.c). */
@@ -104,21 +106,21 @@ struct frame_delivery {
 
 /* Requests of a client about following, by session numbers. The event loop finds those sessions. */
 struct follow_request {
-    bool returned;   /* the session resumed another one, whose followers should follow it again */
+    bool returned;   /* true: the session resumed another session, whose followers should follow this one again */
     uint64_t heir;   /* number of the session that is to take the lead; 0: the lead stays */
-    bool asked;      /* the client asked to follow session `wanted` */
+    bool asked;      /* true: the client asked to follow session `wanted`, or nobody */
     uint64_t wanted; /* number of the session to follow; 0: none */
 };
 
 /* The leader and the followers of a session (session_follow.c). */
 struct session_following {
     struct session *leader;   /* session whose view is shown; NULL: its own view. The event loop keeps it valid */
-    bool asked;               /* the client asked to follow session `wanted` */
+    bool asked;               /* true: the client asked to follow session `wanted`, or nobody */
     uint64_t wanted;          /* a session's number; 0: nobody */
     uint64_t left;            /* number of a leader who has gone and whose last view is still shown; 0: none */
     struct view own_view;     /* the session's own view while it follows a leader */
-    uint64_t heir_wanted;     /* number of the session that is to take the lead, as the client asked; 0: the lead stays */
-    bool followers_changed;   /* the list of followers changed and is to be sent */
+    uint64_t heir_wanted;     /* number of the session to which the client wants to hand the lead; 0: the lead stays */
+    bool followers_changed;   /* true: the list of followers changed and must be sent */
     int64_t followers_ns;     /* monotonic: when the list of followers was last built */
     char *followers_text;     /* list of followers, to be sent; NULL: none */
     uint32_t told_params_seq; /* params_seq of the leader's view in the last message sent to the client */
@@ -127,31 +129,31 @@ struct session_following {
 
 /* The instant that the session shows (session_time.c). The shown instant itself is view.at_us with the readings in `historical`. */
 struct travel {
-    /* a reference to the historical readings of that instant; NULL: current readings are shown */
+    /* readings of the shown instant (a reference); NULL: the session shows the present */
     const struct historical_snapshot *historical;
     int64_t wanted_us;        /* instant to which the session is moving, UTC microseconds; 0: the session has arrived */
-    bool asked;               /* the readings of wanted_us are being loaded */
-    bool first;               /* the session began at an instant: nothing is drawn until its readings are loaded */
-    double speed;             /* playback speed, recorded seconds per second; 0: paused */
-    int64_t from_us, from_ns; /* from_us, from_ns: playback was at instant from_us when the monotonic clock was at from_ns */
+    bool asked;               /* true: the readings of wanted_us are being loaded */
+    bool first;               /* true: the session began at a past instant, and nothing is drawn until its readings are loaded */
+    double speed;             /* playback speed in seconds of recorded history per second; 0: paused */
+    int64_t from_us, from_ns; /* reference point of playback: the instant from_us was shown when the monotonic clock was at from_ns */
     int64_t stepped_ns;
 };
 
 /* Texts that are still to be sent to the client (session_texts.c). */
 struct owed_texts {
-    /* true: this text is due. loop_checks: the complete list of loop checks */
+    /* true: the text of that name is due; loop_checks: the complete list of loop checks is due */
     bool welcome, params, following, tags_all, tags, status, time, loop_checks;
     uint32_t params_seq;    /* sequence number of the client's message that the next `params` answers */
     int64_t tags_ns;        /* monotonic: when tags were last sent */
     uint32_t *tag_changes;  /* reading.changes as last sent, by tag */
     bool alarms_sent;       /* true: `alarms` was sent at least once */
     uint64_t alarms_number; /* sequence number of the last change of alarms that was sent */
-    /* sequence numbers of the last changes that were sent: of named views, notes, desks' messages to walls, and pointers */
+    /* sequence numbers of the last changes sent to the client, one each for named views, notes, messages of desks to walls, and pointers */
     uint64_t views_sent, notes_sent, walls_sent, pointers_sent;
     int64_t notes_at_us;                /* instant for which notes were last sent, UTC microseconds; 0: the present */
     uint64_t loop_checks_sent;          /* sequence number of the newest loop check that was sent */
-    int64_t told_at_us;                 /* shown instant as last sent, UTC microseconds; 0: the present */
-    bool told_beginning;                /* the last `time` message included the beginning of recorded history */
+    int64_t told_at_us;                 /* shown instant that the client was last told, UTC microseconds; 0: the present */
+    bool told_beginning;                /* true: the last `time` message included the beginning of recorded history */
     char *replies[SESSION_MAX_REPLIES]; /* answers to be sent, oldest first */
     int reply_count;
 };
@@ -160,29 +162,31 @@ struct owed_texts {
 struct session_placement {
     struct place_set *set; /* trial positions of this session; NULL: nothing was moved */
     uint32_t seq;          /* sequence number of the newest `place` message */
-    struct tag_save *save; /* sensor list with the engineer's changes, to be saved (session_take_save); NULL: none */
+    struct tag_save *save; /* tag list with the engineer's changes, which waits to be saved (session_take_save); NULL: none */
 };
 
 struct session_pick { /* a query for what is at a pixel */
-    bool pending;     /* `query` is not sent to the render service yet */
+    bool pending;     /* true: `query` waits to be sent to the render service */
     struct pick_query query;
 };
 
 /* A tile of one picture that spans many displays (tiles/tile_sync.h). */
 enum { TILE_HELD = 8 };
 struct session_tile {
-    struct wall_place place;   /* the wall's display for which this tile is; display 0: the session is no tile */
-    struct tile_layout layout; /* layout computed from the size of this session's display; only the leader's layout is used */
+    struct wall_place place; /* the wall's display for which this tile is; display 0: the session is no tile */
+    /* layout of the wall's picture, computed from the size of this session's display; only the leading session's layout is used */
+    struct tile_layout layout;
     struct tile_held {
         uint64_t picture; /* number of the wall's picture */
         uint32_t seq;     /* sequence number of this session's frame that shows the picture */
     } held[TILE_HELD];    /* frames sent and not yet shown at the wall's common instant, oldest first */
     int held_count;
-    bool moved; /* the burn-in shift changed since a picture was requested: the next picture is sent even if its content is the same */
-    /* id of a wall's picture in which this tile has the same content as a frame still under way to its client; 0: none */
+    /* true: the burn-in shift changed after the last picture was requested, so the next picture is sent even if its content is the same */
+    bool moved;
+    /* id of a picture of the wall in which this tile's content equals that of a frame still on its way to the client; 0: none */
     uint64_t unchanged;
     uint32_t presented_seq;
-    int64_t made_ns; /* time from request to encoded preview, smoothed; 0: not known */
+    int64_t made_ns; /* time from a request to the encoded preview, smoothed, in nanoseconds; 0: not known */
     int64_t late_us; /* UTC microseconds since when the tile is dropped from the wall; 0: it takes part */
     /* out_ns: duration for which the tile is dropped; in_ns: monotonic time when it may be readmitted, or when it was readmitted last */
     int64_t out_ns, in_ns;
@@ -192,7 +196,8 @@ struct session_tile {
 struct message_rate {
     int64_t begin_ns; /* monotonic time at which the counted second began */
     int count;
-    bool exceeded; /* the client has sent as many messages as it may: the event loop reads none until that second is over */
+    /* true: the client has sent as many messages as it may in the counted second: the event loop reads none until that second is over */
+    bool exceeded;
 };
 
 struct session_stats { /* counts for the log and the metrics */
@@ -210,7 +215,7 @@ struct session {
     const struct session_context *context;
     struct session_identity identity;
     int64_t opened_ns;
-    bool asks_depth;    /* the client's hello asked for depth grids */
+    bool asks_depth;    /* true: the client's hello asked for depth grids */
     bool hello, hidden; /* hello: the client's hello was accepted; hidden: the client's page is not visible */
     double pixel_ratio; /* device pixels per CSS pixel of the page */
     struct view view;   /* the session's own view */
@@ -233,7 +238,7 @@ struct session {
     struct wall_place display; /* the wall display that this client says it is; display 0: none */
     struct session_tile tile;
     int64_t heard_ns;   /* monotonic: when the client's last message arrived */
-    int64_t settled_ns; /* heard_ns at the last tick at which no picture was owed to the client */
+    int64_t settled_ns; /* value of heard_ns at the last tick at which the client showed the newest picture (none was owed to it) */
 };
 
 /* Returns whether the session is an open viewer, without a token: it gets frames, but no readings, tags or names of people. */

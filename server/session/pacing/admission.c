@@ -7,7 +7,8 @@
 #include "base/clock.h"
 
 static const int64_t WINDOW_NS = NS_PER_S;
-/* readings arrive once a second: if a changed reading waits longer than this for its frame, some readings are never drawn */
+/* longest time that a changed reading may wait for its frame. Readings arrive once a second, so with a longer wait some would never be
+   drawn */
 static const int64_t LONGEST_DATA_WAIT_NS = NS_PER_S;
 enum { BUSY_PERCENT = 85 };
 
@@ -93,7 +94,7 @@ enum refusal_code admission_refuses_pixels(const struct admission *admission, co
 
 /* --- whether the render thread can serve one more moving camera ------------------------------------------------------------ */
 
-/* A function that returns one figure of the drawing statistics of an address; 0: not known. */
+/* Type of a function that returns one figure of the drawing statistics of an address; 0: the figure is not known. */
 typedef int64_t of_share(const struct address_share *share);
 
 static int64_t cost_of(const struct address_share *share)
@@ -126,7 +127,8 @@ static int64_t usual(const struct admission *admission, of_share *of)
 }
 
 struct moving_sessions { /* number of sessions whose camera moves */
-    /* own: moving sessions of this address; all: moving sessions of all addresses; others: count of other addresses with moving sessions */
+    /* own: moving sessions of the address in question; all: moving sessions of all addresses; others: number of other addresses that have
+       moving sessions */
     int own, all, others;
 };
 

@@ -18,7 +18,7 @@ struct admission_window { /* figures about one second of drawing */
     int64_t data_wait_ns;
 };
 
-struct address_share {  /* use of the server by one client address (its share); zero-initialise */
+struct address_share {  /* use that one client address makes of the server; zero-initialise */
     uint64_t account;   /* id of the address; equals frame_request.account in the requests of its sessions */
     bool exempt_pixels; /* true: the quota on pixels per address does not apply to this address */
     int64_t pixels;     /* pixels of all views of the address */
@@ -33,7 +33,7 @@ struct admission {
     /* figures of the last finished seconds, newest last; `now`: figures of the current second */
     struct admission_window windows[ADMISSION_WINDOWS], now;
     int64_t begin_ns; /* monotonic start of `now` */
-    /* content id of the last counted frame: clients that share a frame report it one after the other, and it counts once */
+    /* content id of the last frame counted. Clients that share a frame report it one after the other; with this id it counts once */
     uint64_t last_content;
     int64_t pixels;               /* pixels of all views of all addresses */
     struct address_share *shares; /* linked list of the addresses that have sessions */

@@ -5,13 +5,16 @@
 #include "base/clock.h"
 
 static const int64_t RTT_WINDOW_NS =
-    15 * NS_PER_S; /* length of a measuring window; a measured round trip counts in its own window and the next */
-/* a longer round trip counts as this long: it is caused by a queue somewhere, not by the network's delay */
+    15 * NS_PER_S; /* length of a measuring window; a round trip counts in the window in which it was measured and in the next one */
+/* upper limit of a measured round trip; a longer one is caused by a queue somewhere, not by the network's delay */
 static const int64_t MAX_RTT_NS = 1 * NS_PER_S;
-static const int64_t MIN_TRANSFER_NS = NS_PER_MS / 4; /* a faster transfer counts as this long: it only shows plentiful bandwidth */
-/* if decoding of a frame began within this time after the acknowledgement of the frame before, the frame had waited for the decoder */
+/* lower limit of a measured transfer time; a faster transfer only shows that bandwidth is plentiful */
+static const int64_t MIN_TRANSFER_NS = NS_PER_MS / 4;
+/* maximum time between the acknowledgement of a frame and the start of decoding the next one, for the next one to count as having waited
+   for the decoder */
 static const int64_t WAITED_NS = 1 * NS_PER_MS;
-static const size_t SMALL_BYTES = 4096;   /* smaller frames may only raise the bandwidth estimate, not lower it */
+/* size in bytes of a frame below which its measurement may only raise the bandwidth estimate, not lower it */
+static const size_t SMALL_BYTES = 4096;
 static const double SAMPLE_WEIGHT = 0.25; /* weight of a new sample in smoothed values */
 
 static void smooth(double *value, double sample)
@@ -24,8 +27,7 @@ static void smooth(double *value, double sample)
 static void add_sample(double *value, struct channel_last *last, int most, double sample)
 {
     last->at[last->count % CHANNEL_LAST] = sample;
-    /* reduces the count before it can overflow: it stays above CHANNEL_LAST, and count % CHANNEL_LAST still is the index of the next
-       sample */
+    /* keeps the count from overflowing. It stays above CHANNEL_LAST, and count % CHANNEL_LAST stays the index of the next sample */
     last->count = last->count < 2 * CHANNEL_LAST ? last->count + 1 : CHANNEL_LAST + 1;
     double least = sample;
     for (int back = 1; back <= most && back <= last->count; back++) {
@@ -95,7 +97,7 @@ void channel_on_ack(struct channel *channel, const struct channel_ack *ack)
 void channel_on_bytes(struct channel *channel, size_t bytes, int64_t took_ns)
 {
     int64_t transfer_ns = more(took_ns - channel_rtt_ns(channel), MIN_TRANSFER_NS);
-    /* only a rough initial value: the frames that follow measure the bandwidth better */
+    /* a rough initial value of the bandwidth is enough: the frames that follow measure it better */
     channel->ns_per_byte = (double)transfer_ns / (double)(bytes + 1);
 }
 

@@ -17,7 +17,7 @@ struct channel_last { /* ring of the last samples; zero-initialise */
     int count; /* number of samples so far, reduced before it can overflow */
 };
 
-struct channel {                     /* estimate for one client; zero-initialise; 0 in any member: not measured yet */
+struct channel { /* estimate for the connection to one client; zero-initialise; a member that is 0 was not measured yet */
     int64_t rtt_ns[2], rtt_begin_ns; /* minimum round trip: [0] in the current measuring window, [1] in the one before; 0: not measured */
     double ns_per_byte; /* nanoseconds that the network needs per byte, smoothed; reacts faster to a slowdown than to a recovery */
     double lag_ns;      /* time from sending to acknowledgement, minus round trip and decoding, smoothed: the delay that the network adds */
@@ -29,7 +29,7 @@ struct channel {                     /* estimate for one client; zero-initialise
 
 struct channel_ack {
     size_t bytes;    /* bytes of this frame and of the earlier frames that the acknowledgement covers */
-    int64_t sent_ns; /* when the first of the acknowledged frames was sent */
+    int64_t sent_ns; /* monotonic time when the first of the acknowledged frames was sent */
     int64_t now_ns;
     int64_t decode_ns; /* decoding time as reported by the client; negative: not reported */
 };
@@ -42,7 +42,8 @@ void channel_on_bytes(struct channel *channel, size_t bytes, int64_t took_ns);
 void channel_on_pong(struct channel *channel, int64_t rtt_ns, int64_t now_ns);
 /* Returns the round-trip time; 0: not measured yet. */
 int64_t channel_rtt_ns(const struct channel *channel);
-/* Returns whether the round-trip time should be measured again because it is old. Measure it only while nothing else is in flight. */
+/* Returns whether the round-trip time should be measured again because the last measurement is old. Measure only while nothing else is in
+   flight to the client. */
 bool channel_rtt_is_old(const struct channel *channel, int64_t now_ns);
 /* Returns the time that the client's bandwidth needs for `bytes` bytes, without the round trip; 0: the bandwidth is not known. */
 int64_t channel_transfer_ns(const struct channel *channel, double bytes);

@@ -15,10 +15,10 @@ struct codec_facts {
 
 struct codec_choice { /* zero-initialise, which chooses H.264 */
     bool jpeg;
-    int64_t against_ns; /* monotonic time since when codec_facts have favoured the other codec; 0: they favour the current one */
+    int64_t against_ns; /* monotonic time since when codec_facts favour the codec that is not in use; 0: they favour the current one */
 };
 
-/* Switches the codec once the facts have favoured the other one for long enough. */
+/* Switches to the other codec once the facts have favoured it for long enough. */
 void codec_choice_update(struct codec_choice *choice, const struct codec_facts *facts, int64_t now_ns);
 
 struct cpu_meter {       /* reads the processors' load from /proc/stat; zero-initialise */

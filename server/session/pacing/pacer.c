@@ -7,7 +7,8 @@
 
 #include "base/clock.h"
 
-static const int64_t AHEAD_NS = 33 * NS_PER_MS; /* the bytes in flight to a client may take this time, plus one round trip, to arrive */
+/* time, in addition to one round trip, within which the bytes in flight to a client must be able to arrive */
+static const int64_t AHEAD_NS = 33 * NS_PER_MS;
 static const int64_t STALL_NS = PACER_STALL_S * NS_PER_S, DEAD_NS = 15 * NS_PER_S; /* as in PROTOCOL.md */
 
 void pacer_init(struct pacer *pacer)
@@ -35,8 +36,8 @@ static int most_frames(const struct pacer *pacer)
     return most > PACER_MOST ? PACER_MOST : (int)most;
 }
 
-/* Returns whether one more requested frame fits into the bytes that may be in flight. Frames that are requested but not made yet count with
-   the expected size of a preview at the present step of the quality ladder. */
+/* Returns whether one more frame may be requested without exceeding the bytes that may be in flight. Frames that are requested but not made
+   yet count with the expected size of a preview at the present step of the quality ladder. */
 static bool fits_window(const struct pacer *pacer)
 {
     int64_t window_ns = AHEAD_NS + channel_rtt_ns(&pacer->channel);

@@ -6,21 +6,22 @@
 #define SESSION_PACING_PACER_H
 #include "session/pacing/quality_ladder.h"
 
-/* limit on the number of frames under way: PACER_LEAST, growing with the round-trip time up to PACER_MOST */
+/* limits on the number of frames in flight to one client: PACER_LEAST, growing with the round-trip time up to PACER_MOST */
 enum { PACER_LEAST = 2, PACER_MOST = 8 };
 
-struct pacer_note {    /* facts about a frame that are needed when it is acknowledged */
+struct pacer_note {    /* facts about a sent frame that are needed when the frame is acknowledged */
     bool moving, full; /* moving: the frame is a preview, at ladder step `step`; full: the frame is refined, in full quality */
     int step;
-    bool of_data;              /* true: the frame was made because a reading changed; false: because of an input */
-    int64_t input_ns, made_ns; /* monotonic: when the input or the changed reading happened; when the frame was encoded */
+    bool of_data; /* true: the frame was made because a reading changed; false: because of an input */
+    /* input_ns: monotonic time of the input or of the changed reading; made_ns: monotonic time when the frame was encoded */
+    int64_t input_ns, made_ns;
 };
 
 struct pacer_flight {
     uint32_t seq;
     size_t bytes;
-    bool written;                /* all bytes of the frame were written to the socket */
-    int64_t sent_ns, written_ns; /* monotonic: when the first byte was written; when the last byte was written */
+    bool written;                /* true: all bytes of the frame were written to the socket */
+    int64_t sent_ns, written_ns; /* monotonic times when the frame's first byte and its last byte were written */
     struct pacer_note note;
 };
 
@@ -29,7 +30,7 @@ struct pacer {                              /* initialise with pacer_init() */
     struct pacer_flight flight[PACER_MOST]; /* frames sent and not acknowledged, oldest first */
     int flight_count;
     uint32_t last_seq;
-    bool cut;                  /* a frame was cut short: the end of its WebSocket message must still be written */
+    bool cut;                  /* true: the newest frame was cut short, and the end of its WebSocket message must still be written */
     int64_t moved_on_ns;       /* monotonic: when the client last acknowledged a frame, or its socket last accepted bytes */
     struct pacer_flight acked; /* the newest acknowledged frame */
     struct channel channel;

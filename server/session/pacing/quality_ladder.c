@@ -4,29 +4,30 @@
 
 #include "base/clock.h"
 
-/* if the network needs longer than this for a frame, the frame is too large: the ladder steps down */
+/* transfer time of a frame above which the frame is too large for the network, so the ladder steps down */
 static const int64_t SLOW_NS = 80 * NS_PER_MS;
-/* the ladder steps up if a frame of the better step is expected to take the network less than this */
+/* expected transfer time of a frame of the next better step below which the ladder steps up */
 static const int64_t FAST_NS = 40 * NS_PER_MS;
 static const int64_t MIN_UP_DELAY_NS = 1 * NS_PER_S, MAX_UP_DELAY_NS = 30 * NS_PER_S;
-static const int64_t LASTED_NS = 5 * NS_PER_S; /* a step up counts as right if it lasted this long before the next step down */
-/* minimum delay between two steps down: the measured lag falls only some frames after a step */
+static const int64_t LASTED_NS = 5 * NS_PER_S; /* time without a step down after which the last step up counts as right */
+/* minimum time between two steps down: the measured lag falls only some frames after a step */
 static const int64_t SETTLE_NS = 500 * NS_PER_MS;
-static const int64_t SLOW_DECODE_NS = 40 * NS_PER_MS; /* decoding that takes longer cannot keep up with 25 frames a second */
+/* decoding time of a frame above which the client cannot keep up with 25 frames a second */
+static const int64_t SLOW_DECODE_NS = 40 * NS_PER_MS;
 static const int64_t FAST_DECODE_NS = 20 * NS_PER_MS;
-/* limit of the time for making a picture: the server makes two pictures at a time, so a longer time means fewer than 15 pictures a
-   second */
+/* limit on the time that the server takes to make a picture. It makes two pictures at a time, so a longer time means fewer than 15 pictures
+   a second */
 static const int64_t SLOW_MADE_NS = 130 * NS_PER_MS;
 static const int64_t FAST_MADE_NS = 90 * NS_PER_MS;
 static const int64_t HARD_FOR_NS = 500 * NS_PER_MS, EASY_FOR_NS = 3 * NS_PER_S;
 static const double SAMPLE_WEIGHT = 0.25;
-/* if one frame is sent to all viewers of a view, the bytes of all their copies must stay below this: the event loop sends that much in some
-   tens of ms */
+/* limit on the bytes of all copies of a frame that is sent to all viewers of a view: the event loop needs some tens of ms to send this
+   many */
 static const double CROWD_BYTES = 30e6;
-/* MIN_VIEWERS: viewers needed to share one step; MAX_STEPS_WORSE: a viewer whose own step is worse than the common one by more than this
-   leaves the common step */
+/* MIN_VIEWERS: minimum number of viewers of a view for which a common step is chosen; MAX_STEPS_WORSE: a viewer whose own step is worse
+   than the common one by more than this uses its own */
 enum { MIN_VIEWERS = 3, MAX_STEPS_WORSE = 2 };
-static const double BYTES_PER_PIXEL = 0.08; /* expected size of a frame at step 0 before any was sent */
+static const double BYTES_PER_PIXEL = 0.08; /* expected bytes per pixel of a frame at step 0, before any frame was sent */
 
 /* Quality, scale and relative frame size of each step; sizes relative to step 0, measured on the demo plant at 1920x1080. */
 static const struct {
@@ -125,7 +126,7 @@ static void follow_network(struct quality_ladder *ladder, const struct channel *
     } else if (up >= ladder->step || channel->lag_ns > SLOW_NS) {
         ladder->good_since_ns = 0;
     } else if (!ladder->known) {
-        go_up(ladder, up, now_ns); /* no delay here: the initial step was only a guess */
+        go_up(ladder, up, now_ns); /* steps up without delay, because the initial step was only a guess */
     } else if (!ladder->good_since_ns) {
         ladder->good_since_ns = now_ns;
     } else if (now_ns - ladder->good_since_ns >= ladder->patience_ns) {
@@ -133,7 +134,7 @@ static void follow_network(struct quality_ladder *ladder, const struct channel *
     }
 }
 
-/* Returns whether `now` has been true for limit_ns. *since_ns: when it became true; 0: it is false. */
+/* Returns whether the condition `now` has been true for limit_ns. *since_ns: stores when it became true; 0: it is false. */
 static bool lasts(int64_t *since_ns, bool now, int64_t limit_ns, int64_t now_ns)
 {
     if (!now)

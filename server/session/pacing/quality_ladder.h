@@ -17,8 +17,9 @@ struct quality_ladder { /* initialise with quality_ladder_init() */
     int step;           /* index of the quality step, 0: best; chosen by the bandwidth */
     int size;           /* index of the picture size, 0: full; chosen by the client's decoding time or by the server's rendering time */
     double unit_bytes;  /* estimated size in bytes of a frame at step 0, smoothed */
-    bool known;         /* at least one frame was acknowledged */
-    /* monotonic times since when: a better step fits; a larger picture fits; decoding takes too long. 0: not the case now */
+    bool known;         /* true: at least one frame was acknowledged, so unit_bytes is measured */
+    /* monotonic times since when these conditions hold: a better step fits; a larger picture fits; decoding takes too long. 0: the
+       condition does not hold now */
     int64_t good_since_ns, easy_since_ns, bad_since_ns;
     int64_t up_ns, down_ns; /* monotonic: when the step last went up, and down */
     int64_t patience_ns;    /* delay before the next step up */
@@ -35,7 +36,8 @@ struct rung quality_ladder_rung(const struct quality_ladder *ladder, int step);
    counts: number of viewers at each step. seen: ladder of the session whose view the others follow. Returns a negative number if there are
    too few viewers to share a step. */
 int quality_ladder_common(const struct quality_ladder *seen, const int counts[QUALITY_LADDER_STEPS]);
-/* Returns the step to use: the common one, or this client's own if that is much worse. common negative: returns the client's own step. */
+/* Returns the step to use for this client: the common one, or the client's own step if that is much worse. common negative: the client's
+   own step. */
 int quality_ladder_step(const struct quality_ladder *ladder, int common);
 /* Records that a preview of that step and size in bytes was acknowledged, and adjusts the step. */
 void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns);

@@ -6,8 +6,8 @@
 #include "base/clock.h"
 #include "session/session_impl.h"
 
-/* A page that was hidden for longer than this, or is shown again within this time after it was last shown, loses its pixels. It is then
-   admitted like a new session. */
+/* A page loses its reserved pixels if it was hidden for longer than this time, or if it is shown again within this time after it was last
+   shown. It is then admitted like a new session. */
 static const int64_t HIDDEN_NS = 15 * NS_PER_S;
 
 static void hold(struct session *session, int64_t pixels)

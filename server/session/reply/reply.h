@@ -13,15 +13,16 @@ enum { REPLY_FOLLOWERS = 256 };
 char *reply_followers_text(const struct session *const *followers, size_t count, bool open);
 /* Says whose view the session is shown, and whether that leader has gone. */
 char *reply_following_text(const struct session *session);
-/* Lists all readings; if `all` is false, only those whose reading.changes differs from `sent`, an array by tag. Updates `sent`. */
+/* Lists readings: all of them, or, if `all` is false, only those that the client was not sent yet (reading.changes differs from `sent`, an
+   array by tag). Updates `sent`. */
 char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent, bool all);
 char *reply_status_text(const struct session_context *context, int64_t now_utc_ns);
 char *reply_pong_text(const struct snapshot *snapshot, double t, int64_t now_utc_ns);
 char *reply_time_text(const struct session *session);
-/* reply_present_text tells a tile (one display of a wall's picture) at which instant, UTC microseconds, to show its frame number seq;
-   `picture`: id of the wall's picture. reply_tiles_text lists which displays of the wall are connected, since when some are dropped, and
-   which part of the picture this display shows. there, late_us: arrays indexed by display - 1; late_us: UTC microseconds, 0: not
-   dropped. */
+/* reply_present_text tells a tile (one display of a wall's picture) at which instant, UTC microseconds, to show its frame with the number
+   seq; `picture`: id of the wall's picture. reply_tiles_text lists which displays of the wall are connected, since when some are dropped,
+   and which part of the picture this display shows. there, late_us: arrays indexed by display - 1; there: the display is connected;
+   late_us: UTC microseconds since when it is dropped, 0: not dropped. */
 char *reply_present_text(uint32_t seq, uint64_t picture, int64_t at_us);
 char *reply_tiles_text(const struct wall *wall, const struct wall_place *place, const struct tile_layout *layout, const bool *there,
                        const int64_t *late_us, bool leads);
@@ -32,7 +33,7 @@ char *reply_views_text(const struct session_context *context, const char *id);
 void reply_add_wrong(const struct session_context *context, json_t *view, const char *address);
 /* Answers the message `fit`. */
 char *reply_camera_text(const struct camera *camera, uint32_t seq);
-/* Answers a pick; query.seq 0: the answer has no `seq`. */
+/* Answers a pick (what is at a pixel). query.seq 0: the answer has no member `seq`. */
 char *reply_picked_text(const struct plant *plant, const struct pick_answer *answer);
 char *reply_error_text(const struct message_error *error);
 char *reply_api_plant_text(const struct session_context *context);

@@ -80,7 +80,8 @@ static json_t *colormaps(void)
     json_t *list = json_array();
     for (size_t i = 0; i < colormap_count(); i++) {
         const struct colormap *map = colormap_at(i);
-        char base64[sizeof(map->rgb) / 3 * 4 + 8]; /* 8 more bytes, because lws_b64_encode_string() needs a few beyond the text */
+        /* the 8 extra bytes are needed because lws_b64_encode_string() writes a few bytes beyond the text */
+        char base64[sizeof(map->rgb) / 3 * 4 + 8];
         lws_b64_encode_string((const char *)map->rgb, sizeof(map->rgb), base64, sizeof(base64));
         json_array_append_new(list, json_pack("{s:o,s:o,s:o,s:o,s:b}", "name", string(map->name), "rgb", string(base64), "below",
                                               colour(map->below), "above", colour(map->above), "safe", map->safe));

@@ -6,8 +6,10 @@
 #include "session/session.h"
 
 struct tag_text_cache { /* zero-initialise */
-    uint32_t *before;   /* reading.changes, by tag, as the message's receivers knew it before this message */
-    int64_t taken_ns;   /* time of the snapshot that `text` shows */
+    /* by tag: value of reading.changes that the clients had before this message; the message is right only for clients with the same
+       values */
+    uint32_t *before;
+    int64_t taken_ns; /* time of the snapshot that `text` shows */
     bool all;
     char *text; /* the cached message; NULL: none yet */
 };

@@ -28,7 +28,8 @@ struct tile_layout tile_layout_scale(const struct tile_layout *layout, double sc
     struct tile_layout out = *layout;
     out.width_px = scaled(layout->width_px, scale);
     out.height_px = scaled(layout->height_px, scale);
-    /* If tiles shrink, the gaps and margins shrink by the same factor, even where tiles are already at their minimum size. */
+    /* A layout whose tiles shrink has gaps and margins that shrink by the same factor, even if the tiles cannot shrink further because of
+       their minimum size. */
     double across = fmin(scale, (double)out.width_px / layout->width_px), down = fmin(scale, (double)out.height_px / layout->height_px);
     out.gap_px[0] = (int)lround(layout->gap_px[0] * across);
     out.gap_px[1] = (int)lround(layout->gap_px[1] * down);
@@ -53,12 +54,12 @@ void tile_layout_init(struct tile_layout *layout, const struct wall *wall, int w
     double scale = fmin(1, fmin(VIEW_MAX_SIDE_PX / side, sqrt((double)most_px / (width * height))));
     *layout = tile_layout_scale(&full, scale);
     while (scale > 0.01 && (tile_layout_width(layout) > VIEW_MAX_SIDE_PX || tile_layout_height(layout) > VIEW_MAX_SIDE_PX ||
-                            /* sizes are rounded to whole pixels, so the picture may exceed the limit again */
+                            /* shrinks again if needed: rounding sizes to whole pixels may make the picture exceed the limit */
                             (int64_t)tile_layout_width(layout) * tile_layout_height(layout) > most_px))
         *layout = tile_layout_scale(&full, scale *= 0.99);
 }
 
-/* Scales the shift to the tiles' size: a shift of BURN_SHIFT_PX display pixels is margin_px picture pixels. */
+/* Converts the burn-in shift from display pixels to picture pixels: BURN_SHIFT_PX display pixels are margin_px picture pixels. */
 static int shift_within(int shift_px, int margin_px)
 {
     return (int)lround((double)shift_px * margin_px / BURN_SHIFT_PX);

@@ -11,8 +11,8 @@ struct tile_layout {
     int columns, rows;
     int display_px[2];       /* pixels of one display: across, down */
     int width_px, height_px; /* size of one tile's picture, which may have fewer pixels than its display */
-    int gap_px[2];           /* pixels between two tiles: across, down */
-    int margin_px[2];        /* margin around all tiles: left and right, above and below */
+    int gap_px[2];           /* pixels between two neighbouring tiles: horizontally, vertically */
+    int margin_px[2];        /* width of the margin around all tiles: left and right; above and below */
     struct burn_shift shift; /* burn-in shift of all tiles within the picture, in the display's own pixels */
 };
 

@@ -7,10 +7,11 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-static const int64_t MAX_LATE_NS = 3 * NS_PER_S; /* the other tiles wait this long for a slow one before it is dropped */
-/* how long a slow tile is dropped; doubles each time, up to the maximum */
+/* time for which the other tiles wait for a slow tile; after it the slow tile is dropped */
+static const int64_t MAX_LATE_NS = 3 * NS_PER_S;
+/* time for which a slow tile is dropped; it doubles each time, up to the maximum */
 static const int64_t OUT_NS = 10 * NS_PER_S, MAX_OUT_NS = 320 * NS_PER_S;
-static const int64_t KEPT_UP_NS = 60 * NS_PER_S; /* after keeping up for this long, a tile that is slow again is dropped for only OUT_NS */
+static const int64_t KEPT_UP_NS = 60 * NS_PER_S; /* time of keeping up after which a tile that is slow again is dropped for only OUT_NS */
 
 bool session_is_tile(const struct session *session)
 {
@@ -40,7 +41,8 @@ void session_tile_move(struct session *session, struct burn_shift shift, int64_t
     session->tile.moved = true;
     if (!session->demand.data)
         session->demand.data_ns = now_ns;
-    session->demand.data = true; /* requests a picture although its content is the same: the tile shows another part than before */
+    /* requests a picture even if its content is the same, because the burn-in shift makes the tile show another part of it */
+    session->demand.data = true;
 }
 
 void session_tile_sent(struct session *session, uint64_t picture, uint32_t seq)

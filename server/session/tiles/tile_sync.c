@@ -8,7 +8,7 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-/* time added to the slowest round trip to give the instant at which all tiles show a picture; MAX_FLIP_NS: maximum of the sum */
+/* FLIP_NS: time added to the slowest round trip to compute when all tiles show a picture; MAX_FLIP_NS: maximum of that sum */
 static const int64_t FLIP_NS = 25 * NS_PER_MS, MAX_FLIP_NS = NS_PER_S;
 
 bool session_tile_takes_part(const struct session *session, int64_t now_ns)
@@ -19,8 +19,8 @@ bool session_tile_takes_part(const struct session *session, int64_t now_ns)
 
 /* --- requests --------------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether request a goes before b: a preview before a refined picture, because a preview means that a user moves the camera, or
-   that a tile has just connected. */
+/* Returns whether request a is more urgent than request b. A preview goes before a refined picture, because it means that a user moves the
+   camera, or that a tile has just connected. */
 static bool goes_first(const struct frame_request *a, const struct frame_request *b)
 {
     if (a->view.tier != b->view.tier)
@@ -42,7 +42,8 @@ static struct rung worst_rung(const struct session_tiles *tiles, int *step)
     return quality_ladder_rung(&worst, worst.step);
 }
 
-/* Adjusts the picture size to the server's speed; only while something moves, as a still picture measures nothing. */
+/* Adjusts the size of the wall's picture to the server's speed. Does so only while the view moves, because a still picture measures
+   nothing. */
 static void follow_server(const struct session_tiles *tiles, bool moving, int64_t now_ns)
 {
     int64_t made_ns = 0;
@@ -144,8 +145,8 @@ static uint64_t common(const struct session_tiles *tiles, uint64_t presented)
     return 0;
 }
 
-/* Requests another picture for all members if nothing is in flight and some member has a frame that was never presented. Tiles differ if a
-   newer request replaced the old one for one member, but came too late for another. */
+/* Requests another picture for all members if nothing is in flight and some member has a frame that was never presented. Such differences
+   arise if a newer request replaced the old one in time for one member but not for another. */
 static void ask_anew(const struct session_tiles *tiles)
 {
     bool any = false;

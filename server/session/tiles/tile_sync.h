@@ -10,11 +10,11 @@
 /* Returns whether a tile takes part now: its page is visible, and it keeps up. */
 bool session_tile_takes_part(const struct session *session, int64_t now_ns);
 
-struct session_tiles { /* the tiles of one wall that are not dropped or hidden, and the leading session */
+struct session_tiles { /* members of a wall's picture (tiles that are neither dropped nor hidden), and the leading session */
     struct session *const *members;
     size_t count;
     const struct session *leader;
-    struct quality_ladder *made; /* the wall's ladder: its picture size follows how long the server takes to make pictures */
+    struct quality_ladder *made; /* quality ladder of the wall: its picture size follows how long the server takes to make pictures */
 };
 
 /* Returns true if a new picture may be requested (or may replace one in flight) and a member wants it; fills requests[] with one request

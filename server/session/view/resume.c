@@ -18,7 +18,7 @@ struct kept_view {
 };
 
 struct resumes {
-    struct kept_view *kept; /* entries of connected sessions, and of lost ones in the order in which their connections were lost */
+    struct kept_view *kept; /* list of entries: those of connected sessions, and those of lost connections in the order of their loss */
     size_t count, capacity;
 };
 

@@ -5,7 +5,7 @@
 #define SESSION_VIEW_RESUME_H
 #include "message/message.h"
 
-static const int64_t RESUME_KEPT_NS = 60LL * 1000000000; /* how long a view is kept after its connection is lost */
+static const int64_t RESUME_KEPT_NS = 60LL * 1000000000; /* time for which a view is kept after its connection is lost */
 enum { RESUME_MAX_KEPT = 256 }; /* maximum number of views kept for lost connections; the oldest is dropped first */
 
 struct session;
@@ -22,12 +22,13 @@ struct resumed {
     struct view view;
     struct codec_list codecs;
     double pixel_ratio;
-    uint64_t called;      /* number by which other sessions follow the resumed session */
-    double speed;         /* playback speed, recorded seconds per second, if view.at_us is a past instant */
-    struct session *live; /* session that is still connected and must be closed now; NULL: its connection is lost */
+    uint64_t called; /* number by which other sessions follow the resumed session */
+    double speed;    /* playback speed, recorded seconds per second, if view.at_us is a past instant */
+    /* session that has the view and is still connected, and must be closed now; NULL: the view's connection is lost */
+    struct session *live;
 };
-/* Finds the view that a secret resumes. Returns false if there is none, it has expired, or it belongs to another token than the
-   session's. */
+/* Finds the view that a secret resumes. Returns false if no view has this secret, the view has expired, or it belongs to another token than
+   the session's. */
 bool resumes_find(const struct resumes *resumes, const char *secret, const struct session *session, int64_t now_ns, struct resumed *out);
 /* Returns whether a connected session has that number. */
 bool resumes_has_live(const struct resumes *resumes, uint64_t number);

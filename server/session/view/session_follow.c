@@ -35,7 +35,7 @@ void session_leader_gone(struct session *session, int64_t now_ns)
     uint64_t called = session->following.leader->identity.number;
     session->following.own_view = session->view;
     session_inherit(session, session->following.leader);
-    view_set_trial(&session->view, 0); /* the leader's trial sensor positions were freed with the leader's session */
+    view_set_trial(&session->view, 0); /* stops using the leader's trial sensor positions, which were freed with the leader's session */
     session_follow(session, NULL, now_ns);
     session->following.left = called;
 }

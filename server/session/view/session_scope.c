@@ -160,7 +160,8 @@ static bool is_own(const struct session *session, const json_t *item)
            json_integer_value(json_object_get(item, "display")) == session->identity.holder.display;
 }
 
-/* Returns whether a list item concerns this display. Items for a picture over many displays are listed under its first display. */
+/* Returns whether an item of a list concerns this display. Items about a picture across many displays are listed under the first of these
+   displays. */
 static bool is_ours(const struct session *session, const json_t *item)
 {
     const char *id = json_string_value(json_object_get(item, "wall"));
@@ -242,7 +243,7 @@ bool session_scope_allows(const struct session *session, const struct message *m
     if (holder->views[0] && !is_in(message->type, views, sizeof(views) / sizeof(views[0])))
         message_fail(error, "not_allowed", "this token is for pictures of the views %.150s: name one in hello or look", holder->views);
     else if (holder->display && !is_in(message->type, displays, sizeof(displays) / sizeof(displays[0])) &&
-             /* a display with pictures sends picks to find a free side for an alarm's label */
+             /* picks are allowed to a display with pictures, because it uses them to find a free side for an alarm's label */
              (message->type != MESSAGE_PICK || session->scope.tags))
         message_fail(error, "not_allowed", "this token belongs to display %d of wall %s and allows nothing else", holder->display,
                      holder->wall);

@@ -7,7 +7,7 @@
 #include "session/session_impl.h"
 
 static const int64_t STEP_NS = 100 * NS_PER_MS; /* minimum time between two steps of playback */
-/* minimum time between two steps of slow playback, where readings change little from step to step */
+/* minimum time between two steps of slow playback; longer, because readings change little from step to step */
 static const int64_t SLOW_STEP_NS = 500 * NS_PER_MS;
 static const double SLOW_SPEED = 10;
 
@@ -16,7 +16,7 @@ void session_tell_time(struct session *session)
     int64_t at_us = session_view(session)->at_us;
     session->owed.time = true;
     session->owed.tags = true;
-    /* reading.changes of current and of historical readings are unrelated counters, so all tags are sent again */
+    /* sends all tags again, because reading.changes of current readings and of historical ones are unrelated counters */
     session->owed.tags_all |= (at_us != 0) != (session->owed.told_at_us != 0);
     session->owed.told_at_us = at_us;
 }
@@ -162,7 +162,8 @@ static void on_failure(struct session *session)
     session->owed.time = true;
 }
 
-/* Shows at_us even if the client has asked for a later instant since, so that dragging the time slider shows pictures all the way. */
+/* Shows the loaded instant at_us even if the client has asked for a later one since. Dragging the time slider thus shows pictures all the
+   way. */
 void session_on_historical_snapshot(struct session *session, int64_t at_us, bool good, int64_t now_ns)
 {
     struct travel *travel = &session->travel;

@@ -16,7 +16,8 @@
 #include "session/session_impl.h"
 
 enum { MAC_BYTES = 32, DIGITS = 17 };
-/* lifetime of a token, and largest accepted lead of a token's time over this clock, because another daemon's clock may be ahead */
+/* lifetime of a view token; also the largest time by which a token may be from the future, because the clock of the daemon that made it may
+   be ahead */
 static const int64_t KEPT_NS = 86400 * NS_PER_S, SKEW_NS = 7200 * NS_PER_S;
 
 void view_token_add_key(struct view_token_keys *keys, const uint8_t key[VIEW_TOKEN_KEY_BYTES])

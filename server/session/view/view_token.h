@@ -8,7 +8,8 @@
 
 enum { VIEW_TOKEN_KEY_BYTES = 32, VIEW_TOKEN_KEYS = 2 };
 
-struct view_token_keys { /* at[0] signs; at[1] is the previous key, whose tokens are still accepted. count 0: no view tokens are made */
+/* keys: at[0] signs new view tokens; tokens signed with at[1], the previous key, are still accepted. count 0: no view tokens are made */
+struct view_token_keys {
     uint8_t at[VIEW_TOKEN_KEYS][VIEW_TOKEN_KEY_BYTES];
     int count;
 };
