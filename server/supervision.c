@@ -24,11 +24,11 @@ struct supervision {
     struct {
         counter *reload_good, *reloaded_s;
     } counters;
-    struct service_patience *patience; /* asks the service manager to wait until the daemon is ready */
+    struct service_patience *patience; /* true: the daemon asked the service manager to wait until it is ready */
     char *runtime;                     /* runtime folder of the service; NULL: there is none */
     int64_t watchdog_ns;               /* interval of the service manager's watchdog; 0: off */
-    _Atomic bool refused, reloaded;    /* refused: the last reload failed; reloaded: a reload has ended and its result was not yet
-                                          reported */
+    /* refused: the last reload failed; reloaded: a reload has ended and its result is still to be reported */
+    _Atomic bool refused, reloaded;
     /* --- below: used only by the event loop */
     int64_t looked_ns;
     bool ready, stuck, said_refused;

@@ -11,8 +11,8 @@
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
 
-/* L (Laplacian) is singular on each connected component. Adding this fraction of M (areas), relative to the component's area, makes L
- * regular and changes distances by only a millionth. */
+/* Fraction of the area matrix M, relative to the component's area, that is added to the Laplacian L. L alone is singular on each connected
+   component; the sum is regular, and distances change by only a millionth. */
 #define REGULARISATION 1e-6
 
 struct heat {
@@ -24,8 +24,8 @@ struct heat {
     cholmod_common common;
 };
 
-/* Returns for each matrix row the area to add to its diagonal element, relative to the area of the row's component. The caller frees the
- * array. */
+/* Returns for each matrix row the area that is added to its diagonal element, relative to the area of the connected component to which the
+   row belongs. The caller frees the array. */
 static double *regularisation(const struct heat *heat, const uint32_t *component)
 {
     double *area_m2 = mem_array(heat->in->point_count, sizeof(*area_m2)), *share = mem_array(heat->laplacian.row_count, sizeof(*share));
@@ -87,8 +87,8 @@ void heat_destroy(struct heat **heat_ptr)
     *heat_ptr = NULL;
 }
 
-/* Replaces the heat `u` by its logarithm, and computes from the unit gradient X of that the weak divergence: b_i = integral of grad psi_i .
- * X (psi_i: hat function of point i). */
+/* Replaces the heat `u` by its logarithm, whose unit gradient is X. Then computes the weak divergence of X: b_i = integral of grad psi_i .
+   X (psi_i: hat function of point i). */
 static void flow(const struct heat *heat, double *u, double *b)
 {
     const struct intrinsic *in = heat->in;

@@ -14,7 +14,7 @@ struct heat *heat_create(struct log *log, const struct intrinsic *in, const uint
 /* Frees the factors and sets *heat to NULL. *heat may be NULL. */
 void heat_destroy(struct heat **heat);
 
-/* a source of heat: a surface point, given as weights of a triangle's three points */
+/* source of heat: a point on the surface, given as a triangle and the weights of its three points */
 struct heat_source {
     uint32_t points[3];
     double weights[3];

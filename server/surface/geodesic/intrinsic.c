@@ -11,7 +11,7 @@
 #include "surface/mesh/tri_edges.h"
 
 #define MOLLIFY 1e-5
-#define FLIPS_PER_EDGE 50u /* limit of flips per edge; normally never reached, but rounding errors might repeat flips forever */
+#define FLIPS_PER_EDGE 50u /* maximum number of flips per edge; without a limit, rounding errors might repeat flips forever */
 
 void intrinsic_finish(struct intrinsic *in)
 {
@@ -73,12 +73,12 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
     int j = (int)(in->glue[t][i] % 3);
     if (u == t)
         return false;
-    /* t has the corners p, q, r and the common edge as side pq; u has the corners q, p, s */
+    /* notation: triangle t has the corners p, q, r and shares its side pq with triangle u, which has the corners q, p, s */
     const double *lt = in->lengths[t], *lu = in->lengths[u];
     double pq = lt[i], qr = lt[(i + 1) % 3], rp = lt[(i + 2) % 3], ps = lu[(j + 1) % 3], sq = lu[(j + 2) % 3];
     double rx = (pq * pq + rp * rp - qr * qr) / (2 * pq), ry = sqrt(max_of(rp * rp - rx * rx, 0));
     double sx = (pq * pq + ps * ps - sq * sq) / (2 * pq), sy = -sqrt(max_of(ps * ps - sx * sx, 0));
-    /* distance from p along the old edge at which the new edge crosses it; -1: they do not cross */
+    /* distance from p along the old edge pq at which the new edge rs crosses it; -1: they do not cross */
     double cut = ry - sy > 0 ? rx + (sx - rx) * ry / (ry - sy) : -1;
     if (cut <= 0 || cut >= pq)
         return false;
@@ -90,8 +90,8 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
     memcpy(in->points[u], (const uint32_t[3]){ r, s, q }, sizeof(in->points[u]));
     memcpy(in->lengths[t], (const double[3]){ rs, rp, ps }, sizeof(in->lengths[t]));
     memcpy(in->lengths[u], (const double[3]){ rs, sq, qr }, sizeof(in->lengths[u]));
-    /* an outer side may be glued (marked as adjacent) to another outer side of the same two triangles; such references get the new side
-     * indices before they are written back */
+    /* an outer side of the two triangles may be glued (marked as adjacent) to another outer side of the same two; such references get the
+       new side indices before they are written back */
     uint32_t outer[4] = { g_rp, g_ps, g_sq, g_qr };
     const uint32_t was[4] = { 3 * t + (uint32_t)((i + 2) % 3), 3 * u + (uint32_t)((j + 1) % 3), 3 * u + (uint32_t)((j + 2) % 3),
                               3 * t + (uint32_t)((i + 1) % 3) };

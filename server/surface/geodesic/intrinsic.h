@@ -8,9 +8,9 @@
 
 struct intrinsic {
     size_t tri_count, point_count;
-    /* points of each triangle; all triangles of a patch (connected by edges with two faces) have the same orientation */
+    /* by triangle: indices of its three points; all triangles of a patch (connected by edges with two faces) have the same orientation */
     uint32_t (*points)[3];
-    double (*lengths)[3]; /* length of side i, from corner i to corner i + 1 */
+    double (*lengths)[3]; /* by triangle: length of side i, which leads from corner i to corner i + 1 */
     /* by triangle and side: the adjacent triangle's side, as 3 * triangle + side; TRIMESH_NONE: no adjacent triangle across which the edge
      * could be flipped */
     uint32_t (*glue)[3];

@@ -11,7 +11,7 @@
 static pthread_once_t blas_once = PTHREAD_ONCE_INIT;
 static void blas_alone(void)
 {
-    openblas_set_num_threads(1); /* a single BLAS thread, since the workers use all cores already */
+    openblas_set_num_threads(1); /* one thread for BLAS, because the workers use all cores already */
 }
 
 void laplacian_start(cholmod_common *common)

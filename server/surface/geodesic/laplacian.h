@@ -9,7 +9,8 @@
 #include "surface/geodesic/intrinsic.h"
 
 struct laplacian_slope { /* by triangle: gradients of the hat functions of its three corners in the triangle's plane, and its area */
-    /* gradients: (x1, y1) for corner 1, (0, y2) for corner 2, and minus the sum of both for corner 0; area: of the triangle */
+    /* gradients in the triangle's plane, as components: (x1, y1) of corner 1, (0, y2) of corner 2, and minus the sum of both for corner 0;
+       area: of the triangle */
     double x1, y1, y2, area;
 };
 

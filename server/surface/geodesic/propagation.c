@@ -7,8 +7,9 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-/* buckets of the priority queue per mean edge length. Points in one bucket are processed in any order, so buckets must be shorter than most
- * edges of meshes with many needles: with 32 instead of 512, mean errors on such a part were 2 to 3 times as large. */
+/* number of buckets of the priority queue per mean edge length. Points in one bucket are processed in any order, so buckets must be shorter
+   than most edges, even in meshes with many needle-shaped triangles: with 32 instead of 512 buckets, mean errors on such a mesh were 2 to 3
+   times as large. */
 #define STEPS_PER_EDGE 512.0
 #define NEAR_EDGES 5.0
 #define MAX_BUCKETS (1u << 16)
@@ -33,12 +34,12 @@ static void tri_sides(const struct propagation *propagation, const struct intrin
 
 /* --- fans ---------------------------------------------------------------------------------------------------------------------- */
 
-struct end { /* the end, away from the current point, of a triangle's side that begins at the current point */
+struct end { /* other end of a triangle's side that begins at the current point */
     uint32_t to;
     float length_m; /* as in struct propagation_fan */
 };
 
-struct vertex_wedge { /* a triangle at the current point: its two sides there, and the angle between them */
+struct vertex_wedge { /* wedge: a triangle with a corner at the current point: its two sides there, and the angle between them */
     struct end ends[2];
     float cosine, sine;
 };
@@ -65,8 +66,8 @@ static void turn_round(struct vertex_wedge *wedge)
     wedge->ends[1] = swap;
 }
 
-/* Extends the row of adjacent triangles around a point that the first `count` wedges form: moves an adjacent wedge to the end of the row,
- * until there is none. Returns the new number of wedges in the row. */
+/* Extends a row of adjacent triangles (wedges) around a point; the first `count` wedges form the row. Repeatedly moves a wedge that is
+   adjacent to the row's end to that end, until no wedge is. Returns the new number of wedges in the row. */
 static size_t extend(struct vertex_wedge *wedges, size_t count, size_t all)
 {
     for (size_t i = count; i < all && i < count + MAX_TRIED; i++)
@@ -177,8 +178,8 @@ static void make_fans(struct propagation *propagation, const struct intrinsic *i
     mem_free(first);
 }
 
-/* Chooses the number of buckets. They form a ring buffer, which must span the longest edge and near_m, because a new distance exceeds the
- * current distance by at most that. */
+/* Chooses the number of buckets, which form a ring buffer. The ring must span the longest edge and near_m, because a new distance exceeds
+   the current one by at most that much. */
 static void choose_buckets(struct propagation *propagation, const struct intrinsic *in)
 {
     double sum = 0, longest = 0, sides[3];

@@ -16,14 +16,14 @@ struct propagation {
     /* up to PROPAGATION_FAN neighbours of a point in angular order, and the triangles between consecutive neighbours */
     struct propagation_fan {
         uint32_t to[PROPAGATION_FAN]; /* by lane: point index of the neighbour; index of the fan's own point in unused lanes */
-        /* length of the edge to the neighbour; negative: the same length, but the neighbour must get no distance from this point; INFINITY:
-         * unused lane */
+        /* length of the edge to the neighbour in metres; negative: that length, but the neighbour must get no distance from this point;
+           INFINITY: unused lane */
         float length_m[PROPAGATION_FAN];
         /* cosine and sine of the angle to the next neighbour; sine 0: no triangle in between */
         float cosine[PROPAGATION_FAN], sine[PROPAGATION_FAN];
     } * fans;
     size_t fan_count, fan_capacity;
-    char *hidden;      /* by point: 1 if it has no visible triangle */
+    char *hidden;      /* by point: 1 if the point belongs to no visible triangle */
     float steps_per_m; /* buckets per metre of distance */
     double near_m;     /* radius around the source within which points are tested for a straight line of sight to the source */
     uint32_t bucket_count;
@@ -39,7 +39,7 @@ void propagation_finish(struct propagation *propagation);
 /* state of one propagation, used by one thread; initialise with zeros; may be reused */
 struct propagation_front {
     float *distance_m; /* per point; INFINITY: not reached */
-    float *straight_m; /* straight-line distance of each point from the source */
+    float *straight_m; /* by point: straight-line distance from the source in metres */
     char *settled;
     uint32_t *buckets;
     struct propagation_item {

@@ -8,19 +8,20 @@
 #include "base/mem.h"
 #include "surface/geodesic/propagation.h"
 
-/* smallest barycentric weight of a source; a source on a corner or edge is moved into its triangle by that much */
+/* smallest barycentric weight of a source; if the source lies on a corner or edge, it is moved into the triangle so that all weights have
+   at least this value */
 #define MIN_WEIGHT 1e-6
 /* fraction of the way from a corner to the middle of the opposite side; a straight line aims there to check that the triangles reach the
  * corner */
 #define CORNER_OFFSET 1e-3
-/* number of buckets by which a point may be processed before a nearer one; distances below the current one plus these buckets count as
- * final */
+/* number of buckets out of order in which points may be processed; distances are final up to the current one plus this many buckets */
 #define ANY_ORDER 2
 #define MAX_DEPTH 32     /* maximum number of triangles through which a straight line near the source is followed */
 #define NO_LENGTH 1e-300 /* avoids division by 0 */
 
 typedef float lanes __attribute__((vector_size(4 * PROPAGATION_FAN)));
-typedef int32_t mask __attribute__((vector_size(4 * PROPAGATION_FAN))); /* one lane per neighbour; all bits of a lane are set, or none */
+/* mask with one lane per neighbour, whose bits are all set or all clear */
+typedef int32_t mask __attribute__((vector_size(4 * PROPAGATION_FAN)));
 
 void propagation_front_finish(struct propagation_front *front)
 {
@@ -42,7 +43,7 @@ static bool clear(const struct propagation *propagation, struct propagation_fron
         front->buckets = mem_try_array(propagation->bucket_count, sizeof(*front->buckets));
         if (!front->distance_m || !front->straight_m || !front->settled || !front->buckets)
             return false;
-        /* propagation empties all buckets, so they are initialised only once */
+        /* initialises the buckets only once, because each propagation leaves them empty */
         memset(front->buckets, 0xff, propagation->bucket_count * sizeof(*front->buckets));
     }
     for (size_t i = 0; i < count; i++)
@@ -153,7 +154,7 @@ SIMD_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes 
 /* Progress of a front. */
 struct front_turn {
     struct propagation_front *front;
-    /* fan (up to PROPAGATION_FAN neighbours of the current point) that is being processed, and end of the point's fans */
+    /* fan being processed (up to PROPAGATION_FAN neighbours of the current point), and end of the current point's fans */
     const struct propagation_fan *fan, *end;
     /* d: distance of the current point, in all lanes; reached: distance up to which distances are final */
     lanes d, reached;
@@ -221,7 +222,8 @@ SIMD_BODY void hand_out(const struct propagation *propagation, struct front_turn
  * sees the part of the edge in directions between low and high. */
 struct window {
     double l[2], r[2], low[2], high[2];
-    /* 3 * triangle + side: the edge as a side of the triangle behind it, as seen from the source, where the side runs from r to l */
+    /* edge as a side of the triangle that lies behind it, seen from the source: 3 * triangle + side; in that triangle the side runs from r
+       to l */
     uint32_t entered;
 };
 
@@ -251,8 +253,8 @@ static void look_through(const struct propagation *propagation, struct propagati
     lay_out_apex(window, in->lengths[t][(side + 1) % 3], in->lengths[t][(side + 2) % 3], apex);
     double distance_m = hypot(apex[0], apex[1]);
     bool after_low = cross(window->low, apex) >= 0, before_high = cross(apex, window->high) >= 0;
-    /* the corner is outside of the window (visible part of an edge) on both sides only if its position is NAN; the windows would then not
-     * become narrower */
+    /* stops if the corner is outside of the window (visible part of an edge) on both sides: that is only so if its position is NAN, and the
+       windows would then not become narrower */
     if (!after_low && !before_high)
         return;
     if (after_low && before_high && distance_m < propagation->near_m)
@@ -268,7 +270,7 @@ static void look_through(const struct propagation *propagation, struct propagati
     }
 }
 
-/* a triangle placed in the plane with the source at (0, 0) */
+/* triangle placed in a plane in which the source is at (0, 0) */
 struct laid {
     uint32_t tri; /* number in the intrinsic triangulation */
     double corners[3][2];
@@ -305,7 +307,8 @@ static bool walk_to(const struct intrinsic *in, const double to[2], struct windo
         uint32_t t = window->entered / 3, side = window->entered % 3;
         lay_out_apex(window, in->lengths[t][(side + 1) % 3], in->lengths[t][(side + 2) % 3], apex);
         bool passes_l = cross(way, (const double[2]){ apex[0] - from[0], apex[1] - from[1] }) > 0;
-        /* position of the end that the side through which the line leaves the triangle shares with the edge through which it entered */
+        /* position of the corner that two sides of the triangle share: the one through which the line entered and the one through which it
+           leaves */
         const double *end = passes_l ? window->l : window->r;
         double along[2] = { apex[0] - end[0], apex[1] - end[1] }, beyond[2] = { to[0] - end[0], to[1] - end[1] };
         if (passes_l ? cross(along, beyond) >= 0 : cross(beyond, along) >= 0)
@@ -324,9 +327,9 @@ static void place_above(double side, double to_r_m, double to_l_m, double out[2]
     intrinsic_layout((const double[3]){ side, to_l_m, to_r_m }, &out[0], &out[1]);
 }
 
-/* Places the source in the plane of the intrinsic triangles behind a side that the model triangle `given` still has. The triangle itself
- * was flipped away. The intrinsic triangles cover it if a straight line finds its third corner at the expected position. Returns false if
- * not; then another side must be tried. */
+/* Places the source in the plane of the intrinsic triangles, if its own triangle `given` was flipped away. The plane is that of the
+   triangles behind a side that `given` and the intrinsic triangulation share. The intrinsic triangles cover `given` if a straight line
+   finds its third corner at the expected position. Returns false if not; then another side must be tried. */
 static bool lay_out_beyond(const struct propagation *propagation, uint32_t entered, uint32_t third, const double source[3],
                            struct laid *laid)
 {

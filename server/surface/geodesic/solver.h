@@ -12,8 +12,8 @@ struct solver {
 };
 
 void solver_init(struct solver *solver);
-/* Returns zeroed memory for `count` right-hand sides, [right-hand side][row], which the caller fills in before solver_solve(). Valid until
- * the next call. NULL: out of memory. */
+/* Returns zeroed memory for `count` right-hand sides, as [right-hand side][row], which the caller fills in before solver_solve(). Valid
+   until the next solver_begin(). NULL: out of memory. */
 double *solver_begin(struct solver *solver, size_t rows, size_t count);
 /* Solves for the right-hand sides that the caller wrote after solver_begin(). Returns the solutions, [right-hand side][row], valid until
  * the next call; the caller may modify them. NULL: out of memory. */
