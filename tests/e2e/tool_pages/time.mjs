@@ -267,7 +267,10 @@ test('until the answer for its tags is there, a chart draws and reads no series'
         const cells = [...document.querySelectorAll('#trend-tags tbody .at')].map(({ textContent }) => textContent);
         return { labels: chart.series.slice(1).map(({ label }) => label), cells, isRead: crosshairUs !== null };
     });
-    const path = /api\/v1\/history/;
+    const path = /api\/v1\/history/, drawn = (name) => page.waitForFunction(
+        (label) => globalThis.plantcast.trends.chart.series[1]?.label === label, name);
+    await page.evaluate(() => { const { trends, session } = globalThis.plantcast; trends.only(session.model.tag('TI-1')); });
+    await drawn('TI-1'); // so that no earlier answer holds the other tag's values
     let answer;
     const answered = new Promise((done) => { answer = done; });
     await page.route(path, async (route) => { await answered; await route.continue(); });
@@ -278,7 +281,7 @@ test('until the answer for its tags is there, a chart draws and reads no series'
     await page.waitForFunction(() => globalThis.plantcast.trends.crosshairUs);
     assert.deepEqual(await state(), { labels: [], cells: ['–'], isRead: true });
     answer();
-    await page.waitForFunction(() => globalThis.plantcast.trends.chart.series[1]?.label === 'PI-1');
+    await drawn('PI-1');
     await page.unroute(path);
     await page.locator('#theme').click();
     await page.evaluate(() => {
