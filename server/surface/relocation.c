@@ -36,10 +36,10 @@ struct relocation {
     /* --- below: under lock */
     enum relocation_state state;
     struct surface *surface; /* surface of the asset; readable without the lock once the state is ready */
-    /* positions of the shape's vertices on the surface; readable without the lock once the state is ready; NULL: not needed, because the
-     * surface was built from the shape's vertices */
+    /* positions, on the surface, of the vertices of the shape; readable without the lock once the state is ready; NULL: not needed, because
+       the surface was built from these vertices */
     struct vertex_embedding *embedding;
-    struct relocation_ask *asks; /* waiting or running requests, oldest first */
+    struct relocation_ask *asks; /* requests that wait or are being computed, oldest first */
     uint64_t last_ticket;
     size_t jobs; /* number of jobs that were submitted to the workers and have not finished */
 };
@@ -144,7 +144,7 @@ static void end_job(struct relocation *relocation)
     pthread_mutex_unlock(&relocation->lock);
 }
 
-/* Returns the oldest request that is not running, and marks it as running; NULL: there is none, because it was cancelled. */
+/* Returns the oldest request that is not running, and marks it as running. Returns NULL if no request waits, because it was cancelled. */
 static struct relocation_ask *begin_ask(struct relocation *relocation)
 {
     pthread_mutex_lock(&relocation->lock);
@@ -186,7 +186,7 @@ static void solve_next(void *arg)
     end_job(relocation);
 }
 
-/* Reads the surface that plantcast-prep stored. NULL: there is no valid one. */
+/* Reads the surface that plantcast-prep stored. Returns NULL if there is no file, or its content is not valid. */
 static struct surface *read_surface(const struct relocation *relocation, struct vertex_embedding **embedding)
 {
     struct cache_file kept = { 0 };

@@ -20,8 +20,8 @@ struct relocation_shape {
     size_t vertex_count;
     const uint32_t *triangles; /* three vertex indices each */
     size_t triangle_count;
-    /* largest gap that is bridged, as in the plant file, so that relocation bridges the same gaps as plantcast-prep; 0: chosen from the
-     * model */
+    /* largest gap in metres that is bridged when distances are computed, as in the plant file, so that relocation bridges the same gaps as
+       plantcast-prep; 0: chosen from the model */
     double tolerance_m;
     /* The surface that plantcast-prep stored for the asset (surface_store.h). With this file, distances equal those that plantcast-prep
      * would store (except for a few vertices where coincident faces belong to two parts), and the surface is ready sooner. Without the
@@ -63,8 +63,8 @@ struct relocation_result {
     enum relocation_status status;
     uint64_t ticket;
     struct relocation_place place;
-    /* by vertex: geodesic distance in metres, INFINITY where no path exists; NULL unless the outcome is RELOCATION_DONE. The receiver owns
-     * the array (mem_free) */
+    /* by vertex: geodesic distance in metres, INFINITY if no path leads there; NULL unless the outcome is RELOCATION_DONE. The receiver
+       owns the array (mem_free) */
     float *geodesic_m;
 };
 

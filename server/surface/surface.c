@@ -18,11 +18,12 @@
 #include "surface/surface_impl.h"
 #include "surface/mesh/decimate.h"
 
-#define WELD_OF_SIZE 1e-6 /* distance up to which vertices are welded, relative to the model's size: the resolution of float positions */
+/* distance up to which vertices are welded (treated as one), relative to the model's size: the resolution of float positions */
+#define WELD_OF_SIZE 1e-6
 #define TOLERANCE_OF_SIZE 5e-4
 #define SAMPLES 15000.0        /* number of points that sampling aims at, in addition to the model's vertices */
-#define SPACING_GROWTH 1.25    /* factor by which the spacing grows in each attempt while sampling gives too many points */
-#define POINTS_PER_SPACING 2.7 /* number of points per square of side `spacing` that sampling by halving edges gives; measured */
+#define SPACING_GROWTH 1.25    /* factor by which the spacing of samples grows in each attempt, as long as sampling gives too many points */
+#define POINTS_PER_SPACING 2.7 /* number of points that sampling by halving edges gives in a square whose side is the spacing; measured */
 
 static double seconds_since(int64_t *since_ns)
 {
@@ -158,8 +159,8 @@ static void merge_twins(struct surface *surface, uint32_t *crossings, size_t cro
     mem_free(target);
 }
 
-/* Removes inserted points that are not needed (decimate.h). Points with an index below `added` stay: the model's own points and the
- * samples. */
+/* Removes points that repair inserted and that are not needed (decimate.h). Points with an index below `added` stay: they are the model's
+   own points and the samples. */
 static void decimate(struct surface *surface, const uint32_t *part, size_t added, char *hidden)
 {
     struct trimesh *mesh = &surface->mesh;

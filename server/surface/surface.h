@@ -29,25 +29,25 @@
 struct surface;
 
 struct surface_params { /* zero: chosen from the model */
-    double tolerance_m; /* largest gap that is closed, metres; a tolerance chosen by the program is smaller at thin parts (parts.h) */
-    double spacing_m;   /* longest edge that sampling may make, metres */
+    double tolerance_m; /* largest gap in metres that is closed; if the program chooses it, it is smaller at thin parts (parts.h) */
+    double spacing_m;   /* maximum length in metres of an edge after sampling */
     char *why;          /* buffer of SURFACE_WHY_BYTES for the reason if no surface can be built; NULL: the reason is logged instead */
 };
 #define SURFACE_WHY_BYTES 160
 
 struct surface_report {
-    double size_m;                          /* length of the diagonal of the model's main part (base/math/gap_split.h), metres */
+    double size_m; /* size of the model: length in metres of the diagonal of its main part (base/math/gap_split.h) */
     double tolerance_m, spacing_m, time_m2; /* tolerance and spacing that were used; time_m2: diffusion time t of the heat method */
     size_t triangles, welded_vertices, degenerate_triangles, repeated_triangles;
     size_t border_edges, border_edges_after; /* number of edges with one face, before and after gaps were bridged */
     size_t components, components_after;     /* number of connected components, before and after gaps were bridged */
     size_t bridges;                          /* number of points that were joined to another point of the surface */
     double longest_bridge_m;
-    int k;                  /* largest number of neighbours requested per point (point_cloud.h); 0: there was nothing to bridge */
+    int k;                  /* largest number of neighbours that was requested for a point (point_cloud.h); 0: there was no gap to bridge */
     size_t samples;         /* points added */
     size_t hidden_vertices; /* number of model vertices inside another closed part, or covered by one */
-    /* root mean square difference from the heat method, relative to the largest distance, of the checked source with the largest
-     * difference. heat_disagreement and time_m2 are NaN until surface_check() */
+    /* difference between the computed distances and those of the heat method: root mean square, relative to the largest distance, of the
+       checked source with the largest difference. heat_disagreement and time_m2 are NaN until surface_check() */
     double heat_disagreement;
     double weld_s, bridge_s, sample_s, laplacian_s, factor_s, check_s;
 };
@@ -85,7 +85,7 @@ struct surface_place {
 /* Projects a point onto the surface. The result includes the model vertex nearest to the projection. */
 void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place);
 
-/* a point on the surface, given by a triangle and barycentric weights */
+/* point on the surface, given by a triangle and its barycentric weights there */
 struct surface_point {
     uint32_t tri; /* of the sampled surface */
     /* weights: of the triangle's corners; distance_m: from the point that was projected */
@@ -94,7 +94,7 @@ struct surface_point {
 /* Finds the surface point nearest to point_m. With `normal`, prefers, among triangles about equally near, one whose normal is close to it,
  * so that the far side of a thin wall is not taken (NULL: no preference). */
 void surface_find_point(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_point *hit);
-/* Finds the surface point nearest to point_m as surface_find_point() does, but only within limit_m. Returns false if there is none. */
+/* Finds the surface point nearest to point_m within limit_m, as surface_find_point() does. Returns false if no point is that near. */
 bool surface_find_point_within(const struct surface *surface, const double point_m[3], const double normal[3], double limit_m,
                                struct surface_point *hit);
 /* Finds the nearest surface point within limit_m on either of two model triangles (which may be equal). Returns false if no visible one
@@ -106,8 +106,8 @@ bool surface_find_point_on(const struct surface *surface, const double point_m[3
 bool surface_find_point_among(const struct surface *surface, const double point_m[3], double limit_m,
                               bool (*allowed)(const void *arg, uint32_t triangle), const void *arg, struct surface_point *hit);
 
-/* Finds the point nearest to point_m on triangle `tri` of the sampled surface. The result is the same as that of the search that found this
- * triangle. Returns false if there is no such triangle or the point is farther than limit_m. */
+/* Finds the point of triangle `tri` of the sampled surface nearest to point_m. If an earlier search found this triangle, the result is the
+   same as then. Returns false if there is no such triangle, or the point is farther than limit_m. */
 bool surface_point_on(const struct surface *surface, const double point_m[3], double limit_m, uint32_t tri, struct surface_point *hit);
 
 /* Computes the geodesic distance in metres from each point (projected onto the surface) to every model vertex: out[point * vertex_count +

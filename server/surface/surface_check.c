@@ -10,10 +10,10 @@
 #include "surface/surface_impl.h"
 
 #define TIME_OF_SPACING 3.0 /* diffusion time t of the heat method, in multiples of the squared mean edge length */
-/* upper limit of the largest distance on the surface, in multiples of sqrt(t): a larger surface gets a larger t, so that heat does not
- * underflow */
+/* upper limit on the size of the surface (largest distance), in multiples of sqrt(t): a larger surface gets a larger t, so that heat does
+   not underflow */
 #define MAX_DECAY 500.0
-#define MAX_SOURCES 32 /* number of sources checked, spread evenly over all */
+#define MAX_SOURCES 32 /* number of sources that are checked; they are spread evenly over all sources */
 #define BLOCK 8        /* right-hand sides solved together */
 
 /* Returns the approximate size of the surface: in the component with most triangles, the distance from an arbitrary point to the point

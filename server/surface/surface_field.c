@@ -18,7 +18,7 @@ struct solve {
     const struct surface_point *hits;
     size_t count;
     float *out;                            /* NULL, or distances [point][vertex] */
-    struct surface_field *field;           /* field to fill; NULL: distances are written to `out` instead */
+    struct surface_field *field;           /* field that receives the distances; NULL: they are written to `out` instead */
     const struct surface_columns *columns; /* cache of columns; NULL: none */
     atomic_bool failed;
 };
@@ -58,7 +58,7 @@ static void take_rows(const struct solve *solve, const float *block, size_t firs
             solve->field->distances_m[p * solve->field->source_count + first + s] = block[s * points + p];
 }
 
-struct abreast { /* sources that one thread propagates alternately (PROPAGATION_ABREAST) */
+struct abreast { /* sources whose distances one thread computes alternately, to hide memory latency (PROPAGATION_ABREAST) */
     struct propagation_front fronts[PROPAGATION_ABREAST];
     struct propagation_source from[PROPAGATION_ABREAST];
     size_t source[PROPAGATION_ABREAST], count;
@@ -181,8 +181,8 @@ void surface_field_at_vertex(const struct surface_field *field, const struct sur
         out[s] = at_stray(stray, field->distances_m + s, field->source_count);
 }
 
-/* An edge a-b of the triangle that contains a surface point. side: the edge's length; the point's position in the triangle's plane, in
- * which a is at (0, 0) and b at (side, 0). */
+/* An edge a-b of the triangle that contains a surface point. side: length of the edge; x, y: position of the point in the triangle's plane,
+   in which a is at (0, 0) and b at (side, 0). */
 struct edge_window {
     float side, half, per, x, y;
 };
@@ -201,10 +201,10 @@ SIMD_BODY float through_edge(const struct edge_window *sight, float da, float db
 {
     const float x = sight->x, y = sight->y;
     float sx = (da - db) * (da + db) * sight->per + sight->half, sy2 = (da - sx) * (da + sx), sy = sqrtf(sy2 > 0 ? sy2 : 0);
-    /* cut / dy: position on the edge, from a, at which the straight way crosses it */
+    /* cut / dy: position along the edge, counted from a, at which the straight way crosses it */
     float dx = x - sx, dy = y + sy, cut = sx * y + x * sy;
     float straight2 = dx * dx + dy * dy;
-    /* if da or db is INFINITY, one of the two comparisons is false, so the result is INFINITY */
+    /* if da or db is INFINITY, the conditions are not all true, and the result is INFINITY */
     straight2 = cut >= 0 ? straight2 : INFINITY;
     straight2 = cut <= sight->side * dy ? straight2 : INFINITY;
     return straight2 < best2 ? straight2 : best2;

@@ -7,7 +7,7 @@
 #include "surface/surface.h"
 #include "surface/geodesic/propagation.h"
 
-struct stray { /* a model vertex all of whose triangles have no area; its distances are those of the nearest surface point */
+struct stray { /* stray vertex: a model vertex all of whose triangles have no area; its distances are those of the nearest surface point */
     uint32_t vertex, points[3];
     double weights[3];
 };

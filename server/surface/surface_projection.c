@@ -6,10 +6,12 @@
 #include "base/math/vec.h"
 #include "surface/surface_impl.h"
 
-#define SPOT_ON_SURFACE 1e-3 /* distance in multiples of the mean edge length, below which a point counts as on its triangle */
-#define ON_PIECE 1e-5        /* distance in multiples of the mean edge length, below which the search for a nearer triangle ends */
-#define MAX_TRIED_PIECES 24  /* maximum number of surface triangles of one model triangle that are tried one by one */
-/* a triangle whose normal fits is preferred if its distance is at most this many times that of the nearest triangle */
+#define SPOT_ON_SURFACE 1e-3 /* distance from a triangle below which a point counts as lying on it, in multiples of the mean edge length */
+/* distance from the best triangle so far below which the search for a nearer one ends, in multiples of the mean edge length */
+#define ON_PIECE 1e-5
+#define MAX_TRIED_PIECES 24 /* maximum number of surface triangles of one model triangle that are tried one by one */
+/* maximum distance of a triangle with a fitting normal, as a multiple of the distance of the nearest triangle, at which the former is
+   preferred */
 #define FACING_FACTOR 4.0
 #define ROUNDING 1e-9 /* relative rounding allowance of a distance */
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Packs the results that are slow to compute. surface_unpack() computes all others again. */
+/* Packs those data of a surface that are slow to compute. surface_unpack() computes all other data again. */
 #include "surface/surface_store.h"
 
 #include "base/mem.h"
@@ -11,8 +11,8 @@ struct surface_totals {
     struct surface_report report;
 };
 
-/* Returns whether the side's length is stored. Two glued sides have the same length, which is stored only with the side of the lower
- * index. */
+/* Returns whether the length of a side is stored. Two sides that are glued (adjacent) have the same length, which is stored once, with the
+   side of the lower index. */
 static bool is_kept(const struct intrinsic *in, uint32_t side)
 {
     uint32_t other = in->glue[side / 3][side % 3];

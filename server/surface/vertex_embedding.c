@@ -11,11 +11,11 @@
 #include "surface/surface_impl.h"
 
 #define GRAIN 512
-#define ON_SURFACE 1e-3 /* distance in multiples of the mean edge length, up to which a vertex counts as on a face */
+#define ON_SURFACE 1e-3 /* distance from a face up to which a vertex counts as lying on it, in multiples of the mean edge length */
 
 struct anchor {
-    /* index of the surface point at the vertex's position; TRIMESH_NONE: there is none, and `hit` is the vertex's position on the
-     * surface */
+    /* index of the surface point at the vertex's position; TRIMESH_NONE: no surface point is there, and `hit` is the vertex's position on
+       the surface */
     uint32_t point;
     struct surface_point hit;
 };
@@ -26,7 +26,7 @@ struct vertex_embedding {
     struct anchor *at;
 };
 
-struct point_table { /* hash table that finds, by position, a point that has triangles */
+struct point_table { /* hash table that finds the surface point at a position, among points that have triangles */
     const struct trimesh *mesh;
     uint32_t *points;
     size_t mask;
@@ -67,7 +67,8 @@ struct embedding_job {
     struct point_table table;
     const float (*positions_m)[3];
     double (*normals)[3]; /* not normalised */
-    /* by vertex: 1 if only coarser levels of detail use it; such a vertex may be nearer to the other side of a wall than to its own */
+    /* by vertex: 1 if no triangle of the finest level of detail uses it, only coarser ones; such a vertex may be nearer to the other side
+       of a wall than to its own */
     char *is_off;
 };
 

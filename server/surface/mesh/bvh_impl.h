@@ -6,14 +6,14 @@
 
 #define BVH_WIDE 8
 #define BVH_IS_TRIANGLE 0x80000000u /* flag in bvh_wide.child: the rest of the number is a triangle's index, not a node's */
-/* entries of the traversal stack: each level of the tree leaves at most seven entries on it, and there are at most 10 levels of nodes with
- * eight children */
+/* maximum number of entries on the traversal stack: each level of the tree leaves at most seven entries there, and nodes with eight
+   children form at most 10 levels */
 #define BVH_STACK 256
 
 struct bvh_node {
     double low[3], high[3];
-    /* leaf: range of its triangles in `order`; inner node: count is 0, `first` is the index of the right child, and the left child follows
-     * the node */
+    /* leaf: its `count` triangles begin at order[first]; inner node: count is 0, `first` is the index of the right child, and the left
+       child follows the node directly */
     uint32_t first, count;
 };
 
@@ -27,9 +27,9 @@ struct bvh {
      * triangles. */
     struct bvh_wide {
         float low[3][BVH_WIDE], high[3][BVH_WIDE];
-        /* index of a node, or index of a triangle with BVH_IS_TRIANGLE set; unused children have a box with low > high */
+        /* index of a child node, or index of a triangle with BVH_IS_TRIANGLE set; unused children have a box with low > high */
         uint32_t child[BVH_WIDE];
-    } * wide; /* children come before their parent, so the root is the last node */
+    } * wide; /* nodes with eight children; children come before their parent, so the root is the last node */
     size_t wide_count, wide_capacity;
     const uint32_t *label; /* by triangle; NULL: no labels */
     uint32_t *wide_label;  /* by node of eight children: the label that all its triangles have, or BVH_MIXED */

@@ -11,13 +11,13 @@
 #include "base/mem.h"
 #include "surface/mesh/bvh_impl.h"
 
-/* margin of float boxes, relative to the largest coordinate: four rounding errors, so that each point of the double box is also in the
- * float box */
+/* margin by which float boxes are larger, relative to the largest coordinate: four rounding errors, so that each point of the double box is
+   also in the float box */
 #define BOX_MARGIN 2.4e-7
-#define MARGIN 1e-5 /* relative margin of squared distances in floats, much larger than the rounding error */
+#define MARGIN 1e-5 /* margin for comparing squared distances in floats, relative to them; much larger than the rounding error */
 /* smallest squared area of a triangle, relative to the squares of its sides, at which barycentric weights are exact to eight digits */
 #define EXACT_AREA 1e-8
-/* weights above this are certainly positive despite rounding errors, if the triangle's area exceeds EXACT_AREA */
+/* barycentric weight above which a weight is certainly positive despite rounding errors, if the triangle's area exceeds EXACT_AREA */
 #define SURELY_POSITIVE 1e-6
 
 static void weights_on_edge(const double p[3], const double a[3], const double b[3], double *wa, double *wb)
@@ -30,9 +30,9 @@ static void weights_on_edge(const double p[3], const double a[3], const double b
     *wa = 1 - *wb;
 }
 
-/* Writes the nearest point's weights. If p projects into the triangle, the projection is the nearest point; otherwise the nearest point is
- * on an edge. In theory only edges opposite a corner with negative weight matter. But the weights of slivers are too inexact for that test,
- * so all three edges are tried. */
+/* Writes the barycentric weights of the triangle's point nearest to p. If p projects into the triangle, the projection is that point;
+   otherwise it is on an edge. In theory only edges opposite a corner with negative weight matter. But the weights of slivers are too
+   inexact for that test, so all three edges are tried. */
 void triangle_nearest(const double p[3], const double a[3], const double b[3], const double c[3], double weights[3])
 {
     double ab[3], ac[3], ap[3];
@@ -193,7 +193,7 @@ void bvh_set_labels(struct bvh *bvh, const uint32_t *label)
 
 struct nearest_search {
     const struct bvh *bvh;
-    uint32_t skipped; /* label of triangles that are skipped; BVH_MIXED: none */
+    uint32_t skipped; /* label of triangles that the search skips; BVH_MIXED: it skips none */
     const double *point;
     bool (*allowed)(const void *arg, uint32_t tri);
     const void *arg;

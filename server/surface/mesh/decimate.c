@@ -7,7 +7,7 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define MAX_STAR 48 /* maximum number of triangles around a point; points with more are not removed */
+#define MAX_STAR 48 /* maximum number of triangles around a point that may be removed; points with more triangles stay */
 /* smallest height of a triangle that a collapse creates, relative to its longest side, unless the triangle that it replaces was thinner */
 #define MIN_HEIGHT 0.02
 #define ROUNDING_OF_AREA 1e-9
@@ -22,9 +22,10 @@ struct thin {
     uint32_t *heads, *tails, *next;
 };
 
-struct star_face { /* a triangle of a star (the triangles around a point) */
+struct star_face { /* triangle of a star; a star is the set of triangles around a point */
     uint32_t tri, corner;
-    double normal[3], length; /* normal: not of unit length; length: of the normal, twice the triangle's area */
+    /* normal: normal of the triangle, not of unit length; length: its length, which is twice the triangle's area */
+    double normal[3], length;
 };
 
 struct star {
@@ -87,8 +88,8 @@ static bool same_part(const struct thin *thin, uint32_t s, uint32_t t)
     return thin->params->part[s] == thin->params->part[t];
 }
 
-/* Returns whether the collapse changes neither the visible nor the hidden area of any part. grown: by triangle of the star, the change of
- * its doubled area. enough: tolerance. */
+/* Returns whether collapsing an edge changes neither the visible nor the hidden area of any part. grown: by triangle around the removed
+   point, the change of its doubled area. enough: tolerance. */
 static bool keeps_areas(const struct thin *thin, const struct star *star, const double grown[MAX_STAR], double enough)
 {
     for (size_t i = 0; i < star->count; i++) {
@@ -109,8 +110,8 @@ static bool has(const struct thin *thin, uint32_t tri, uint32_t point)
     return v[0] == point || v[1] == point || v[2] == point;
 }
 
-/* Returns whether corner `point` still has another visible triangle at `from` or `to`, when `from` is merged into `to` and the triangle of
- * all three is lost. Checked because a lost triangle without area may be the only connection of two parts. */
+/* Collapsing `from` into `to` loses the triangle that has both and `point` as corners. Returns whether `point` keeps another visible
+   triangle at `from` or `to`. Checked because a lost triangle without area may be the only connection of two parts. */
 static bool stays_joined(const struct thin *thin, uint32_t point, uint32_t from, uint32_t to)
 {
     for (uint32_t corner = thin->heads[point]; corner != TRIMESH_NONE; corner = thin->next[corner]) {
@@ -160,8 +161,8 @@ static uint32_t find_collapse_target(const struct thin *thin, const struct star 
     return best;
 }
 
-/* Merges the planes (groups of coplanar model triangles) of the star's triangles: the collapse may have moved a piece of one model triangle
- * onto another. */
+/* Merges the planes (groups of coplanar model triangles) of all triangles around the removed point: the collapse may have moved a piece of
+   one model triangle onto another. */
 static void join_planes(struct thin *thin, const struct star *star)
 {
     for (size_t i = 0; i < star->count; i++)

@@ -9,7 +9,7 @@ struct decimate_params {
     const uint32_t *part; /* per triangle */
     const char *keep;     /* by point: 1 for points that must stay */
     double within_m;      /* largest displacement of the surface */
-    double longest_m;     /* longest edge that may be created */
+    double longest_m;     /* maximum length in metres of an edge that a collapse may create */
 };
 /* Removes points by collapsing each into a neighbour. All triangles at the point must stay in their planes (within params->within_m). Each
  * part must keep its visible and its hidden area, so that borders and lines between parts stay in place. hidden[] is rearranged with the

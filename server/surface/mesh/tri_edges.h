@@ -9,7 +9,8 @@
 
 /* Sides are numbered: 3 t + i is the side of triangle t from its corner i to the next. */
 struct tri_edge {
-    uint32_t sides[2], faces; /* sides: the first two sides at this edge; faces: number of sides, and so of triangles, at this edge */
+    /* sides: the first two sides at this edge; faces: number of all sides at this edge, which is the number of triangles that meet there */
+    uint32_t sides[2], faces;
 };
 
 struct tri_edges {

@@ -9,9 +9,11 @@ struct borders {
     size_t edge_count;
     uint32_t *points; /* points on border edges */
     size_t point_count;
-    uint32_t *slot;       /* by point: its index in `points`, or TRIMESH_NONE */
-    double *shortest_m;   /* by border point: length of the shortest edge of any triangle at it */
-    uint32_t *first, *at; /* edges at border point i: their indices in `edges` are at[first[i]] up to, but without, at[first[i + 1]] */
+    uint32_t *slot;     /* by point: its index in `points`, or TRIMESH_NONE */
+    double *shortest_m; /* by border point: length of the shortest edge of any triangle at it */
+    /* edges at the border points. The indices in `edges` of those at border point i are at[first[i]] up to, but without, at[first[i +
+       1]] */
+    uint32_t *first, *at;
     /* by border point: smallest reach (distance up to which a part counts as touching, parts.h) of the parts at it; NULL: not computed */
     double *reach_m;
 };

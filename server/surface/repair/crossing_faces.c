@@ -9,9 +9,9 @@
 
 /* rounding allowance relative to the largest coordinate: much larger than the distance by which surface sampling moves a point */
 #define ROUNDING 1e-10
-/* minimum height of a face above its longest side, relative to the model's size; the plane of a flatter face is not reliable */
+/* minimum height of a face above its longest side, relative to the model's size; for flatter faces, the computed plane is not reliable */
 #define SLIVER 1e-5
-#define BESIDE 1e-4 /* rounding allowance of a face's intersection with a plane, relative to the face's longest side */
+#define BESIDE 1e-4 /* allowance for rounding errors in the intersection of a face with a plane, relative to the face's longest side */
 
 struct crossing_face {
     const double *at[3];

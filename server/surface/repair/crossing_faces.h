@@ -5,8 +5,8 @@
 #define SURFACE_REPAIR_CROSSING_FACES_H
 #include "surface/repair/parts.h"
 
-/* as a share of a part's reach (distance up to which it counts as touching, parts.h); within one part, an edge crosses a face only if both
- * of the edge's ends are farther than this from the face's plane */
+/* minimum distance of both ends of an edge from the plane of a face, for the edge to cross the face if both belong to one part; as a
+   fraction of the part's reach (distance up to which it counts as touching, parts.h) */
 #define CROSSING_CLEAR 0.05
 
 /* Returns an array by model triangle: 1 if an edge of its triangles in parts->solid may pass through another face, else 0. May flag a face

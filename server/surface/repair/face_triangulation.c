@@ -9,7 +9,7 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define ON_EDGE 1e-9 /* a point counts as on an edge if the barycentric weight of the opposite corner is at most this */
+#define ON_EDGE 1e-9 /* largest barycentric weight of a corner at which a point counts as lying on the opposite edge */
 #define ON_WAY 1e-6  /* maximum distance of a point from a straight line at which it counts as on the line, relative to the line's length */
 
 void face_triangulation_finish(struct face_triangulation *face)
@@ -98,7 +98,7 @@ void face_triangulation_insert(struct face_triangulation *face, uint32_t point)
 
 /* --- sides between points ------------------------------------------------------------------------------------------------------ */
 
-struct crossed { /* the sides that a straight line crosses, in the order in which it crosses them */
+struct crossed { /* list of sides of triangles that a straight line crosses, in the order of crossing */
     uint32_t (*sides)[2];
     size_t count, capacity;
 };
@@ -121,7 +121,7 @@ static size_t find_side(const struct face_triangulation *face, uint32_t a, uint3
     return face->tri_count;
 }
 
-/* Returns whether a point is on the line from u to v, or is v. */
+/* Returns whether a point lies on the straight line from u to v between both, or is v. */
 static bool is_passed(const struct face_triangulation *face, uint32_t u, uint32_t v, uint32_t point)
 {
     const double *p = face->at[u], *q = face->at[v], *r = face->at[point];
@@ -146,7 +146,7 @@ static uint32_t follow_line(const struct face_triangulation *face, uint32_t u, u
                 left = b;
             }
         }
-    /* the number of steps is limited, because flat triangles might lead around in circles */
+    /* the number of steps is limited: rounding in flat triangles might otherwise lead around in circles */
     while (right != left && crossed->count < face->tri_count) {
         add_crossed(crossed, right, left);
         if (find_side(face, left, right, &apex) == face->tri_count)

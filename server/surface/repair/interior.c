@@ -10,27 +10,27 @@
 #include "surface/mesh/bvh.h"
 
 #define RAYS 5
-#define RAYS_INSIDE 4 /* minimum number of the RAYS rays that must agree that a point is inside a part */
-/* one in VOTE_EVERY triangles of a region (points connected without passing another part) is tested; if these agree, their result holds for
- * the region */
+#define RAYS_INSIDE 4 /* minimum number of rays, out of RAYS, by which a point must be inside a part to count as inside */
+/* a region is a set of points connected without passing another part. One in VOTE_EVERY triangles of a region is tested; if the results
+   agree, they hold for the whole region */
 #define VOTE_EVERY 16
-/* in multiples of the reach (distance up to which a part counts as touching, parts.h): distance of the test points on both sides of a
- * triangle that lies on another part's surface */
+/* distance of test points from a triangle that lies on another part's surface, to both sides; in multiples of the reach (distance up to
+   which a part counts as touching, parts.h) */
 #define BESIDE 1.5
-/* in multiples of the reach (distance up to which a part counts as touching, parts.h): distance of the test points on both sides of a
- * triangle that may be inside its own part */
+/* distance of test points from a triangle that may be inside its own part, to both sides; in multiples of the reach (distance up to which a
+   part counts as touching, parts.h) */
 #define BARELY 0.05
-#define FLUSH 0.9 /* minimum cosine between the normals of two faces that lie on each other */
-/* in multiples of the reach (distance up to which a part counts as touching, parts.h): minimum height of a triangle whose normal is
- * reliable */
+#define FLUSH 0.9 /* minimum cosine between the normals of two faces for them to count as lying on each other */
+/* minimum height of a triangle for its normal to count as reliable, in multiples of the reach (distance up to which a part counts as
+   touching, parts.h) */
 #define SLIVER 2.0
 
 struct solid { /* a closed part, in its state before surface sampling */
     uint32_t part;
-    /* the part is a thin plate: a triangle that ends inside it is near both sides of the plate, so distances do not show on which side it
-     * is */
+    /* true: the part is a thin plate. A triangle that ends inside it is near both sides of the plate, so distances do not show on which
+       side the triangle is */
     bool is_thin;
-    bool winds; /* the body intersects itself, so the winding number decides which points are inside */
+    bool winds; /* true: the body intersects itself, so the winding number decides which points are inside */
     double low[3], high[3];
     struct trimesh mesh;     /* triangles of the part; their arrays belong to struct solids */
     const signed char *side; /* by triangle: orientation, as body_parts.side */
@@ -42,7 +42,7 @@ struct solids {
     size_t count;
     uint32_t (*tris)[3];    /* triangles of all parts, sorted by part */
     signed char *sides;     /* the same for sides */
-    struct solid **of_part; /* by part: its solid; NULL: the part is not closed */
+    struct solid **of_part; /* by part: the part's entry in `at`; NULL: the part is not closed */
 };
 
 static void solids_finish(struct solids *solids)
@@ -115,7 +115,7 @@ struct interior_search {
     char *hidden;
 };
 
-/* directions of the rays, with odd numbers, because hardly any model has faces along such directions */
+/* directions of the test rays; the numbers are irregular, because hardly any model has faces along such directions */
 static const double directions[RAYS][3] = {
     { 0.3572, 0.6129, 0.7048 },    { -0.7741, 0.2417, 0.5851 }, { 0.1693, -0.8846, 0.4345 },
     { -0.4419, -0.3251, -0.8361 }, { 0.8523, 0.2951, -0.4318 },
@@ -126,7 +126,7 @@ struct hits { /* intersections of one ray */
     const struct solid *solid;
     const double *direction;
     double same_m;
-    int count, turns; /* count: number of intersections; turns: number of exits minus number of entries */
+    int count, turns; /* intersections of a ray with the part. count: number of all; turns: number of exits minus number of entries */
     struct ray_hits { /* the first points hit */
         double t;
         int faces;
@@ -190,13 +190,15 @@ static bool is_inside(const struct solid *solid, const double place[3], double s
     return inside >= RAYS_INSIDE;
 }
 
-struct interior_face { /* the triangle being tested: its centre and normal, and the solid of its own part, NULL if that is not closed */
+/* triangle being tested: its centre and normal, and the solid of the part to which it belongs; `own` NULL: that part is not closed */
+struct interior_face {
     double middle[3], normal[3];
     double height_m; /* height over its longest edge */
     const struct solid *own;
 };
 
-/* Returns whether there is the inside of `one` at one side of the face and the inside of `other` at the other side. */
+/* Returns whether the face separates two bodies: the inside of `one` is on one side of the face, the inside of `other` on the other
+   side. */
 static bool is_between(const struct interior_face *face, const double normal[3], const struct solid *one, const struct solid *other,
                        double beside_m, double same_m)
 {
@@ -227,7 +229,8 @@ static char is_hidden_by(const struct interior_face *face, const struct solid *s
     double length = vec_length(n);
     for (int axis = 0; axis < 3; axis++)
         n[axis] /= length;
-    /* lies: the faces lie on each other; flush: they may lie on each other, because the normal of a sliver is arbitrary */
+    /* lies: the tested face lies on a face of the part; flush: it may lie on it, as far as that can be known, because the normal of a
+       sliver is arbitrary */
     bool lies = fabs(vec_dot(n, face->normal)) > FLUSH, flush = lies || face->height_m < SLIVER * reach_m;
     if (face->own && flush && is_between(face, n, solid, face->own, BESIDE * reach_m, BARELY * reach_m))
         return INTERIOR_INSIDE;
@@ -350,12 +353,14 @@ static void ask(struct interior_search *search, struct workers *workers, const s
         search_some(search, 0, count);
 }
 
-/* Corrects regions in which only a sample of the triangles was tested and a few of the others differ. Where hidden and visible triangles of
- * a region meet at a point, tests all triangles at that point, and repeats this until no untested triangle is left there. */
+/* Corrects regions (sets of connected points) in which only a sample of the triangles was tested, and a few others differ. Wherever hidden
+   and visible triangles of a region meet at a point, tests all triangles at that point. Repeats this until all triangles at such points are
+   tested. */
 static void ask_beside(struct interior_search *search, struct workers *workers, const char *mixed, size_t *asked, char *was_asked)
 {
     const struct trimesh *mesh = search->mesh;
-    char *kinds = mem_array(mesh->point_count, 1); /* by point: bit 0: a visible triangle is at the point; bit 1: a hidden triangle is */
+    /* by point: bit 0: a visible triangle has this corner; bit 1: a hidden triangle has this corner */
+    char *kinds = mem_array(mesh->point_count, 1);
     size_t count;
     do {
         memset(kinds, 0, mesh->point_count);
@@ -408,7 +413,8 @@ bool interior_find(const struct trimesh *mesh, const uint32_t *part, const struc
     size_t *asked = mem_array(mesh->tri_count, sizeof(*asked)), asked_count = 0;
     struct region_vote *votes = mem_array(mesh->point_count, sizeof(*votes));
     struct interior_search search = { .mesh = mesh, .part = part, .parts = parts, .solids = &solids, .hidden = hidden };
-    /* test all triangles at marked points, where parts meet, and a sample of the other triangles of each region */
+    /* tests all triangles at marked points, where parts meet, and a sample of the other triangles of each region (set of connected
+       points) */
     for (size_t t = 0; t < mesh->tri_count; t++) {
         uint32_t r = region_of(mesh, t, mixed, region);
         if (!untouched(mesh, t, mixed) || votes[r].seen++ % VOTE_EVERY == 0)
@@ -426,7 +432,8 @@ bool interior_find(const struct trimesh *mesh, const uint32_t *part, const struc
             vote->most = hidden[asked[i]] > vote->most ? hidden[asked[i]] : vote->most;
         }
     asked_count = 0;
-    for (size_t t = 0; t < mesh->tri_count; t++) { /* test all triangles of a region in which the sampled triangles disagree */
+    /* tests all triangles of a region (set of connected points) in which the sampled triangles disagree */
+    for (size_t t = 0; t < mesh->tri_count; t++) {
         const struct region_vote *vote = untouched(mesh, t, mixed) ? &votes[region_of(mesh, t, mixed, region)] : NULL;
         if (vote && vote->hidden > 0 && vote->hidden < vote->asked)
             asked[asked_count++] = t;

@@ -6,9 +6,9 @@
 #include "base/mem.h"
 #include "surface/repair/interior.h"
 
-struct island {                /* a group of visible triangles connected by points; groups are indexed by their lowest point */
+struct island {                /* island: group of visible triangles connected by points; groups are indexed by their lowest point */
     double seen_m2, hidden_m2; /* seen_m2: area of the group; hidden_m2: area of the hidden triangles that touch the group */
-    bool free;                 /* a point of the group touches no hidden triangle, so the group stays visible */
+    bool free;                 /* true: some point of the group touches no hidden triangle, so the group stays visible */
 };
 
 void interior_islands(const struct trimesh *mesh, char *hidden)

@@ -71,15 +71,16 @@ static void find_targets(const struct mesh_edit *edit, size_t point_count, uint3
         target[i] = trimesh_root(target, i);
 }
 
-struct crossing_lists { /* insertions grouped by edge, sorted by t from the end with the lower index; and insertions grouped by triangle */
+struct crossing_lists { /* insertions grouped for lookup: by edge, sorted by t from the edge's end with the lower index; and by triangle */
     struct edge_table edges;
     /* by edge index (edge_first) or triangle (tri_first): index of its first insertion; one additional element at the end */
     uint32_t *edge_first, *tri_first;
     struct mesh_edit_insertion *by_edge;
     uint32_t *by_tri;
-    uint32_t *target;                   /* by point: index of the point that replaces it */
-    uint32_t *partner_first, *partners; /* by point after replacement: the points to which it gets an edge; NULL: no edges are requested */
-    /* by point after replacement: its index in the triangulation of the current face + 1; 0: it is not in that triangulation */
+    uint32_t *target; /* by point: index of the point that replaces it */
+    /* lists of the points to which each point (after replacement) gets an edge; NULL: no edges are requested */
+    uint32_t *partner_first, *partners;
+    /* by point after replacement: 1 + its index in the triangulation of the current face; 0: the triangulation does not have it */
     uint32_t *slot;
 };
 
@@ -190,8 +191,8 @@ static double distance2(const struct face_triangulation *face, uint32_t a, uint3
     return x * x + y * y;
 }
 
-/* Triangulates a face between two chains of points like a zip, as trimesh_sample() does: `low`, along a-b, the side with most points, and
- * the chain a-c-b. */
+/* Triangulates a face between two chains of points on its sides, as a zip closes: `low`, along a-b, the side with most points, and the
+   chain a-c-b. trimesh_sample() uses the same method. */
 static void zip(struct face_triangulation *face, const uint32_t *low, size_t low_count, const uint32_t *high, size_t high_count)
 {
     size_t i = 1, j = 1, ab = low_count - 1, acb = high_count - 1;
@@ -271,7 +272,7 @@ static void set_point(struct face_triangulation *face, const struct trimesh *mes
     }
     for (size_t i = 0; i < face->count; i++)
         if (face->ids[i] == id)
-            return; /* the point is already in the triangulation, as a corner or on a side */
+            return; /* the triangulation has this point already, as a corner or on a side */
     face_triangulation_insert(face, face_triangulation_add_point(face, id, x, y));
 }
 

@@ -6,7 +6,8 @@
 #include "surface/mesh/trimesh.h"
 
 struct mesh_edit {
-    struct mesh_edit_insertion { /* a point to insert: into the edge a-b at fraction t from a, or into triangle tri if a is TRIMESH_NONE */
+    /* point to insert: into the edge a-b at the fraction t from a, or, if a is TRIMESH_NONE, into the triangle tri */
+    struct mesh_edit_insertion {
         uint32_t point, a, b, tri;
         double t;
     } * items;

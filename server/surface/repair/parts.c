@@ -10,8 +10,8 @@
 #include "base/mem.h"
 #include "surface/repair/parts_impl.h"
 
-/* minimum share of a wall's area whose triangles occur twice in the model; below 1, because a slit in one of the two layers leaves single
- * triangles */
+/* a wall is a face where two bodies touch. Minimum fraction of its area whose triangles must occur twice in the model; below 1, because a
+   slit in one of the two layers leaves single triangles */
 #define MIN_DOUBLED_SHARE 0.75
 #define OF_THICKNESS 0.5
 #define MIN_REACH 0.05 /* smallest reach, in tolerances */

@@ -13,7 +13,7 @@ struct body_parts {
     /* by triangle of `solid`: 1 if its winding faces outwards, -1 if reversed; 0: the triangle bounds nothing (a wall between two bodies,
      * or a fin: a sheet that stands on a body) */
     signed char *side;
-    /* by model triangle: its part, and its body; these differ only where a few edges join two bodies to one part by mistake */
+    /* by model triangle: its part, and its body; the two differ only where a few edges join two bodies to one part by mistake */
     uint32_t *of_source, *body_of_source;
     signed char *side_of_source; /* per model triangle: side */
     char *closed;                /* by part: 1 if it is closed, which means that its open edges are short compared with its size */
@@ -23,7 +23,8 @@ struct body_parts {
     char *thin;
     double *reach_m;    /* by part: distance up to which another surface counts as touching it */
     double tolerance_m; /* largest reach of a part */
-    /* length of the diagonal of the surface's main part (base/math/gap_split.h); 0: of `solid`. May be set after parts_init() */
+    /* length in metres of the diagonal of the surface's main part (base/math/gap_split.h); 0: that of `solid` is used. May be set after
+       parts_init() */
     double size_m;
     size_t count, source_count; /* count: parts; source_count: model triangles */
 };

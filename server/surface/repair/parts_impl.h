@@ -15,7 +15,7 @@ struct parts_finding {
          * which only one belongs to the patch */
         double open_m, branching_m, area_m2;
         double doubles_m2; /* area of triangles that occur at least twice as often in the model as the other triangles of the part */
-        bool loose;        /* the patch is open and only stands on other patches, like a fin on a tube */
+        bool loose;        /* true: the patch is open and only stands on other patches, like a fin on a tube */
     } * patches;
 };
 

@@ -9,11 +9,11 @@
 #include "base/mem.h"
 #include "surface/repair/parts_impl.h"
 
-/* maximum total length of open edges of a closed part, relative to the root of its area: more than remnants of a hair gap, less than the
- * end of a pipe */
+/* maximum total length of the open edges of a part that still counts as closed, relative to the square root of its area: more than the
+   remnants of a hair gap, less than the end of a pipe */
 #define MAX_OPEN_OF_SIZE 0.05
-/* maximum total length of all edges at which a patch (triangles connected by edges with two faces) ends, relative to the root of its area,
- * for the patch to count as a body of its own */
+/* maximum total length of all edges at which a patch (triangles connected by edges with two faces) ends, relative to the square root of its
+   area, for the patch to count as a body of its own */
 #define MAX_BODY_OPEN_OF_SIZE 0.5
 
 static double edge_length(const struct trimesh *mesh, size_t t, int i)
@@ -41,7 +41,8 @@ static void find_patches(struct parts_finding *f)
 struct branches {
     struct open_branch {
         uint32_t edge, patch, faces;
-        /* one of the patches (triangles connected by edges with two faces) has two faces at this edge and so continues through it */
+        /* true: one of the patches (triangles connected by edges with two faces) has two faces at this edge, so it continues through the
+           edge */
         bool runs_through;
         double length_m;
     } * at;
@@ -163,7 +164,7 @@ static void number_parts(struct parts_finding *f, const struct branches *b)
     uint32_t *number = mem_array(tri_count, sizeof(*number)), *part = parts->of_tri;
     memcpy(part, f->patch, tri_count * sizeof(*part));
     join_patches(f, b, part);
-    /* a part is identified by its lowest triangle, which gets the part's index before the part's other triangles need it */
+    /* the lowest triangle of a part identifies the part, and has the part's index before the other triangles look it up there */
     for (uint32_t t = 0; t < tri_count; t++)
         number[t] = trimesh_root(part, t) == t ? (uint32_t)parts->count++ : number[trimesh_root(part, t)];
     memcpy(part, number, tri_count * sizeof(*part));
@@ -177,7 +178,8 @@ static void find_closed(struct parts_finding *f)
     double *area_m2 = mem_array(parts->count, sizeof(*area_m2)), *open_m = mem_array(parts->count, sizeof(*open_m));
     for (size_t t = 0; t < mesh->tri_count; t++) {
         double n[3], open = 0;
-        /* open edges do not count if the triangle belongs to a fin, or has an edge that two other triangles close already */
+        /* open edges of a triangle do not count if the triangle belongs to a fin, or has an edge at which two other triangles close the
+           surface already */
         bool fin = f->patches[f->patch[t]].loose;
         trimesh_normal(mesh, t, n);
         area_m2[parts->of_tri[t]] += vec_length(n) / 2;

@@ -14,11 +14,14 @@
 #include "surface/mesh/point_cloud.h"
 #include "surface/repair/repair_impl.h"
 
-#define GAP_OF_EDGE 0.45 /* two points are merged only if they are nearer than this fraction of the shortest edge at either */
+#define GAP_OF_EDGE 0.45 /* maximum distance of two points that are merged, as a fraction of the shortest edge at either point */
 #define EXACT_OF_TOLERANCE 0.01
-/* in multiples of the tolerance: deviation from a straight line that welding may cause; distinct points of a border are farther apart */
+/* maximum deviation from a straight line that welding may cause, in multiples of the tolerance; distinct points of a border are farther
+   apart */
 #define STRAIGHT 0.1
-#define FLUSH 0.99 /* minimum cosine between the directions of faces that lie on each other, and of edges that run along each other */
+/* minimum cosine between the directions of two faces for them to count as lying on each other, and of two edges to count as running along
+   each other */
+#define FLUSH 0.99
 
 /* --- seams: rounds that merge points alternate with rounds that insert points into edges --- */
 
@@ -26,10 +29,11 @@ struct seams {
     const struct trimesh *mesh;
     const struct borders *borders;
     struct mesh_edit *edit;
-    /* end_m: a point nearer than this to an end of an edge is not inserted into the edge; another round merges it with the end */
+    /* minimum distance of a point from both ends of an edge for it to be inserted there; a nearer point is merged with the end in another
+       round */
     double tolerance_m, end_m;
-    bool fits;            /* the current round closes exact fits only */
-    struct nearest_edge { /* by border point: the nearest position on a border edge of which it is not an end */
+    bool fits;            /* true: the current round closes exact fits only, in which the gap is nearly zero */
+    struct nearest_edge { /* by border point: the nearest position on those border edges that do not end at the point */
         double distance_m, t;
         uint32_t edge;
     } * nearest;
@@ -208,8 +212,8 @@ static void set_into_edges(struct seams *s)
     mem_free(s->nearest);
 }
 
-/* One round of closing seams: merges border points within tolerance_m of each other, or, with into_edges, inserts border points into border
- * edges. */
+/* One round of closing seams: merges border points within tolerance_m of each other or, if into_edges is true, inserts border points into
+   border edges. */
 static void seam_round(struct trimesh *mesh, struct seams seams, bool into_edges, uint32_t *target, size_t target_count,
                        struct repair_report *report)
 {

@@ -5,18 +5,18 @@
 #define SURFACE_REPAIR_H
 #include "surface/repair/parts.h"
 
-/* a bridge across a crack: a surface point, and the point to which it was joined; equal where an edge crosses a face */
+/* bridge across a crack: a point of the surface, and the point to which it was joined; both are equal where an edge crosses a face */
 struct crack_bridge {
     double from_m[3], to_m[3];
 };
 
-/* results of the repair, accumulated over several calls */
+/* counts and lengths of what mesh repair has done, summed over several calls */
 struct repair_report {
     size_t bridges;
     struct crack_bridge *made; /* all bridges; free with mem_free */
     size_t made_count, made_capacity;
     double longest_m;
-    int k;               /* largest number of neighbours requested per point (point_cloud.h); -1: out of memory */
+    int k;               /* largest number of neighbours that was requested for a point (point_cloud.h); -1: out of memory */
     uint32_t *crossings; /* indices of points where a part intersects itself; free with mem_free */
     size_t crossing_count, crossing_capacity;
 };

@@ -13,7 +13,7 @@
 #include "surface/repair/repair.h"
 #include "surface/repair/repair_impl.h"
 
-#define PARALLEL 1e-4 /* squared sine of the angle between edges that count as parallel */
+#define PARALLEL 1e-4 /* squared sine of an angle between two edges below which the edges count as parallel */
 
 struct contacts {
     struct trimesh *mesh;
@@ -21,7 +21,7 @@ struct contacts {
     const uint32_t *part, *body; /* by triangle of `mesh`: its part and its body */
     const struct bvh *bvh;
     struct mesh_edit *edit;
-    uint32_t own;   /* part of the triangle whose edge is being tested, or body of the point being tested */
+    uint32_t own;   /* number of the part to which the edge being tested belongs, or of the body to which the point being tested belongs */
     double reach_m; /* reach (distance up to which a part counts as touching) of the part of the point or rim being tested */
     uint32_t edge[2];
     uint32_t *touched; /* by point: the body that it touches, or TRIMESH_NONE */
@@ -29,7 +29,7 @@ struct contacts {
         uint32_t tri, a, b, c, d; /* the edge a-b passes through triangle tri or, if tri is TRIMESH_NONE, crosses the edge c-d */
         uint32_t point;           /* the inserted point */
         double t, s, weights[3];
-        bool own; /* edge a-b and triangle tri belong to one part */
+        bool own; /* true: edge a-b and triangle tri belong to one part */
     } * crossings;
     size_t crossing_count, crossing_capacity;
 };
@@ -72,7 +72,7 @@ static void visit_crossed(void *arg, uint32_t tri)
         return;
     double length = vec_distance(p, q), reach_m = min_of(c->parts->reach_m[c->own], reach_of(c, tri));
     if (t * length < reach_m || (1 - t) * length < reach_m || (own && !stands_clear(c, v)))
-        return; /* no crossing: only the end of the edge touches the triangle, which find_touches() handles */
+        return; /* not a crossing: only an end of the edge is at the triangle; find_touches() handles such contacts */
     struct contact_crossing *found = add_crossing(c);
     *found = (struct contact_crossing){ .tri = tri, .a = c->edge[0], .b = c->edge[1], .t = t, .own = own };
     memcpy(found->weights, w, sizeof(w));
@@ -80,7 +80,8 @@ static void visit_crossed(void *arg, uint32_t tri)
         c->parts->crossed[c->own] = c->parts->tangled[c->own] = 1;
 }
 
-/* Inserts a point into a triangle, at barycentric weights w: into a side if the point is on it, or merged with a corner if it is there. */
+/* Inserts a point into a triangle, at the barycentric weights w. If the position is on a side, inserts the point into that side; if it is
+   at a corner, merges the point with the corner. */
 static void set_into_face(const struct contacts *c, uint32_t point, uint32_t tri, const double w[3], double distance_m)
 {
     const uint32_t *v = c->mesh->tris[tri];
@@ -98,7 +99,7 @@ static void set_into_face(const struct contacts *c, uint32_t point, uint32_t tri
     mesh_edit_insert_in_tri(c->edit, point, tri, distance_m);
 }
 
-/* Calls `visit` for the triangles whose bounding box is within margin_m of the current edge's. */
+/* Calls `visit` for each triangle whose bounding box is within margin_m of that of the current edge. */
 static void look_around(struct contacts *c, void (*visit)(void *arg, uint32_t tri), double margin_m)
 {
     const double *p = c->mesh->points[c->edge[0]], *q = c->mesh->points[c->edge[1]];
@@ -152,9 +153,9 @@ static void find_touch(const struct contacts *c, const double point_m[3], struct
         bvh_nearest_unlike(c->bvh, point_m, c->reach_m, c->own, reaches_as_far, c, place);
 }
 
-/* Finds points that touch another body, and requests that they are inserted there. A surface within a thin part's reach (half of its
- * thickness) touches the part, from either side. A surface beyond the reach must face the part: their distance then is a gap to bridge, but
- * the part covers nothing there, so rims and intersections do not use such touches. */
+/* Finds points that touch another body, and requests that they are inserted there. A surface within the reach of a thin part (half of its
+   thickness) touches the part, from either side. A surface beyond the reach touches only if both face each other: the distance is then a
+   gap to bridge. The part covers nothing there, so rims and intersections do not use such touches. */
 static void find_touches(struct contacts *c)
 {
     struct line_of_sight sight;
@@ -271,7 +272,7 @@ static void set_crossings(struct contacts *c, struct repair_report *report)
 
 /* --- the lines along which triangles intersect --------------------------------------------------------------------------------- */
 
-struct meeting {             /* a point at which two triangles intersect (an edge of one passes through the other) */
+struct meeting {             /* point at which two triangles intersect, where an edge of one passes through the other */
     uint32_t tris[2], point; /* tris: the lower one first */
 };
 
@@ -381,7 +382,7 @@ static bool is_one_body(const struct contacts *c)
     return t == c->mesh->tri_count;
 }
 
-/* Finds all contacts between bodies. In a mesh of a single body, searches only for places where the body crosses itself. */
+/* Finds all contacts between bodies. If the mesh has a single body, searches only for places where that body crosses itself. */
 static void find_contacts(struct contacts *c)
 {
     char *may_cross = crossing_faces_find(c->parts);

@@ -12,7 +12,7 @@
 #include "surface/repair/borders.h"
 #include "surface/repair/repair_impl.h"
 
-/* maximum number of rounds: an edge whose faces are all split at different points needs one round fewer than it has faces */
+/* maximum number of rounds; an edge whose faces are all split at different points takes one round fewer than it has faces */
 #define MAX_ROUNDS 4
 
 struct hanging {
@@ -23,8 +23,8 @@ struct hanging {
     uint32_t *last; /* by border point: index of the edge into which it was inserted last */
 };
 
-/* Returns the position of p along the edge a-b as a fraction. *distance_m receives the distance of p from the edge. Negative: p is not on
- * the edge, or at an end. */
+/* Returns how far along the edge a-b the point p lies, as a fraction of its length; *distance_m receives the distance of p from the edge.
+   Returns a negative number if p is not on the edge, or is at an end. */
 static double place_on(const struct hanging *h, uint32_t p, uint32_t a, uint32_t b, double *distance_m)
 {
     double ab[3], ap[3], at[3];
