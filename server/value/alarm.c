@@ -80,7 +80,7 @@ enum alarm_kind alarm_beyond(const struct plant_tag *tag, const struct reading *
     const double *limits = tag->alarms.limits, value = reading->value;
     if (quality_is_bad(reading->quality) || !isfinite(value))
         return ALARM_NONE;
-    if (value >= limits[LIMIT_HH]) /* the comparison is false for NaN: a limit that is NaN is not configured */
+    if (value >= limits[LIMIT_HH]) /* the comparison is false for a limit of NaN, which means that the limit is not configured */
         return ALARM_HH;
     if (value <= limits[LIMIT_LL])
         return ALARM_LL;

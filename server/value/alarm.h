@@ -13,17 +13,17 @@ enum alarm_kind {
     ALARM_HH,   /* the reading is beyond a limit of the tag; the values ALARM_HH and following are 1 + enum limit */
     ALARM_ON,   /* the alarm bit of the tag, which another alarm system sets, is set */
     ALARM_BAD,  /* the quality of the tag's reading is Bad (OPC UA severity) */
-    ALARM_LINK, /* a device has failed, so none of its measurements can be used */
+    ALARM_LINK, /* a device has failed, so that none of its measurements can be used */
     ALARM_KINDS
 };
 
 enum alarm_status { /* alarm states of ISA-18.2 and IEC 62682; plus ALARM_ACTIVE for active alarms that another system manages */
                     ALARM_NORMAL,
-                    ALARM_ACTIVE, /* active; whether it is acknowledged is unknown, because another alarm system manages it */
+                    ALARM_ACTIVE, /* the alarm is active; another alarm system manages it, so whether it is acknowledged is unknown */
                     ALARM_UNACKNOWLEDGED,
                     ALARM_ACKNOWLEDGED,
                     ALARM_RETURNED, /* returned to normal, not acknowledged */
-                    ALARM_LATCHED,  /* the cause is gone, but the alarm remains until an operator resets it */
+                    ALARM_LATCHED,  /* the cause of the alarm is gone, but the alarm is latched: it remains until an operator resets it */
                     ALARM_SHELVED,
                     ALARM_SUPPRESSED, /* by design */
                     ALARM_OUT_OF_SERVICE,

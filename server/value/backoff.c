@@ -9,7 +9,7 @@ int64_t backoff_next_ns(struct backoff *backoff, uint64_t random)
     int64_t pause_ns = FIRST_NS << (backoff->failures < 5 ? backoff->failures : 5);
     backoff->failures += backoff->failures < 5;
     random = (random ^ random >> 31) * 0x9E3779B97F4A7C15u;        /* golden-ratio multiplier: spreads similar seeds */
-    pause_ns += pause_ns / 1000 * (int64_t)((random >> 32) % 500); /* jitter: makes the pause up to 50 % longer */
+    pause_ns += pause_ns / 1000 * (int64_t)((random >> 32) % 500); /* random part of the delay (jitter), which makes it up to 50 % longer */
     return pause_ns < LONGEST_NS ? pause_ns : LONGEST_NS - (int64_t)((random >> 32) % 1000) * 1000000;
 }
 

@@ -4,7 +4,7 @@
 #define VALUE_BACKOFF_H
 #include <stdint.h>
 
-struct backoff { /* number of failures since the last success; initialise with zeros, and set to zero after a success */
+struct backoff { /* number of failures since the last success; initialise with zeros, and reset to zero after a success */
     int failures;
 };
 
@@ -15,14 +15,14 @@ int64_t backoff_next_ns(struct backoff *backoff, uint64_t random);
  * zeros. */
 struct host_turn { /* zero-initialise */
     int index;     /* index of the host that is being tried or is connected */
-    int tried;     /* number of hosts tried since the last session */
+    int tried;     /* number of hosts that were tried since the last session with any host */
     struct backoff backoff;
 };
 
 /* Moves on to the next of `count` hosts. Returns the monotonic time at which to try it: now_ns, or later if all hosts have failed since the
  * last session. */
 int64_t host_turn_next_ns(struct host_turn *turn, int count, int64_t now_ns);
-/* Records that a session with the host was established. */
+/* Records that a session with the current host was established. */
 void host_turn_succeeded(struct host_turn *turn);
 
 #endif

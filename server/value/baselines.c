@@ -8,7 +8,8 @@
 
 #include "base/mem.h"
 
-struct baseline_copy { /* the snapshot must be the first member, because users hold a pointer to it, which is converted to the struct */
+/* must be the first member: users hold a pointer to the snapshot, which is converted back to a pointer to this struct */
+struct baseline_copy {
     struct snapshot snapshot;
     int users; /* number of users, under `lock` */
 };
@@ -125,7 +126,7 @@ uint32_t baselines_set(struct baselines *baselines, const char *name, const stru
     return id;
 }
 
-/* Returns the first unnamed baseline of the time taken_utc_ns (below 0: of any time), or NULL. Call with the lock held. */
+/* Returns the first unnamed baseline that was taken at the time taken_utc_ns (below 0: at any time), or NULL. Call with the lock held. */
 static struct baseline_slot *find_unnamed(struct baselines *baselines, int64_t taken_utc_ns)
 {
     for (size_t i = 0; i < baselines->count; i++)

@@ -103,7 +103,7 @@ static uint32_t judge_current(const struct tag_scale *scale, double raw)
 {
     static const double MEASURED_LOW_MA = 3.8, MEASURED_HIGH_MA = 20.5, FAILED_LOW_MA = 3.6, FAILED_HIGH_MA = 21;
     double ma = 4 + 16 * (raw - scale->raw_low) / (scale->raw_high - scale->raw_low);
-    /* half of a step of the raw number, in mA: tolerance for the transmitter's rounding */
+    /* tolerance for the transmitter's rounding: half a step of the raw number, converted to mA */
     double half_step_ma = 8 / (scale->raw_high - scale->raw_low);
     double rounding_ma = half_step_ma < 0.05 ? half_step_ma : 0;
     if (ma <= FAILED_LOW_MA + rounding_ma || ma >= FAILED_HIGH_MA - rounding_ma)
@@ -135,10 +135,11 @@ static void fail(struct sample *out)
     out->quality = QUALITY_BAD_SENSOR_FAILURE;
 }
 
-/* Decodes a numeric value. bits: bit pattern of `raw` as received, to recognise special values that are stated as bits. */
+/* Decodes a numeric value. raw: the number as received; bits: its bit pattern, with which special values are recognised that are stated as
+   bits. */
 static void decode_analog(const struct tag_scale *scale, uint64_t bits, double raw, struct sample *out)
 {
-    /* checked before scaling, because a scaled special value would look like a measurement */
+    /* special values are recognised before scaling: a scaled special value would look like a measurement */
     if (!isfinite(raw) || is_sentinel(scale, bits, raw)) {
         fail(out);
         return;

@@ -5,7 +5,7 @@
 #define VALUE_DERIVED_H
 #include "value/source.h"
 
-struct derived_state; /* results that were written last, to find changes; use the struct in one thread only */
+struct derived_state; /* results of derived tags that were written last, to find changes; use the struct in one thread only */
 
 /* Starts the thread that computes derived tags. Returns it as a source, to be ended by source_stop(), although it is not in
    plant->sources; NULL if the thread could not be started (logged). */

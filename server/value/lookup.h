@@ -14,8 +14,8 @@ int lookup_wait(struct lookup *lookup, int stop_fd, int64_t deadline_mono_ns, co
 /* Frees the lookup without waiting for the resolver, and sets *lookup to NULL. *lookup may be NULL. */
 void lookup_destroy(struct lookup **lookup);
 
-/* Waits until fd is ready for `events`; with fd -1 only waits. Returns 0, -ETIMEDOUT at the deadline, or -ECANCELED if stop_fd became
- * readable. */
+/* Waits until the descriptor fd is ready for `events`, or, with fd -1, only for the deadline or stop_fd. Returns 0, -ETIMEDOUT at the
+   deadline, or -ECANCELED if stop_fd became readable. */
 int wait_for(int fd, short events, int stop_fd, int64_t deadline_mono_ns);
 
 #endif

@@ -22,7 +22,7 @@ void modbus_take_values(struct modbus_source *modbus, struct read_plan_block *bl
     block->answered = true;
     store_write(modbus->base.store, modbus->samples, block->tag_count, clock_mono_ns(), clock_utc_ns());
     bool repaired = modbus_note_refused(modbus, block, false, "read again");
-    /* this call may rebuild the read plan, after which the pointer `block` is invalid */
+    /* the call may rebuild the read plan; after it, the pointer `block` is invalid */
     modbus_unit_is_up(modbus, modbus_unit_of(modbus, block));
     if (repaired)
         modbus_replan(modbus);
@@ -44,8 +44,8 @@ static uint32_t quality_of_exception(int code)
     case MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE: return QUALITY_BAD_CONFIGURATION;
     case MODBUS_EXCEPTION_SLAVE_OR_SERVER_FAILURE:
     case MODBUS_EXCEPTION_MEMORY_PARITY: return QUALITY_BAD_DEVICE_FAILURE;
-    /* busy or a similar exception: Good, so that no quality is written: the block is retried soon, and its readings go stale if the device
-     * stays busy */
+    /* exceptions such as busy: result Good, which means that no quality is written. The block is retried soon, and its readings go stale if
+       the device stays busy */
     default: return QUALITY_GOOD;
     }
 }
@@ -85,7 +85,7 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
         note_busy(modbus, block, code, now_ns);
         return;
     }
-    /* the device answered this block (tags read by one request) before, so it is read once more before it is split into two blocks */
+    /* a block (tags read by one request) that the device answered before is read once more before it is split in two */
     if (block->answered) {
         block->answered = false;
         block->due_ns = now_ns;
@@ -93,8 +93,8 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
     }
     modbus->plan_cut = true;
     if (code != MODBUS_EXCEPTION_ILLEGAL_FUNCTION && block->tag_count > 1) {
-        /* the two blocks that result from the split are read in the same poll; refused blocks are split again until the refused register is
-         * found */
+        /* both halves of a split block are read in the same poll; a half that is refused is split again, until the refused register is
+           found */
         block->due_ns = now_ns;
         read_plan_split(&modbus->plan, modbus->base.plant, index);
         return;

@@ -18,28 +18,29 @@ struct modbus_unit { /* one Modbus unit (slave address); a gateway or a serial l
     struct backoff backoff;
     int64_t retry_ns;
     struct log_pace pace, busy_pace;
-    bool loss_said; /* the log says "does not answer" for the unit, and not yet "answers again" */
-    /* a block failed on a new connection while the unit was up; the result of the next block decides whether the block or the unit is to
-     * blame */
+    bool loss_said; /* true: the log says "does not answer" for the unit, and "answers again" is not logged yet */
+    /* true: a block failed on a new connection while the unit was up; the result of the next block decides whether the block or the unit is
+       to blame */
     bool doubted;
     enum register_table doubted_table;
     int doubted_first;
 };
 
 struct modbus_manners {       /* the device's manners: how it handles connections, stated in the plant file or learned from its behaviour */
-    bool one_per_connection;  /* the device closes a connection after one answer */
+    bool one_per_connection;  /* true: the device closes a connection after one answer */
     int64_t connect_delay_ns; /* delay in nanoseconds from connecting to the first request */
     /* nanoseconds during which the first request of a connection is repeated until it is answered; 0: it is sent once */
     int64_t first_wait_ns;
     int short_connections;  /* number of consecutive connections that the device closed after one answer */
     int silent_connections; /* number of consecutive connections without any answer while no unit of the source was up */
-    /* the unit whose request has just timed out, or NULL; a gateway may wait for that unit longer than our timeout, and accept no other
-     * request before */
+    /* unit whose request has just timed out, or NULL. A gateway may still wait for that unit, longer than our timeout, and accept no other
+       request meanwhile */
     const struct modbus_unit *timed_out;
-    /* a late first answer on this connection is not the unit's fault: the gateway may still be waiting for the unit `timed_out` */
+    /* true: a late first answer on this connection is not the unit's fault, because the gateway may still be waiting for the unit
+       `timed_out` */
     bool first_excused;
-    /* number of consecutive connections that the device refused, or closed at the start, each right after a connection on which it had
-     * answered */
+    /* number of consecutive connections that failed (the device refused them, or closed them at the start), each right after a connection
+       on which the device had answered */
     int failed_connections;
     bool ends_said;
 };
@@ -50,24 +51,25 @@ struct modbus_source {
     struct modbus_link *link;
     /* --- below: used by the source's thread only */
     struct read_plan plan;
-    bool plan_cut; /* the read plan has blocks (requests) that were split around addresses that the device refused or did not answer */
+    bool plan_cut; /* true: blocks (requests) of the read plan were split, because the device refused or did not answer some addresses */
     struct modbus_unit *units;
     struct backoff backoff; /* backoff of connection attempts */
     int64_t connect_ns;     /* monotonic time before which the source makes no connection */
     int64_t asked_ns;       /* monotonic time at which the last request ended */
     int64_t answered_ns;    /* monotonic time of the last answer */
     bool link_up;
-    int fallen; /* number of units that have stopped answering since the last answer of any unit */
+    int fallen; /* number of units that have stopped answering since any unit last answered */
     struct modbus_manners manners;
     struct log_pace pace;      /* rate limit of the log line "no readings" */
-    bool loss_said;            /* the log says "no readings" for the source, and not yet "readings are back" */
+    bool loss_said;            /* true: the log says "no readings" for the source, and "readings are back" is not logged yet */
     struct log_pace unit_pace; /* rate limit of the log line about answers that state another unit than requested */
-    bool *refused;             /* by index in plant->tags: the device refuses to read this tag */
+    bool *refused;             /* by index in plant->tags: true: the device refuses to read this tag */
     struct sample *samples;    /* buffer with room for one sample of each tag */
     int *lost;                 /* buffer for tag indices, with room for all tags */
 };
 
-/* Number of units that stop answering one after the other, with no answer of any unit meanwhile, after which the gateway counts as lost. */
+/* Number of units that stop answering, one after the other and without an answer of any unit in between, after which the gateway counts as
+   lost. */
 enum { GATEWAY_UNITS = 3 };
 
 /* Returns the Modbus unit (slave address) from which a block of the read plan is read. */
@@ -83,14 +85,14 @@ bool modbus_connect_link(struct modbus_source *modbus);
 
 /* Initialises the device's manners (how it handles connections) from the plant file. */
 void modbus_manners_init(struct modbus_source *modbus);
-/* Prepares the link for a request to a unit: sets for how long the first answer of a connection is awaited. */
+/* Prepares the link for a request to a unit: sets how long the link waits for the first answer of a connection. */
 void modbus_manners_before(struct modbus_source *modbus, const struct modbus_unit *unit);
 /* Closes the connection after an answer, if the device accepts only one request per connection. */
 void modbus_manners_after(struct modbus_source *modbus);
 /* Learns from an answer how the device handles connections. */
 void modbus_manners_answered(struct modbus_source *modbus, const struct read_plan_block *block);
-/* Learns from a failed read (status < 0) how the device handles connections. Returns true if that explains the failure: the block is then
- * requested again on a new connection, from modbus->connect_ns on. */
+/* Learns from a failed read (status < 0) how the device handles connections. Returns true if the device's behaviour explains the failure:
+   the block is then requested again on a new connection, from modbus->connect_ns on. */
 bool modbus_manners_excuse_read(struct modbus_source *modbus, int status, bool unit_up);
 /* Returns true if the way in which the device handles connections explains a failed connection attempt; the next attempt is then made at
  * modbus->connect_ns. */

@@ -34,14 +34,14 @@ struct modbus_link {
      * handle descriptors from FD_SETSIZE on, and the daemon may have that many files open when it reconnects. */
     int slot_fd;
     bool open;
-    bool suspect; /* serial line only: an abandoned request may still be answered, so the next answer may belong to it */
+    bool suspect; /* true (serial line only): an abandoned request may still be answered, so the next answer may belong to that request */
     int host;     /* index in source->hosts of the host in use */
     int answers;  /* of this connection */
     bool any_unit;
     struct modbus_answered answered; /* transaction identifier and unit in the last response, for TCP frames */
     int64_t patience_ns;
-    /* monotonic times. opened_ns: connection opened; sent_ns: first request that was answered was sent; first_answered_ns: its answer
-     * arrived */
+    /* monotonic times: opened_ns: when the connection was opened; sent_ns: when the first request that was answered was sent;
+       first_answered_ns: when its answer arrived */
     int64_t opened_ns, sent_ns, first_answered_ns;
     struct lookup *lookup;
     char name[300];
@@ -56,7 +56,8 @@ static modbus_t *new_modbus(const struct plant_source *source)
     if (!modbus)
         return NULL;
     modbus_set_response_timeout(modbus, (uint32_t)(source->timeout_ms / 1000), (uint32_t)(source->timeout_ms % 1000) * 1000);
-    modbus_set_byte_timeout(modbus, 0, 0); /* no timeout between bytes, because the response timeout limits the whole reply */
+    /* libmodbus gets no timeout between bytes, because the response timeout limits the whole reply */
+    modbus_set_byte_timeout(modbus, 0, 0);
     return modbus;
 }
 
@@ -213,14 +214,15 @@ static int connect_any(struct modbus_link *link, int64_t deadline_ns, int *out_f
     if (!link->lookup)
         link->lookup = lookup_start(link->source->hosts[link->host], link->source->port);
     int status = lookup_wait(link->lookup, link->stop_fd, deadline_ns, &to);
-    if (status == -ETIMEDOUT) /* the system resolver has not returned: the next attempt waits for the same lookup */
+    /* the lookup is kept, because the system resolver has not returned: the next attempt waits for the same lookup */
+    if (status == -ETIMEDOUT)
         return status;
     for (; to; to = to->ai_next) {
         status = connect_one(to, link->stop_fd, deadline_ns, out_fd);
         if (status == 0 || status == -ECANCELED)
             break;
     }
-    lookup_destroy(&link->lookup); /* discard the result: each connection resolves the host name again, because addresses change */
+    lookup_destroy(&link->lookup); /* the result is not kept: each connection resolves the host name again, because addresses change */
     return status;
 }
 
@@ -253,8 +255,8 @@ int modbus_link_open(struct modbus_link *link)
     link->open = status == 0;
     link->answers = 0;
     link->opened_ns = clock_mono_ns();
-    /* in case modbus_link_interrupt() was called before the socket was in its reserved descriptor, so that it could not end this
-     * connection */
+    /* checks stop_fd once more: modbus_link_interrupt() may have been called before the socket was in its reserved descriptor, and so could
+       not end this connection */
     if (link->open && wait_for(-1, 0, link->stop_fd, 0) == -ECANCELED) {
         close_link(link);
         status = -ECANCELED;
@@ -317,7 +319,7 @@ static int ask_framed(struct modbus_link *link, const struct modbus_question *qu
         numbered.number = ++link->number;
         status = modbus_tcp_ask(link->slot_fd, link->stop_fd, clock_mono_ns() + timeout_ns, &numbered, words, &link->answered);
     } while (status == -ETIMEDOUT && link->answers == 0 && !link->answered.began && clock_mono_ns() < begin_ns + link->patience_ns);
-    if (link->answers == 0) /* send time of the copy of the request that was answered: copies are sent one timeout apart */
+    if (link->answers == 0) /* time when the answered copy of the request was sent: copies are sent one timeout apart */
         link->sent_ns = begin_ns + (uint16_t)(link->answered.number - numbered.oldest) * timeout_ns;
     return status;
 }
@@ -336,9 +338,9 @@ static int ask(struct modbus_link *link, const struct modbus_question *question,
     return status_of(got, question->count);
 }
 
-/* Discards the answer to an abandoned request. RTU frames have no transaction numbers, so such an answer could be taken for that to the
- * next request. Sends a request and discards the answer, then waits one timeout for stray bytes. Returns false if the device does not
- * answer. */
+/* Discards the answer to an abandoned request: RTU frames have no transaction numbers, so that answer could be taken for the answer to the
+   next request. To do so, sends a request and discards its answer, then waits one timeout for stray bytes. Returns false if the device does
+   not answer. */
 static bool clear_line(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
 {
     if (ask(link, question, words) == -ETIMEDOUT)

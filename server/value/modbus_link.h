@@ -35,8 +35,8 @@ void modbus_link_close(struct modbus_link *link);
 void modbus_link_allow_any_unit(struct modbus_link *link, bool any);
 /* Returns the unit number that the last response states. */
 int modbus_link_answered_unit(const struct modbus_link *link);
-/* Modbus TCP: sets that the first request of each connection is repeated every timeout_ms until an answer arrives or patience_ns have
- * passed. 0: it is sent once. */
+/* Modbus TCP: makes the link repeat the first request of each connection every timeout_ms, until an answer arrives or patience_ns have
+   passed. 0: the request is sent once. */
 void modbus_link_set_patience(struct modbus_link *link, int64_t patience_ns);
 /* Returns the number of requests answered on the current connection, or on the last one if the link is closed. */
 int modbus_link_answers(const struct modbus_link *link);

@@ -8,12 +8,15 @@
 #include "value/modbus_impl.h"
 
 enum { SHORT_CONNECTIONS = 3, REFUSED_CONNECTIONS = 6, CLOSED_CONNECTIONS = 2 };
-/* first delay before reconnecting, doubled each time: some devices free a closed connection only after a while */
+/* first delay before reconnecting to a device that refuses connections; doubled each time, because some devices free a closed connection
+   only after a while */
 static const int64_t RECONNECT_DELAY_NS = 50 * NS_PER_MS;
-static const int64_t TOLERANCE_NS = 2 * NS_PER_S; /* time since the last answer after which the device counts as lost */
-/* time limit for the first answer on a connection, after one earlier connection without any answer; doubled after more such connections */
+static const int64_t TOLERANCE_NS = 2 * NS_PER_S; /* time since the device's last answer after which the device counts as lost */
+/* time limit for the first answer on a connection, if the last connection had no answer at all; doubled after each further connection
+   without an answer */
 static const int64_t FIRST_ANSWER_TIMEOUT_NS = 3 * NS_PER_S;
-/* first delay that is tried between connecting and the first request, for RTU over TCP, whose requests have no transaction numbers */
+/* first delay that is tried between connecting and the first request. Used for RTU over TCP, whose requests have no transaction numbers and
+   so cannot be repeated */
 static const int64_t RTU_DELAY_NS = 500 * NS_PER_MS;
 /* time limit for the answer of a unit (slave address) that is up, if another unit behind the same gateway has just timed out */
 static const int64_t GATEWAY_TIMEOUT_NS = 5 * NS_PER_S;
@@ -42,7 +45,7 @@ void modbus_manners_before(struct modbus_source *modbus, const struct modbus_uni
     int64_t patience_ns = manners->first_wait_ns;
     if (!modbus->link_up && manners->silent_connections > 0 && patience_ns < FIRST_ANSWER_TIMEOUT_NS)
         patience_ns = manners->silent_connections == 1 ? FIRST_ANSWER_TIMEOUT_NS : 2 * FIRST_ANSWER_TIMEOUT_NS;
-    /* a gateway that was waited for once is not waited for again: it may be lost */
+    /* a gateway is waited for only once: after that it may be lost */
     bool waits = manners->timed_out && manners->timed_out != unit && modbus->fallen < GATEWAY_UNITS - 1;
     manners->first_excused = waits && unit->state == UNIT_UP && patience_ns < GATEWAY_TIMEOUT_NS;
     if (manners->first_excused)

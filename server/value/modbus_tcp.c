@@ -10,7 +10,7 @@
 #include "value/read_plan.h"
 
 enum {
-    HEADER_BYTES = 7, /* bytes of the frame header: transaction identifier, protocol, length of the rest, unit */
+    HEADER_BYTES = 7, /* length in bytes of the frame header: transaction identifier, protocol, length of the rest, unit */
     REFUSED = 0x80,   /* bit of the function code that marks an exception response */
     LAST_EXCEPTION = 11,
     MAX_VALUE_BYTES = 2 * READ_PLAN_MAX_REGISTERS, /* READ_PLAN_MAX_BITS take as many bytes */
@@ -79,8 +79,9 @@ static int value_bytes(const struct modbus_question *question)
     return is_bits(question->table) ? (question->count + 7) / 8 : 2 * question->count;
 }
 
-/* Returns whether a response may state this unit. Unit identifiers 0 and 255 mean the device at the address itself (MODBUS Messaging on
- * TCP/IP V1.0b, 4.4.1.2); many devices that are no gateways answer with one of these, whatever unit was requested. */
+/* Returns whether a response may state this unit although another was requested. Unit identifiers 0 and 255 mean the device at the address
+   itself (MODBUS Messaging on TCP/IP V1.0b, 4.4.1.2); many devices that are no gateways answer with one of these, whatever unit was
+   requested. */
 static bool fits_unit(const struct modbus_question *question, uint8_t unit)
 {
     bool itself = unit == 0 || unit == 255 || question->unit == 0 || question->unit == 255;

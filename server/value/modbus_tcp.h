@@ -11,8 +11,11 @@
 struct modbus_question {
     uint16_t number; /* transaction identifier */
     uint8_t unit;
-    bool any_unit; /* a response may state unit 0 or 255 in place of the requested unit; to a request for 0 or 255, any unit */
-    /* transaction identifier of the first copy of a request that was repeated on this connection; equal to `number` if it was sent once */
+    /* true: a response may state unit 0 or 255 in place of the requested unit; a response to a request for unit 0 or 255 may state any
+       unit */
+    bool any_unit;
+    /* transaction identifier of the first copy of a request that was repeated on this connection; equal to `number` if the request was sent
+       once */
     uint16_t oldest;
     enum register_table table;
     int first, count;
@@ -21,7 +24,7 @@ struct modbus_question {
 struct modbus_answered {
     uint16_t number;
     uint8_t unit;
-    bool began; /* at least one byte of the response has arrived */
+    bool began; /* true: at least one byte of the response has arrived */
 };
 
 /* Sends a request and receives its response; `words` as in modbus_link_read(). *answered receives the response's transaction identifier and

@@ -11,7 +11,7 @@
 /* Delay before a register that the device refused is read again. It doubles after each refusal up to MAX_REFUSED_DELAY_NS, because a device
  * may refuse only while it starts up. */
 static const int64_t REFUSED_DELAY_NS = 2 * NS_PER_S, MAX_REFUSED_DELAY_NS = 60 * NS_PER_S;
-/* delay before the next block of a unit is read, while blocks are being split to find addresses that are not answered */
+/* delay before the unit's next block is read, while blocks are split to find the addresses that the device does not answer */
 static const int64_t SPLIT_PAUSE_NS = 500 * NS_PER_MS;
 
 struct modbus_unit *modbus_unit_of(const struct modbus_source *modbus, const struct read_plan_block *block)
@@ -67,7 +67,7 @@ void modbus_replan(struct modbus_source *modbus)
 void modbus_unit_is_up(struct modbus_source *modbus, struct modbus_unit *unit)
 {
     if (unit->state == UNIT_DOWN && modbus->plan_cut)
-        modbus_replan(modbus); /* rebuild the read plan, because the unit may have been replaced by another device */
+        modbus_replan(modbus); /* rebuilds the read plan when the unit answers again, because it may have been replaced by another device */
     if (unit->loss_said)
         log_info(modbus->base.log, "source %s: unit %d answers again", modbus->base.config->id, unit->id);
     unit->loss_said = false;
@@ -77,7 +77,8 @@ void modbus_unit_is_up(struct modbus_source *modbus, struct modbus_unit *unit)
         return;
     modbus->link_up = true;
     for (size_t i = 0; i < modbus->plan.unit_count; i++)
-        modbus->units[i].retry_ns = clock_mono_ns(); /* the gateway may be back, and with it all units */
+        /* lets all units be requested again, because the gateway may be back, and with it all units */
+        modbus->units[i].retry_ns = clock_mono_ns();
     counter_set(modbus->up, 1);
     counter_set(modbus->host, 1 + modbus_link_host(modbus->link));
     store_link_up(modbus->base.store, modbus->base.index, clock_mono_ns());
@@ -115,7 +116,7 @@ static void try_elsewhere(struct modbus_source *modbus)
         modbus->units[i].retry_ns = now_ns;
 }
 
-/* Marks all units as down. Those that were up are requested again at once. */
+/* Marks all units as down. Units that were up before are requested again at once. */
 static void lose_gateway(struct modbus_source *modbus)
 {
     for (size_t i = 0; i < modbus->plan.unit_count; i++) {
@@ -155,8 +156,7 @@ void modbus_unit_is_down(struct modbus_source *modbus, struct modbus_unit *unit,
 
 /* --- deciding whether a block or its unit is to blame ----------------------------------------------------------------------- */
 
-/* Returns the block of the same unit, other than `block`, that is due first, of those whose last request was answered; NULL if there is
- * none. */
+/* Returns the block that is due first among the other blocks of the same unit whose last request was answered; NULL: there is none. */
 static struct read_plan_block *other_block(struct modbus_source *modbus, const struct read_plan_block *block)
 {
     struct read_plan_block *other = NULL;

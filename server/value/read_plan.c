@@ -10,7 +10,7 @@
 #include "base/mem.h"
 #include "value/decode.h"
 
-struct register_place { /* register address of a tag; tags are sorted by the members in this order */
+struct register_place { /* register address of a tag; tags are sorted by these members, in the order of declaration */
     int unit, table, scan_ms, first, end, tag;
 };
 

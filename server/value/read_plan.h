@@ -17,11 +17,11 @@ struct read_plan_block {
     int scan_ms;
     int first, count;            /* registers or bits */
     size_t first_tag, tag_count; /* index of the first tag in read_plan.tags, and number of tags */
-    /* monotonic time of the next read; set by the reader (modbus.c); 0 in a new plan; copied by read_plan_split() */
+    /* monotonic time when the block is read next; set by the reader (modbus.c); 0 in a new plan; copied by read_plan_split() */
     int64_t due_ns;
-    /* The following members are set by the reader too. They are 0 in a new plan, and read_plan_split() copies them. */
+    /* The reader sets the following members, too. They are 0 in a new plan, and read_plan_split() copies them. */
     int busy_count;    /* number of successive "busy" responses */
-    int refused_count; /* number of consecutive refusals; counted only for blocks with a single tag */
+    int refused_count; /* number of consecutive refusals by the device; counted only for blocks with a single tag */
     int silent_count;  /* number of consecutive requests without an answer while other blocks of the unit were answered */
     bool answered;     /* the last request was answered */
 };

@@ -14,13 +14,13 @@
 #include "value/series.h"
 
 static const int64_t ROUND_NS = 50 * NS_PER_MS;
-/* samples that are late by more than this are skipped, for example after the machine slept */
+/* lateness above which a sample is skipped instead of written, for example after the machine slept */
 static const int64_t LATEST_NS = 10 * NS_PER_S;
 
 struct replay_lane { /* a tag and its series */
     int tag;
     struct unit_change change; /* conversion from the series' unit to the tag's unit */
-    struct series series;      /* samples of the series; count 0: the tag has none */
+    struct series series;      /* samples of the tag's series; count 0: the tag has no series */
     size_t next;
     int64_t rounds; /* completed rounds of a loop */
 };

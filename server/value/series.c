@@ -210,14 +210,14 @@ static bool read_long(struct series *series, struct series_lines *lines, struct 
     return true;
 }
 
-struct header {              /* indices of columns; a missing column has the number of columns as its index */
+struct header {              /* indices of the columns in the file; if a column is missing, its index is the number of columns */
     size_t time, column;     /* wide form (series.h): the time column, and the column of the series */
     size_t tag, value, unit; /* columns of the values form (series.h), with one value a line */
     bool of_values;
 };
 
-/* Finds the first and the last time of a file, and its number of distinct times. Times need not rise through the file, because the lines of
- * one tag may follow those of another. */
+/* Finds the first and the last time of a file, and its number of distinct times. Times need not ascend through the file, because the lines
+   of one tag may follow those of another. */
 static void scan_values(struct series_lines lines, const struct header *header, struct clock *clock)
 {
     int64_t t_us;

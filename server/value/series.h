@@ -13,10 +13,10 @@
 struct series {
     char *name;
     char *unit; /* unit stated in the lines of the file; NULL: none */
-    /* time_s: times in seconds, rising, 0 at the first line of the file; value: NaN where the file marks a value as missing */
+    /* time_s: times in seconds, ascending, 0 at the first line of the file; value: NaN where the file marks a value as missing */
     double *time_s, *value;
     size_t count, capacity, value_capacity;
-    double length_s; /* duration of the whole file: its last time plus one interval; a looping series starts again then */
+    double length_s; /* duration of the whole file in seconds: its last time plus one interval; after it, a looping series starts again */
 };
 
 /* Reads the series with this name. Returns false with file, line and reason in `why` on failure; *found then tells whether the file has the

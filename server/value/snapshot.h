@@ -10,7 +10,7 @@ struct reading {
     uint32_t quality;            /* OPC UA status code, which includes the effect of the reading's age */
     uint32_t changes;            /* counter that increases with each change of value, quality or alarm */
     uint8_t alarm, alarm_status; /* alarm: the alarm shown for the tag (enum alarm_kind); alarm_status: its state (enum alarm_status) */
-    int64_t received_utc_ns;     /* time when the value arrived; 0: never */
+    int64_t received_utc_ns;     /* time when the value arrived (UTC); 0: no value ever arrived */
     int64_t age_ns;              /* age at the time of the snapshot, by the monotonic clock; INT64_MAX: no value was ever received */
 };
 

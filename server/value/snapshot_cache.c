@@ -10,7 +10,8 @@
 
 #include "base/mem.h"
 
-struct snapshot_entry { /* the snapshot must be the first member, because users hold a pointer to it, which is converted to the struct */
+/* must be the first member: users hold a pointer to the snapshot, which is converted back to a pointer to this struct */
+struct snapshot_entry {
     struct historical_snapshot historical;
     int users;
     uint64_t used;
@@ -59,7 +60,7 @@ static struct snapshot_entry *find(const struct snapshot_cache *snapshot_cache, 
     return NULL;
 }
 
-/* Returns the lowest slot number that no snapshot in use has. Call with the lock held. */
+/* Returns the lowest slot number that none of the snapshots in use has. Call with the lock held. */
 static int free_slot(const struct snapshot_cache *snapshot_cache)
 {
     for (int slot = 1;; slot++) {

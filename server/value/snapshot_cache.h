@@ -5,7 +5,7 @@
 #define VALUE_SNAPSHOT_CACHE_H
 #include "value/snapshot.h"
 
-enum { SNAPSHOT_CACHE_SPARE = 16 }; /* number of snapshots without a user that stay in the cache: the newest ones */
+enum { SNAPSHOT_CACHE_SPARE = 16 }; /* number of snapshots that stay in the cache although nobody uses them: the newest ones */
 
 struct historical_snapshot { /* the readings of one past instant; immutable while a user holds it */
     struct snapshot snapshot;

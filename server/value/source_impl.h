@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "value/source.h"
 
-struct source { /* part that all kinds of source share; the first member of the struct of each kind */
+struct source { /* part that all kinds of source have in common; it is the first member of the struct of each kind */
     const struct source_impl *impl;
     struct log *log;
     const struct plant *plant;
@@ -25,7 +25,8 @@ struct source_impl {
     struct source *(*create)(const struct source *base, struct counters *counters);
     /* main function of the thread: runs until stop_fd becomes readable or no more data can arrive */
     void (*run)(struct source *source);
-    /* interrupts a wait in which the thread does not watch stop_fd; called from any thread; NULL: the kind has no such wait */
+    /* callback, on any thread, that interrupts a wait in which the source's thread does not watch stop_fd; NULL: this kind of source has no
+       such wait */
     void (*interrupt)(struct source *source);
     /* frees the source; its thread has ended or never ran */
     void (*destroy)(struct source *source);
@@ -47,9 +48,10 @@ static inline counter *source_counter(const struct source *source, struct counte
     return added;
 }
 
-extern const struct source_impl modbus_impl; /* Modbus TCP and RTU, read only */
-extern const struct source_impl mqtt_impl;   /* values published to an MQTT broker; subscribes only */
-extern const struct source_impl opcua_impl;  /* OPC UA, subscribes only; exists if the build has open62541 */
-extern const struct source_impl replay_impl; /* recorded series from a CSV file (series.h), at the speed set in the plant file */
+extern const struct source_impl modbus_impl; /* kind of source: Modbus TCP and RTU, read only */
+extern const struct source_impl mqtt_impl;   /* kind of source: values published to an MQTT broker; subscribes only */
+extern const struct source_impl opcua_impl;  /* kind of source: OPC UA, subscribes only; defined if the build has open62541 */
+/* kind of source: recorded series from a CSV file (series.h), at the speed set in the plant file */
+extern const struct source_impl replay_impl;
 
 #endif

@@ -13,7 +13,7 @@ void stamped_writer_init(struct stamped_writer *writer, const struct plant *plan
     *writer = (struct stamped_writer){ .store = store, .plant = plant };
     writer->samples = mem_array(plant->tag_count, sizeof(*writer->samples));
     writer->last = mem_array(plant->tag_count, sizeof(*writer->last));
-    /* INT64_MIN means that there was no sample; 0 would not, because a monotonic time before the machine's start is negative */
+    /* value for "no sample yet"; 0 would not do, because a monotonic time before the machine's start is negative */
     for (size_t i = 0; i < plant->tag_count; i++)
         writer->last[i].mono_ns = INT64_MIN;
 }
@@ -41,8 +41,8 @@ void stamped_writer_end(struct stamped_writer *writer)
     writer->count = 0;
 }
 
-/* Converts UTC to monotonic time. Both clocks are never read at exactly the same instant, so the result may be off. A sample with the UTC
- * time of the tag's last sample, or a later one, gets at least the monotonic time of the last sample. */
+/* Converts UTC to monotonic time. The two clocks cannot be read at the same instant, so the result may be slightly off. If the sample is
+   not older in UTC than the tag's last sample, its monotonic time is at least that of the last sample. */
 static int64_t mono_of(const struct stamped_writer *writer, int tag, int64_t utc_ns)
 {
     int64_t mono_ns = writer->mono_ns - (writer->utc_ns - utc_ns);
@@ -78,7 +78,7 @@ void stamped_writer_add(struct stamped_writer *writer, int tag, const struct sta
         writer->worst_skew_ns = utc_ns - writer->utc_ns;
     if (!quality_is_bad(value->quality)) {
         decode_number(&writer->plant->tags[tag], value->value, &sample);
-        /* the sender's quality code replaces ours unless ours is worse, because it is more specific */
+        /* the sender's quality code is used instead of ours, because it is more specific, unless ours is worse */
         if (value->quality >> 30 >= sample.quality >> 30)
             sample.quality = value->quality;
         if (was_kept && quality_is_good(sample.quality))

@@ -17,8 +17,9 @@ struct stamped_writer {
     int64_t mono_ns, utc_ns; /* arrival time of the message that is being processed */
     /* largest difference between a time stated in the message and our clock; above 0: the sender's clock is ahead; 0: no difference */
     int64_t worst_skew_ns;
-    size_t written;         /* number of readings of this message that were written so far */
-    struct sample *samples; /* samples that are not written yet, all with the same time; room for as many as there are tags */
+    size_t written; /* number of readings of this message that were written so far */
+    /* samples of the present batch, which are not written yet and all have the same time; room for as many as there are tags */
+    struct sample *samples;
     size_t count;
     int64_t at_utc_ns, at_mono_ns; /* time of the pending samples */
     struct {

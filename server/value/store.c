@@ -14,15 +14,15 @@ struct held {
     double value;                              /* last usable value */
     uint32_t quality;                          /* of the last sample */
     bool has_value, lost;                      /* lost: the tag could not be read since its last sample */
-    bool dead;                                 /* the tag is lost, and its last value may not be used any more */
+    bool dead;                                 /* true: the tag is lost, and its last value may not be used any more */
     int64_t sampled_mono_ns;                   /* time of the last sample, Good or Bad */
     int64_t received_mono_ns, received_utc_ns; /* arrival time of the last usable value */
-    int64_t changed_mono_ns;                   /* time at which the usable value changed last */
+    int64_t changed_mono_ns;                   /* time at which the last usable value differed from the one before */
     int64_t stale_ns, flatline_ns;
     /* A quality tag gives its quality to other tags, which form a list. first_vouched: index of the first tag to which this tag gives its
      * quality; next_vouched: index of the next tag in the list that contains this tag; -1: none. */
     int first_vouched, next_vouched;
-    uint32_t shown_quality; /* quality at the last increment of `changes` */
+    uint32_t shown_quality; /* quality that was reported when `changes` was last incremented */
     uint32_t changes;
     uint8_t alarm, alarm_status;
 };
@@ -46,9 +46,9 @@ struct store {
     struct {
         void (*changed)(void *arg); /* NULL: no callback */
         void *arg;
-        bool told; /* the watch callback has been called since the last store_take(), so it is not called again */
+        bool told; /* true: the watch callback has been called since the last store_take(), so it is not called again */
     } watch;
-    int64_t utc_ahead_ns; /* UTC minus monotonic time, when the last sample arrived */
+    int64_t utc_ahead_ns; /* difference in nanoseconds between UTC and the monotonic clock, when the last sample arrived */
     bool has_utc;         /* a sample has arrived */
 };
 
@@ -130,7 +130,8 @@ void store_adopt(struct store *store, struct store *before)
             continue;
         const struct held own = *to;
         *to = before->tags[i];
-        to->alarm = own.alarm; /* the alarm is not taken over: limits may have changed, and the alarm service sets it again */
+        /* the alarm of the old reading is not taken over: limits may have changed, and the alarm service sets it again */
+        to->alarm = own.alarm;
         to->alarm_status = own.alarm_status;
         to->stale_ns = own.stale_ns;
         to->flatline_ns = own.flatline_ns;
@@ -288,8 +289,8 @@ static bool hold(struct store *store, const struct sample *sample, int64_t now_m
     struct held *held = &store->tags[sample->tag];
     bool bad = quality_is_bad(sample->quality), finite = isfinite(sample->value), value_changed = false;
     if (now_mono_ns < held->sampled_mono_ns) {
-        /* A sample older than the last one is ignored. Exception: the tag is dead, and the sample has the UTC time of the last value or a
-         * later one; then it shows that the lost source is back. */
+        /* A sample older than the last is ignored. Exception: the tag is dead, and the sample has the UTC time of the last value or a later
+           one; then it shows that the lost source is back. */
         if (!held->dead || !held->has_value || now_utc_ns < held->received_utc_ns)
             return false;
         now_mono_ns = held->sampled_mono_ns;
@@ -346,7 +347,7 @@ static void mirror(struct store *store, const struct mirrored *reading, int64_t 
     held->received_utc_ns = reading->received_utc_ns;
     held->sampled_mono_ns = held->changed_mono_ns = now_mono_ns;
     held->lost = held->dead = false;
-    /* this reading comes from a core (daemon that reads the devices), which decides when it is stale */
+    /* a reading from a core (daemon that reads the devices) is not made stale here, because the core decides that */
     held->stale_ns = held->flatline_ns = INT64_MAX;
     if (count_change(store, (size_t)reading->tag, value_changed, now_mono_ns))
         tell_watch(store);
@@ -478,7 +479,7 @@ void store_snapshot(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns
     pthread_mutex_unlock(&store->lock);
 }
 
-/* Returns the earlier one of next_ns and since_ns + after_ns; next_ns if the latter is not in the future. */
+/* Returns the earlier one of next_ns and since_ns + after_ns. If the latter is not in the future, returns next_ns. */
 static int64_t sooner(int64_t next_ns, int64_t since_ns, int64_t after_ns, int64_t now_mono_ns)
 {
     bool comes = after_ns < INT64_MAX && since_ns + after_ns > now_mono_ns;

@@ -13,16 +13,16 @@
 
 struct store;
 
-/* a value of a tag as a source writes it */
+/* value of a tag, in the form in which a source writes it */
 struct sample {
     int tag;      /* index in plant->tags */
     double value; /* value in engineering units; ignored while the quality is Bad; NaN and infinity make the quality Bad_SensorFailure */
     uint32_t quality;
 };
 
-/* Argument of listeners. A listener is called for every sample and every lost link, in the order in which they happen and under the store's
- * lock, so it must only copy the event and return. A link lost before the first sample makes no event, because the UTC time is not known
- * yet; only snapshots show it. */
+/* Argument of listeners. A listener is called for every sample and every lost link, in the order in which they happen. It runs under the
+   store's lock, so it must only copy the event and return. A link that is lost before the first sample causes no call, because the UTC time
+   is not known yet; only snapshots show it. */
 struct sample_event {
     int tag;
     double value;

@@ -39,7 +39,8 @@ static bool is_name_of(const json_t *name, const char *tag)
     return length == tag_length || strchr("./:\\!|", text[length - tag_length - 1]);
 }
 
-/* Returns true if the rest of a path selects this member. The member then holds the tag's value, and is not the item's name. */
+/* Returns true if the rest of a path selects this member of an array item. The member then holds the tag's value, so it is not the item's
+   name. */
 static bool is_selected(const char *key, const char *rest)
 {
     struct json_path_step step;

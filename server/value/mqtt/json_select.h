@@ -9,8 +9,8 @@ struct json_selected {
     size_t count;         /* number of values that the path selects */
     const json_t *value;  /* last selected value; NULL: none */
     const json_t *holder; /* object or array that contains `value`; NULL: `value` is the root */
-    /* name that an array item states of itself, if the path addresses the item by position and the name does not fit the tag; NULL: no such
-     * item */
+    /* name that an array item states for itself, if the path addresses the item by position and that name does not fit the tag; NULL: all
+       names fit */
     const json_t *foreign;
 };
 

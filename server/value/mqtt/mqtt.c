@@ -10,7 +10,7 @@
 #include "value/lookup.h"
 #include "value/mqtt/mqtt_impl.h"
 
-/* time limit from the start of a connection to the broker's answers to all subscriptions */
+/* time limit for the broker to answer all subscriptions, from the start of the connection */
 static const int64_t CONNECT_NS = 10 * NS_PER_S;
 static const int64_t LINE_NS = 60 * NS_PER_S; /* minimum time between two log lines about refused messages */
 

@@ -29,7 +29,7 @@ struct mqtt_client {
     struct mosquitto *library;
     const struct plant_source *source;
     const struct mqtt_client_events *events;
-    char *host; /* a copy that belongs to the connecting thread, because this thread may outlive the source */
+    char *host; /* copy of the settings that belongs to the connecting thread, because that thread may outlive the source */
     int port, keepalive_s;
     mosquitto_property *properties;
     int done_fd; /* descriptor that becomes readable once the connection attempt has ended */
@@ -246,7 +246,7 @@ void mqtt_client_destroy(struct mqtt_client **client)
     if (!gone)
         return;
     if (gone->done_fd >= 0 && wait_for(gone->done_fd, POLLIN, -1, 0) == 0)
-        mosquitto_disconnect(gone->library); /* after this, the connecting thread no longer uses the library object */
+        mosquitto_disconnect(gone->library); /* from here on, the connecting thread does not use the library object any more */
     client_unref(gone);
 }
 

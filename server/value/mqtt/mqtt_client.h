@@ -17,14 +17,15 @@ struct mqtt_message {
     const char *topic;
     const void *payload;
     size_t count;
-    bool is_retained; /* the broker had stored the message before the subscription (MQTT's retained flag) */
+    bool is_retained; /* true: the message is older than the subscription: the broker had stored it (MQTT's retained flag) */
 };
 
 /* Callbacks made from mqtt_client_serve(). */
 struct mqtt_client_events {
     void *arg;
     void (*connected)(void *arg, bool session_present);
-    void (*subscribed)(void *arg); /* the broker has acknowledged all topics, including those that it refused */
+    /* callback when the broker has acknowledged all topics of the subscription, including those that it refused */
+    void (*subscribed)(void *arg);
     void (*topic_refused)(void *arg, const char *topic);
     void (*message)(void *arg, const struct mqtt_message *message);
 };

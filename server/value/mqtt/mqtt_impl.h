@@ -24,13 +24,13 @@ struct mqtt_source {
     struct mqtt_client *client;
     struct host_turn turn;
     bool link_up, link_known;
-    bool subscribed;          /* all topics are subscribed, so messages without the retained flag are new values */
+    bool subscribed;          /* true: all topics are subscribed, so messages without the retained flag are new values */
     struct log_pace refusals; /* rate limit of the log line about refused messages */
     char last_refused[300];   /* topic and reason of the last refused message, for the log */
     /* rate limit of the log line "value missing", about tags whose value no message has contained yet */
     struct log_pace absences;
-    bool *matched; /* by index in plant->tags: a JSON message has contained this tag's value */
-    /* monotonic times of the last log lines about clocks of senders: [0] a clock behind ours, [1] a clock ahead of ours */
+    bool *matched; /* by index in plant->tags: true: some JSON message has contained this tag's value */
+    /* monotonic times of the last log lines about wrong clocks of senders: [0] a clock behind ours, [1] a clock ahead of ours */
     int64_t skew_said_ns[2];
 };
 

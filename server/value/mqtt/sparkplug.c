@@ -14,23 +14,23 @@
 #include "value/mqtt/sparkplug_payload.h"
 #include "value/quality.h"
 
-static const int64_t ASK_NS = 10 * NS_PER_S; /* minimum interval between two birth requests to one node */
+static const int64_t ASK_NS = 10 * NS_PER_S; /* minimum time between two requests to one node for its birth certificate */
 static const char PREFIX[] = "spBv1.0/";
 
 struct alias {
     uint64_t number;
-    size_t topic;           /* index of the topic, of a node or device, whose birth certificate defined the alias */
-    size_t first_tag, tags; /* the tags of the topic that take their values from this metric: index of the first, and number of tags */
+    size_t topic;           /* topic (of a node or device), as an index, whose birth certificate defined the alias */
+    size_t first_tag, tags; /* tags of the topic that take their values from this metric: index of the first tag, and number of tags */
 };
 
 struct sparkplug_node {
     char *group, *name;
     bool is_born;
-    bool told;      /* the log already says that this node sends values before its birth certificate */
+    bool told;      /* true: the log already says that this node sends values before its birth certificate */
     int64_t bd_seq; /* session number (bdSeq) of the node's birth certificate; -1: none */
     int next_seq;
     int64_t asked_ns;      /* monotonic time of the last birth request; 0: never */
-    bool is_wanted;        /* a birth request must be sent when ASK_NS have passed since the last one */
+    bool is_wanted;        /* true: a birth request must be sent once ASK_NS have passed since the last one */
     struct alias *aliases; /* by number */
     size_t alias_count, alias_capacity;
 };
@@ -39,9 +39,9 @@ struct sparkplug {
     struct sparkplug_params params;
     struct sparkplug_node *nodes;
     size_t node_count;
-    size_t *node_of;             /* by topic: index of its node */
-    bool *is_born;               /* by topic: the node or device is alive (its birth certificate arrived, and no death certificate since) */
-    uint32_t *types;             /* by tag: type of its metric as in the birth certificate; 0: no birth certificate contains the metric */
+    size_t *node_of; /* by topic: index of its node */
+    bool *is_born;   /* by topic: true: the node or device is alive (its birth certificate arrived, and no death certificate since) */
+    uint32_t *types; /* by tag: data type of its metric, as stated in the birth certificate; 0: no birth certificate contains the metric */
     struct stamped_value *last;  /* last value, by tag */
     bool *has_last, *in_message; /* by tag */
 };
@@ -405,7 +405,8 @@ static bool refuse_unborn(struct sparkplug *sparkplug, struct sparkplug_node *no
 static bool take_node_birth(struct sparkplug *sparkplug, const struct said *said, const struct sparkplug_payload *payload, char why[200])
 {
     struct sparkplug_node *node = said->node;
-    node_dies(sparkplug, node, said->topic); /* the node's new birth ends the previous life of the node and its devices */
+    /* marks the node and its devices as dead first: the new birth certificate ends their previous life */
+    node_dies(sparkplug, node, said->topic);
     node->is_born = true;
     node->told = node->is_wanted = false;
     node->bd_seq = sparkplug_bd_seq(payload);

@@ -19,7 +19,7 @@ struct sparkplug_params {
     struct store *store;
     struct stamped_writer *writer;
     counter *gaps, *historical; /* counters of sequence gaps and of historical metrics; NULL: not counted */
-    bool rebirth;               /* true: nodes may be asked for their birth certificates, with the callback below */
+    bool rebirth;               /* true: nodes may be asked for their birth certificates, by the callback below */
     void (*ask)(void *arg, const char *group, const char *node);
     void *arg;
 };

@@ -20,7 +20,7 @@ struct sparkplug_metric {
     const char *name; /* name of the metric; NULL: the alias identifies it */
     bool has_alias, is_historical, is_null;
     uint64_t alias;
-    int64_t utc_ns;   /* time that the metric states, or else its payload; 0: neither states a time */
+    int64_t utc_ns;   /* time that the metric states, or else the time of its payload; 0: neither states a time */
     uint32_t type;    /* 0: not stated */
     uint32_t quality; /* quality from the metric's property Quality; Good if it has none */
     enum sparkplug_form form;

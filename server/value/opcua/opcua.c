@@ -13,7 +13,8 @@
 
 /* time limits for opening a session, and for subscribing to all nodes */
 static const int64_t CONNECT_NS = 15 * NS_PER_S, SUBSCRIBE_NS = 60 * NS_PER_S;
-static const int64_t SERVE_NS = NS_PER_S, RETRY_NS = 30 * NS_PER_S; /* RETRY_NS: interval at which refused nodes are requested again */
+/* interval at which nodes that the server refused are requested again */
+static const int64_t SERVE_NS = NS_PER_S, RETRY_NS = 30 * NS_PER_S;
 static const int64_t SKEW_NS = 5 * NS_PER_S, SKEW_SAID_NS = 60 * NS_PER_S;
 enum { REFUSALS_SAID = 8 }; /* refused nodes logged per session */
 
@@ -26,7 +27,7 @@ struct opcua_source {
     struct host_turn turn;
     bool link_up, link_known;
     int refusals_said;
-    bool *wrong; /* by node: its last value was not a number, and this was logged */
+    bool *wrong; /* by node: true: its last value was not a number, and this was logged */
     int64_t skew_said_ns;
 };
 

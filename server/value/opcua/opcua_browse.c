@@ -9,7 +9,7 @@
 #include "base/text/text.h"
 #include "value/opcua/opcua_impl.h"
 
-enum { OBJECTS_FOLDER = 85, HIERARCHICAL = 33, HAS_PROPERTY = 46 }; /* standard node ids of every server */
+enum { OBJECTS_FOLDER = 85, HIERARCHICAL = 33, HAS_PROPERTY = 46 }; /* node ids of the standard, which are the same on every server */
 enum { MAX_NODES = 200000, MAX_DEPTH = 24, REFERENCES_AT_ONCE = 500 };
 
 struct browse_step {
@@ -27,7 +27,7 @@ struct browse {
     int64_t deadline_mono_ns;
     struct browse_step *steps; /* all nodes found so far, in the order in which they are visited */
     size_t count, capacity;
-    size_t *table; /* hash table with open addressing: index in `steps` + 1; 0: empty slot */
+    size_t *table; /* hash table with open addressing: 1 + index in `steps`; 0: empty slot */
 };
 
 static size_t slot_of(const struct browse *browse, const UA_NodeId *id)
@@ -123,7 +123,7 @@ static char *address_of(const struct browse *browse, const UA_NodeId *id)
     UA_String printed = UA_STRING_NULL;
     if (id->namespaceIndex >= browse->client->namespace_count)
         return NULL;
-    local.namespaceIndex = 0; /* with namespace 0, UA_NodeId_print() prints the identifier without a namespace */
+    local.namespaceIndex = 0; /* namespace 0 makes UA_NodeId_print() print the identifier without a namespace */
     UA_NodeId_print(&local, &printed);
     struct text text = { 0 };
     text_add(&text, "nsu=");

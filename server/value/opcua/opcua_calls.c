@@ -43,7 +43,7 @@ void opcua_on_answer(UA_Client *library, void *arg, UA_UInt32 id, void *response
     if (!client->call.response)
         return;
     memcpy(client->call.response, response, client->call.type->memSize);
-    memset(response, 0, client->call.type->memSize); /* the caller owns the response's memory now, so the library's copy is cleared */
+    memset(response, 0, client->call.type->memSize); /* the response's memory now belongs to the caller, so the library's copy is cleared */
     client->call.response = NULL;
 }
 
@@ -57,7 +57,7 @@ void opcua_call_begin(struct opcua_client *client, void *response, const UA_Data
 
 int opcua_call_end(struct opcua_client *client, UA_StatusCode sent, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
-    const UA_ResponseHeader *header = client->call.response; /* every response begins with this header */
+    const UA_ResponseHeader *header = client->call.response; /* response header, with which every response begins */
     if (sent != UA_STATUSCODE_GOOD) {
         client->call.response = NULL;
         opcua_explain(client, sent, why);

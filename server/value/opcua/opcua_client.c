@@ -15,10 +15,11 @@
 #include "value/opcua/opcua_impl.h"
 
 enum { TIMEOUT_MS = 5000, CLOSING_MS = 300, CHANNEL_MS = 3600000, SESSION_MS = 60000 };
-/* maximum bytes of one message from the server; maximum number of chunks in which the message may arrive; bytes of the connection's receive
+/* limits on one message from the server: bytes of the message; number of chunks in which it may arrive; bytes of the connection's receive
    and send buffers, which bound one chunk */
 enum { MESSAGE_BYTES = 2 << 20, CHUNKS = 512, BUFFER_BYTES = 65536 };
-enum { DISCOVERIES = 3 }; /* maximum number of discovery attempts; after the first, each follows a request that the server refused */
+/* maximum number of attempts to list the server's endpoints; each attempt after the first follows a request that the server refused */
+enum { DISCOVERIES = 3 };
 
 /* --- library callbacks ------------------------------------------------------------------------------------------------------ */
 
@@ -78,7 +79,7 @@ static void close_library(struct opcua_client *client)
     client->library = NULL;
 }
 
-/* Opens a secure channel; with_session: and a session. Returns 0 or a negative code with the reason in `why`. */
+/* Opens a secure channel and, if with_session is true, a session in it. Returns 0 or a negative code with the reason in `why`. */
 static int open_library(struct opcua_client *client, const UA_EndpointDescription *endpoint, bool with_session, int stop_fd,
                         int64_t deadline_mono_ns, char why[200])
 {
@@ -255,7 +256,8 @@ int opcua_client_connect(struct opcua_client *client, int stop_fd, int64_t deadl
     if (status == 0) {
         UA_ClientConfig *config = UA_Client_getConfig(client->library);
         config->noReconnect = true; /* the library must not reconnect by itself, because a lost session is replaced by a new client */
-        config->connectivityCheckInterval = TIMEOUT_MS; /* in milliseconds; notices a silent server even if values are published rarely */
+        /* interval in milliseconds of checks by which a silent server is noticed even if values are published rarely */
+        config->connectivityCheckInterval = TIMEOUT_MS;
         *client->said = 0;
     }
     return status;

@@ -20,19 +20,20 @@ struct opcua_client {
     UA_Logger logger;
     char said[160];                  /* last error that the library logged */
     UA_Client *library;              /* open62541 client of the channel that is open; NULL: no channel is open */
-    UA_EndpointDescription endpoint; /* the chosen endpoint, whose certificate has been checked */
+    UA_EndpointDescription endpoint; /* endpoint that was chosen, whose certificate has been checked */
     bool lost;                       /* the subscription is lost */
     uint32_t max_items;              /* maximum items of one request */
     UA_UInt32 subscription;
     double publishing_ms; /* the server's publishing interval in milliseconds if it is longer than the requested one; 0: it is not */
     char **namespaces;    /* namespace URIs of the server, by namespace index */
     size_t namespace_count;
-    UA_UInt16 *numbers;        /* by node: index of its namespace on the server; NO_NAMESPACE: the server has no such namespace */
-    bool *refused, *no_filter; /* by node: refused: the server refused the node; no_filter: the node is subscribed without a deadband */
+    UA_UInt16 *numbers; /* by node: index of its namespace on the server; NO_NAMESPACE: the server has no such namespace */
+    /* flags by node. refused: the server refused the node; no_filter: the node is subscribed without a deadband */
+    bool *refused, *no_filter;
     size_t refused_count;
     struct { /* the request in progress */
         bool done;
-        void *response; /* receives the response; NULL: the caller has stopped waiting, so the response is dropped */
+        void *response; /* receives the response to the request; NULL: the caller has stopped waiting, so the response is dropped */
         const UA_DataType *type;
     } call;
 };
@@ -49,8 +50,8 @@ struct opcua_exchange {
 /* Sends a request and waits for its response. Returns the codes of opcua_wait(), or -EPROTO if the server refuses the request. The caller
  * clears the response with UA_clear() in all cases. */
 int opcua_call(struct opcua_client *client, const struct opcua_exchange *exchange, int stop_fd, int64_t deadline_mono_ns, char why[200]);
-/* opcua_call() in two steps, for requests that are sent by functions of the library: call opcua_call_begin() before the library function,
- * and opcua_call_end() with its result. Pass opcua_on_answer as the callback, with the client as userdata. */
+/* opcua_call() in two steps, for requests that functions of the library send: call opcua_call_begin() before the library function, and
+   opcua_call_end() with its result. Pass opcua_on_answer as the callback, with the client as userdata. */
 void opcua_call_begin(struct opcua_client *client, void *response, const UA_DataType *type);
 int opcua_call_end(struct opcua_client *client, UA_StatusCode sent, int stop_fd, int64_t deadline_mono_ns, char why[200]);
 void opcua_on_answer(UA_Client *library, void *client, UA_UInt32 id, void *response);

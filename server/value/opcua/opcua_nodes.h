@@ -11,7 +11,7 @@ struct opcua_node {
     const char *name_space, *id; /* namespace URI, and identifier in the namespace, such as s=NAME; owned by the plant */
     const int *tags;             /* indices in plant->tags */
     size_t tag_count;
-    int sampling_ms; /* sampling interval in milliseconds, the shortest that one of its tags requests */
+    int sampling_ms; /* sampling interval in milliseconds: the shortest one that any of the node's tags requests */
 };
 
 struct opcua_nodes {

@@ -10,7 +10,7 @@
 #include "value/opcua/opcua_client.h"
 #include "value/opcua/opcua_impl.h"
 
-enum { NAMESPACE_ARRAY = 2255, MAX_ITEMS_PER_CALL = 11714 }; /* standard node ids that every server has */
+enum { NAMESPACE_ARRAY = 2255, MAX_ITEMS_PER_CALL = 11714 }; /* node ids of the standard, which are the same on every server */
 enum { ITEMS_PER_CALL = 500, KEPT_ALIVE_MS = 5000, LIFETIMES = 12 };
 enum { NO_NAMESPACE = 0xffff };
 static const UA_StatusCode NO_SUCH_NODE = 0x80340000; /* Bad_NodeIdUnknown */
@@ -96,7 +96,7 @@ static int begin_subscription(struct opcua_client *client, int stop_fd, int64_t 
     UA_CreateSubscriptionResponse response;
     request.requestedMaxKeepAliveCount = (UA_UInt32)(KEPT_ALIVE_MS / poll_ms) + 1;
     request.requestedLifetimeCount = LIFETIMES * request.requestedMaxKeepAliveCount;
-    /* limits the number of items in a notification, because more would exceed the maximum message size */
+    /* limits the number of items in a notification: a notification with more would exceed the maximum message size */
     request.maxNotificationsPerPublish = 2000;
     opcua_call_begin(client, &response, &UA_TYPES[UA_TYPES_CREATESUBSCRIPTIONRESPONSE]);
     UA_StatusCode sent =
