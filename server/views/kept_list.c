@@ -63,7 +63,8 @@ enum refusal_code kept_list_refusal(const struct kept_list *kept)
 /* --- changes ---------------------------------------------------------------------------------------------------------------- */
 
 struct list_job {
-    struct file_job job; /* first member, so that a file_job pointer can be cast to a list_job pointer; owner: `kept` */
+    /* first member, because file_writer passes a pointer to it, which is cast to a list_job pointer; its `owner` is `kept` */
+    struct file_job job;
     struct kept_list *kept;
     json_t *list;
     char *folder, *path, *text;
@@ -81,7 +82,7 @@ static void put_in_force(struct kept_list *kept, json_t *list)
 static int write_list(struct file_job *job)
 {
     const struct list_job *own = (const struct list_job *)job;
-    mkdir(own->folder, 0777); /* errors are ignored, because writing the file reports them */
+    mkdir(own->folder, 0777); /* errors are ignored here: if the folder cannot be created, writing the file reports the reason */
     return own->text ? atomic_file_keep(own->path, own->text, strlen(own->text)) : -ENOMEM;
 }
 

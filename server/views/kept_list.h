@@ -10,20 +10,20 @@
 #include "base/refusal.h"
 
 struct kept_list_kind {
-    const char *file, *key;           /* file: file name; key: name of the JSON member that contains the list */
-    const char *members;              /* members that each entry must have, as words for a log message, such as "id, text and time_us" */
+    const char *file, *key; /* file: file name; key: name of the JSON member that contains the list */
+    const char *members;    /* names of the members that each entry must have, as words for a log message, such as "id, text and time_us" */
     bool (*good)(const json_t *list); /* returns whether a list from a file is valid */
 };
 
-/* `list` is read by its owner, but only changed by the functions below */
+/* list of entries; the owner of this struct may read `list`, but only the functions below change it */
 struct kept_list {
     struct log *log;
     const struct kept_list_kind *kind;
     const char *folder;
     char *path; /* path of the file; NULL: the list is not stored on disk */
     struct file_writer *writer;
-    json_t *list;    /* the list on disk, which clients are sent */
-    json_t *next;    /* the list after all changes that are queued for the disk; NULL: none is queued */
+    json_t *list;    /* entries as they are on disk, which clients are sent */
+    json_t *next;    /* entries as they will be after all changes that are queued for the disk; NULL: no change is queued */
     uint64_t number; /* change counter of `list` */
     bool unreadable;
 };
@@ -40,12 +40,12 @@ json_t *kept_list_newest(const struct kept_list *kept);
 size_t kept_list_find(const json_t *list, const char *id);
 /* Returns REFUSAL_NONE if the list can be changed, else the reason why not. */
 enum refusal_code kept_list_refusal(const struct kept_list *kept);
-/* Queues the new list for the disk; once it is there, file_writer_collect() replaces `list`. Without a folder or a writer the list is
-   replaced before this function returns. Takes ownership of `list`. Returns REFUSAL_NONE, or why it failed. */
+/* Queues the new list for writing to disk; once it is written, file_writer_collect() replaces `list`. Without a folder or a writer the list
+   is replaced before this function returns. Takes ownership of `list`. Returns REFUSAL_NONE, or why it failed. */
 enum refusal_code kept_list_put(struct kept_list *kept, json_t *list);
 
-/* Replaces the list by that of another daemon; only a standby core writes it to disk, and takes it also if its disk fails (logged).
-   Returns false, with nothing changed, if the list is invalid. */
+/* Replaces the list by that of another daemon. Only a standby core also writes it to disk; the list is replaced even if that fails
+   (logged). Returns false, with nothing changed, if the list is invalid. */
 bool kept_list_mirror(struct kept_list *kept, json_t *list);
 
 #endif

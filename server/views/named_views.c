@@ -10,7 +10,7 @@
 
 struct named_views {
     const struct plant *plant;
-    struct kept_list kept; /* saved views: { id, title, view, by, time_us, before: [{ title, view, by, time_us }, ...] } */
+    struct kept_list kept; /* form of a saved view: { id, title, view, by, time_us, before: [{ title, view, by, time_us }, ...] } */
 };
 
 static const struct named_view *find_fixed(const struct plant *plant, const char *id)
@@ -101,7 +101,7 @@ enum refusal_code named_views_save(struct named_views *views, const struct named
     json_t *old = json_array_get(newest, at), *list, *view;
     if (why || (!old && count >= NAMED_VIEWS))
         return why ? why : REFUSAL_VIEWS;
-    if (old && same(old, edit)) /* the content is unchanged: only the position of the view in the list changes */
+    if (old && same(old, edit)) /* only the position of the view in the list changes, so no earlier version is stored */
         view = json_incref(old);
     else
         view = json_pack("{s:s,s:s,s:s,s:s,s:I,s:o}", "id", edit->id, "title", edit->title, "view", edit->address, "by", who, "time_us",

@@ -11,7 +11,9 @@
 
 struct notes {
     struct kept_list
-        kept; /* entries: { id, text, tag or asset or position or none, by, time_us, until_us, ended_us, ended_by }; absent times are 0 */
+        /* form of an entry: { id, text, tag or asset or position or none, by, time_us, until_us, ended_us, ended_by }; times that are
+           absent are 0 */
+        kept;
 };
 
 static int64_t time_of(const json_t *note, const char *name)
@@ -95,8 +97,8 @@ static void forget_oldest(json_t *list, int64_t now_us)
         }
 }
 
-/* Makes the id of a note from the time. If a note has that id already (notes at the same time, or a clock that was set back), takes the
- * next free one. */
+/* Makes the id of a note from its time. If another note has that id already (made at the same time, or before the clock was set back),
+   takes the next free id. */
 static void make_id(const json_t *list, int64_t now_us, char id[NOTE_ID_BYTES])
 {
     do
@@ -104,7 +106,7 @@ static void make_id(const json_t *list, int64_t now_us, char id[NOTE_ID_BYTES])
     while (kept_list_find(list, id) < json_array_size(list));
 }
 
-/* Sets *at to the index of the note in force that `id` names. Returns REFUSAL_NONE, or why it cannot be changed. */
+/* Finds the note that `id` names, if it is in force, and sets *at to its index. Returns REFUSAL_NONE, or why the note cannot be changed. */
 static enum refusal_code find_in_force(const json_t *list, const char *id, int64_t now_us, size_t *at)
 {
     *at = kept_list_find(list, id);

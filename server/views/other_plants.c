@@ -21,7 +21,7 @@
 enum { CONNECT_S = 5, TIMEOUT_S = 10, PICTURE_BYTES = 8 << 20, HEADER_BYTES = 1024, MIN_RETRY_S = 5, MAX_RETRY_S = 60, REST_MS = 60000 };
 static const int64_t WANTED_NS = 30 * NS_PER_S;
 
-/* reasons why there is no picture, as sent to clients; the log has details */
+/* reasons why another plant's picture is missing, as sent to clients; the log has details */
 enum why { WHY_NONE, WHY_WAITING, WHY_UNREACHABLE, WHY_TLS, WHY_TOKEN, WHY_REFUSED, WHY_BUSY, WHY_SLOW, WHY_LARGE, WHY_NO_PICTURE };
 static const char *const why_names[] = { [WHY_NONE] = "",
                                          [WHY_WAITING] = "waiting",
@@ -41,14 +41,14 @@ struct other {
     int64_t due_ns, begun_ns, begun_us; /* begun_us: the plant's time */
     bool running, failing;
     /* --- below: under `lock` */
-    int64_t wanted_ns; /* monotonic time of a client's last request for this plant's picture; 0: none */
+    int64_t wanted_ns; /* monotonic time when a client last requested this plant's picture; 0: never */
     struct other_picture about;
     char *png; /* picture; NULL: none */
     size_t bytes;
     /* time of the request that returned the last picture; asked_us also serves as the picture's id; 0: no picture has arrived */
     int64_t asked_ns, asked_us;
-    /* time, by this plant's clock, of the request that returned the last good picture; if there is none, the time since which displays have
-       wanted this plant's picture */
+    /* time, by the clock of the plant shown here, of the request that returned the last good picture. Before there is one: time since when
+       displays have wanted the picture */
     int64_t since_us;
     enum why why; /* WHY_NONE: there is a picture */
 };
@@ -180,7 +180,8 @@ static void note_picture(struct other_plants *others, struct other *other, const
     other->failing = false;
 }
 
-/* Sets the time of the next request: one interval after the last request began, or later if the server states Retry-After. */
+/* Sets the time of the next request to another plant: one interval after the last request began, or later if that plant's server states
+   Retry-After. */
 static void rest(struct other *other, bool good)
 {
     curl_off_t pause_s = 1;
@@ -243,7 +244,8 @@ static int begin_due(struct other_plants *others)
         struct other *other = &others->at[i];
         pthread_mutex_lock(&others->lock);
         bool wanted = other->wanted_ns && now_ns - other->wanted_ns < WANTED_NS;
-        if (!wanted && other->wanted_ns && !other->running) { /* no display has asked for the picture lately, so it is dropped */
+        /* drops the picture and stops requesting it, because no display has asked for it lately */
+        if (!wanted && other->wanted_ns && !other->running) {
             mem_free(other->png);
             other->png = NULL;
             other->wanted_ns = other->asked_us = 0;
@@ -306,7 +308,7 @@ char *other_plants_text(struct other_plants *others, const int *which, size_t co
     pthread_mutex_lock(&others->lock);
     for (size_t i = 0; i < count; i++) {
         struct other *other = &others->at[which[i]];
-        if (!other->wanted_ns) { /* first request after a time in which no display wanted the picture */
+        if (!other->wanted_ns) { /* notes the time of the first request after a period in which no display wanted the picture */
             other->why = WHY_WAITING;
             other->since_us = clock_plant_ns() / 1000;
             wakes = true;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores short links as JSON, in the same form in memory and in the file, those that were unused for longest first. */
+/* Stores short links as JSON, in the same form in memory and in the file. The list is sorted by last use: the link that was unused for
+   longest comes first. */
 #include "views/short_links.h"
 
 #include <openssl/evp.h>
@@ -10,8 +11,9 @@
 #include "plant/walls/wall.h"
 #include "views/kept_list.h"
 
-enum { FEWEST_ID_CHARS = 8 /* 40 bits: an id cannot be found by trying */ };
-static const int64_t USED_US = INT64_C(86400000000); /* a link is marked as used at most once a day, because each change writes the file */
+enum { FEWEST_ID_CHARS = 8 /* minimum length of an id: 40 bits, too many for an id to be found by trying */ };
+/* minimum time between two marks of a link as used: a day, because each change writes the file */
+static const int64_t USED_US = INT64_C(86400000000);
 
 /* At most BURST_LINKS new links may be made at once, and one per LINK_US on average, so that one user can neither replace all links nor
    keep the disk busy. */
@@ -19,8 +21,8 @@ enum { BURST_LINKS = 20 };
 static const int64_t LINK_US = 2000000;
 
 struct short_links {
-    struct kept_list kept; /* links: { id, view, time_us, used }; time_us: when the link was made or last marked as used, UTC */
-    int64_t whole_us;      /* UTC: time from which BURST_LINKS links may be made at once again */
+    struct kept_list kept; /* form of an entry: { id, view, time_us, used }; time_us: when the link was made or last marked as used, UTC */
+    int64_t whole_us;      /* time (UTC) from which BURST_LINKS links may be made at once again; each new link moves it by LINK_US */
 };
 
 static bool good_list(const json_t *list)
@@ -64,7 +66,7 @@ static const char *member(const json_t *list, size_t at, const char *name)
    already, the id gets one more character. */
 static size_t find_view(const json_t *list, const char *view, char id[SHORT_LINK_ID_BYTES])
 {
-    static const char digits[] = "abcdefghijkmnpqrstuvwxyz23456789"; /* 32 characters that are easy to tell apart */
+    static const char digits[] = "abcdefghijkmnpqrstuvwxyz23456789"; /* alphabet of ids: 32 characters that are easy to tell apart */
     uint8_t hash[EVP_MAX_MD_SIZE] = { 0 };
     EVP_Digest(view, strlen(view), hash, NULL, EVP_sha256(), NULL);
     size_t length = 0, at = 0;
@@ -80,7 +82,7 @@ static size_t find_view(const json_t *list, const char *view, char id[SHORT_LINK
 /* Returns whether a new link may be made, and counts it. */
 static bool may_add(struct short_links *links, int64_t now_us)
 {
-    /* if whole_us is further ahead than this, the clock was set back */
+    /* upper bound of whole_us, relative to now; a larger value means that the clock was set back */
     if (links->whole_us < now_us || links->whole_us > now_us + BURST_LINKS * LINK_US)
         links->whole_us = now_us;
     if (links->whole_us > now_us + (BURST_LINKS - 1) * LINK_US)
@@ -129,7 +131,7 @@ enum refusal_code short_links_share(struct short_links *links, const char *view,
     why = kept_list_put(&links->kept, list);
     if (added)
         *added = !stored && !why;
-    return stored ? REFUSAL_NONE : why; /* a stored link is on disk, even if it cannot be marked as used */
+    return stored ? REFUSAL_NONE : why; /* success: the link is stored on disk, even if it cannot be marked as used now */
 }
 
 const char *short_links_find(const struct short_links *links, const char *id)

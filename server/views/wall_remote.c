@@ -27,7 +27,7 @@ struct display_seen {
 
 struct wall_remote {
     const struct plant *plant;
-    struct kept_list kept; /* orders: { id, wall, display, area, view, title, held, desk, by, time_us } */
+    struct kept_list kept; /* form of an order: { id, wall, display, area, view, title, held, desk, by, time_us } */
     struct pointer pointers[WALL_POINTERS];
     uint64_t pointed;
     struct display_seen seen[SEEN];
@@ -127,7 +127,7 @@ static bool same_place(const struct wall_place *a, const struct wall_place *b)
 
 static void set_pointer(struct wall_remote *remote, const struct wall_place *place, const double *position_m, const char *by)
 {
-    /* use the pointer that already points into this pane; if there is none, the pointer that was moved least recently */
+    /* takes the pointer that already points into this pane or, if there is none, the pointer that was moved least recently */
     struct pointer *pointer = &remote->pointers[0];
     for (int i = 0; i < WALL_POINTERS; i++) {
         if (same_place(&remote->pointers[i].place, place)) {

@@ -22,7 +22,7 @@ struct wall_place {
 struct wall_order {
     struct wall_place place;
     const char *view, *title; /* address and title of a view, as in a named view; view "": the pane shows its own views */
-    bool held;                /* true: the pane stops changing. An order with neither `view` nor `held` releases the pane */
+    bool held;                /* true: the pane stops changing its views. An order with neither `view` nor `held` releases the pane */
     const char *desk;
 };
 
