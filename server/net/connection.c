@@ -44,8 +44,8 @@ bool connection_may_open(struct server_context *server, int fd)
     if (server->room.connections >= server->room.quotas->at[QUOTA_CONNECTIONS])
         return count_refusal(server, false);
     lws_get_peer_simple_fd(fd, address, sizeof(address));
-    /* a proxy may open any number of connections, since all of them come from its address; sessions are limited later, by the address that
-       the proxy forwards */
+    /* a proxy may open any number of connections, since all come from its address; sessions are limited later, by the address that the
+       proxy forwards */
     if (access_is_proxy(&server->params.access, address))
         return true;
     struct address_usage *usage = address_limits_ref(server->room.addresses, address);

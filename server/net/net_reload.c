@@ -60,7 +60,7 @@ void net_announce_reload(struct net *net)
 void net_release_plant(struct net *net)
 {
     struct server_context *server = &net->server;
-    /* answers users' actions that were waiting for the old plant's journal, which has written all of them to disk by now */
+    /* answers users' actions that were waiting for the old plant's journal, which has written all these actions to disk by now */
     net_settle_answers(net);
     for (struct stream *stream = server->streams.first; stream; stream = stream->next)
         stream->carried = session_carry(stream->session);

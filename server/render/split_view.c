@@ -123,7 +123,7 @@ static void add_meaning(struct frame *whole, const struct frame *part, int half)
     whole->triangles += part->triangles;
 }
 
-/* Joins the frames of two halves into one frame. Takes ownership of both. Returns NULL if one of them is NULL, or out of memory. */
+/* Joins the frames of two halves into one frame. Takes ownership of both frames. Returns NULL if one is NULL, or out of memory. */
 static struct frame *join(const struct view *view, struct frame *parts[2])
 {
     struct frame *whole = parts[0] && parts[1] ? frame_create(view->width_px, view->height_px) : NULL;

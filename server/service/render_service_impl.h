@@ -14,8 +14,8 @@ struct render_client {
     bool has_content;
     bool has_depth; /* true: the client has the depth grid of the content that it was last sent */
     bool left; /* true: the client no longer wants the frame that the long job (a frame drawn in steps) draws for it */
-    /* time that changed readings wait for the long job (a frame drawn in steps) of this client before the client gets a preview of them; 0:
-       the initial time */
+    /* time that changed readings wait for the long job (a frame drawn in steps) of this client before the client gets a preview that shows
+       the readings; 0: the initial time */
     int64_t patience_ns;
     struct frame_request request;
     /* content: content hash of the newest frame drawn for the client; content_number: sequence number of the request that this frame

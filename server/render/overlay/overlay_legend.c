@@ -242,7 +242,7 @@ static void lay_out(struct pen *pen, struct legend *legend)
         width = fmax(width, beside + pen_text_width(pen, row_text(pen, legend, legend->rows[i])));
     for (int i = 0; i < legend->note_count; i++)
         width = fmax(width, pen_text_width(pen, legend->notes[i]));
-    /* the card is wide enough for the row "unknown direction" even if the row is not listed: the space beside the card is computed before
+    /* the card is wide enough for the row "unknown direction" even if the row is not listed: the space next to the card is computed before
        it is known whether the frame has crosses */
     if (overlay_has_arrows(pen))
         width = fmax(width, beside + pen_text_width(pen, row_text(pen, legend, ROW_NOWHERE)));

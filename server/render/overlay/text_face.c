@@ -17,7 +17,7 @@ static struct found_face {
     cairo_font_face_t *face;
 } found[2];
 
-/* Returns the set of the letters in a text; the caller frees it. NULL: DejaVu Sans has all of them. */
+/* Returns the set of the letters in a text; the caller frees it. NULL: DejaVu Sans has all letters. */
 static FcCharSet *letters_beyond(const char *text)
 {
     FcCharSet *letters = FcCharSetCreate();

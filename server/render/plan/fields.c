@@ -12,7 +12,7 @@
 #include "plant/influence.h"
 #include "render/reference/reference.h"
 
-/* content hash of fields->lost, the entry that stands for fields without memory; no other entry has this hash */
+/* content hash of fields->lost, the placeholder for fields without memory; no other entry has this hash */
 static const uint64_t LOST = 0x6c6f7374;
 /* default bound of the cache, once for main memory and once for the GPU: enough for about 700 assets of 66,000 vertices */
 static const size_t BOUND_BYTES = (size_t)384 << 20;
@@ -230,8 +230,8 @@ static struct fields_entry *look(struct fields *fields, const struct fields_ask 
     return entry;
 }
 
-/* Takes slices (ranges of a GPU buffer) for all entries without one. Announces all of them to the pool before, so that the slices lie next
-   to each other. */
+/* Takes slices (ranges of a GPU buffer) for all entries without one. First announces all these entries to the pool, so that the slices lie
+   next to each other. */
 static void make_room(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries)
 {
     size_t texels = 0, slices = 0;

@@ -45,7 +45,7 @@ struct fields {
     struct field *field;
     struct pool *pool;
     struct fields_entry **entries;
-    struct fields_entry lost; /* entry that stands for every field for which there is no memory */
+    struct fields_entry lost; /* placeholder entry for every field for which there is no memory */
     size_t count, capacity, bytes, bound_bytes;
     uint64_t uses, trimmed; /* uses: number of fields_get() lookups so far; trimmed: value of `uses` at the last fields_trim() */
 };

@@ -321,8 +321,8 @@ static inline uint64_t spread(uint32_t color)
     return (color & 0xff00ff) | (uint64_t)(color >> 8 & 0xff) << 32;
 }
 
-/* Colours the next surfaces of pixels that show several surfaces, up to PARTS_AHEAD of them, and stores the colours in *ahead. pixel: index
-   in band->mixed of the pixel to which the first of these surfaces belongs. */
+/* Colours up to PARTS_AHEAD next surfaces of pixels that show several surfaces, and stores the colours in *ahead. pixel: index in
+   band->mixed of the pixel to which the first of these surfaces belongs. */
 SOFT_INLINE void color_parts(const struct coloring *coloring, const struct visibility_band *band, size_t pixel, struct ahead *ahead)
 {
     size_t first = band->mixed[pixel].first_part, left = band->part_count - first, count = left < PARTS_AHEAD ? left : PARTS_AHEAD;

@@ -234,7 +234,7 @@ SOFT_INLINE void carried_steps(const struct pixel_row *pixels, const struct soft
     *by_y = carried_of(pixels, values.value) - carried;
 }
 
-/* Computes the marks (contents of pixels) of eight pixels as if all of them showed the field `pixels`; the caller ignores the results of
+/* Computes the marks (contents of pixels) of eight pixels as if all eight showed the field `pixels`; the caller ignores the results of
    pixels that show something else. */
 SOFT_INLINE lanes_int marks_of_field(const struct pixel_row *pixels, const struct soft_rect *rect, lanes_int marks, int column, int row)
 {
@@ -273,7 +273,7 @@ SOFT_INLINE void evaluate_eight(const struct raster *raster, const struct soft_r
 
 /* --- fields of many sensors, evaluated with sensor lists for squares of pixels ------------------------------------------------- */
 
-struct many { /* those pixels within a square of cells that show one field of many sensors */
+struct many { /* pixels within a square of cells that show one field of many sensors */
     const struct raster *raster;
     const struct soft_pixels *pixels;
     const struct soft_rect *rect;

@@ -222,7 +222,7 @@ static void add_item(const struct refined *refined, struct refined_row *row, con
     }
 }
 
-/* A pixel that shows several surfaces, with the transparent triangles in front of them. */
+/* A pixel that shows several surfaces, with the transparent triangles in front. */
 struct mixed_pixel {
     size_t at; /* index of the pixel in the arrays of samples */
     int column, y;

@@ -13,8 +13,8 @@ enum { REPLY_FOLLOWERS = 256 };
 char *reply_followers_text(const struct session *const *followers, size_t count, bool open);
 /* Says whose view the session is shown, and whether that leader has gone. */
 char *reply_following_text(const struct session *session);
-/* Lists readings: all of them, or, if `all` is false, only those that the client was not sent yet (reading.changes differs from `sent`, an
-   array by tag). Updates `sent`. */
+/* Lists all readings or, if `all` is false, only readings that the client was not sent yet (reading.changes differs from `sent`, an array
+   by tag). Updates `sent`. */
 char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent, bool all);
 char *reply_status_text(const struct session_context *context, int64_t now_utc_ns);
 char *reply_pong_text(const struct snapshot *snapshot, double t, int64_t now_utc_ns);
