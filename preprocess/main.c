@@ -256,7 +256,7 @@ static bool confine_self(const struct plant *plant, const char *folder, char **a
                                  ".tif .tiff .exr .hdr";
     struct child_paths paths = { 0 };
     bool notifies = getenv("NOTIFY_SOCKET") != NULL;
-    mkdir(folder, 0777); /* errors are ignored here, because writing the first file reports them */
+    mkdir(folder, 0777); /* a failure to create the folder is ignored here: writing the first file will report it */
     child_paths_add(&paths, "/proc/self/exe", CONFINE_EXECUTE);
     child_paths_add_modules(&paths);
     child_paths_add(&paths, folder, CONFINE_WRITE);

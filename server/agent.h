@@ -17,7 +17,7 @@ struct agent;
 /* Starts the thread. address: numeric address to listen on. Returns NULL if the port cannot be bound or the thread cannot start
    (logged). */
 struct agent *agent_start(struct log *log, const char *address, int port);
-void agent_stop(struct agent **agent); /* &NULL is allowed; sets *agent to NULL */
+void agent_stop(struct agent **agent); /* ends the thread, frees the agent and sets *agent to NULL; accepts a pointer to NULL */
 /* Sets the state that connections are told from now on. Thread: any. */
 void agent_tell(struct agent *agent, const struct agent_state *state);
 

@@ -32,7 +32,8 @@ struct helper {
     struct text written; /* output of the program on stderr */
     char *cgroup;        /* path of the program's cgroup; NULL: none */
     int64_t until_ns, kill_ns;
-    bool told, timed_out; /* told: the caller told the program to end; timed_out: the time limit did */
+    /* told: the caller told the program to end; timed_out: the program was told to end because its time limit was over */
+    bool told, timed_out;
 };
 
 static void close_end(int *fd)
@@ -47,7 +48,8 @@ static void limit(struct helper *helper)
 {
     size_t bytes = helper->params->memory_bytes;
     setpriority(PRIO_PROCESS, (id_t)helper->child, 10);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* not set under sanitizers, whose shadow memory would count as data */
+/* no memory limit under sanitizers, whose shadow memory would count as data */
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     if (bytes > 0)
         prlimit(helper->child, RLIMIT_DATA, &(struct rlimit){ bytes, bytes }, NULL);
 #endif

@@ -54,7 +54,8 @@ bool tour_add_view(const json_t *stop, struct snapshot_options *options)
         fprintf(stderr, "plantcast: view '%s': %s\n", word(stop, "id"), error.text);
     for (size_t i = 0; i < address.count && good; i++) {
         char *equals = strchr(address.args[i], '=');
-        bool instant = !strncmp(address.args[i], "at=", 3); /* the instant is left out, because the film sets it for each picture */
+        /* skips the parameter `at` of the view, because the film sets the instant of each picture */
+        bool instant = !strncmp(address.args[i], "at=", 3);
         *equals = 0;
         good = instant || snapshot_add_arg(options, address.args[i], equals + 1);
     }

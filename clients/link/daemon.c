@@ -162,7 +162,9 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
         exchange->done = true;
         break;
     case LWS_CALLBACK_ESTABLISHED_CLIENT_HTTP: exchange->status = (int)lws_http_client_http_response(wsi); break;
-    case LWS_CALLBACK_RECEIVE_CLIENT_HTTP: /* libwebsockets wants a buffer here, and calls back again with the content */
+    /* lws_http_client_read() fills `buffer` with a part of the body, and calls this function again with
+       LWS_CALLBACK_RECEIVE_CLIENT_HTTP_READ */
+    case LWS_CALLBACK_RECEIVE_CLIENT_HTTP:
         return lws_http_client_read(wsi, &at, &room) < 0 ? -1 : 0;
     case LWS_CALLBACK_RECEIVE_CLIENT_HTTP_READ:
         if (exchange->body->length + len > MAX_BODY_BYTES)

@@ -246,8 +246,9 @@ static void on_answer(struct video_source *source)
     }
     if (source->asked == ASK_VIEWS && (status == 403 || status == 200))
         source->limited = status == 403;
-    if (source->asked == ASK_VIEWS && status == 403) { /* a token may be allowed to see the view but not the list of views: the picture
-                                                          request decides. It is not repeated, because each refusal is in the audit trail */
+    /* A token may be allowed to see the view but not the list of views, so status 403 is not final: the picture request decides. The list
+       is requested again only after LIMITED_US, because the daemon writes each refusal to its audit trail. */
+    if (source->asked == ASK_VIEWS && status == 403) {
         source->due_us[ASK_VIEWS] = source->asked_us + LIMITED_US;
         return;
     }

@@ -14,7 +14,8 @@
 enum build_cache_kind {
     BUILD_CACHE_MODELS,      /* model data: one file for all models, with key 0 (cache/model_cache.c) */
     BUILD_CACHE_GEOMETRY,    /* mesh and levels of detail, by geometry key (pipeline/geometry_cache.c) */
-    BUILD_CACHE_SURFACE,     /* surface for distances, by geometry key; the daemon reads it too (surface/surface_store.c) */
+    /* surface on which distances are computed, by geometry key; the daemon reads this file too (surface/surface_store.c) */
+    BUILD_CACHE_SURFACE,
     BUILD_CACHE_SAMPLES,     /* triangles that sample points project onto, by geometry key (subdivision/sample_cache.c) */
     BUILD_CACHE_DISTANCES,   /* distances from sensors, by distances key; cache/distance_cache.c writes parts of the file in place */
     BUILD_CACHE_SUBDIVISION, /* measured errors of edges and triangles, by distances key (subdivision/subdiv_cache.c) */

@@ -73,7 +73,7 @@ void distance_cache_open(struct distance_cache *cache, const char *folder, uint6
     cache->slots = mem_array(count, sizeof(*cache->slots));
     for (size_t p = 0; p < count; p++)
         cache->slots[p] = SIZE_MAX;
-    deal_slots(cache); /* called also if the cache file could not be opened: then no position gets a slot */
+    deal_slots(cache); /* if the cache file could not be opened, deal_slots() only initialises the cache and assigns no slots */
     mem_free(path);
 }
 

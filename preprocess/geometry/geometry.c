@@ -15,8 +15,8 @@
 
 #define MAX_TRIANGLES 50000000ull /* per asset */
 #define MAX_SIZE_M 1e7
-/* size in metres of a large model, whose origin is the median of its vertices; single-precision positions at its ends are only accurate to
- * half a millimetre */
+/* size in metres above which a model uses the median of its vertices as its origin; single-precision positions at the ends of such a model
+ * are only accurate to half a millimetre */
 #define COARSE_SIZE_M 1e4
 /* metres; several nodes of the name that a sensor states give an unambiguous position if they are at most this far apart */
 #define SAME_PLACE_M 1e-3
@@ -139,7 +139,7 @@ static const struct node_box empty_box = { { INFINITY, INFINITY, INFINITY }, { -
 
 static void box_add_primitive(struct node_box *box, const struct gltf_primitive *primitive, const double world[16])
 {
-    /* every vertex counts: the glTF reader has removed those that no triangle uses */
+    /* includes all vertices in the box: the glTF reader has removed the vertices that no triangle uses */
     for (uint32_t i = 0; i < primitive->vertex_count; i++) {
         const float *p = primitive->positions[i];
         double q[3];

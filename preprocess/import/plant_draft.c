@@ -159,7 +159,8 @@ static void add_asset(struct text *out, const struct plant_draft_model *from, si
     int parent = outline->header.nodes[i].parent;
     unsigned number = outline->header.nodes[i].number;
     char *id = unique ? mem_strdup(without_slash(name)) : mem_printf("%s #%u", *name ? name : "unnamed", number);
-    if (json_object_get(ids, id)) { /* an asset of another model already uses this id */
+    /* an asset of another model already has this id: adds the model's file name and the node's number to the id */
+    if (json_object_get(ids, id)) {
         char *other = mem_printf("%s (%s #%u)", id, from->file, number);
         mem_free(id);
         id = other;

@@ -277,7 +277,7 @@ static bool read_chunks(struct rvm_reader *r)
         size_t from = r->at;
         if (r->count - from < 16 || !chunk_id(r->bytes + from, id))
             return fail(r, "expected a chunk here");
-        if (!strcmp(id, "END:")) /* end here, because some files omit the header fields of this last chunk */
+        if (!strcmp(id, "END:")) /* stops at the chunk END: without reading its header, because some files omit header fields there */
             return true;
         if (r->count - from < HEADER)
             return fail(r, "the file ends within chunk %s", id);

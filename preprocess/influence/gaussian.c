@@ -332,9 +332,9 @@ static double next_sign(struct signs *signs)
     return sign;
 }
 
-/* Computes the readings that all sensors would have in a field u drawn from the prior, in units of the standard deviation. Negates them,
- * because they serve to subtract the prediction from the field. First subtracts the value at the body's first sensor, which
- * levels[component] receives: a constant per body does not change the error, and would cost digits. */
+/* Simulates readings: takes a random field u, drawn from the prior, and computes the reading that each sensor would have, in units of the
+ * standard deviation, with the sign reversed, because callers subtract the prediction from the field. To keep digits, each body's level
+ * (the value at its first sensor, returned in levels[component]) is subtracted first; this does not change the prediction error. */
 static void take_readings(const struct solving *solving, const double *u, struct signs *signs, double *levels, float *readings)
 {
     const size_t n = solving->mesh->source_count;

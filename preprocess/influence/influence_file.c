@@ -79,7 +79,8 @@ static const char **names_of(const struct influence_input *input, int group)
     return names;
 }
 
-/* Sets the parameters that the plant file does not state to their defaults: an asset with so few sensors cannot be fitted. */
+/* Sets the parameters that the plant file does not state to their defaults, for an asset with fewer sensors than a fit needs
+ * (PLANT_GP_FITTED). */
 static void take_defaults(const struct influence_making *making, const struct plant_group *of, size_t count, struct gaussian_params *gp)
 {
     const double range = of->max - of->min;

@@ -201,7 +201,7 @@ void mesh_error_add(struct mesh_error *error, const float *at_points, size_t str
     }
 }
 
-/* Returns the discretisation error in triangle `tri` that its edge i causes. At most the deviation at the tip of the edge's lowest triangle
+/* Returns the discretisation error in triangle `tri` that its edge i causes: at most the deviation at the tip of the edge's lowest triangle
  * (struct edge_form). */
 static double across(const struct mesh_error *error, size_t tri, int i)
 {

@@ -325,7 +325,8 @@ static bool read_text(struct tag_export *list, const char *bytes, size_t count, 
 }
 
 struct workbook {
-    struct cell_table best; /* the sheet whose header has the most recognised columns; of equals the one with the most rows */
+    /* the sheet with the most recognised column names in its header; if several have equally many, the one with the most rows */
+    struct cell_table best;
     struct text others;     /* names of the other sheets with a header, for a remark */
     char *name;
     int known;

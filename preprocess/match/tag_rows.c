@@ -95,7 +95,8 @@ static bool read_file(struct tag_rows *rows, const char *path, char why[MATCH_WH
     charset_decode(bytes, count, NULL, &text);
     rows->separator = table_separator(text.utf8);
     bool good = table_read_csv(&table, text.utf8, rows->separator, why, MATCH_WHY_BYTES);
-    if (good && table.count > 1) { /* keep the rows of the file, unless it has only a header */
+    /* keeps the rows that the file has, unless it has only a header: then the new list gets the default header */
+    if (good && table.count > 1) {
         rows->at = table.rows;
         rows->count = table.count;
         rows->capacity = table.capacity;

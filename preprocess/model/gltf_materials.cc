@@ -220,7 +220,7 @@ void read_materials(gltf_work *w)
     model->materials = new_array<asset_material>(w->parsed.materials.size() + 1);
     model->material_names = new_array<char *>(w->parsed.materials.size() + 1);
     model->textures = new_array<gltf_texture>(USE_COUNT * w->parsed.materials.size() + 1);
-    /* capacity includes one more text, about nodes outside the scene */
+    /* room for one text for each texture use of a material, one for each ignored extension, and one about nodes outside the scene */
     model->left_out = new_array<char *>(USE_COUNT * w->parsed.materials.size() + d->look_count + 2);
     for (size_t i = 0; i < d->look_count; i++)
         leave_out(w, d->looks[i]);

@@ -18,7 +18,8 @@
 #define BENT_SHARE 1e-3
 /* smallest power of inverse distance weights that is reported: from there on, the error of distances alone can exceed two colour steps */
 #define HIGH_POWER 5
-#define DISTANCE_ERROR 0.0031 /* largest relative error of a distance along the surface, of all whole shapes in the test accuracy_test */
+/* largest relative error of a distance along the surface that accuracy_test finds on shapes without the faults of CAD exports */
+#define DISTANCE_ERROR 0.0031
 
 const char *const report_states[] = { "left", "failed", "unchanged", "shared", "built" };
 
@@ -122,7 +123,8 @@ static void add_sizes(struct concerns *concerns, const struct prepare *prepare)
     for (size_t i = 0; i < prepare->asset_count; i++) {
         const struct prepare_asset *asset = &prepare->assets[i];
         char why[SIZE_WHY_BYTES];
-        bool stray = asset->reported && asset->report.stray[0]; /* pieces far from the main part explain the size, and have been reported */
+        /* true: the asset's size comes from pieces far from its main part, which are a problem of their own in the report */
+        bool stray = asset->reported && asset->report.stray[0];
         if (!stray && asset_longest_m(asset->size_m) > 0 && asset_size_doubtful(asset->plant, asset->size_m, median_m, why))
             add(concerns, asset, 1e6, mem_strdup(why));
     }

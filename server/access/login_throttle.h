@@ -23,7 +23,8 @@ enum login {
 
 struct login_throttle;
 struct login_throttle *login_throttle_create(void);
-void login_throttle_destroy(struct login_throttle **throttle); /* &NULL is allowed; sets *throttle to NULL */
+/* frees the throttle and sets *throttle to NULL; accepts a pointer to NULL */
+void login_throttle_destroy(struct login_throttle **throttle);
 /* Judges and counts a token from an address (as in struct address_usage): wrong, valid, or not checked because the address is slowed.
    hash: hash of the token if it is valid; NULL: the token is wrong. */
 enum login login_throttle_judge(struct login_throttle *throttle, const uint8_t address[16], const uint8_t *hash, int64_t now_ns);

@@ -364,7 +364,7 @@ json_t *pairings_told(const struct pairings *pairings, int64_t now_ns)
         int left_s;
         hex_print(one->hash, TOKEN_HASH_BYTES, hash);
         tell_digits(one, now_ns, digits, &left_s);
-        if (left_s <= 0) /* expired; the entry is removed at the next request */
+        if (left_s <= 0) /* skips a waiting device whose digits have expired; the next request for pairing removes its entry */
             continue;
         json_array_append_new(waiting, json_pack("{s:s,s:s,s:s,s:i,s:i}", "hash", hash, "digits", digits, "wall", one->place.wall,
                                                  "display", one->place.display, "left_s", left_s));

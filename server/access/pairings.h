@@ -35,7 +35,7 @@ struct pairings;
 /* Reads the paired devices. folder: folder of the history, must outlive the result; NULL: no device can be paired. If the file cannot be
    read (logged), no device is accepted, and the file is not overwritten. Never returns NULL. */
 struct pairings *pairings_open(struct log *log, const char *folder, struct file_writer *writer);
-void pairings_close(struct pairings **pairings); /* &NULL is allowed; sets *pairings to NULL */
+void pairings_close(struct pairings **pairings); /* frees the pairings and sets *pairings to NULL; accepts a pointer to NULL */
 /* Returns true if the secret has the form of a token (tokens_make) with 256 bits. */
 bool pairings_secret_valid(const char *secret);
 /* Returns the reason why this daemon cannot pair devices, or REFUSAL_NONE. */

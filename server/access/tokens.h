@@ -35,7 +35,7 @@ void tokens_set_plant(struct tokens *tokens, const char *plant);
    pairings must stay valid until the next call. */
 typedef bool tokens_find_device(const void *pairings, const uint8_t hash[TOKEN_HASH_BYTES], struct token_holder *out);
 void tokens_set_pairings(struct tokens *tokens, tokens_find_device *find, const void *pairings);
-void tokens_destroy(struct tokens **tokens); /* &NULL is allowed; sets *tokens to NULL */
+void tokens_destroy(struct tokens **tokens); /* frees the tokens and sets *tokens to NULL; accepts a pointer to NULL */
 /* Reads the file again if it changed and has stopped changing. Returns true if it was read. */
 bool tokens_look(struct tokens *tokens);
 /* Returns the number of valid tokens. */

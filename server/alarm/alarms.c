@@ -115,7 +115,7 @@ static void add_links(struct alarms *alarms)
         if (device && (device->alarm < 0 || device->alarm >= (int)with_bad) && !(kind && !strcmp(kind, "replay")))
             add_link(alarms, device, (int)i, LINK_DELAY_NS);
     }
-    /* if all tags are never stale, the delay is longer, to bridge short losses of the connection */
+    /* a device whose tags never become stale gets a longer delay, at least LINK_DELAY_NS, to bridge short losses of the connection */
     for (size_t i = 0; i < tag_count; i++) {
         struct alarm *link = of_tag[i] < 0 || list[of_tag[i]].alarm < 0 ? NULL : &alarms->list[list[of_tag[i]].alarm];
         if (link && never_stale(alarms, i) && link->delays.on_ns < LINK_DELAY_NS)

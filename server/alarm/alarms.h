@@ -66,7 +66,7 @@ struct alarms_listener {
 struct alarms;
 /* Creates the alarms of a plant, all normal. plant must outlive them; the listener is copied. Never returns NULL. */
 struct alarms *alarms_create(const struct plant *plant, const struct alarms_listener *listener);
-void alarms_destroy(struct alarms **alarms); /* &NULL is allowed; sets *alarms to NULL */
+void alarms_destroy(struct alarms **alarms); /* frees the alarms and sets *alarms to NULL; accepts a pointer to NULL */
 
 /* Applies sample events of the store, in the order of the array. */
 void alarms_put(struct alarms *alarms, const struct sample_event *event, size_t count);

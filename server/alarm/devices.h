@@ -25,7 +25,8 @@ struct devices {
 };
 
 struct devices *devices_create(const struct plant *plant);         /* plant must outlive the result; never returns NULL */
-void devices_destroy(struct devices **devices);                    /* &NULL is allowed; sets *devices to NULL */
+/* frees the devices and sets *devices to NULL; accepts a pointer to NULL */
+void devices_destroy(struct devices **devices);
 int devices_find(const struct devices *devices, const char *name); /* returns the index, or -1 */
 
 /* Returns what a tag's quality says about its device: DEVICE_USABLE, DEVICE_GONE or DEVICE_UNKNOWN. */

@@ -37,7 +37,7 @@ struct journal_file;
 struct journal_file *journal_file_open(struct log *log, const char *folder, bool *renewed, int *error);
 /* Opens the file for reading. Returns NULL with *error on failure; *error 0: the file does not exist. */
 struct journal_file *journal_file_read(struct log *log, const char *folder, int *error);
-void journal_file_close(struct journal_file **file); /* &NULL is allowed; sets *file to NULL */
+void journal_file_close(struct journal_file **file); /* closes the file and sets *file to NULL; accepts a pointer to NULL */
 /* Writes all entries in one transaction, without the changes that the file already has. Returns -EBADMSG if the file is damaged. */
 int journal_file_write(struct journal_file *file, const struct journal_entry *entries, size_t count);
 int journal_file_forget(struct journal_file *file, int64_t before_us); /* deletes rows older than before_us */

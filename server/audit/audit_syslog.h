@@ -15,7 +15,7 @@ void audit_syslog_stop(struct audit_syslog **syslog);
 void audit_syslog_send(struct audit_syslog *syslog, const char *event, bool good, int64_t utc_us, const char *line, size_t count);
 
 struct syslog_message {
-    const char *host; /* "-" if it is not known */
+    const char *host; /* host name of this machine; "-" if unknown */
     int pid;
     const char *event;
     bool good; /* the action was done */

@@ -771,7 +771,8 @@ struct core_link *core_link_start(const struct core_link_params *params)
                                         "Seconds by which the core's clock is ahead of this machine's.");
     lws_set_log_level(LLL_ERR | LLL_WARN, NULL); /* libwebsockets logs only errors and warnings, because the link's own loop logs its
                                                     connections */
-    if (params->keeper) /* a reload lets this node lead, whatever the leader refused */
+    /* this node has just loaded its plant, so an earlier refusal by the leader no longer prevents it from taking the lead */
+    if (params->keeper)
         lease_keeper_set_refused(params->keeper, NULL);
     thread_init(&link->thread);
     link->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);

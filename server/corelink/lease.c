@@ -37,15 +37,16 @@ static void lead(struct lease *lease)
 void lease_saw(struct lease *lease, const struct lease_row *row, int64_t now_ns)
 {
     bool same = lease->known && is_same(row, &lease->row);
-    if (!same) /* a row of another epoch may be old, from a restored database */
+    if (!same) /* an offer counts only in a row of the same epoch: a row of another epoch may be an old one, from a restored database */
         lease->offered = lease->known && row->epoch == lease->row.epoch && !row->leader[0] && !strcmp(row->standby, lease->node);
     if (lease->leads && (!is_ours(lease, row) || row->epoch != lease->row.epoch))
         lease->lost = true;
-    else if (!lease->leads && lease->bids && is_ours(lease, row)) /* this node's bid changed the row, but the database's answer to the
-                                                                     bid was lost */
+    /* the row names this node, so its bid succeeded, although the database's answer to the bid was lost */
+    else if (!lease->leads && lease->bids && is_ours(lease, row))
         lead(lease);
     else if (!same)
-        /* the row has changed since this node sent its bid, so the bid, if it still arrives late, can no longer succeed */
+        /* the row has changed since this node sent its bid. Even if the bid reaches the database late, it can no longer succeed, so this
+           node stops waiting for its outcome */
         lease->bids = false;
     if (!same)
         lease->seen_ns = now_ns;
@@ -108,8 +109,8 @@ bool lease_promise(struct lease *lease, int64_t now_ns)
 
 void lease_renew(struct lease *lease, const char *standby)
 {
-    if (strcmp(lease->counts, standby) != 0) /* the renewal about to be sent may name another standby in the row, so promises of the old
-                                                one no longer count */
+    /* the renewal will name another standby in the row, so promises of the previous standby no longer count */
+    if (strcmp(lease->counts, standby) != 0)
         lease->counts[0] = 0;
 }
 

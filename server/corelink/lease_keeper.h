@@ -48,8 +48,8 @@ bool lease_keeper_is_alone(struct lease_keeper *keeper); /* Returns whether this
 void lease_keeper_set_standby(struct lease_keeper *keeper, const char *node, bool follows);
 /* Returns a new sequence number for a question to the standby, which the caller must send now; notes the time. */
 uint64_t lease_keeper_ask(struct lease_keeper *keeper);
-/* Returns the time since the newest request that the database or the standby has confirmed was sent: this node was certainly the leader at
-   that time. */
+/* Returns how long ago this node was certainly the leader, in nanoseconds: the time since it sent the newest request that the database or
+   the standby has confirmed. */
 int64_t lease_keeper_confirmed_age_ns(struct lease_keeper *keeper);
 /* Processes the standby's promise in answer to the question with that number. */
 void lease_keeper_promised(struct lease_keeper *keeper, const char *node, uint64_t number);

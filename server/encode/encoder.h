@@ -22,7 +22,7 @@ struct encoder_params {
 /* Creates an encoder. name: "jpeg", "png" or, unless left out of the build, "h264"; h264's packets depend on each other, so each stream
    needs an encoder of its own. library: the libavcodec encoder for H.264. Returns NULL on failure, logged. */
 struct encoder *encoder_create(struct log *log, const char *name, const char *library);
-void encoder_destroy(struct encoder **encoder); /* &NULL is fine; sets it to NULL */
+void encoder_destroy(struct encoder **encoder); /* frees the encoder and sets *encoder to NULL; accepts a pointer to NULL */
 /* Encodes a frame. Returns 0; -EAGAIN: call encoder_receive() first; other < 0: the frame cannot be encoded (logged). */
 int encoder_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params);
 /* Gets the next packet. Returns 0, and the caller owns *out (packet_unref()); -EAGAIN: no packet is ready, because none was sent or the

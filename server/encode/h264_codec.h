@@ -25,7 +25,7 @@ struct h264_codec_functions {
     /* Creates a codec. library: name of the libavcodec encoder. Returns NULL, with the reason in `why`, if libavcodec has no H.264
        encoder of that name. */
     struct h264_codec *(*create)(const char *library, char why[H264_WHY_BYTES]);
-    void (*destroy)(struct h264_codec **codec); /* &NULL is fine; sets it to NULL */
+    void (*destroy)(struct h264_codec **codec); /* frees the codec and sets *codec to NULL; accepts a pointer to NULL */
     /* Begins a frame of this size: *planes receives the planes that the caller must fill. A change of size restarts the stream. Returns
        0; < 0: failed, with the reason in `why`. */
     int (*begin)(struct h264_codec *codec, int width_px, int height_px, struct h264_planes *planes, char why[H264_WHY_BYTES]);

@@ -9,7 +9,7 @@ struct h264_upload;
 /* Sets the pixel format of a context that is not open yet, and its device if needed. Returns 0 or an AVERROR. Free *out with
    h264_upload_destroy(). */
 int h264_upload_create(AVCodecContext *context, struct h264_upload **out);
-void h264_upload_destroy(struct h264_upload **upload); /* &NULL is fine; sets it to NULL */
+void h264_upload_destroy(struct h264_upload **upload); /* frees *upload and sets it to NULL; accepts a pointer to NULL */
 /* Converts a frame (YUV 4:2:0, with its timestamp and picture type) and sends it to the encoder. Returns 0 or an AVERROR. */
 int h264_upload_send(struct h264_upload *upload, AVCodecContext *context, AVFrame *picture);
 

@@ -36,6 +36,6 @@ struct packet *packet_create(const struct frame *frame, enum wire_codec codec, b
 struct packet *packet_create_parts(const struct frame *frame, enum wire_codec codec, const void *bytes, const struct packet_part *parts,
                                    int part_count);
 struct packet *packet_ref(struct packet *packet);
-void packet_unref(struct packet **packet); /* &NULL is fine; sets it to NULL */
+void packet_unref(struct packet **packet); /* drops a reference and sets *packet to NULL; accepts a pointer to NULL */
 
 #endif

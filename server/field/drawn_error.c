@@ -303,10 +303,11 @@ static void add_areas(const struct asset_view *file, uint32_t first_index, uint3
     }
 }
 
-/* Returns an error that marks the whole level: twice the largest threshold (1, 1/2, ...) that MARK_ALL of the level's area reaches, at most
-   the level's largest error, so that vertices are marked with every limit below. 0: so much of the area reaches no threshold.
-   Distances along surfaces are measured on the same triangles. If most triangles are too long for the field, the distances are wrong, too,
-   so triangles without an error of interpolation cannot be trusted (tests/bench/notes/windows.md). */
+/* Returns the error with which all vertices of a level are marked if too much of the level is wrong; 0: it is not. Of the thresholds 1,
+   1/2, 1/4, ... it takes the largest one that the errors of at least the part MARK_ALL of the level's area reach, and returns twice this
+   threshold, but not more than the level's largest error. Reason: distances along the surface are measured on the same triangles. If most
+   triangles are too long for the field, the distances are wrong, too, so triangles without an error of interpolation cannot be trusted
+   either (tests/bench/notes/windows.md). */
 static float error_of_all(const struct weights *weights, const double erring[], double all, float largest)
 {
     for (int b = 0; b < WEIGHTS_ERRING && weights->distance != DISTANCE_EUCLIDEAN; b++)

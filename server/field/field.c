@@ -173,8 +173,9 @@ static const struct scalars *distance_scalars(struct field *field, int asset, co
 bool field_covers(struct field *field, int asset, const struct field_params *params)
 {
     const struct field_layout *layout = field_layout(field, asset, params);
-    if (field_params_cover(params) && layout && layout->assumed) /* uncertainty and blind spots depend on where sensors are, and this
-                                                                    layout only assumes the positions */
+    /* with assumed sensor positions there is no uncertainty and no blind spots to show, because both depend on the sensors' real
+       positions */
+    if (field_params_cover(params) && layout && layout->assumed)
         return false;
     return params->show == SHOW_DISTANCE ? find_sensor(layout, params->sensor) >= 0 : layout != NULL;
 }

@@ -101,7 +101,8 @@ bool field_at(struct field *field, int asset, const struct field_params *params,
               const struct field_place *place, struct field_point *out)
 {
     struct field_params room;
-    /* count is 0 if frames evaluate the field at each pixel: then neither they nor this point need values at vertices */
+    /* number of vertices that need values; 0 if frames evaluate the field at each pixel, because the value at a point then needs no
+       vertices */
     const size_t count = field_vertices(field, asset, params, field->scene->assets[asset].file->view.header->vertex_count);
     const struct scalars *scalars = field_scalars_of(field, asset, params, snapshot, count);
     if (!scalars)

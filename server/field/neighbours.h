@@ -24,7 +24,7 @@ struct neighbours;
 /* Prepares predictions for a group on an asset. Returns NULL if no sensor has a known position. The scene must outlive the result; the
    caller destroys it. */
 struct neighbours *neighbours_create(const struct scene *scene, int asset, int group);
-void neighbours_destroy(struct neighbours **neighbours); /* &NULL is fine; sets it to NULL */
+void neighbours_destroy(struct neighbours **neighbours); /* frees the predictions and sets *neighbours to NULL; accepts a pointer to NULL */
 size_t neighbours_count(const struct neighbours *neighbours);
 /* Returns the index of the tag of a sensor in the plant. */
 int neighbours_tag(const struct neighbours *neighbours, size_t sensor);

@@ -127,7 +127,8 @@ static double value_of(const struct field_state *state, const struct plant_tag *
 static struct state_input input_of(const struct field_state *state, const struct plant_tag *tag, const struct reading *reading)
 {
     bool good = !quality_is_bad(reading->quality) && isfinite(reading->value);
-    if (field_params_cover(&state->params)) /* coverage quantities (SHOW_UNCERTAINTY, SHOW_BLIND) do not depend on readings */
+    /* coverage quantities (SHOW_UNCERTAINTY, SHOW_BLIND) depend only on whether the sensor is good, so its value stays 0 */
+    if (field_params_cover(&state->params))
         return (struct state_input){ .usable = good ? SENSOR_USED : SENSOR_LOST };
     double value = good ? value_of(state, tag, reading->value) : 0;
     return (struct state_input){

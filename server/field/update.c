@@ -100,7 +100,8 @@ void update_rule(const struct field_state *state, const struct state_input *inpu
         bool around = state->params.interpolation == INTERPOLATION_FIN;
         float offset = around && !difference && !places ? (float)group->ambient : 0;
         *rule = (struct kernel_value){ .scale = 1, .offset = offset, .low = around ? offset : FLT_MAX, .high = around ? offset : -FLT_MAX };
-        if (state->params.interpolation == INTERPOLATION_GP) /* values of interpolation gp may exceed the readings */
+        /* values of interpolation gp may lie outside the range of the readings, so they are not clamped */
+        if (state->params.interpolation == INTERPOLATION_GP)
             rule->low = -FLT_MAX, rule->high = FLT_MAX;
         for (size_t m = 0; m < state->weights->member_count; m++) {
             float value = (float)inputs[state->weights->members[m]].value;
@@ -185,7 +186,8 @@ void update_begin(struct field_state *state, size_t count)
     update->anew = !state->sums || update->flags || state->added >= MAX_ADDED || !steps_are_small(update);
     for (size_t i = 0; i < update->all.count; i++)
         update->marks |= update->all.marked[i];
-    if (!update->anew && update->changed.count == 0) /* the update only computes more vertices than before */
+    /* no input changed: blocks shown before stay unchanged, and only new blocks are computed */
+    if (!update->anew && update->changed.count == 0)
         update->next = update->old;
     update_rule(state, state->now, &update->rule);
     pthread_mutex_init(&update->lock, NULL);
@@ -200,7 +202,8 @@ void update_begin(struct field_state *state, size_t count)
    value filled in around a lost sensor; the larger byte counts. */
 static uint8_t uncertain_of(double marked, double total, uint8_t filled)
 {
-    /* twice the fraction; weights of interpolation gp may be negative, so the sum may be 0 or the fraction above 1 */
+    /* 1 if half of the weight is on Uncertain sensors. Weights of interpolation gp may be negative, so `total` may be 0 and `part` above
+       2 */
     double part = total > 0 && marked > 0 ? 2 * marked / total : 0;
     uint8_t leans = (uint8_t)(part >= 1 ? 128 + (int)(127 * (fmin(part, 2) - 1)) : (int)(127 * part));
     return leans > filled ? leans : filled;
@@ -209,7 +212,7 @@ static uint8_t uncertain_of(double marked, double total, uint8_t filled)
 void update_flags(const struct field_state *state, const struct weights *weights, size_t vertex, double total, double marked,
                   struct scalar *at)
 {
-    bool blind = state->params.show == SHOW_BLIND; /* SHOW_BLIND has data around lost sensors like anywhere else */
+    bool blind = state->params.show == SHOW_BLIND; /* true: SHOW_BLIND, which has data around lost sensors, too */
     bool fill = blind || state->params.fill == FILL_NEIGHBOURS, filled = fill && weights->place[vertex] == PLACE_LOST;
     at->no_limits = weights->place[vertex] == PLACE_NO_LIMITS ? FLAG : 0;
     at->no_data = weights->place[vertex] == PLACE_GOOD || filled || at->no_limits ? 0 : FLAG;

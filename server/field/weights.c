@@ -184,7 +184,7 @@ struct weights *weights_create(const struct field_layout *layout, const struct f
     struct weights *weights = mem_new(sizeof(*weights));
     weights->layout = layout;
     weights->interpolation = params->interpolation;
-    /* prepared interpolations use distances along their own surface */
+    /* prepared interpolations always use distances along the surface, whatever distance the user chose */
     weights->distance = interpolation_is_prepared(params->interpolation) ? DISTANCE_GEODESIC : params->distance;
     weights->power = (float)params->power;
     weights->reach_m = (float)params->reach_m;

@@ -36,7 +36,7 @@ int gl_list_devices(FILE *out);
    this order, or only the requested kind. With a device, tries only that EGL device. While other contexts exist, tries only their kind.
    Returns NULL if none works; all reasons are logged. */
 struct gl *gl_create(struct log *log, enum gl_kind kind, const struct gl_device *device);
-void gl_destroy(struct gl **gl); /* &NULL is fine; sets it to NULL */
+void gl_destroy(struct gl **gl); /* destroys the context and sets *gl to NULL; accepts a pointer to NULL */
 
 /* Returns true if the context is lost (the GPU was reset, or its driver restarted). Then everything drawn or read back since the last
    call is invalid, and so are all GL objects: destroy everything that uses the context, then the context, and create a new one. */

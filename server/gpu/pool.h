@@ -31,13 +31,13 @@ struct pool_slice {
 
 /* Creates a pool. format: GL format of a texel. Before the pool is destroyed, release all its slices. */
 struct pool *pool_create(struct log *log, const char *name, GLenum format, size_t texel_bytes, GLbitfield flags);
-void pool_destroy(struct pool **pool); /* &NULL is fine; sets it to NULL */
+void pool_destroy(struct pool **pool); /* frees the pool and its buffers and sets *pool to NULL; accepts a pointer to NULL */
 /* Announces slices that will be taken next, so that they share one page if possible. texels: sum of their sizes. */
 void pool_expect(struct pool *pool, size_t texels, size_t slices);
 /* Takes a slice of `count` texels, with one reference. Returns NULL if the GPU has no room for it, logged. */
 struct pool_slice *pool_take(struct pool *pool, size_t count);
 struct pool_slice *pool_ref(struct pool_slice *slice); /* NULL is fine */
-void pool_unref(struct pool_slice **slice);            /* &NULL is fine; sets it to NULL */
+void pool_unref(struct pool_slice **slice);            /* drops a reference and sets *slice to NULL; accepts a pointer to NULL */
 size_t pool_offset(const struct pool_slice *slice);    /* returns the offset in bytes of the slice in its page's buffer */
 size_t pool_bytes(const struct pool_slice *slice);
 size_t pool_bytes_taken(const struct pool *pool); /* bytes of all pages */

@@ -16,7 +16,7 @@ struct program_params {
 /* Compiles and links a program. A line `#include "x.glsl"` is replaced by that embedded file. Returns the program's GL name; 0 on
    failure, with the compiler's messages logged. */
 GLuint program_create(struct log *log, const struct program_params *params);
-void program_destroy(GLuint *program); /* &0 is fine; sets it to 0 */
+void program_destroy(GLuint *program); /* deletes the program and sets *program to 0; 0 is a no-op */
 
 /* Compiles one stage from text. name: how log messages name the text. Returns 0 on failure, logged. */
 GLuint program_compile(struct log *log, GLenum stage, const char *name, const char *text, const char *defines);

@@ -442,7 +442,7 @@ static int write_all(struct historian *historian, int64_t mono_ns, int64_t utc_n
     int error = write_spooled(historian);
     if (!error && !historian->file) {
         if (!historian->waiting.count)
-            return 0; /* returns early, so that no empty history folder is created */
+            return 0; /* without rows to write, nothing is done, so that no empty history folder is created */
         make_folder(historian);
     }
     if (!error && !historian->recovered)
@@ -584,7 +584,7 @@ static void spool(struct historian *historian)
                   "history: %zu points could not be written; they wait in %s for the next start", rows->kept.count + rows->held.count,
                   *place);
     if (!error && historian->spool_path && strcmp(historian->spool_path, *place) != 0)
-        unlink(historian->spool_path); /* the rows of the old spool file are in the new one, too */
+        unlink(historian->spool_path); /* deletes the old spool file, because its rows have been saved in the new one, too */
     spool_places_free(places);
 }
 

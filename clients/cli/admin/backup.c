@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast backup` and `plantcast restore`: copy history, alarm journal and configuration of a plant into one folder, and back. For an
-   instance of the service, both start a helper program (deploy/backup, deploy/restore), which calls this one. */
+/* `plantcast backup` and `plantcast restore`: copy history, alarm journal and configuration of a plant into one folder, and back. If the
+   argument names an instance of the system service, the command replaces itself by the script deploy/backup or deploy/restore, which then
+   calls the command again with paths. */
 #include <dirent.h>
 #include <errno.h>
 #include <getopt.h>
@@ -38,7 +39,7 @@ struct backup_job {
     struct log *log;
     const char *folder;  /* backup folder */
     const char *history; /* value of --history */
-    json_t *files;       /* manifest entries: {"name":...,"bytes":...,"xxh128":...}; with "service":true for a file of the service */
+    json_t *files;       /* manifest entries: {"name":...,"bytes":...,"xxh128":...}; "service":true marks a file of --add */
     json_t *added;       /* paths of --add */
 };
 
@@ -163,7 +164,8 @@ static bool add_history(struct backup_job *job, const char *folder)
     return good;
 }
 
-/* Copies the files of --add, which only plantcast-restore unpacks. */
+/* Copies the files of --add into the backup and marks them "service":true in the manifest. plantcast-restore, the script that restores a
+   service, unpacks them; `plantcast restore` ignores them. */
 static bool add_service(struct backup_job *job)
 {
     size_t i;
@@ -517,7 +519,8 @@ static int back_up_plant(struct backup_job *job, const char *plant_path, const c
 static int run(int argc, char **argv, int (*command)(int argc, char **argv, struct backup_job *job))
 {
     struct backup_job job = { .log = log_create(LOG_WARN), .files = json_array(), .added = json_array() };
-    json_t *files = job.files; /* kept here to be released, because restore and verify let job.files point at a part of the manifest */
+    /* the whole manifest's reference to release: restore and verify replace job.files by an array inside the manifest */
+    json_t *files = job.files;
     int code = command(argc, argv, &job);
     json_decref(files);
     json_decref(job.added);

@@ -12,8 +12,8 @@
 #include "render/overlay/overlay.h"
 #include "value/quality.h"
 
-/* Copies the arguments of the snapshot query that the statement (signed text in the picture) contains to *options. Leaves out `at`, because
-   a relative `at=-8h` would mean another instant today; the statement also has the instant itself. Returns false if an argument is
+/* Reads the snapshot query from the picture's signed statement and copies its arguments to *options. Skips the argument `at`, because a
+   relative `at=-8h` would mean another instant today; the statement also has the absolute instant. Returns false if an argument is
    invalid. */
 static bool take_query(const json_t *statement, struct snapshot_options *options)
 {

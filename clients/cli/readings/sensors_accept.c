@@ -69,7 +69,8 @@ static int save(const char *path, char *before, char *after, const struct refusa
     return good ? 0 : 1;
 }
 
-/* Returns the list with `Place` cleared in all rows; NULL if it lacks a tag of the plant. */
+/* Returns a copy of the tag list in which the column `Place` is empty in all rows, for comparing two lists in all other columns. NULL: the
+   list lacks a tag of the plant. */
 static char *without_places(const struct plant *plant, const char *list)
 {
     uint8_t *all = mem_array(plant->tag_count + 1, sizeof(*all));
@@ -81,7 +82,8 @@ static char *without_places(const struct plant *plant, const char *list)
     return cleared;
 }
 
-/* Returns why the version cannot undo an acceptance (mem_free); NULL: it can, because it differs from the present list in `Place` alone. */
+/* Compares an earlier version of the tag list with the present one. Returns NULL if --undo may restore the version, because the two differ
+   in the column `Place` alone; else the reason why not (mem_free). */
 static char *wrong_version(const struct plant *plant, const char *before, const char *after)
 {
     char *now = without_places(plant, before), *then = without_places(plant, after), *why = NULL;
@@ -101,7 +103,8 @@ static char *wrong_version(const struct plant *plant, const char *before, const 
     return why;
 }
 
-/* Returns the path of the version that --undo names (mem_free); NULL: that is no version of the list at `path`. */
+/* Returns the path of the tag list's earlier version that the argument of --undo names (mem_free). NULL: the argument is not the name of a
+   version of the list at `path`. */
 static char *version_path(const char *path, const char *name)
 {
     const char *base = text_base_name(name), *list = text_base_name(path), *number = base + strlen(list);

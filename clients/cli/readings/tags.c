@@ -91,7 +91,7 @@ static void print_table(const json_t *tags)
         print_tag(json_array_get(tags, i), widths);
 }
 
-/* Fetches one page of the list, from the tag with index `first` on. Returns NULL with the reason printed. */
+/* Fetches one page of the daemon's tag list, which begins with the tag of index `first`. Returns NULL with the reason printed. */
 static json_t *fetch_page(const struct daemon_url *url, const char *name, size_t first)
 {
     struct text body = { 0 };
@@ -108,7 +108,7 @@ static json_t *fetch_page(const struct daemon_url *url, const char *name, size_t
     return page;
 }
 
-/* Fetches all pages of the list and joins them. Returns NULL with the reason printed. */
+/* Fetches all pages of the daemon's tag list and joins them. Returns NULL with the reason printed. */
 static json_t *fetch_all(const struct daemon_url *url, const char *name)
 {
     json_t *all = fetch_page(url, name, 0);

@@ -168,7 +168,8 @@ static void begin_payload(struct raw_websocket *raw)
     raw->message.length = raw->count = 0;
 }
 
-/* Reads the header of a frame. Returns > 0 once the header is complete, else the result of take(). */
+/* Reads the header of a frame. Returns > 0 once the header is complete, 0 if no more data is available now, or -1 with *why if the
+   connection has ended. */
 static ssize_t read_frame_header(struct raw_websocket *raw, const char **why)
 {
     while (raw->in_count < header_bytes(raw)) {
@@ -181,7 +182,8 @@ static ssize_t read_frame_header(struct raw_websocket *raw, const char **why)
     return 1;
 }
 
-/* Reads the payload of a frame. Returns the result of take(). */
+/* Reads a part of a frame's payload. Returns the number of bytes read, 0 if no data is available now, or -1 with *why if the connection has
+   ended or the message is too long. */
 static ssize_t read_payload(struct raw_websocket *raw, const char **why)
 {
     static char bytes[64 * 1024];

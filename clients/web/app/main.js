@@ -198,7 +198,9 @@ let toastTimer;
 session.on('error', async ({ text, about, code, refusal }) => {
     console.warn(`error about ${about}: ${text}`);
     if (['ack', 'share_view'].includes(about))
-        return; // no message: acknowledgements are not caused by the user, and without a short link the page shows the long one
+        // shows no message for two requests: acknowledgements are not caused by the user, and if a view gets no short link, the share
+        // dialog shows the long link
+        return;
     const { put, refusalText } = await import('../core/refusals.js');
     tell(put('page.refused', { text: refusalText(text, refusal, code) }));
 });
@@ -256,11 +258,11 @@ for (const query of ['(forced-colors: active)', '(prefers-contrast: more)'].map(
     wear();
 }
 serveInstalled();
-// Offers headsets on a browser that has one, also once one is connected.
+// Loads the button that shows the plant on a VR headset, if the browser supports headsets and one is connected, now or later.
 const offerVr = () => navigator.xr?.isSessionSupported('immersive-vr').then((yes) => yes && modules.prepare('enterVr'), () => {});
 navigator.xr?.addEventListener('devicechange', offerVr);
 offerVr();
-// Loads the watchdog; again later if the server is away.
+// Loads the watchdog of the main thread; if the server does not answer, tries again later.
 const watch = () => setTimeout(() => import('./common/watchdog.js').then(({ watchMainThread }) => watchMainThread(
     { scale: () => page.unit, reloads: document.body.classList.contains('wall') && parent === window })).catch(watch), WATCH_AFTER_MS);
 // no watchdog in a pane of a wall: the pane shares its main thread with the wall's page, which has a watchdog
@@ -276,6 +278,6 @@ useSheets();
 session.listen();
 refresh();
 
-// For the console and for end-to-end tests.
+// Global object with the page's parts, for the browser's console and for end-to-end tests.
 globalThis.plantcast = { ...page, legend, get cameraController() { return modules.there('cameraController'); },
     get trends() { return modules.there('trends'); }, get assets() { return modules.there('assets'); } };

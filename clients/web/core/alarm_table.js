@@ -26,7 +26,7 @@ export function sortRows(rows, { by, down }) {
 export const nextSort = ({ by, down }, name) =>
     (by !== name ? { by: name, down: false } : down ? { by: null, down: false } : { by: name, down: true });
 
-// Returns the area of a tag: that of its equipment, else the equipment's own tag; empty for a device.
+// Returns the area of a tag's equipment; if the equipment has no area, its tag name (such as P-101) or id; empty for a field device.
 export function areaOf(model, { asset: id }) {
     const asset = id ? model.asset(id) : null;
     return asset ? asset.area || asset.tag || asset.id : '';

@@ -43,7 +43,7 @@ export function fillOf(camera, box, aspect) {
         const all = places.map((place) => Math.max(0, Math.min(whole, place[axis])));
         return (Math.max(...all) - Math.min(...all)) / whole;
     };
-    return span(0, aspect) * span(1, 1) || 0; // a picture of 0x0 gives NaN
+    return span(0, aspect) * span(1, 1) || 0; // in a picture of 0x0 pixels, the fraction is NaN: returns 0
 }
 
 // Returns the camera at another distance from its target, in the same direction.
@@ -75,7 +75,7 @@ export const isRoom = ({ id, bounds }, assets) =>
     assets.some((other) => other.id !== id && isIn(other.bounds.min, bounds) && isIn(other.bounds.max, bounds));
 
 // Returns the cameras to try, in order, for a point on equipment with the bounds `box`. aspect: width of the picture divided by its height;
-// whole: bounds of the plant; solid: no eye is within the bounds of the equipment.
+// whole: bounds of the plant; solid true: leaves out cameras whose eye is within `box`, except the first.
 export function approaches({ camera, point, box, aspect, whole, solid }) {
     const bounds = distanceBounds(whole), first = face(camera, point, box, approachDistance(box, bounds));
     const all = TURNS.map(([azimuth, rise]) => nearer(orbit(first, azimuth, rise, point), box, aspect, bounds.least));

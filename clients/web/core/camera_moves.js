@@ -5,7 +5,9 @@ import { basis, heightAt, isParallel, LEAST_M, MAX_COORDINATE_M, metresPerPixel,
 import { add, along, cross, dot, length, middle, scale, subtract, unit } from './vector.js';
 
 export const USUAL_LIMITS = { near_m: 0.05, far_m: 1e5 }; // limits of zooming
-export const MAX_ELEVATION_DEG = 89; // at 90 degrees the horizon has no direction, and the picture would spin
+// largest elevation of the eye above or below the target: at 90 degrees the direction of the horizon is undefined, and the picture would
+// spin
+export const MAX_ELEVATION_DEG = 89;
 
 // Returns v turned by `angle` radians about a unit axis, right-handed (Rodrigues' formula).
 function turn(v, axis, angle) {
@@ -135,7 +137,8 @@ export function enterBox(origin, direction, box) {
     let near = -Infinity, far = Infinity;
     for (let i = 0; i < 3; i++) {
         const a = (box.min[i] - origin[i]) / direction[i], b = (box.max[i] - origin[i]) / direction[i];
-        if (Number.isNaN(a) || Number.isNaN(b)) // 0/0: the ray lies exactly in one of these two parallel faces
+        // 0/0: the ray lies in the plane of one of these two parallel faces, so the pair does not limit it
+        if (Number.isNaN(a) || Number.isNaN(b))
             continue;
         near = Math.max(near, Math.min(a, b));
         far = Math.min(far, Math.max(a, b));

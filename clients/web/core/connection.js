@@ -7,9 +7,9 @@ export const FIRST_WAIT_MS = 500, LONGEST_WAIT_MS = 8000, JITTER = 0.25;
 // interval of pings, which an idle server answers, too
 export const PING_MS = 2000;
 export const QUIET_MS = 5000;
-// silence after which the page reconnects: deploy/SCALING.md adds it up
+// silence of the server after which the page reconnects; deploy/SCALING.md explains how this adds to the duration of a failover
 export const DEAD_MS = 7000, CHECK_MS = 500;
-// limit of opening, and of the silence before the first message, which has long lists
+// timeout for opening the WebSocket, and for the server's first message, which may have long lists
 export const OPENING_MS = 10000;
 
 const GOING = 1001, FULL = 1013, FULL_MS = 10000, ANSWER_MS = 1000;

@@ -34,7 +34,7 @@ export function readHeader(data) {
     return grid;
 }
 
-// Reads the symbols of near and far codes.
+// Reads the codes of cells from bytes: a symbol has the difference from a predicted code, or announces the code itself in two bytes.
 class Symbols {
     constructor(bytes, at, levels) {
         Object.assign(this, { bytes, at, levels });
@@ -52,7 +52,8 @@ class Symbols {
     }
 }
 
-// Returns the median of left, up and the plane through all three codes, which is 0 where a neighbour is missing.
+// Predicts a cell's code from the codes of its left, upper and upper left neighbours, 0 for a missing one: the median of left, up and left
+// + up - corner (the plane through all three), as in JPEG-LS.
 function predicted(left, up, corner) {
     if (!left || !up || !corner)
         return left || up;
@@ -80,11 +81,11 @@ function readCodes({ columns, rows, levels }, bytes) {
     return { near, far, back, at: symbols.at };
 }
 
-// Reads the masks of divided cells.
+// Reads the masks of divided cells (cells with a near and a far surface). A mask says which of its pixels show the near one.
 class Masks {
     constructor({ columns, rows, maskSide }, { near, far, back }) {
         Object.assign(this, { columns, maskSide, near, far, back, wide: columns * maskSide });
-        this.bits = new Uint8Array(this.wide * rows * maskSide); // 255 where the picture is near
+        this.bits = new Uint8Array(this.wide * rows * maskSide); // one byte per mask bit: 255 where the picture shows the near surface
         this.row = new Uint8Array(maskSide); // mask bits of the row above the row being read
     }
 
@@ -134,7 +135,8 @@ function readMasks(grid, bytes, codes) {
 export function readGrid(header, bytes) {
     need(bytes.length === header.dataBytes, `${bytes.length} bytes, ${header.dataBytes} stated`);
     const codes = readCodes(header, bytes), { near, far } = codes;
-    const isEmpty = near.every((code) => code === 0); // true: no cell has a depth, so the base has no meaning
+    // true: the grid shows no surface, so `base`, the depth of the lowest code, may have any value
+    const isEmpty = near.every((code) => code === 0);
     need(header.parallel || header.base > 0 || isEmpty, `a depth of ${header.base}`);
     return { ...header, payload: null, near, far, masks: readMasks(header, bytes, codes) };
 }

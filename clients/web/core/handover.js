@@ -23,7 +23,8 @@ function addRaise(raised, { tag, kind, priority, value, limit, time_us: us }) {
         count: known.count + Number(isNew), last: us, value, limit });
 }
 
-// Adds what an operator did. One action on several alarms of a tag is one entry.
+// Adds a row of the journal that records an operator's action. Equal actions on several alarms of a tag within SAME_ACT_US become one
+// entry.
 function addAct(list, row) {
     const { tag, kind, event, who, reason, time_us: us } = row;
     const same = list.findLast((one) => one.tag === tag && one.event === event && one.who === who && one.reason === reason);

@@ -29,7 +29,7 @@ export class Model {
         this.clockSet = true; // true: the server's clock is synchronised
         this.clockErrorMs = null; // maximum clock error; null: unknown
         this.leapS = 0; // leap second announced for the end of the month: 1: will be inserted, -1: will be removed, 0: none
-        this.oldest = null; // { ms, at }: at the time `at`, no reading that is not bad was older than `ms`
+        this.oldest = null; // { ms, at }: at the time `at`, the age of each good or uncertain reading was at most `ms`; null: unknown
     }
 
     // Freezes the model at a past instant: ages and alarms then come from the readings of that instant.

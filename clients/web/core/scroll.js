@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scroll position of a virtual list (list_window.js).
 
-// Returns a scroll position at which a row is completely visible; the present one if it is.
+// Returns the scroll position nearest to the present one at which a row is completely visible.
 export function scrollTo(tops, row, scrollTop, height) {
     if (tops[row] < scrollTop)
         return tops[row];

@@ -8,8 +8,9 @@ function textOf(item, ...texts) {
     return known.get(item);
 }
 
-// Returns a function that finds an asset: it returns { asset, tags (to list), byTag (true: found by its tags) }, or null. All words must
-// occur in the asset's texts, which lists all its tags, or in those of one tag. An empty search returns null instead.
+// Returns a function that tests whether an asset matches the words in `wanted`: it returns { asset, tags (to list), byTag (true: found by
+// its tags) }, or null. All words must occur in the asset's own texts (then all its tags are listed), or in these and those of one tag. If
+// `wanted` has no words, search() returns null.
 export function search(wanted) {
     const words = wanted.toLowerCase().split(/\s+/).filter(Boolean);
     return words.length === 0 ? null : (asset) => {

@@ -189,7 +189,7 @@ export class Session {
             ...(this.anew ? { anew: true } : {}) };
     }
 
-    // Default parameters of the group and the plant, which need not be sent.
+    // Returns the default parameters of the shown group and the plant, which need not be sent to the server.
     get ownParams() {
         return this.ownOf(this.group);
     }
@@ -387,8 +387,9 @@ export class Session {
         return home(plant, width, height, lies === null ? {} : besideLegend(width, height, lies, title.length));
     }
 
-    // Forgets the data that all sessions share; after its greeting, the server sends what there is. views: { id, title, view, fixed } or {
-    // ..., by, time_us }; walls: what desks sent to panes, and which displays are connected.
+    // Empties the lists that all sessions share; the server sends them after its greeting. views: [{ id, title, view, fixed } or { id,
+    // title, view, by, time_us }]; notes: shift notes; pointed: positions at which users point on walls; walls: views that users sent to
+    // panes of walls, and the connected displays.
     forget() {
         Object.assign(this, { views: [], notes: [], pointed: [], walls: null });
     }
@@ -455,7 +456,7 @@ const HANDLERS = {
 
     params(message) {
         if (message.seq < this.paramsSeq)
-            return; // this answers an earlier change, which a newer one has replaced
+            return; // ignores the answer to an earlier change of parameters, because a newer change has been sent
         this.confirmed = this.params = pick(message, SAID);
         this.emit('params');
     },
@@ -557,11 +558,14 @@ const HANDLERS = {
             return;
         }
         if (message.about === 'hello' && !this.welcomed && this.helloParts.length > 0) {
-            this.emit('astray', message); // a part of our earlier view does not exist in this plant or version
+            // the server refused a part of the view that the page asked for, because the part does not exist in this plant or version:
+            // greets again without it
+            this.emit('astray', message);
             this.helloWithout(message.text.split(':')[0]);
             return;
         }
-        if (message.about === 'follow' && this.leader !== null) { // the session to follow does not exist, or not yet
+        // the session to follow has ended or has not started yet: following.js asks again later
+        if (message.about === 'follow' && this.leader !== null) {
             this.emit('following');
             return;
         }

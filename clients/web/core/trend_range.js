@@ -6,7 +6,7 @@ import { fieldInstant, fieldText } from './instant.js';
 const DAY_MS = 86400e3;
 export const LEAST_US = 10e6, LONGEST_US = 400 * 86400e6; // shortest and longest range of a chart
 
-// Words of all languages of the page, because people type what they are used to.
+// Words for time ranges in all languages of the page, because users may type in a language other than the page's.
 const UNITS = [[1, /^(?:s|sec|seconds?|sek|sekunden?|초)$/], [60, /^(?:m|min|minutes?|minuten?|분)$/],
     [3600, /^(?:h|hours?|hrs?|std|stunden?|시간)$/], [86400, /^(?:d|days?|t|tage?n?|일)$/], [604800, /^(?:w|weeks?|wochen?|주)$/]];
 const LAST = /^(?:(?:the )?(?:last|past)|(?:die )?letzten?r?s?|최근|지난)?\s*(\d+(?:[.,]\d+)?)\s*([a-z]+|초|분|시간|일|주)$/;

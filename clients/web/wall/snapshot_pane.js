@@ -41,7 +41,7 @@ export function SnapshotPane(pane, { session, title, body, timeOf }) {
             if (said.picture && said.picture !== shown?.picture)
                 await load(state);
         } catch {
-            // not reported here: tick() reports the silence once it is too long
+            // the failure is not reported here: tick() reports that the server is silent once that has lasted too long
         } finally {
             asks = false;
         }

@@ -58,7 +58,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
     });
     requestAnimationFrame(flush);
 
-    // the leading display chooses the view
+    // --- the view, which the leading display chooses for all displays
 
     let refused = '';
     session.on('error', ({ text, refusal, code }) => { refused = refusalText(text, refusal, code); });

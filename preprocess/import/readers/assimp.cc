@@ -144,7 +144,8 @@ Assimp::IOStream *of_text(const std::string &text)
 struct files : Assimp::DefaultIOSystem {
     text_encoding *encoding;
     const char *asked;
-    bool searched = false; /* the file was searched for lost shapes; searched only once, although Assimp opens it several times */
+    /* true: the file was already searched for lost shapes; Assimp opens it several times, but one search is enough */
+    bool searched = false;
 
     files(text_encoding *encoding_of_all, const char *asked_for) : encoding(encoding_of_all), asked(asked_for)
     {
@@ -451,7 +452,7 @@ bool is_step(const aiNode *node)
 void add(assimp_reader *r, const aiNode *node, const transform &steps, int parent, int depth)
 {
     double matrix[16];
-    /* this is the root node that Assimp adds to every model */
+    /* true: this is the root node that Assimp adds to every model; it is left out of the output */
     bool made_up = depth == 0 && node->mNumMeshes == 0 && node->mTransformation.IsIdentity();
     bool step = is_step(node) && node->mNumMeshes == 0;
     transform place = steps * transform_of(node);

@@ -19,7 +19,8 @@ static std::string name_before(const std::string &bytes, size_t end)
         const char *head = bytes.data() + end - length - HEAD;
         uint32_t said;
         memcpy(&said, head + 1, sizeof(said));
-        if (*head == 'S' && said == length + strlen("??Model")) /* two control characters and the class follow the name */
+        /* the stated length includes two control characters and the class name "Model", which follow the name */
+        if (*head == 'S' && said == length + strlen("??Model"))
             return bytes.substr(end - length, length);
     }
     return "";

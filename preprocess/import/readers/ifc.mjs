@@ -38,7 +38,7 @@ class Model {
             try {
                 line = this.api.GetLine(this.id, id);
             } catch {
-                line = null; // the id refers to a statement that is missing from the file
+                line = null; // null, because the file refers to this id but has no statement with it
             }
             this.lines.set(id, line);
         }
@@ -127,7 +127,7 @@ function meshOf(glb, geometries, parts, name) {
     return { mesh: geometries.made.get(key), matrix: frame };
 }
 
-// Copies all geometry while web-ifc streams its meshes, because it is not available afterwards.
+// Reads the triangles of all elements from web-ifc. Copies each mesh while web-ifc streams it, because web-ifc does not keep it.
 function readGeometry(api, id, model) {
     const shown = new Map(), known = new Map(), cutters = new Map();
     const copy = (geometryId) => {
@@ -261,7 +261,7 @@ async function main([input, output, , , , encoding]) {
 }
 
 main(process.argv.slice(2)).catch((error) => {
-    // an exception that is not an Error object comes from web-ifc itself
+    // only exceptions of this program are Error objects with a message for users; others come from web-ifc, so their text is only quoted
     const reason = String(error?.message ?? error).split('\n')[0], ours = error?.constructor === Error;
     process.stderr.write(`${ours && reason ? reason : `its content could not be read (${reason || 'no reason is known'})`}\n`);
     process.exit(1);

@@ -43,7 +43,9 @@ struct grade {
 struct segment_values {
     entity parent;
     gp_XY start;
-    double heading_rad, from_mm, length_mm; /* from: start on the parent curve. A negative length runs against the parent's direction. */
+    /* from_mm: length along the parent curve at which the segment starts; length_mm: negative if the segment runs against the parent's
+     * direction */
+    double heading_rad, from_mm, length_mm;
 };
 
 /* Converts an IFC measure, which is a length or a parameter of the parent curve, to a length along the parent curve in millimetres. */

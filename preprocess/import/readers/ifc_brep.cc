@@ -63,7 +63,7 @@ class step_writer
     {
         add(root);
         std::ostringstream head;
-        head << std::showpoint << std::setprecision(17); /* always prints a decimal point, which STEP requires in real numbers */
+        head << std::showpoint << std::setprecision(17); /* showpoint: STEP requires a decimal point in real numbers, also in whole ones */
         head << "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
              << "FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\n"
              << "#1=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));\n"
@@ -201,7 +201,7 @@ class step_writer
         }
         if (type == "IFCORIENTEDEDGE")
             return "ORIENTED_EDGE('',*,*," + text_of(from[2]) + (from[3].is(".F.") ? ",.F.)" : ",.T.)");
-        /* not converted: a 3D curve that also has curves in the parameter space of surfaces */
+        /* a 3D curve with additional curves in the parameter space of surfaces is not converted: web-ifc builds the item instead */
         if (type == "IFCSURFACECURVE" || type == "IFCSEAMCURVE")
             throw unsupported(type);
         for (const auto &known : names)

@@ -68,7 +68,7 @@ export function uncutOpenings(model, voids, geometry, solids) {
             return { geometryExpressID: `solid ${item}`, flatTransformation: place };
         });
         if (!model.line(opening)?.Representation?.value || elements.every((element) => !shown.has(element)))
-            return; // the opening has no shape, or none of its elements has one
+            return; // nothing to check: the opening has no shape, or none of the elements from which it is cut has one
         const points = cutter ? innerPoints(of(opening, cutter)) : [];
         const hosts = elements.filter((element) => shown.has(element)).map((element) => of(element, shown.get(element)));
         const filled = points.filter((point) => hosts.some((host) => isInside(point, host))).length;

@@ -118,7 +118,7 @@ TopoDS_Shape along_curve(const ifc_model &in, const entity &item)
     if (whole)
         printf("error\t1\tOpen CASCADE: #%d: its parameters lie outside its curve: using the whole curve\n", item.id);
     std::vector<TopoDS_Face> faces = profile_of(in, in.statements.get(item[0]));
-    bool level = true; /* the fixed direction is perpendicular to the whole curve */
+    bool level = true; /* true: the profile's fixed direction is perpendicular to the curve at both ends of each piece */
     for (const curve_piece &piece : pieces)
         for (bool at_end : { false, true })
             level = level && std::fabs(piece.tangent(at_end).Dot(gp_Vec(frame.up))) < 1e-6;

@@ -256,7 +256,7 @@ static void review_asset(struct planning *p, const struct plant_asset *asset, st
         say(p, REVISION_ASSET, "moved", asset->id, "%.3f m", moved_m);
 }
 
-enum taken { TAKEN, TAKEN_NOW /* the new model has nodes of the asset, the old model had none */, TAKEN_NOTHING };
+enum taken { TAKEN, TAKEN_NOW /* the old model had no nodes of the asset, the new one has some */, TAKEN_NOTHING };
 
 /* Marks the nodes of the asset in the old and the new model (before[], after[]), and records changes of its patterns. */
 static enum taken take(struct planning *p, const struct plant_asset *asset, struct asset_edit *edit)

@@ -27,7 +27,7 @@ struct openid_config {
 
 /* Reads the file. Returns NULL on failure, already logged. */
 struct openid_config *openid_config_read(struct log *log, const char *path);
-void openid_config_free(struct openid_config **config); /* &NULL is allowed; sets *config to NULL */
+void openid_config_free(struct openid_config **config); /* frees the configuration and sets *config to NULL; accepts a pointer to NULL */
 /* Returns the highest role that a group gives; ROLE_NOBODY: the group gives no role. */
 enum role openid_config_role(const struct openid_config *config, const char *group);
 

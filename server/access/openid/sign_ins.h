@@ -27,7 +27,7 @@ struct person {                 /* a signed-in person; the struct owns its texts
 
 struct sign_ins;
 struct sign_ins *sign_ins_create(void);
-void sign_ins_destroy(struct sign_ins **table); /* &NULL is allowed; sets *table to NULL */
+void sign_ins_destroy(struct sign_ins **table); /* frees the table and sets *table to NULL; accepts a pointer to NULL */
 
 /* Begins a log-in with new secrets. Each address may have a few log-ins in progress; a new one replaces the address's own oldest one, so
    that no address displaces another's. Returns the log-in, valid until the next call; NULL: the system has no randomness. */

@@ -44,7 +44,7 @@ static int64_t boot_s(void)
 static int64_t count_files(void)
 {
     DIR *folder = opendir("/proc/self/fd");
-    int64_t count = -3; /* starts below 0, so that ".", ".." and the descriptor of the folder itself are not counted */
+    int64_t count = -3; /* begins at -3, so that ".", ".." and the descriptor of the folder itself are not counted */
     for (; folder && readdir(folder);)
         count++;
     if (folder)

@@ -215,8 +215,9 @@ bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES])
         int abi;
         const char *missing;
     } parts[] = {
-        /* abi: the Landlock ABI that first restricts an access; missing: the access that commands under `convert` have without it. Readers
-           do not have it, because seccomp blocks it. TCP and devices are blocked by seccomp for both. */
+        /* abi: first version of Landlock that can restrict an access; missing: the access, which commands under `convert` have on kernels
+           with an older version. Programs that read models never have these accesses, because seccomp blocks the system calls. TCP and
+           devices are missing in this table, because seccomp blocks them for commands, too. */
         { ABI_RENAME, "read and write all files of this user" },
         { ABI_TRUNCATE, "empty all files that this user may write" },
         { ABI_SCOPES, "signal other processes of this user" },

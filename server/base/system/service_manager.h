@@ -27,7 +27,7 @@ int service_take_socket(void);
 /* Returns true if a descriptor is connected to the journal (JOURNAL_STREAM). */
 bool service_is_journal(int fd);
 struct service_field {
-    const char *name, *value; /* NAME in capitals; value NULL: the field is left out */
+    const char *name, *value; /* name: field name in capitals, as in MESSAGE_ID; value NULL: the field is left out */
 };
 #define SERVICE_JOURNAL_SOCKET "/run/systemd/journal/socket"
 /* Sends one entry to the journal's socket at socket_path. Returns false if the entry could not be delivered. */

@@ -157,7 +157,7 @@ size_t charset_encode(struct charset_encoder *encoder, const char *utf8, size_t 
     size_t room = out_bytes;
     if (encoder->converter == (iconv_t)-1)
         return 0;
-    iconv(encoder->converter, NULL, NULL, NULL, NULL); /* forgets a shift that an earlier text left */
+    iconv(encoder->converter, NULL, NULL, NULL, NULL); /* resets the converter's shift state, which an earlier text may have changed */
     bool good = iconv(encoder->converter, &from, &count, &to, &room) == 0 && count == 0;
     return good ? out_bytes - room : 0;
 }

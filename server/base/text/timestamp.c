@@ -144,7 +144,7 @@ static bool parse_seconds(const char *text, int64_t *t_us)
     for (; *text >= '0' && *text <= '9' && count < 11; count++, text++)
         seconds = seconds * 10 + (*text - '0');
     *t_us = seconds * US_PER_S + fraction(&text);
-    return count > 0 && !*text && seconds < INT64_C(7258118400); /* 7258118400: the start of the year 2200 */
+    return count > 0 && !*text && seconds < INT64_C(7258118400); /* refuses seconds from 7258118400, the start of the year 2200, on */
 }
 
 bool timestamp_parse(const char *text, int64_t now_us, int64_t *t_us)

@@ -18,9 +18,10 @@ export function heldSince(session, { tag, kind }) {
     return then.date === clock(nowUs / 1000).date ? minute : `${then.day} ${minute}`;
 }
 
-// Returns as text the value at which an alarm was raised, the present value or since when there is none, and the limit. An alarm without
-// a limit has only the second part. The present value is a dash if `fresh` is false (no messages arrive from the server); it is left out
-// while the past is shown.
+// Returns the values of an alarm as text, in three parts: the value at which the alarm was raised; the present value, or since when there
+// is no usable one; the limit. For an alarm without a limit, the text has only the time since when there is no usable value, or is empty.
+// If `fresh` is false (no messages arrive from the server), a dash replaces the present value. While the past is shown, the second part is
+// left out.
 export function limitText(session, alarm, fresh) {
     const { model, time } = session, { tag, value, limit } = alarm, isPast = time.atUs !== null;
     const since = fresh && !isPast ? heldSince(session, alarm) : null, held = since && say('alarms.since', { time: since });

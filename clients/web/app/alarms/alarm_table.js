@@ -88,15 +88,15 @@ function timeText(session, us) {
 const flyButton = (tag, name, fly) => make('button', { type: 'button', class: 'alarm-go', title: say('alarms.fly', { tag: tag.name }),
     onclick: () => fly(tag) }, name);
 
-// Returns the <tr> of a row. { look (attributes), pick, state, note, also, buttons } differ between the list and the journal. fly(tag):
-// called by the button on the tag.
+// Returns the <tr> of a row of the alarm list or the journal, which pass different parts: look (attributes of the <tr>), pick (checkbox),
+// state (text), note and also (texts in the description), buttons. fly(tag): called when the user presses the tag's button.
 export function rowOf(session, row, fresh, { look, pick, state, note, also = '', buttons, fly }) {
     const { tag, kind, priority } = row, { text } = textsOf(session.model, tag), name = make('b', {}, tag.name);
     const cell = (col, title, ...content) => make('td', { 'data-col': col, title }, ...content);
     const about = [note, row.about, also].filter(Boolean);
     const element = make('tr', look, cell('pick', null, pick), cell('state', state, state),
         cell('priority', null, badge(priority, isGone(row.state))),
-        // a device has no position in the model
+        // the alarm of a field device has no tag index and no position in the model to fly to, so its name is not a button
         cell('tag', null, tag.index === null ? name : flyButton(tag, name, fly)),
         cell('kind', null, say(`kind.${kind}`)), cell('area', row.area, row.area),
         cell('about', about.join(' · '), ...about.flatMap((part, i) =>

@@ -20,7 +20,8 @@ const WHICH = ['all', 'waiting', 'active', 'gone'];
 const FILTERS = { words: 'alarms-words', which: 'alarms-which', priority: 'alarms-priority', area: 'alarms-area' };
 
 export class AlarmList {
-    // showTag(tag) and flyToTag(tag) are functions of the page; of `overlay` only `fresh` is used.
+    // showTag(tag) selects a tag, flyToTag(tag) moves the camera to it. The list reads only overlay.fresh (true: messages arrive from the
+    // server).
     constructor({ session, modules, overlay, showTag, flyToTag }) {
         Object.assign(this, { session, modules, overlay, showTag, flyToTag });
         // selected rows: tag -> signature of the tag's alarms at the time of selection (see signatureOf)

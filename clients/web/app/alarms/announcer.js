@@ -5,7 +5,7 @@ import { say } from '../../core/words.js';
 import { byId } from '../common/dom.js';
 import { limitText } from './alarm_bar.js';
 
-const MOST = 3; // alarms that are announced one by one; the others are counted
+const MOST = 3; // maximum number of alarms whose text is read out in one announcement; of the others, only the number is read out
 const READ_MS = 3000; // shortest time between two announcements: a screen reader drops a text that is replaced too soon
 
 export class Announcer {
@@ -13,7 +13,7 @@ export class Announcer {
         Object.assign(this, { session, waiting: [], timer: null });
     }
 
-    // Announces alarms, those of a flood together.
+    // Queues newly raised alarms. All alarms that are queued when the next announcement is due are announced together.
     take(raised) {
         this.waiting.push(...raised.map((alarm) => ({ priority: alarm.priority, text: this.textOf(alarm) })));
         if (this.timer === null)

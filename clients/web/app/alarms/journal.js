@@ -92,7 +92,8 @@ export class Journal {
         return this.read();
     }
 
-    // Reads the span. Of several reads that run at the same time, the last one counts.
+    // Requests the journal rows of the chosen time span and shows them. If a newer request has started meanwhile, the rows of this one are
+    // dropped.
     async read() {
         const [fromUs, toUs] = this.limits, number = this.number = (this.number ?? 0) + 1;
         Object.assign(this, { dirty: false, readAt: performance.now() });

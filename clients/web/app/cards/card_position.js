@@ -41,7 +41,8 @@ function placesOf(wide, tall, { left, top, right, bottom }, at) {
     }))];
 }
 
-// Returns where a point of the plant is in the picture on the screen, in CSS pixels; null: behind the camera. half: of a split view.
+// Returns the position in CSS pixels at which the picture on the screen shows a point of the plant; null: the point is behind the camera.
+// half: which half of a split view, 0 left, 1 right.
 export function placeInPicture({ picture, shown }, { width, height }, position, half = 0) {
     const part = picture && halves(shown, picture.shownWidth)[half];
     const at = part && projector(picture.camera, part.width, picture.fullHeight)(position);
@@ -50,7 +51,7 @@ export function placeInPicture({ picture, shown }, { width, height }, position, 
 
 // Positions the card next to the point `at` ([x, y] in CSS pixels), clear of the status banner and the legend. If `at` is null, the card
 // stands in a corner. Other visible markers of `overlay` stay uncovered where there is room.
-const places = new WeakMap(); // element -> { of (what the card describes), place }
+const places = new WeakMap(); // card's element -> { of (the object that the card describes), place (the card's last position) }
 export function standBeside(element, { width, height }, at, overlay, of) {
     const banner = byId('banner'), legend = byId('legend'), lies = legend.offsetWidth > width / 2;
     const above = banner.hidden ? 0 : banner.offsetTop + banner.offsetHeight, strip = lies ? legend.offsetTop + legend.offsetHeight : 0;

@@ -4,7 +4,8 @@
 let shownUs = null;
 const listeners = new Set();
 
-// f(us, from): us is null if the pointer points at no instant; from: the object that called pointAtInstant().
+// Registers f(us, from), which is called when the instant under the pointer changes. us: the instant in microseconds; null: the pointer
+// points at no instant. from: the object that called pointAtInstant().
 export const onCrosshair = (f) => listeners.add(f);
 
 export function pointAtInstant(us, from) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sheets: on a phone, panels and cards stand below the picture, or at its side, instead of covering it (common/sheet.css). A sheet has two
-// heights, between which a tap or a drag on its grip changes: the style sheet has both, the class `other-sheet` chooses the second. Also
-// opens the legend's strip by a tap.
+// heights, which are defined in the style sheet; the class `other-sheet` on the root element chooses the second. A tap or a drag on the
+// sheet's grip toggles the class. This file also expands the legend's strip on a tap.
 import { byId, phone } from './dom.js';
 
 const GRIP_PX = 24, SLOP_PX = 8;
@@ -19,7 +19,8 @@ function stand() {
 const { documentElement: root } = document;
 const sheetHeight = () => parseFloat(getComputedStyle(root).getPropertyValue('--sheet'));
 
-// Changes to the other height; after a drag, only if that is higher (`grows`) or lower.
+// Switches sheets to their other height. grows: direction of a drag, true: only if the other height is higher, false: only if it is lower;
+// null: a tap, which always switches.
 function changeHeight(grows = null) {
     const before = sheetHeight();
     root.classList.toggle('other-sheet');
@@ -55,7 +56,7 @@ document.addEventListener('pointerup', (event) => {
 document.addEventListener('pointercancel', () => { drag = null; });
 for (const id of ['legend', 'legend-right'])
     byId(id).addEventListener('click', () => byId(id).classList.toggle('whole', phone.matches && !byId(id).classList.contains('whole')));
-// The time bar leaves less room, so that sheets have their usual height again when it opens or closes.
+// Returns sheets to their usual height when the time bar opens or closes, because the time bar changes the room for sheets.
 new MutationObserver(() => root.classList.remove('other-sheet'))
     .observe(byId('timeline'), { attributes: true, attributeFilter: ['hidden'] });
 phone.addEventListener('change', stand);

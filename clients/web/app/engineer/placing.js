@@ -72,7 +72,8 @@ export class Placing {
     // Sends the unsaved draft positions again after a reload of the plant.
     onWelcome() {
         if (this.saving)
-            return; // no answer yet: the server will send the result of the save
+            // a save is running and its answer is pending: the server will send the result, so the draft positions need not be sent again
+            return;
         const known = ({ tag, asset }) => this.session.model.tag(tag) && this.session.model.asset(asset);
         this.moves = this.moves.filter(known);
         this.undone = [];
@@ -219,7 +220,7 @@ export class Placing {
 
     showDiff({ file, conflict, hash, lines, more }) {
         if (hash !== null && hash === this.confirmed)
-            return; // this answer is ignored: it describes the list that is already being saved
+            return; // ignores this difference of tag lists, because the user has confirmed the same list already and it is being saved
         this.stopSaving();
         const close = () => this.dialog.close();
         const change = ([number, before, after]) => make('div', { class: 'change' }, make('span', {}, say('eng.diff.line', { n: number })),

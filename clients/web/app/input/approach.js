@@ -111,7 +111,7 @@ export class Approach {
     }
 
     // Returns a camera in the same room as the tag: the one with the longest free way to the tag, or else to the equipment that the tag is
-    // in. Returns null if there is no ROOMY place for the eye.
+    // in. Returns null if no camera has at least the part ROOMY of its distance free.
     async findInside(cameras, tag, solid, isOvertaken) {
         const latest = performance.now() + SEARCH_MS;
         let best = null, most = -Infinity;
@@ -168,7 +168,8 @@ export class Approach {
         return { seen: isThere || (sensor === tag.name && !occluded), asset, position };
     }
 
-    // Returns at how many of the AROUND points near the centre an asset other than `id` is in front; stops counting at `most`.
+    // Picks at the points AROUND, near the centre of the camera's picture. Returns at how many of them an asset other than `id` is clearly
+    // in front of the target; stops counting at `most`.
     async coverAround(camera, { id }, most) {
         const far = length(subtract(camera.target, camera.eye));
         let count = 0;

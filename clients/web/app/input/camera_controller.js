@@ -45,9 +45,9 @@ export class CameraController {
         });
         window.addEventListener('blur', () => this.keys.clear());
         new ResizeObserver(() => this.stayHome()).observe(viewport.element);
-        // stays in the home view, because the picture's shape changes when a view is split or unsplit
+        // a view that is split or unsplit gives pictures another shape: a camera in the home view is fitted to the new shape
         session.on('params', () => this.stayHome());
-        probeCodecs(); // tests H.264 now, because the camera is about to move
+        probeCodecs(); // tests now whether the browser decodes H.264, which the pictures of a moving camera will need
         session.greeted(() => session.reprojects && modules.prepare('warp'));
     }
 
@@ -68,7 +68,8 @@ export class CameraController {
         const place = this.place(event);
         if (!this.gestures.active)
             this.takeHold(place);
-        this.viewport.invalidate(); // lets the warp load the picture before the first move
+        // starts an animation frame, in which warp.js uploads the picture to the GPU before the pointer's first move
+        this.viewport.invalidate();
         this.gestures.down({ ...place, kind: event.pointerType, button: event.button, shift: event.shiftKey, ctrl: event.ctrlKey });
     }
 

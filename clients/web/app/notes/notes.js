@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shift notes: pins in the picture, also on walls, and a list and a form in the panel of views. Also shows the position at which a desk
-// points.
+// Shift notes: pins in the picture, also on walls, and a list and a form in the panel of views. On a wall, also shows the position at which
+// a user at another computer (a desk) points.
 import { projector } from '../../core/camera.js';
 import { ask } from '../../core/history.js';
 import { aboutText, endText, inForce, isOfPlant, placeOf, whereOf, whereText } from '../../core/notes.js';
@@ -17,7 +17,8 @@ export class Notes {
     constructor({ session, selection, viewport, modules, hangs, tell, flyToTag, selectAsset }) {
         Object.assign(this, { session, selection, viewport, modules, hangs, flyToTag, selectAsset });
         this.pins = new Map(); // pins of notes: id -> { element, position }
-        this.pointer = null;   // mark where another user points, sent from a desk page: { element, position, until }; null: nobody points
+        // on a wall: mark at the position at which a user at another computer points: { element, position, until }; null: nobody points
+        this.pointer = null;
         this.list = make('ul', { id: 'notes-list' });
         this.ofPlant = make('ul', { id: 'plant-notes', hidden: true }); // notes about the whole plant, over the picture
         viewport.element.append(this.ofPlant);
@@ -83,7 +84,7 @@ export class Notes {
         this.at.disabled = Boolean(this.edited);
     }
 
-    // Offers ends: those from now on and, first, the end of the note that is edited.
+    // Fills the selection list of times at which the note ends. If a note is edited, its present end comes first.
     offerEnds() {
         const { edited } = this, kept = edited && endText(this.session.model, edited);
         fillSelect(this.until, [...(kept ? [['kept', kept]] : []), ...UNTIL.map((name) => [name, say(`until.${name}`)])],
@@ -196,7 +197,7 @@ export class Notes {
             this.selectAsset(this.session.model.asset(asset));
     }
 
-    // --- position at which a desk points
+    // --- on a wall: position at which a user at another computer points
 
     point() {
         const { hangs, session } = this;

@@ -50,7 +50,8 @@ function drawDisc(pen, number, [x, y], unit) {
     pen.fillText(number, to, down);
 }
 
-// Returns a promise of a PNG file: the picture with its notes. half: the part of the picture's width in which the notes have places.
+// Returns a promise of a PNG file: the picture with its notes. half: { left, width } of the left half of a split
+// view, to which `camera` and the positions of notes belong; of a view that is not split, the whole picture.
 export async function addNotes(blob, notes, { model, camera, half }) {
     const picture = await createImageBitmap(blob), { width, height } = picture;
     const unit = Math.min(Math.max(Math.min(width / 1280, height / 720), 0.7), 8), size = FONT_PX * unit, indent = 2 * size;

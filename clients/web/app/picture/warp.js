@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shows the newest picture from the present camera until the server's picture of that camera arrives: draws the picture by WebGL 2 on a
-// mesh over its depth grid, once per animation frame in which the camera has moved. Places that the picture does not show get a grey as
-// light as their surroundings, never a colour, and wide ones a lattice. Loaded together with the camera controller.
+// mesh over its depth grid, once per animation frame in which the camera has moved. Places that the picture does not show become grey, as
+// light as their surroundings, never coloured; a lattice is drawn over wide grey places. Loaded together with the camera controller.
 import { same } from '../../core/camera.js';
 import { depthAt, FLOATS, isNear, moveBy, warpMatrix } from '../../core/warp_mesh.js';
 import { isWhole } from '../../core/wire.js';
 import { make } from '../common/dom.js';
 
 const KEPT = 8; // number of depth grids that may be decoded before their pictures are
-const NEAREST = 0.05; // distance before which nothing is drawn, as a share of the nearest possible depth
+// distance from the eye to the near clipping plane, as a fraction of the nearest depth that the picture's depth grid can express
+const NEAREST = 0.05;
 // If updates come later than SLOW_MS after each other, as without a GPU, the warped picture is drawn with fewer pixels.
 const SLOW_MS = 26, SLOW_COUNT = 8, PAUSE_MS = 150, LEAST_PX = 250000;
 
@@ -48,7 +49,8 @@ const BEHIND = `#version 300 es
 void main() {
     gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 1.0, 1.0);
 }`;
-// Computes the greys around places that are not drawn, and how wide these places are, from a reduced picture: cheap without a GPU.
+// Computes from a reduced picture the greys around places that are not drawn, and how wide these places are. A reduced picture keeps this
+// cheap on machines without a GPU.
 const AROUND = `#version 300 es
 precision highp float;
 uniform sampler2D drawn;
@@ -74,7 +76,8 @@ void main() {
     float mark = min(line.x, line.y) < 0.1 * period ? 0.08 * near.a : 0.0;
     colour = vec4(vec3(near.r > 0.4 ? near.r - mark : near.r + mark), 1.0);
 }`;
-// Pixels give way to the canvas below one by one: a mixture of two colours would be read as the value between them.
+// Fades out the warped picture by discarding its pixels one after the other, in a dither pattern, so that the server's picture below shows.
+// A mixture of both colours would be read as the value between them.
 const GONE = `#version 300 es
 precision highp float;
 uniform float gone;

@@ -72,7 +72,8 @@ export class Timeline {
         if (open)
             this.turnTo(this.atUs);
         else
-            byId('time-track').replaceChildren(); // marks of alarms accumulate, and are drawn again when the bar opens
+            // removes the marks of alarms, which would accumulate while the bar is closed; they are drawn again when it opens
+            byId('time-track').replaceChildren();
         if (!open && this.atUs !== null)
             travel(this.session, null);
     }

@@ -9,7 +9,8 @@ import { byId, make, setText, setVariable } from '../common/dom.js';
 export const BEHIND_MS = 500; // if the picture is older than the camera by more than this, the status bar says so
 
 export class Status {
-    // onFreshness(isFresh) is called when it changes whether the server still sends messages, so that shown values are current.
+    // onFreshness(isFresh) is called when the server falls silent (isFresh false: shown values may be outdated), and when its messages
+    // arrive again.
     constructor({ session, onFreshness }) {
         Object.assign(this, { session, onFreshness });
         this.fresh = true;

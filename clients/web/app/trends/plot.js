@@ -13,15 +13,17 @@ const FONT = 'system-ui, sans-serif';
 
 export class Plot {
     // view: the trends, with look, clock, zone, session, spanUs, colourOf(tag), unitOf(tag), decimalsOf(tag), focus, travel(us),
-    // zoomTo([from, to]) and priorities (colours). units: of the chart, at most two. isWide: another chart has two axes. isLast: has the
-    // labels of the time axis.
+    // zoomTo([from, to]) and priorities (colours). units: units of this chart, at most two. isWide true: some chart of the trend has two
+    // value axes, so this chart leaves room for a second one, too. isLast true: this chart, the lowest one, has the labels of the time
+    // axis.
     constructor({ view, units, isWide, isLast, element, width, height }) {
         Object.assign(this, { view, units, isWide, isLast, rows: [], marks: [] });
         this.shape = { width, height };
         this.element = element;
     }
 
-    // rows: [{ tag, series, alarms }] of this chart's units, none before the answer; span: the time of the values, in microseconds.
+    // Draws the curves. rows: [{ tag, series, alarms }] of the tags with this chart's units; empty until the server has answered. span:
+    // first and last instant of the values, in microseconds.
     show(uPlot, rows, span, window) {
         const names = JSON.stringify(rows.map(({ tag }) => [tag.name, this.view.colourOf(tag)]));
         Object.assign(this, { rows, span });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wheel, touch and keys over the trend charts: zoom, pan, and moving the crosshair. (Plot has the drag of a mouse that zooms.)
+// Wheel, touch and keys over the trend charts: zoom, pan, and moving the crosshair. (plot.js handles the mouse drag that zooms.)
 import { pointAtInstant } from '../common/crosshair.js';
 
 const WHEEL = 0.0016, LINE_PX = 16, PAN_PX = 0.0025, KEY_ZOOM = 1.5, KEY_PAN = 0.25, STEPS = 120, BIG = 10;

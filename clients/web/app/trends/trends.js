@@ -263,7 +263,8 @@ export class Trends {
         this.adjust(panned(this.range, part, this.nowUs));
     }
 
-    // Goes to a range by small steps of a gesture, of which one is undone as a whole.
+    // Shows a time range that a gesture (wheel, pinch, drag, key) reaches in many small steps. Steps that follow each other quickly are
+    // undone together.
     adjust([fromUs, toUs]) {
         if (!Number.isFinite(fromUs + toUs))
             return;

@@ -61,8 +61,8 @@ function at(element, place) {
     return element;
 }
 
-// Functions by value of `show`, from the quantity's name and the parameters to [title, suffix, note]. Rarely needed ones are in
-// coverage.js.
+// Functions that return the texts [title, suffix, note] of the legend, by the value of the parameter `show`. Arguments: the quantity's name
+// and the view's parameters. Functions for rarely used values are in coverage.js.
 export const TITLES = { distance: (name, { sensor }) => [say('legend.distance', { tag: sensor ?? '–' })] };
 // For the values of `show` that do not depend on readings, and thus are never uncertain: lowest value as a fraction of the range (blind: 5
 // %, plus rounding).
@@ -141,7 +141,7 @@ export class Legend {
     notes(params, map, isOperator) {
         const { look, scale } = params, off = this.session.drawnError;
         return [
-            // this line gives the error in the unit of the title
+            // largest possible error of the field at places that the picture marks as uncertain, in the unit of the title
             off && say('legend.drawn', { off }),
             this.title(params)[2],
             isOperator && say('legend.operator'),

@@ -74,7 +74,9 @@ export class Overlay {
     projectHalf({ params, left, width }, number, known) {
         const { model, picture } = this.session;
         const scale = [this.wide / picture.shownWidth, this.high / picture.fullHeight];
-        const rim = params.split ? 0 : 20; // in a split view, a marker beyond the edge would appear in the other half
+        // margin in pixels beyond the picture's edge within which markers are still drawn; 0 in a split view, where they would appear in
+        // the other half
+        const rim = params.split ? 0 : 20;
         const project = projector(picture.camera, width, picture.fullHeight);
         const markers = [];
         for (const tag of model.tags) {

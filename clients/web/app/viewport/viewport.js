@@ -5,7 +5,8 @@ import { DecodeQueue } from '../../core/decode_queue.js';
 import { isWhole, pictureSize } from '../../core/wire.js';
 
 const RESIZE_WAIT_MS = 100;
-// Returns the number of device pixels. `exact`, the browser's own size, is used unless it ignores page zoom, as on emulated screens.
+// Converts a length in CSS pixels to device pixels. `exact`: the browser's own measurement, used unless it differs by more than 2 pixels,
+// as on emulated screens, where it ignores page zoom.
 function devicePixels(cssPx, exact) {
     const px = Math.round(cssPx * window.devicePixelRatio);
     return exact !== undefined && Math.abs(exact - px) <= 2 ? exact : px;

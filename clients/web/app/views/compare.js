@@ -104,7 +104,7 @@ export class Compare {
             this.other.setCamera(this.session.camera);
     }
 
-    // Passes on parameters that have changed.
+    // Sends the left half's changed parameters to the page in the right half.
     tellParams() {
         if (!this.other || !this.connected)
             return;

@@ -57,7 +57,8 @@ export class NamedViews {
             if (fly)
                 modules.use('cameraController', (controller) => controller.flyTo(camera));
             else if (modules.awaited.has('cameraController'))
-                // ends a flight that waited for these modules; sets no camera, which the user may have moved since
+                // an earlier flight may still wait for these modules: land() ends it. No camera is set here, because the user may have
+                // moved it since
                 modules.use('cameraController', (controller) => controller.land());
         });
     }

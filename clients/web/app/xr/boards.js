@@ -40,7 +40,8 @@ export class Board {
         return this;
     }
 
-    // Returns the board with the width and height in metres at which it has its size in degrees when seen from this distance.
+    // Returns the board's texture, with the width and height in metres that the board must have at this distance to fill its fixed angle of
+    // view (PX_PER_DEGREE).
     seenFrom(metres) {
         const perPx = 2 * metres * Math.tan(0.5 * RADIANS) / PX_PER_DEGREE;
         return { texture: this.texture, width: this.canvas.width * perPx, height: this.canvas.height * perPx };
@@ -79,7 +80,8 @@ function linesOf(c, text, most) {
     return lines;
 }
 
-// Returns the place and width of each band of the legend, and its colour; and the labels [[place, text], ...].
+// Returns the legend's scale: colourAt(place) (colour of the bar), `ends` (colours below and above the range), `labels` [[place, text],
+// ...] and `lines` (places of band edges and isolines). A place is a fraction, 0 to 1, of the bar's length.
 function scaleOf(session, params) {
     const { model } = session, group = model.group(params.group), [min, max] = session.rangeOf(params);
     if (params.show === 'operator')

@@ -116,7 +116,8 @@ export class Hands {
 
     hear(picked) {
         const { asked } = this;
-        this.asked = null; // nothing is pending any more: an answer to another module's request means that it has replaced this one
+        // this answer ends the hands' own request, too: if another module's request is answered, the server has dropped the hands' request
+        this.asked = null;
         if (picked.purpose !== asked || (asked === 'headset again' && !this.card))
             return;
         const { sensor, asset, normal, position } = picked;

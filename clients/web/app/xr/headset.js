@@ -173,7 +173,8 @@ export class Headset {
         return depth ? this.before.warp?.grids.find((one) => one.depth === depth) : undefined;
     }
 
-    // Returns true if the meshes of all decoded pictures are built, or are late. Until then they are not drawn, and the server waits.
+    // Returns true if the new pictures may be drawn: their meshes are built, or have been missing for LATE_MS. While it returns false, the
+    // pictures are neither drawn nor acknowledged, so the server waits.
     isDecoded(now) {
         const isBuilt = this.viewport.decoded.every(({ frame }) => {
             const grids = this.gridsOf(frame);
@@ -184,7 +185,8 @@ export class Headset {
         return isBuilt || now - this.builtAt > LATE_MS;
     }
 
-    // Returns true if the newest picture is not shown, because take() refuses it or its depth is late.
+    // Returns true if the headset still shows an older picture than the newest one LATE_MS after the last change, because the newest has no
+    // usable depth grid.
     isFlat(now) {
         const { session: { picture }, shown, before } = this;
         return picture && picture !== shown && picture !== before.picture && now - this.shownAt > LATE_MS;

@@ -52,7 +52,8 @@ export class Painter {
         this.board = programOf(gl, BOARD, CANVAS);
         this.undrawn = programOf(gl, RAYS, LATTICE);
         this.grey = UNDRAWN[backdrop] ?? UNDRAWN.light;
-        this.picture = this.newTexture(gl.NEAREST); // a mixture of two colours would be read as the value between them
+        // NEAREST filter, because users would read a mixture of two colours as the value between them
+        this.picture = this.newTexture(gl.NEAREST);
         this.masks = this.newTexture(gl.NEAREST);
         gl.depthFunc(gl.LEQUAL);
         gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
