@@ -9,7 +9,7 @@ enum { VERSION = 1, AT_FLAGS = 1, AT_MIN = 2, AT_MAX = 6, AT_GROUP = 10, AT_UNIT
 enum { FLAG_LOG = 1, SHOW_SHIFT = 1, SHOW_MASK = 7 };
 enum { FIELD = 255, POLYNOMIAL = 0x11d };
 
-/* --- the field of 256 elements ------------------------------------------------------------------------------------------------ */
+/* --- arithmetic in the finite field of 256 elements, GF(256) ------------------------------------------------------------------ */
 
 static uint8_t times(uint8_t a, uint8_t b)
 {

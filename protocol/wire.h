@@ -35,7 +35,8 @@ struct wire_frame { /* header of a frame; the members are in the order of the by
     uint32_t seq;
     uint32_t camera_seq, params_seq;     /* sequence numbers of the newest camera and parameters of the client that this frame shows */
     uint32_t oldest_age_ms;              /* age of the oldest reading that the frame shows; WIRE_NO_AGE: it shows no reading */
-    uint64_t data_time_us, sent_time_us; /* UTC microseconds since 1970, by the server's clock */
+    /* time of the readings, and time at which the frame was sent: microseconds since 1970, UTC, by the server's clock */
+    uint64_t data_time_us, sent_time_us;
     /* durations in microseconds: from the client's input to the start of rendering, then of computing the field, rendering and encoding */
     uint32_t wait_us, field_us, render_us, encode_us;
     uint16_t x_px, y_px, width_px, height_px; /* rectangle of the view that the payload contains */

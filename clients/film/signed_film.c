@@ -16,8 +16,8 @@
 #include "film_boxes.h"
 
 #define FILM_KEY "plantcast_statements"
-static const size_t MAX_BYTES = (size_t)64 << 20, MAX_TEXT_BYTES = (size_t)1 << 30; /* limits of the text's size, compressed and
-                                                                                       uncompressed */
+/* largest size in bytes of the statements' text: compressed, and uncompressed */
+static const size_t MAX_BYTES = (size_t)64 << 20, MAX_TEXT_BYTES = (size_t)1 << 30;
 
 /* --- writing ------------------------------------------------------------------------------------------------------------------- */
 

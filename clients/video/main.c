@@ -93,7 +93,7 @@ static gboolean on_tick(gpointer data)
     struct video_program *program = data;
     gint64 now_us = g_get_monotonic_time();
     guint64 index = (guint64)(now_us - program->begin_us) * (guint64)program->options.fps / G_USEC_PER_SEC;
-    if (index < program->next) /* the timer fired a little early */
+    if (index < program->next) /* the timer fired a little early: draws the next frame anyway, because its time has almost come */
         index = program->next;
     program->late += index - program->next;
     draw(program, index);

@@ -355,7 +355,7 @@ static void go_on(struct video_source *source, gint64 now_us)
         ask(source, ASK_PLANT, now_us);
 }
 
-/* --- choosing picture or card ----------------------------------------------------------------------------------- */
+/* --- decides what a frame shows: the newest picture, or a text card with the reason why there is none ----------- */
 
 void source_look(struct video_source *source, struct shown *out)
 {

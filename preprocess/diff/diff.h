@@ -30,7 +30,7 @@ struct diff_sensor {         /* a tag that is a sensor in both revisions */
     double distance_m[2];    /* distance from the sensor's position to the surface in the old [0] and in the new [1] revision, metres */
     double limit_m;          /* distance from the surface above which the report warns, metres */
     double tolerance_m;
-    bool far_moved; /* the surface under the sensor moved by more than the tolerance */
+    bool far_moved; /* true: the surface under the sensor moved by more than the tolerance */
 };
 
 struct diff_orphan {

@@ -163,7 +163,7 @@ bool diff_side_shape_of_node(struct diff_side *side, const struct diff_side_asse
     return cut_shape(model, &params, shape, why);
 }
 
-/* --- folder of prepared files ----------------------------------------------------------------------------------------------------- */
+/* --- reading a folder of prepared files ------------------------------------------------------------------------------------------- */
 
 static bool take_entry(struct diff_side *side, const json_t *entry)
 {
@@ -230,7 +230,7 @@ static bool shape_of_folder(struct diff_side *side, const struct diff_side_asset
     return true;
 }
 
-/* --- plant file or folder ---------------------------------------------------------------------------------------------------------- */
+/* --- functions for both kinds of side: a plant file, or a folder of prepared files ------------------------------------------------- */
 
 bool diff_side_open(struct diff_side *side, const char *path, struct diag *diag)
 {

@@ -73,7 +73,7 @@ static bool around_init(struct around *a, const float (*positions)[3], size_t ve
     return true;
 }
 
-/* --- mean normal of the faces at one position -------------------------------------------------------------------------------- */
+/* --- computing the mean normal of the faces at one position ------------------------------------------------------------------ */
 
 /* Adds the normal of the corner's face to the sum, weighted by the corner's angle, if it is within the crease angle of the normal `own`. */
 static void add_face(const struct around *a, uint32_t corner, const double own[3], double sum[3])

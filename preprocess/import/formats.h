@@ -16,8 +16,8 @@ struct import_format {
     const char *runtime; /* interpreter that runs the reader, such as "node"; NULL: the reader is an executable */
     const char *missing; /* advice printed if the reader is not installed */
     const char *beside;  /* file endings of further files that a model may refer to, such as ".mtl", lower case; NULL: none */
-    bool unitless;       /* the format states no units, so --units applies */
-    bool upless;         /* the format does not state which axis is up, so --up applies */
+    bool unitless;       /* true: the format states no units, so --units applies */
+    bool upless;         /* true: the format does not state which axis is up, so --up applies */
 };
 
 /* Error message for a model in ifcXML, a form of IFC that the reader does not support. */

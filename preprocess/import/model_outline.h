@@ -15,7 +15,7 @@ struct outline_node {
     uint64_t all_triangles; /* triangles of the node and of all nodes below it */
     struct model_box all;   /* bounding box of the node and all nodes below it, in the model's units and axes; low > high: no geometry */
     int depth;              /* number of ancestors of the node; 0: it is a root */
-    bool unnamed;           /* the node has no name of its own */
+    bool unnamed;           /* true: the node has no name of its own */
 };
 
 struct model_outline {

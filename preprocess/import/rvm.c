@@ -311,7 +311,7 @@ static void decode_names(struct rvm_reader *r, size_t first, const char *asked)
     text_finish(&all);
 }
 
-/* --- faces covered by a neighbour --------------------------------------------------------------------------------------------------- */
+/* --- finding faces that a face of a neighbouring primitive covers ------------------------------------------------------------------- */
 
 static const double near_m = 0.001;
 

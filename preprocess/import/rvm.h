@@ -20,7 +20,7 @@ struct rvm_counts {
 
 struct rvm_params {
     double chord_m;        /* largest allowed distance in metres between a chord and the true surface */
-    bool keep_covered;     /* keep faces that a neighbouring primitive's face covers; false: leave them out */
+    bool keep_covered;     /* true: keep faces that a neighbouring primitive's face covers; false: leave them out */
     const char *encoding;  /* encoding of the names that the user stated; NULL: the encoding that the file states, else a detected one */
     struct text *findings; /* receives report lines (format: findings.h) about lost primitives; NULL: not wanted */
 };

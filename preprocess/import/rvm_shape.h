@@ -23,7 +23,7 @@ enum { RVM_MAX_NUMBERS = 9 };
 
 struct rvm_contour {
     size_t first, count; /* range in rvm_shape.points */
-    bool begins_polygon; /* this contour begins a polygon; false: it belongs to the same polygon as the contour before */
+    bool begins_polygon; /* true: this contour begins a polygon; false: it belongs to the same polygon as the contour before */
 };
 
 /* One primitive. Lengths in its own frame are usually millimetres; to_plant transforms to the plant's frame in metres. */

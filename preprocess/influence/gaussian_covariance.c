@@ -13,7 +13,7 @@
 /* step of log k^2; the relative error of the central difference is STEP^2 / 6; a smaller step would lose digits to cancellation */
 #define STEP 0.02
 
-/* --- preparation that does not depend on the range ----------------------------------------------------------------------------- */
+/* --- preparation that does not depend on the correlation range, and is therefore done only once -------------------------------- */
 
 /* Lists for each mesh point the sensors whose disc contains it, sorted. */
 static void list_sensors(const struct influence_mesh *mesh, const struct laplacian *laplacian, size_t *first, uint32_t *sensors,

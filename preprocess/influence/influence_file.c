@@ -294,7 +294,7 @@ static bool add_heat(struct influence_making *making, int group, const double (*
     return good;
 }
 
-/* --- groups and the file ---------------------------------------------------------------------------------------------------- */
+/* --- computing the entries of all groups, and writing the file -------------------------------------------------------------- */
 
 static bool add_group(struct influence_making *making, int group)
 {

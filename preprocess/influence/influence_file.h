@@ -35,8 +35,8 @@ struct influence_input {
     size_t level_count;
     const char *folder;
     uint64_t key;               /* key of the asset file */
-    struct cloud_report *cloud; /* filled in if a group requests distances by heat */
-    struct bend_report *bend;   /* filled in if a group requests harmonic, fin or gp */
+    struct cloud_report *cloud; /* receives a comparison of two kinds of distances if a group requests distances by heat */
+    struct bend_report *bend;   /* receives the measured interpolation errors if a group requests harmonic, fin or gp */
 };
 
 /* Returns whether a group with at least one of these sensors requests an interpolation that is prepared in the influence file, other than

@@ -12,12 +12,14 @@
 #include "base/mem.h"
 #include "preprocess/levels/levels_impl.h"
 
-#define NEAR_WORTH 0.5     /* a near level is made only if it has at most this share of the previous level's triangles */
-#define FAR LEVELS_FILLING /* minimum error of a far level, relative to the asset's size */
+/* a near level (for an asset drawn large) is made only if it has at most this share of the previous level's triangles */
+#define NEAR_WORTH 0.5
+#define FAR LEVELS_FILLING /* minimum error of a far level (for an asset drawn small), relative to the asset's size */
 /* maximum triangle count of a far level; far levels may have similar triangle counts (FAR_WORTH), because many instances are drawn in one
  * picture */
 #define FAR_TRIANGLES 16000
-#define FAR_WORTH 0.9  /* a far level is made only if it has at most this share of the previous level's triangles */
+/* a far level (for an asset drawn small) is made only if it has at most this share of the previous level's triangles */
+#define FAR_WORTH 0.9
 #define STEP 1.4       /* minimum factor by which the error grows from one level to the next coarser one */
 #define STEP_SMALL 1.7 /* minimum factor by which the error grows from a level whose error is above LEVELS_SMALL to the next coarser one */
 /* factor on a level's error. A near level also includes events (changes of parts) with errors up to this product, so that the next level

@@ -11,7 +11,7 @@
  * pixels */
 #define LEVELS_FARTHEST 0.08
 
-/* --- welds and parts (levels_welds.c) --- */
+/* --- welds (groups of equal vertices) and parts (connected components), which levels_welds.c makes --- */
 
 /* A weld is a group of vertices that the simplifier treats as one vertex: at one position, and equal in all attributes that must be kept. A
  * part is a connected component of triangles; welds at the same position count as connected. */

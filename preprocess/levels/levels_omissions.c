@@ -63,7 +63,7 @@ static void list_tris(struct omission_search *search)
         search->tris[search->first[search->part[t] + 1]++] = t;
 }
 
-/* --- small parts that lie on larger ones ---------------------------------------------------------------------------------- */
+/* --- finding small parts that lie on larger ones -------------------------------------------------------------------------- */
 
 static bool may_lie_on_others(const struct welds *welds, size_t part)
 {

@@ -117,7 +117,7 @@ bool method_rules(const struct matcher *matcher, const struct match_subject *sub
     return false;
 }
 
-/* --- equipment whose name is part of the tag's name ----------------------------------------------------------------------------- */
+/* --- finding equipment whose name is part of the tag's name --------------------------------------------------------------------- */
 
 static bool is_apart(const struct name_tokens *tokens, int from, int to)
 {

@@ -132,7 +132,7 @@ static void match_one(const struct matcher *matcher, const struct export_tag *ta
     decide(matcher, proposals, out);
 }
 
-/* --- prefix that most names have ------------------------------------------------------------------------------------------ */
+/* --- finding the prefix that most tag names have -------------------------------------------------------------------------- */
 
 static int by_text(const void *a, const void *b)
 {

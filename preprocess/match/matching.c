@@ -265,7 +265,7 @@ static void put_rows(struct matching_run *run)
     }
 }
 
-/* --- tags missing from the list ----------------------------------------------------------------------------------------------- */
+/* --- tags of earlier runs that are missing from the current list -------------------------------------------------------------- */
 
 enum { LEFT_NAMED = 20 };
 

@@ -392,7 +392,8 @@ bool tag_export_read(struct tag_export *list, const char *path, const char *enco
     }
     mem_free(bytes);
     if (good && list->count == 0) {
-        size_t length = strcspn(list->remarks.at ? list->remarks.at : "", "\n"); /* the first remark often tells why the file has no tags */
+        /* adds the first remark to the error message, because it often tells why the file has no tags */
+        size_t length = strcspn(list->remarks.at ? list->remarks.at : "", "\n");
         snprintf(why, why_bytes, "no tags in it%s%.*s", length > 0 ? ": " : "", (int)length, length > 0 ? list->remarks.at : "");
         good = false;
     }

@@ -9,7 +9,7 @@
 struct model_file {
     const char *path; /* path; belongs to the plant */
     int line;         /* line in the plant file of the first asset that uses this model */
-    bool good;        /* the file can be read; false: `why` has the reason */
+    bool good;        /* true: the file can be read; false: `why` has the reason */
     char why[MODEL_WHY_BYTES];
     uint64_t hash;            /* hash of the file and of the files that its URIs name */
     uint64_t file_hash;       /* hash of the file alone */

@@ -162,11 +162,11 @@ struct build {
     struct asset_level file[LEVELS_MAX]; /* levels of detail in the form in which the file stores them */
     /* serialised geometry and levels, to be written to the geometry cache; empty if they were read from it */
     struct text parts;
-    bool surface_kept;              /* the surface has been written to the cache */
+    bool surface_kept;              /* true: the surface has been written to the cache */
     struct distance_rows distances; /* distances of the vertices in their final order */
     struct clusters_making *making[LEVELS_MAX];
     size_t making_count;
-    bool keeps; /* results of subdivision are written to the cache for the next run */
+    bool keeps; /* true: results of subdivision are written to the cache for the next run */
     struct subdiv_cache findings;
     struct sample_cache sample_cache;
     struct build_report geometry_report;
@@ -300,7 +300,7 @@ static void check(struct build *build)
     }
 }
 
-/* --- cache for the next run -------------------------------------------------------------------------------------------------- */
+/* --- writing the caches that the next run reads ------------------------------------------------------------------------------ */
 
 /* Serialises geometry and levels for the geometry cache, before subdivision changes them. */
 static void pack_parts(struct build *build)

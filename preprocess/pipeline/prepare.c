@@ -224,8 +224,7 @@ static void find_keys(struct prepare_run *run)
     }
 }
 
-/* --- existing files in the folder of prepared files
- * -------------------------------------------------------------------------------------------------- */
+/* --- checking the existing files in the folder of prepared files --------------------------------------------------------------- */
 
 /* Copies the numbers that the report and the warnings need from an existing, checked asset file. */
 static void take_file(struct prepare_asset *asset, const struct asset_view *view)

@@ -15,7 +15,7 @@ enum prepare_state { PREPARE_LEFT /* not started: interrupted */, PREPARE_FAILED
 
 struct prepare_asset {
     const struct plant_asset *plant;
-    bool wanted;  /* the asset is to be prepared; if false, no member below is set */
+    bool wanted;  /* true: the asset is to be prepared; false: no member below is set */
     size_t model; /* index in prepare.models */
     struct plant_sensor *sensors;
     size_t sensor_count;
@@ -29,7 +29,7 @@ struct prepare_asset {
     enum prepare_state state;
     char *rebuilt_because; /* defect of the existing file, because of which it was built again; NULL: none */
     uint32_t triangles, vertices;
-    bool reported; /* `report` is valid: always for a built asset; for an unchanged asset only if KEY.report.json exists */
+    bool reported; /* true: `report` is valid; always for a built asset, for an unchanged asset only if KEY.report.json exists */
     struct build_report report;
     double seconds, work;
 };

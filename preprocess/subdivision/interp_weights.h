@@ -22,7 +22,7 @@ float interp_least(const float *values, size_t count);
 
 struct interp_group {
     const float *strength, *decay;
-    bool decays; /* the decay of at least one sensor differs from 1 */
+    bool decays; /* true: the decay of at least one sensor differs from 1 */
     /* power: exponent of inverse distance weights; reach_m: distance beyond which a sensor has no weight, INFINITY for no limit; at points
      * out of reach of all sensors, the nearest one has all the weight */
     float power, reach_m;

@@ -16,7 +16,7 @@
 struct linear_error_group {
     uint32_t *columns; /* indices of the group's sensors among the asset's sensors (columns) */
     bool in_a_row;     /* the columns are consecutive */
-    bool papers;       /* errors of Algorithm 1 (Kim & Suh) are included */
+    bool papers;       /* true: errors of Algorithm 1 (Kim & Suh) are included */
     size_t count;
     double radius_m[2];     /* radius R of Algorithm 1, by enum distance_mode (geodesic, Euclidean) */
     struct interp_group of; /* interpolation parameters of the group's sensors, padded to INTERP_LANES */

@@ -12,8 +12,8 @@ struct subdiv_tri {
     uint32_t v[3], e[3]; /* v: vertex index of each corner; e[i]: index of the edge from v[i] to v[i + 1] */
     /* primitive: index of the level's primitive; origin: index of the original triangle, before subdivision, that contains this one */
     uint32_t primitive, origin;
-    bool good;  /* the error inside the triangle has been measured */
-    bool aimed; /* the triangle has been checked for flatness (aim_at_corners()) */
+    bool good;  /* true: the error inside the triangle has been measured */
+    bool aimed; /* true: the triangle has been checked for flatness (aim_at_corners()) */
 };
 
 struct subdiv_edge { /* an edge between two positions, shared by all levels */
@@ -31,8 +31,8 @@ struct subdiv_edge { /* an edge between two positions, shared by all levels */
     float error;  /* error of the field along the edge that a split may fix, as a share of the range; below 0: not measured yet */
     float barred; /* error of the field along the edge that no split may fix, as a share of the range */
     bool jumps;   /* reason for `barred`; true: the distance jumps along the edge; false: the edge is too short */
-    bool unasked; /* the edge is too short to split in the current level, so it is not measured */
-    bool proven;  /* the edge was measured and needs no split; coarser levels have looser limits */
+    bool unasked; /* true: the edge is too short to split in the current level, so it is not measured */
+    bool proven;  /* true: the edge was measured and needs no split; coarser levels have looser limits */
 };
 
 struct subdiv_list { /* a list of triangle or corner indices */

@@ -33,8 +33,8 @@ struct subdiv {
     double on_surface_m; /* a point farther than this from the surface counts as hidden inside another part */
     double error_m, shortest_m, slack_m;
     double jump_m;    /* edges shorter than this, in metres, are not split where the distance along the surface jumps */
-    bool finest_full; /* the finest level reached its triangle limit */
-    bool full;        /* the level has almost reached, or would certainly reach, its triangle limit */
+    bool finest_full; /* true: the finest level reached its triangle limit */
+    bool full;        /* true: the level has almost reached, or would certainly reach, its triangle limit */
     /* count of blocks of triangles in the current sample (subdiv_take_sample()); 0: the whole level is processed */
     size_t sample_blocks;
     double sample_of; /* number of the level's triangles that one triangle of the sample represents */
@@ -77,7 +77,7 @@ struct subdiv_finding {
     float error, share; /* share: fraction at which a split of the edge leaves the smallest error */
     float barred;       /* error, as a share of the range, that no split may fix */
     bool jumps;
-    bool is_cached;   /* the cache contained this measurement from the last run, so it was not measured again */
+    bool is_cached;   /* true: the measurement comes from the cache of the last run, so it was not measured again */
     float doubt, off; /* see subdiv_cache.h */
     uint64_t key;     /* cache key */
 };

@@ -331,7 +331,7 @@ enum refusal_code pairings_approve(struct pairings *pairings, const char *digits
     return why;
 }
 
-/* --- for renderers and standby cores -------------------------------------------------------------------------------------------- */
+/* --- the lists of devices as JSON, for renderers and standby cores -------------------------------------------------------------- */
 
 static bool read_bytes(const json_t *text, uint8_t *bytes, size_t count)
 {

@@ -112,7 +112,7 @@ bool tokens_parse_day(const char *text, int64_t *until_utc_ns)
         return false;
     int64_t begin_s = timegm(&day);
     *until_utc_ns = (begin_s + 24 * 3600) * NS_PER_S;
-    return day.tm_mday == said; /* strptime accepts dates such as 30 February but then changes the day */
+    return day.tm_mday == said; /* refuses dates such as 30 February, which strptime accepts but timegm turns into another day */
 }
 
 /* Cuts the last part of a line, `plant NAME`, off; the name may contain blanks. Returns false if the name is invalid. */

@@ -48,7 +48,7 @@ struct alarm_service {
     void *changed_arg;
 };
 
-/* --- exchange with the store ----------------------------------------------------------------------------------------------------- */
+/* --- taking samples from the store, and setting the alarms of its tags ----------------------------------------------------------- */
 
 static void on_sample(void *arg, const struct sample_event *event)
 {

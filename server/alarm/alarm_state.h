@@ -12,7 +12,7 @@ enum alarm_event {
     ALARM_CLEAR,
     ALARM_ACKNOWLEDGE,
     ALARM_RESET,    /* resets a latched alarm */
-    ALARM_SHELVE,   /* allowed for a shelved alarm too, to change when shelving ends */
+    ALARM_SHELVE,   /* shelves the alarm; allowed for a shelved alarm too, to change when shelving ends */
     ALARM_UNSHELVE, /* ends shelving, by hand or because the shelving time is over */
     ALARM_SUPPRESS,
     ALARM_UNSUPPRESS,

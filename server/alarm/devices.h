@@ -24,7 +24,8 @@ struct devices {
     uint8_t *statuses; /* enum device_status by tag */
 };
 
-struct devices *devices_create(const struct plant *plant);         /* plant must outlive the result; never returns NULL */
+/* lists the plant's devices; plant must outlive the result; never returns NULL */
+struct devices *devices_create(const struct plant *plant);
 /* frees the devices and sets *devices to NULL; accepts a pointer to NULL */
 void devices_destroy(struct devices **devices);
 int devices_find(const struct devices *devices, const char *name); /* returns the index, or -1 */

@@ -146,7 +146,7 @@ static void *run(void *arg)
     return NULL;
 }
 
-/* --- called by other threads ----------------------------------------------------------------------------------------------------- */
+/* --- functions that other threads call ------------------------------------------------------------------------------------------- */
 
 static void put(struct journal *journal, const struct journal_entry *entry)
 {

@@ -38,7 +38,7 @@ bool journal_asks(struct journal *journal);
 /* Queues the present state of an alarm to be written to the table of states. */
 void journal_keep(struct journal *journal, const struct alarm *alarm, const char *tag);
 
-/* --- reading; thread: one per reader --- */
+/* --- functions that read the journal; thread: one per reader --- */
 /* Calls each() for the rows that match. Returns 0 or -errno (logged); a folder without a journal has no rows. */
 int journal_read(struct log *log, const char *folder, const struct journal_query *query,
                  void (*each)(void *arg, const struct journal_row *row), void *arg);

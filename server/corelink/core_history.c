@@ -10,7 +10,7 @@
 #include "base/system/http_request.h"
 #include "corelink/core_instant.h"
 
-enum { MAX_ANSWER_BYTES = 64 << 20, CONNECT_S = 4, SLOW_S = 10 /* SLOW_S: time limit without a received byte */, STATUS_GOOD = 200 };
+enum { MAX_ANSWER_BYTES = 64 << 20, CONNECT_S = 4, SLOW_S = 10 /* seconds without a received byte before a failure */, STATUS_GOOD = 200 };
 
 struct core_history {
     struct log *log;

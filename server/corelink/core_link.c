@@ -177,7 +177,7 @@ bool core_link_tell(struct core_link *link, const char *text)
     return up;
 }
 
-/* --- messages from the core --------------------------------------------------------------------------------------------------- */
+/* --- handling messages from the core ------------------------------------------------------------------------------------------ */
 
 static void end(struct core_link *link, const char *why)
 {

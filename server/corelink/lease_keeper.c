@@ -433,7 +433,7 @@ static void *run(void *arg)
     return NULL;
 }
 
-/* --- called from other threads -------------------------------------------------------------------------------------------------- */
+/* --- functions that other threads call ------------------------------------------------------------------------------------------ */
 
 bool lease_keeper_leads(struct lease_keeper *keeper)
 {

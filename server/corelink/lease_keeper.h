@@ -40,7 +40,7 @@ bool lease_keeper_leads(struct lease_keeper *keeper); /* Returns whether this no
 
 bool lease_keeper_is_alone(struct lease_keeper *keeper); /* Returns whether this node leads and no other core may take over. */
 
-/* --- for a leader: its connected standby --- */
+/* --- functions of a leader, about its connected standby --- */
 /* Sets the connected standby; "": its connection has ended. The standby's promises count once the row names it. The row names it for
    another 10 s after its connection has ended: if the database is lost while a reload interrupts the connection, only the standby's
    promises can keep this node leading. follows: the standby has this core's version and configuration; otherwise it only makes promises,

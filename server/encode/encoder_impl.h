@@ -16,7 +16,7 @@ struct encoder_impl {
     void (*destroy)(struct encoder *encoder);
 };
 
-struct encoder { /* first member of each codec's struct */
+struct encoder { /* common part of all codecs; first member of each codec's own struct */
     const struct encoder_impl *impl;
     struct log *log;
     struct packet *ready; /* packet that send() made and encoder_receive() has not returned yet; NULL: none */

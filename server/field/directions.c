@@ -75,7 +75,7 @@ size_t directions_read(const struct scene *scene, int asset, int group, const st
     return count;
 }
 
-/* --- directions at positions on the surface --------------------------------------------------------------------------------- */
+/* --- finding directions at positions on the surface ------------------------------------------------------------------------- */
 
 /* A sensor's vector on the surface: its angle to the sensor's reference vector, which parallel transport moves along the surface, and
    its length along the surface. */

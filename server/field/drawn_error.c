@@ -43,7 +43,7 @@ struct sampler { /* state of the sampling in one thread */
     double values[KERNEL_BLOCK], total[KERNEL_BLOCK];
     float *corners;        /* weights at the corners of the triangles: [member of the sum (sensor)][3 corners of each of GROUP triangles] */
     uint32_t *tris[GROUP]; /* vertex numbers of each triangle */
-    float *errors[GROUP];  /* where to store each triangle's error */
+    float *errors[GROUP];  /* destination of each triangle's measured error */
     int pieces[GROUP];
     size_t tri_count;
     struct triangle_piece *queue;
@@ -105,7 +105,7 @@ static void evaluate(struct sampler *sampler, size_t count)
         sampler->total[j] = sampler->total[j] > 0 ? 1 / sampler->total[j] : 0;
 }
 
-/* --- one group of triangles ------------------------------------------------------------------------------------------------- */
+/* --- measuring the errors of one group of triangles ------------------------------------------------------------------------- */
 
 static void evaluate_corners(struct sampler *sampler)
 {
@@ -224,7 +224,7 @@ static void sample_group(struct sampler *sampler, float step)
     sampler->queued = sampler->tri_count = 0;
 }
 
-/* --- triangles of an asset -------------------------------------------------------------------------------------------------- */
+/* --- measuring the errors of an asset's triangles --------------------------------------------------------------------------- */
 
 /* Returns whether a triangle needs no samples: it is small compared with the distance to the nearest sensor, or, in a coarse level, smaller
    than the pixels that the level is drawn with. */
@@ -371,7 +371,7 @@ static bool is_as_prepared(const struct weights *weights, const struct field_par
     const struct plant_group *group = layout->group;
     if (layout->trial || params->override_count > 0 || params->distance == DISTANCE_HEAT || params->reach_m != group->reach_m)
         return false;
-    if (plant_group_is_exact(group)) /* each pixel evaluates this group's field, so preparation subdivided no triangle for it */
+    if (plant_group_is_exact(group)) /* false: each pixel evaluates this group's field, so preparation subdivided no triangle for it */
         return false;
     for (size_t i = 0; i < layout->sensor_count; i++)
         if (weights->configured[i] && !weights->takes_part[i])
@@ -391,7 +391,7 @@ void drawn_error_measure(struct weights *weights, const struct field_params *par
     while (number + 1 < file->header->level_count && file->levels[number + 1].vertex_count >= vertices)
         number++;
     uint64_t bit = (uint64_t)1 << (number < 63 ? number : 63);
-    /* frames do not interpolate these weights within triangles, so there is no error */
+    /* measures nothing if each pixel evaluates the field, because frames then do not interpolate within triangles */
     if (layout_is_exact(layout, weights->interpolation, weights->distance))
         return;
     if (weights->measured_levels & bit || weights->prepared || layout->assumed || weights->member_count == 0 ||

@@ -119,7 +119,7 @@ bool field_at(struct field *field, int asset, const struct field_params *params,
 /* Inputs of the field on an asset, one per sensor, for callers that evaluate the field themselves. */
 struct field_sensor {
     int tag;
-    float surface_m[3]; /* position in the coordinates of the asset file */
+    float surface_m[3]; /* position of the sensor in metres, in the coordinates of the asset file */
     uint32_t column;    /* index of the sensor in the asset file; trial sensors have indices from the file's sensor count on */
     bool in_file;       /* true: the file has a column with the sensor's geodesic distances; false: they are in along_m */
     /* geodesic distance of each vertex, unless the file has them; NULL: not known yet, or straight-line distances are used */

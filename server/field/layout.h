@@ -10,7 +10,7 @@
 struct layout_sensor {
     int tag;               /* index in plant->tags */
     uint32_t column;       /* index of the sensor in the asset file; trial sensors have indices from the file's sensor count on */
-    float surface_m[3];    /* position in the coordinates of the asset file */
+    float surface_m[3];    /* position of the sensor in metres, in the coordinates of the asset file */
     uint32_t vertex;       /* vertex nearest to the sensor */
     bool tried;            /* true: a trial sensor, whose geodesic distances are in tried_m and not in the file */
     const float *tried_m;  /* geodesic distance of each vertex; NULL: not known yet */
@@ -18,7 +18,7 @@ struct layout_sensor {
     float strength, decay; /* as configured, >= 0 */
 };
 
-/* Points inside triangles of the file. */
+/* Points at which distances from the sensors are requested, each inside a triangle of the asset file. */
 struct layout_points {
     float (*positions_m)[3];
     uint32_t (*corners)[3]; /* indices of the vertices at the triangle's corners */

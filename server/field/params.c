@@ -96,8 +96,9 @@ static float largest_distance(const struct asset_view *view, size_t column, enum
     float most_m = 0, scratch[KERNEL_BLOCK];
     for (size_t at = 0; at < count; at += KERNEL_BLOCK) {
         size_t number = count - at < KERNEL_BLOCK ? count - at : KERNEL_BLOCK;
-        if (mode != DISTANCE_EUCLIDEAN) /* distances along triangles and by the heat method get the same colour range, so that pictures
-                                           of both can be compared */
+        /* uses the distances along triangles for distances by the heat method, too: both get the same colour range, so that their pictures
+           can be compared */
+        if (mode != DISTANCE_EUCLIDEAN)
             kernel_distances(asset_distance_codes(view, column, at), number, scratch);
         else
             kernel_euclidean(view->positions_m + at, number, view->sensors[column].surface_m, scratch);

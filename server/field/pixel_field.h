@@ -12,7 +12,7 @@ enum pixel_show { PIXEL_SUM, PIXEL_DISTANCE, PIXEL_BLIND }; /* PIXEL_BLIND: the 
 enum { PIXEL_CONFIGURED = 1, PIXEL_USABLE = 2, PIXEL_UNCERTAIN = 4, PIXEL_NO_LIMITS = 8 };
 
 struct pixel_sensor {
-    float place_m[3]; /* position in the coordinates of the asset file */
+    float place_m[3]; /* position of the sensor in metres, in the coordinates of the asset file */
     float value;      /* value that enters the sum */
     float strength, decay;
     uint32_t state; /* PIXEL_* bits; with neither PIXEL_USABLE nor PIXEL_NO_LIMITS the sensor is lost */

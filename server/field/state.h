@@ -10,7 +10,7 @@
 struct update; /* defined in update.h */
 
 struct state_input {           /* one sensor's inputs to the sums */
-    double value;              /* engineering units; for interpolation paper scaled to 0..1 */
+    double value;              /* value of the sensor's reading in engineering units; for interpolation paper scaled to 0..1 */
     uint8_t usable, uncertain; /* usable: enum sensor_use */
 };
 

@@ -18,7 +18,7 @@ void trial_reach_unref(struct trial_reach **reach);
 
 struct trial_sensor {
     int tag, asset;            /* tag of the sensor, and the only asset on which it is */
-    float surface_m[3];        /* position in the coordinates of the asset file */
+    float surface_m[3];        /* position of the sensor in metres, in the coordinates of the asset file */
     double place_m[3];         /* position of the sensor in plant coordinates */
     uint32_t vertex;           /* vertex nearest to the position */
     struct trial_reach *reach; /* geodesic distances; NULL: not known yet, straight-line distances are used meanwhile */

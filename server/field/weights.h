@@ -22,13 +22,13 @@ enum place {
     PLACE_GOOD,     /* the nearest configured sensor is usable and within reach */
     PLACE_LOST,     /* the nearest sensor is not usable; another one is within reach */
     PLACE_NOBODY,   /* no usable sensor within reach */
-    PLACE_NO_LIMITS /* the nearest sensor within reach is SENSOR_NO_LIMITS */
+    PLACE_NO_LIMITS /* the nearest sensor within reach is good, but its tag has no alarm limits (SENSOR_NO_LIMITS) */
 };
 
 /* bits for the arrays of a block that are filled. KNOWN_NEAR: near_m and place; KNOWN_TOP: top; KNOWN_TOTAL: total */
 enum weights_known { KNOWN_NEAR = 1, KNOWN_TOP = 2, KNOWN_TOTAL = 4 };
 
-struct weights_key { /* bytes of everything that G depends on */
+struct weights_key { /* key of cached weights: the bytes of everything that the sensors' weights at all vertices depend on */
     void *bytes;
     size_t count;
     uint64_t hash;

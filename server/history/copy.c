@@ -34,7 +34,7 @@ static bool sync_file(struct log *log, const char *path)
     return good || failed(log, path, "cannot be synchronised to disk", strerror(cause));
 }
 
-/* --- owner of a file --------------------------------------------------------------------------------------------------------- */
+/* --- checking and setting the owners of files -------------------------------------------------------------------------------- */
 
 /* Returns the folder of a file; free with mem_free(). */
 static char *folder_of(const char *path)
@@ -142,7 +142,8 @@ static bool copy_state(struct log *log, const char *from_path, const char *to_pa
     if (code == SQLITE_OK)
         code = copy_pages(from, to);
     if (code == SQLITE_OK)
-        code = sqlite3_exec(to, "PRAGMA journal_mode = DELETE", NULL, NULL, NULL); /* makes the copy one file, without a write-ahead log */
+        /* turns off write-ahead logging in the copy, so that the copy is a single file */
+        code = sqlite3_exec(to, "PRAGMA journal_mode = DELETE", NULL, NULL, NULL);
     bool good = code == SQLITE_OK ? is_whole(log, to, to_path) : failed(log, from_path, "cannot be copied", sqlite3_errstr(code));
     sqlite3_close(to);
     sqlite3_close(from);

@@ -75,7 +75,7 @@ struct historian {
     struct postgres_owed *owed;
 };
 
-/* --- samples from the store --------------------------------------------------------------------------------------------------- */
+/* --- taking samples from the store -------------------------------------------------------------------------------------------- */
 
 static void queue_samples(struct historian *historian, const struct sample_event *samples, size_t count)
 {
@@ -373,7 +373,8 @@ static void measure_free(struct historian *historian)
         counter_set(historian->counters.free, (int64_t)(disk.f_bavail * disk.f_frsize));
 }
 
-/* Updates the metric of the last `plantcast backup`, and renews the spool reserve if it was used. */
+/* Updates the metric of the last `plantcast backup`. Also reserves disk space again for the spool, the file for rows that cannot be written
+   to the history, if that space was used. */
 static void look_around(struct historian *historian)
 {
     struct stat backup;

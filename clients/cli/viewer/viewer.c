@@ -264,7 +264,8 @@ static void on_timer(lws_sorted_usec_list_t *sul)
     int64_t now_ns = clock_mono_ns();
     viewer_on_time(viewer, now_ns);
     if (viewer->wsi && (viewer->done || viewer_has_output(viewer)))
-        lws_callback_on_writable(viewer->wsi); /* the writable callback sends, or closes the connection if the viewer is done */
+        /* libwebsockets then calls the writable callback, which sends the due messages, or closes the connection if the viewer is done */
+        lws_callback_on_writable(viewer->wsi);
     viewer->next_ns += (int64_t)(1e9 / viewer->params.hz);
     if (viewer->next_ns < now_ns)
         viewer->next_ns = now_ns;

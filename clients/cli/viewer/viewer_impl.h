@@ -13,7 +13,7 @@ struct viewer {
     struct viewer_params params;
     struct viewer_result result;
     struct lws_context *context;
-    struct lws *wsi; /* connection of a viewer that decodes; NULL: `raw` is used, or not connected */
+    struct lws *wsi; /* libwebsockets connection of a viewer that decodes frames; NULL: not connected, or the viewer uses `raw` */
     struct raw_websocket *raw;
     lws_sorted_usec_list_t timer;
     struct decoder *decoder;

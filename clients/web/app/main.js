@@ -74,7 +74,7 @@ page.handlers = {
 };
 listenToInput(byId('viewport'), modules);
 
-// --- the picture and what is drawn over it
+// --- the picture, and the markers, cards and labels drawn over it
 
 let pictures = 0;
 viewport.onTick = (now) => modules.there('cameraController')?.tick(now);
@@ -86,7 +86,7 @@ viewport.onDrawn = (newPicture, isWarped) => {
             probeCodecs();
     }
     if (newPicture && (session.picture.past || status.past))
-        status.show(); // the status bar must change together with the picture
+        status.show(); // updates the status bar with the picture: its texts about the past must change at the same moment as the picture
     if (newPicture || isWarped || overlay.dirty) {
         for (const name of ['card', 'place', 'measure', 'clipGizmo', 'notes'])
             modules.there(name)?.show();

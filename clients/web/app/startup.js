@@ -18,7 +18,7 @@ if (query.has('wall') && !/^[\d.,]*$/.test(query.get('wall'))) {
 }
 export const page = { unit: 1, onUnit: () => {} };
 
-// everything that affects the size of the picture comes first
+// sets language, texts and style sheets first, because they affect the size of the picture that is then requested
 document.documentElement.lang = language;
 sayAll(document);
 const backdrop = chooseTheme(query);

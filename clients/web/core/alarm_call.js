@@ -3,7 +3,7 @@
 // by urgency and age. Selects none during a flood of alarms, because a picture that keeps changing would help nobody.
 import { isGone } from './alarms.js';
 
-export const TURN_MS = 10000;  // smallest time between two changes of the picture
+export const TURN_MS = 10000;  // smallest time in milliseconds between two changes of the picture
 export const FLOOD = 10; // more alarms than this within FLOOD_US are a flood
 const FLOOD_US = 600e6;
 

@@ -3,7 +3,8 @@
 // together share one, a call-out (protocol/LABELS.md).
 import { boxAt, CLEARANCE, hasArea, meets, SLOTS } from './labels.js';
 
-// distances in units: rings closer than CLOSE share a call-out; rings that share one already do so up to STILL_CLOSE
+// distances in units (CSS pixels, more on a wall): rings closer than CLOSE share a call-out; rings that share one already do so up to
+// STILL_CLOSE
 const CLOSE = 26, STILL_CLOSE = 34;
 // MOST_GROUPS: maximum number of labels; the distances grow by the factor FARTHER until the number is met
 const MOST_GROUPS = 24, FARTHER = 1.25;

@@ -161,7 +161,7 @@ export class Connection {
             }
             if (!this.quiet && silent >= QUIET_MS)
                 this.become('open', true);
-            // the page hung: messages that arrived meanwhile are handled before the next timer, which decides
+            // this timer came late, because the page hung: messages that arrived meanwhile must be handled first, so a new timer decides
             this.watch(late ? 0 : CHECK_MS);
         }, wait);
     }

@@ -18,7 +18,8 @@ export class Decoding {
     // Tests whether H.264 works here.
     async probe() {
         if (this.env.api.VideoDecoder)
-            this.fallback = await import('./decoder_fallback.js').catch(() => null); // stays with JPEG if the server is unreachable
+            // without this module, which cannot be loaded while the server is unreachable, the page stays with JPEG
+            this.fallback = await import('./decoder_fallback.js').catch(() => null);
         await this.fallback?.probe(this);
     }
 

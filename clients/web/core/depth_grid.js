@@ -47,7 +47,7 @@ class Symbols {
             code = this.bytes[this.at] | (this.bytes[this.at + 1] << 8);
             this.at += 2;
         }
-        need(code >= 0 && code <= this.levels, `code ${code}`); // undefined bytes beyond the end make the code NaN
+        need(code >= 0 && code <= this.levels, `code ${code}`); // also refuses NaN, which undefined bytes beyond the end of the data give
         return code;
     }
 }

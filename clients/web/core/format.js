@@ -5,7 +5,7 @@ import { locale, say, sayIfKnown } from './words.js';
 
 const UNITS = { degC: '°C', degF: '°F', 'deg C': '°C', 'deg F': '°F', C: '°C' };
 
-// Returns a unit as the page writes it.
+// Returns a unit in the spelling of the page, such as °C for degC and m³ for m3.
 export function unitText(unit) {
     return UNITS[unit] ?? (unit ?? '').replace(/\^?2\b/, '²').replace(/\^?3\b/, '³').replace(/\bu(?=m\b)/, 'µ');
 }

@@ -166,7 +166,7 @@ export class Session {
         this.cameraSeq = this.paramsSeq = 0;
         this.asked = new Map([[-1, shown]]);
         if (this.picture)
-            // marks the picture as one of the previous connection, whose sequence numbers mean nothing to the new one
+            // no sequence number of the new connection: the parameters of this picture were numbered by the previous connection
             this.picture.paramsSeq = -1;
         this.greetedCamera = parts.includes('camera') ? this.camera : null;
         const message = { type: 'hello', ...this.size, ...this.proofs(), codecs: this.codecs,
@@ -295,7 +295,7 @@ export class Session {
             this.freshAt = this.now();
     }
 
-    // Called when a frame is on the screen.
+    // Updates rate, latency and the shown picture after a frame has been drawn on the screen.
     drawn(frame, decodeMs) {
         const now = this.now();
         this.rate.count(now);
@@ -378,7 +378,7 @@ export class Session {
         return this.markers.get(newest) ?? null;
     }
 
-    // --- the state of the view, for the page
+    // --- state of the view that the page reads
 
     // Returns the home camera for a size in CSS pixels. legendLies() returns true if the legend lies across the top of the picture, null if
     // the picture has no legend.

@@ -2,7 +2,7 @@
 // Computes the latency of recent pictures, stage by stage.
 
 export const STAGES = ['wait', 'field', 'render', 'encode', 'network', 'decode'];
-const STATED = ['wait', 'field', 'render', 'encode']; // stages whose microseconds the server states
+const STATED = ['wait', 'field', 'render', 'encode']; // stages of a picture's latency whose durations the server sends, in microseconds
 
 const rank = (sorted, share) => sorted[Math.min(sorted.length - 1, Math.ceil(share * sorted.length) - 1)];
 

@@ -4,7 +4,7 @@
 import { fieldInstant, fieldText } from './instant.js';
 
 const DAY_MS = 86400e3;
-export const LEAST_US = 10e6, LONGEST_US = 400 * 86400e6; // shortest and longest range of a chart
+export const LEAST_US = 10e6, LONGEST_US = 400 * 86400e6; // shortest and longest range of a chart, in microseconds
 
 // Words for time ranges in all languages of the page, because users may type in a language other than the page's.
 const UNITS = [[1, /^(?:s|sec|seconds?|sek|sekunden?|초)$/], [60, /^(?:m|min|minutes?|minuten?|분)$/],

@@ -53,5 +53,6 @@ export function brightness(dim, minute, calls) {
 const SHIFT_US = 180e6, SHIFTS = [[0, 0], [2, 1], [3, -1], [1, -3], [-1, -2], [-3, 0], [-2, 2], [0, 3]];
 export const burnShift = (us) => SHIFTS[Math.floor(us / SHIFT_US) % SHIFTS.length] ?? SHIFTS[0];
 
-// Returns true if legends lie below the picture, false if they stand at its side. width, height: size of the wall in units.
+// Returns true if legends lie below the picture, false if they stand at its side. width, height: size of the wall's page in its units
+// (page.unit).
 export const legendsLie = (width, height, split) => width < height || (split && width < 800);

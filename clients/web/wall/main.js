@@ -19,7 +19,8 @@ import { Pairing } from './pairing.js';
 import { tileOf } from './tile.js';
 
 const TICK_MS = 250, LOST_MS = 3000;
-// LEAST: smallest size of a display in units; LETTERS_MM: height of the letters that say that the connection is lost
+// LEAST: smallest size of a display in units of the page (CSS pixels before scaling); LETTERS_MM: height in millimetres of the letters that
+// say that the connection is lost
 const LEAST = { width: 560, height: 315 }, LETTERS_MM = 100;
 const query = new URLSearchParams(location.search), number = Math.max(1, Number(query.get('display')) || 1);
 
@@ -170,4 +171,5 @@ keepScreenOn();
 serveInstalled();
 watchMainThread({ scale: () => scale, reloads: parent === window }).catch(console.warn);
 connection.start();
-globalThis.wall = { session, call, get panes() { return panes; } }; // for the console and for tests
+// global object with the wall's parts, for the browser's console and for tests
+globalThis.wall = { session, call, get panes() { return panes; } };

@@ -114,7 +114,7 @@ function ViewsPane(pane, context) {
 
     function showAlarm(page, alarm) {
         const tag = page.session.model.tag(alarm.tag.name);
-        // a view sent from a desk may hide the alarm's position or have another range of colours, so these are reset
+        // resets what a view that a user sent to this pane may have changed: a hidden alarm position, another range of colours
         page.session.setParams({ ...(tag.group ? { group: tag.group } : {}), clip: null, split: null, range: null });
         page.flyToTag(tag);
         words.replaceChildren(badge(alarm.priority, isGone(alarm.state)), make('b', {}, ` ${say(`kind.${alarm.kind}`)} ${tag.name} `),

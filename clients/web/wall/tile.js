@@ -149,7 +149,8 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
 
     // --- marks in the picture
 
-    let frame = null, pointer = null; // frame: the frame on the screen; pointer: where a desk points: { position, by, until }
+    // frame: the frame on the screen; pointer: position at which a user at another computer points: { position, by, until }
+    let frame = null, pointer = null;
 
     // Returns a function from a position in the plant to one on this display, as fractions of its sides; null: behind the camera, or far
     // outside.

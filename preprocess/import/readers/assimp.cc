@@ -540,7 +540,8 @@ void convert(const char *input, const char *output, const char *units, const cha
     Assimp::DefaultLogger::get()->attachStream(new assimp_log(logged), Assimp::Logger::Err | Assimp::Logger::Warn); /* Assimp owns it */
     steps |= from.own_normals ? 0U : static_cast<unsigned>(aiProcess_RemoveComponent);
     const aiScene *scene = importer.ReadFile(input, steps);
-    if (!scene && strstr(importer.GetErrorString(), "contains no ")) /* one empty mesh makes Assimp refuse the whole model */
+    /* Assimp refuses a whole model because of one empty mesh: reads it again without the steps that check this */
+    if (!scene && strstr(importer.GetErrorString(), "contains no "))
         scene = importer.ReadFile(input, steps & ~static_cast<unsigned>(aiProcess_ValidateDataStructure | aiProcess_SortByPType));
     if (!scene || !scene->mRootNode)
         refuse("%.250s", strcmp(importer.GetErrorString(), "std::bad_alloc") ? importer.GetErrorString() : "out of memory");

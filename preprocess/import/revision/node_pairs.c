@@ -95,7 +95,7 @@ static void take_unpaired(struct node_pairing *p)
 /* --- pairing runs of candidates (unpaired nodes) that compare equal --- */
 
 enum run_rule {
-    RUN_SINGLE, /* pair a run only if it has exactly one old and one new candidate */
+    RUN_SINGLE, /* pair a run (candidates that compare equal) only if it has exactly one old and one new candidate */
     RUN_PLACED, /* pair candidates of a run whose bounding boxes are at the same position */
     /* pair a run with one old and one new candidate; else those at the same position, then the remaining ones in order if there are as many
      * old as new ones */
@@ -206,7 +206,7 @@ static json_t *guids_of(const struct model_outline *outline)
     json_t *found = json_object();
     for (size_t i = 0; i < outline->header.count; i++) {
         const char *guid = model_outline_property(&outline->nodes[i], "GlobalId");
-        if (guid) /* value: index of the node; -1: several nodes share the GUID */
+        if (guid) /* value in the map from GUIDs: index of the node; -1: several nodes share the GUID */
             json_object_set_new_nocheck(found, guid, json_integer(json_object_get(found, guid) ? -1 : (json_int_t)i));
     }
     return found;

@@ -16,7 +16,8 @@ struct openid_config {
     char *url;                                     /* URL of this server's page as browsers see it, with a trailing slash */
     char *redirect_uri;                            /* derived from url */
     char *ca_file;                                 /* NULL: the machine's trusted certificates */
-    char *scope, *prompt, *label;                  /* prompt NULL: not sent; label: text of the sign-in button */
+    /* prompt: parameter `prompt` of the log-in request, NULL: not sent; label: text of the sign-in button */
+    char *scope, *prompt, *label;
     char *name_claim, *groups_claim;
     struct openid_group *groups;
     size_t group_count;

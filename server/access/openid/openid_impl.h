@@ -30,7 +30,7 @@ enum openid_task { OPENID_TASK_CODE, OPENID_TASK_CHECK, OPENID_TASK_REVOKE, OPEN
 struct openid {
     struct openid_params params;
     struct openid_config *config;
-    pthread_t thread; /* starts the requests that are due */
+    pthread_t thread; /* thread that starts the requests to the identity provider when they are due */
     bool started;
     counter *good, *people, *refused, *foreign;
     /* changed: a user's rights changed since the last openid_take_changed(); failing: the log already has a line that the provider fails */
@@ -63,7 +63,7 @@ void openid_record(struct openid *openid, const char *event, const char *result,
                    const char *what, const char *why);
 void openid_say_refused(struct openid *openid, const char *from, const char *why);
 
-/* --- openid_jobs.c; the caller holds the lock, but for openid_free_job() and openid_free_secret() --- */
+/* --- functions of openid_jobs.c; the caller holds the lock, except for openid_free_job() and openid_free_secret() --- */
 
 /* Queues a job; takes ownership of its texts. */
 void openid_add_job(struct openid *openid, struct openid_jobs *jobs, const struct openid_job *job);
@@ -73,10 +73,10 @@ void openid_revoke_later(struct openid *openid, const char *refresh_token);
 /* Removes the oldest job, which the caller owns (openid_free_job). The queue must not be empty. */
 struct openid_job *openid_take_job(struct openid_jobs *jobs);
 void openid_free_job(struct openid_job *job);
-/* Overwrites the text before freeing it; accepts NULL. */
+/* Frees a secret text after overwriting it; accepts NULL. */
 void openid_free_secret(char *text);
 
-/* --- openid_provider.c; any thread, without the lock --- */
+/* --- functions of openid_provider.c; called by any thread, without the lock --- */
 
 /* Returns true if the provider's metadata and keys are known. */
 bool openid_knows(struct openid *openid);
@@ -93,7 +93,7 @@ json_t *openid_verify(struct openid *openid, const char *token, const char *nonc
    the claims are complete now. *told false: groups may be missing only because the provider was not asked or did not answer. */
 bool openid_complete(struct openid *openid, json_t *claims, const char *access_token, bool *told);
 
-/* --- openid_tokens.c; any thread, without the lock --- */
+/* --- functions of openid_tokens.c; called by any thread, without the lock --- */
 
 /* Redeems a code at the provider. Returns the person, who is not in the table of signed-in people yet; NULL with *result and *why
    (mem_free) if the log-in failed. */

@@ -18,7 +18,7 @@ struct file_writer {
     /* --- protected by thread.lock */
     struct file_job *queued, *running, *done;
     int queued_count;
-    /* --- used by the event loop only */
+    /* --- below: members that only the event loop uses */
     uint64_t count; /* number of the newest job */
     /* results of the newest jobs, each at its number modulo RESULTS: 0, -errno, or -EINPROGRESS while the job is not finished */
     int results[RESULTS];

@@ -21,7 +21,7 @@ bool login_file_read(const char *path, struct login_file *login, char why[200])
     char *rest = login->text;
     login->bytes = strlen(rest);
     login->user = strsep(&rest, "\r\n");
-    rest += rest && *rest == '\n'; /* a line may end with \r\n */
+    rest += rest && *rest == '\n'; /* skips the \n of a line that ends with \r\n */
     login->password = rest ? strsep(&rest, "\r\n") : NULL;
     if (*login->user)
         return true;

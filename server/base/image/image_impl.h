@@ -9,7 +9,7 @@ extern "C" {
 #endif
 
 #define IMAGE_MAX_SIDE_PX (1u << 15)
-#define IMAGE_MAX_PIXELS (1u << 26) /* 8192 x 8192: larger textures are never drawn */
+#define IMAGE_MAX_PIXELS (1u << 26) /* largest number of pixels of an image: 8192 x 8192, because larger textures are never drawn */
 /* Limits against files that decode to far more than their size. VALUES_PER_BYTE: most decoded values per byte of file; zlib shrinks data
    to a thousandth at best, JPEG to less. FREE_VALUES: number of values that a file of any size may have. */
 #define IMAGE_VALUES_PER_BYTE 2000u

@@ -23,7 +23,7 @@ static void fail(j_common_ptr codec)
     longjmp(reader->failed, 1);
 }
 
-/* libjpeg only warns of a truncated file, and fills the missing rows with grey. */
+/* Fails for a truncated file, of which libjpeg only warns: it fills the missing rows with grey. Other warnings are ignored. */
 static void warn(j_common_ptr codec, int level)
 {
     if (level < 0 && codec->err->msg_code == JWRN_JPEG_EOF)

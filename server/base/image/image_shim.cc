@@ -89,8 +89,9 @@ void read_pixels(OIIO::ImageInput *in, const OIIO::ImageSpec &spec, uint32_t max
         throw std::bad_alloc();
     bool read = in->read_image(0, 0, 0, channels, kind<T>::type, raw.data());
     std::string error = in->geterror();
-    if (!read || error.find("Premature end") != std::string::npos) /* the JPEG reader reports a truncated file only in its error text,
-                                                                      and fills the missing rows with grey */
+    /* a truncated JPEG file counts as broken, although the JPEG reader only says so in its error text, and fills the missing rows with
+       grey */
+    if (!read || error.find("Premature end") != std::string::npos)
         throw std::runtime_error(error.empty() ? "broken" : error);
     spread(raw.data(), channels, pixels, kind<T>::opaque, *rgba);
     *width_px = static_cast<uint32_t>(spec.width);

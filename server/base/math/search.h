@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Comparison of numbers for qsort(), and binary search in elements that bsearch() does not suit: found by position, or through an index. */
+/* Comparison of numbers for qsort(), and a binary search by any condition, for elements that bsearch() cannot search. */
 #ifndef BASE_SEARCH_H
 #define BASE_SEARCH_H
 #include <stddef.h>

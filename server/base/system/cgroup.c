@@ -98,7 +98,8 @@ bool cgroup_create(const char *name, size_t memory_bytes, int max_tasks, char **
     snprintf(number, sizeof(number), "%zu", memory_bytes);
     good = good && write_file(*path, "memory.max", memory_bytes ? number : "max");
     int error = errno;
-    write_file(*path, "memory.swap.max", "0"); /* the file memory.swap.max is absent if the kernel does not count swap */
+    /* a failure is ignored, because the file memory.swap.max is absent if the kernel does not count swap */
+    write_file(*path, "memory.swap.max", "0");
     if (!good)
         cgroup_destroy(path);
     errno = error;

@@ -143,7 +143,7 @@ static int restrict_paths(const struct confine_params *params, int abi)
 {
     const struct confine_ruleset attributes = confine_ruleset_of(abi);
     uint64_t known = attributes.files;
-    /* the kernel accepts a structure that is larger than its own, as on older kernels, if the excess bytes are zero */
+    /* passes a structure with all members: an older kernel, whose own structure is smaller, accepts it if the excess bytes are zero */
     int ruleset = (int)syscall(SYS_landlock_create_ruleset, &attributes, sizeof(attributes), 0);
     int status = ruleset < 0 ? -errno : permit(ruleset, "/dev/null", (READ_FILE | WRITE_FILE | TRUNCATE) & known);
     for (size_t i = 0; i < sizeof(system_paths) / sizeof(system_paths[0]) && status == 0; i++)
@@ -205,7 +205,7 @@ int confine(const struct confine_params *params)
     if (status != 0)
         return status;
     status = confine_calls(params->role, params->notifies);
-    /* the kernel has no seccomp filters: confine_lacks() reports that */
+    /* a kernel without seccomp filters is no error here: confine_lacks() reports that they are missing */
     return status == -ENOSYS || status == -EINVAL ? 0 : status;
 }
 

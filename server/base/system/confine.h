@@ -25,7 +25,7 @@ struct confine_params {
     /* allowed paths, in addition to the system libraries, fonts and kernel files that every program needs */
     const struct confine_path *paths;
     size_t path_count;
-    bool notifies; /* true: may send datagrams to the service manager's Unix socket */
+    bool notifies; /* true: the process may send datagrams to the service manager's Unix socket */
     int most_abi;  /* newest Landlock ABI to use, for tests of older kernels; 0: the kernel's */
 };
 

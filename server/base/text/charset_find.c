@@ -15,7 +15,7 @@
 
 enum { SAMPLE_BYTES = 1 << 16, MAX_LINE = 512 };
 
-/* --- models of two-byte encodings ------------------------------------------------------------------------------------------- */
+/* --- statistical models of two-byte encodings ------------------------------------------------------------------------------- */
 
 /* Frequent characters in texts about process plants: simplified and traditional Chinese, Japanese, Korean. The models assume that they
    make up half of a text. */
@@ -152,7 +152,7 @@ static const struct wide_model wide_models[] = {
     { "Big5", traditional, -2, rate_big5 }, { "EUC-JP", japanese, -2, rate_eucjp },
 };
 
-/* --- models of one-byte encodings ------------------------------------------------------------------------------------------- */
+/* --- statistical models of one-byte encodings ------------------------------------------------------------------------------- */
 
 struct narrow_model {
     const char *name, *lower, *upper, *rare; /* lower, upper: letters, the most frequent first; rare: rare letters */
@@ -429,7 +429,7 @@ struct charset_choice charset_find_legacy(const char *bytes, size_t count)
     return choice;
 }
 
-/* --- byte order marks, UTF-8 and UTF-16 ---------------------------------------------------------------------------------------- */
+/* --- detecting byte order marks, UTF-8 and UTF-16 ------------------------------------------------------------------------------ */
 
 /* Returns the number of valid UTF-8 characters beyond ASCII, and sets *invalid to the number of bytes that are not valid UTF-8. */
 static size_t count_utf8(const char *bytes, size_t count, size_t *invalid)

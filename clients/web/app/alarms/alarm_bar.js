@@ -55,7 +55,7 @@ export class AlarmBar {
         this.show();
     }
 
-    // Blinks slowly while any alarm is unacknowledged.
+    // Makes the alarm bar blink slowly while any alarm is unacknowledged.
     tick() {
         const waiting = this.fresh && Boolean(this.alarms?.counts().waiting) &&
             !window.matchMedia('(prefers-reduced-motion: reduce)').matches;

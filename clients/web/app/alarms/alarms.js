@@ -13,7 +13,7 @@ import { asOf, heldSince } from './alarm_bar.js';
 import { addEdge } from './panel_edge.js';
 import { actionButton, AlarmTable, momentButton, refreshCells, rowOf } from './alarm_table.js';
 
-const SHOWN = 200; // maximum number of rows in the document
+const SHOWN = 200; // maximum number of rows of the alarm list in the document
 // true on wide screens; on narrower ones the list covers the equipment list (alarms.css)
 const WIDE = window.matchMedia('(min-width: 1200px)');
 const WHICH = ['all', 'waiting', 'active', 'gone'];
@@ -101,7 +101,7 @@ export class AlarmList {
         }
     }
 
-    // Shows the journal or the present alarms.
+    // Switches the panel to its tab with the journal (journal true) or to the one with the present alarms.
     turnTo(journal, focus = false) {
         for (const [id, on] of [['alarms-tab', !journal], ['journal-tab', journal]]) {
             byId(id).setAttribute('aria-selected', on);
@@ -205,7 +205,7 @@ export class AlarmList {
             (key, value) => (key === 'tag' ? undefined : value)), (row) => this.draw(row));
     }
 
-    // --- selection, and actions on several alarms
+    // --- selecting rows of the alarm list, and actions on all selected alarms
 
     // Returns the ids and times of a row's alarms. While they are the same, the row shows the alarms that the user selected.
     signatureOf = (row) => allOf(row).map(({ id, raisedUs }) => `${id}@${raisedUs}`).join();

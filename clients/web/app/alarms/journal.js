@@ -13,7 +13,7 @@ import { AlarmTable, momentButton, refreshCells, rowOf } from './alarm_table.js'
 
 const SPANS = ['shift', 'day', 'today', 'yesterday', 'week', 'chosen'];
 const STEP = 5000, SHOWN = 200; // STEP: number of rows per request; SHOWN: maximum number of rows in the document
-const READ_AGAIN_MS = 3000;     // shortest time between two reads of a span that ends now
+const READ_AGAIN_MS = 3000;     // shortest time in milliseconds between two requests for a time span that ends now
 const EVENTS = { raised: ['raise', 'call'], cleared: ['clear'], acknowledged: ['acknowledge', 'reset'],
     shelved: ['shelve', 'unshelve', 'suppress', 'unsuppress', 'out_of_service', 'in_service', 'carry'] };
 

@@ -53,7 +53,7 @@ export class Assets {
                 return;
             this.does((rows) => rows.press(event.key));
             event.preventDefault();
-            event.stopPropagation(); // keeps the key from moving the camera
+            event.stopPropagation(); // ends the event here, because the key would also move the camera
         });
     }
 

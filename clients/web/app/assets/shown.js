@@ -31,7 +31,7 @@ export class Shown {
         setText(this.words, [gone > 0 && say('shown.hidden', { hidden: gone, all: all.length }),
             ghosts > 0 && say('shown.ghosts', { count: ghosts })].filter(Boolean).join(', '));
         this.stand();
-        this.refresh(); // moves labels that the notice would cover
+        this.refresh(); // draws the labels over the picture again, so that those under the notice move aside
     }
 
     // Moves the notice below the legend if the legend lies across the top of the picture.

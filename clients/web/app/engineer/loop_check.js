@@ -128,7 +128,7 @@ export class LoopCheck {
     onTags() {
         const { model } = this.session;
         if (this.session.time.atUs !== null)
-            return; // while the past is shown, the readings are not those of the forced transmitter
+            return; // ignores readings while the past is shown, because they do not come from the transmitter that is forced now
         this.loopCheck.observe(model.readings.map(({ value, quality }) => (quality === 'bad' ? null : value)));
         if (this.element.offsetParent === null)
             return;

@@ -19,7 +19,7 @@ export class Placing {
         Object.assign(this, { session, viewport, overlay, selection, selectTag, showTag, refresh });
         this.moves = [];   // draft positions that are not saved: { tag, asset, position }
         this.undone = [];  // undo stack of `moves`
-        this.tag = null;   // name of the tag to place
+        this.tag = null;   // name of the tag whose sensor the user places
         this.dragging = null;
         this.accepting = new Accepting({ session, refresh });
         this.build();

@@ -80,7 +80,7 @@ export class Highlights {
     write(text, x, y) {
         const c = this.overlay.context;
         if (x < 0 || x > this.overlay.wide || y > this.overlay.high)
-            return; // writes no text outside the picture
+            return; // writes nothing if the position of the text is outside the picture
         c.font = `600 13px ${this.overlay.font}`;
         const width = c.measureText(text).width + 10;
         const left = Math.min(Math.max(4, x - width / 2), this.overlay.wide - width - 4), bottom = Math.max(24, y);

@@ -176,7 +176,7 @@ export class TagTable {
         else
             return;
         event.preventDefault();
-        event.stopPropagation(); // keeps the key from moving the camera
+        event.stopPropagation(); // ends the event here, because the key would also move the camera
     }
 
     chooseAt(i) {

@@ -66,7 +66,7 @@ export class Approach {
         const cameras = approaches({ camera: now, point: tag.position, box: asset.bounds, aspect: width / this.viewport.height,
             whole: model.plant.bounds, solid: solid !== null });
         fly(cameras[0]);
-        const behind = [], own = []; // cameras whose view another asset blocks, or the tag's own asset
+        const behind = [], own = []; // cameras whose view of the tag is blocked by another asset, or by the tag's own asset
         const latest = performance.now() + SEARCH_MS; // deadline, after which the best view found so far is used, as on a slow network
         let best = null, least = Infinity;
         for (const camera of cameras) {

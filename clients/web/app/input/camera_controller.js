@@ -144,7 +144,7 @@ export class CameraController {
 
     keydown(event) {
         if (event.defaultPrevented || document.querySelector('dialog[open]') || event.target.closest(WRITTEN))
-            return; // defaultPrevented: a control, such as the time slider, has acted on the key
+            return; // ignores a key with defaultPrevented, because a control, such as the time slider, has already handled it
         const meaning = keyMeaning(event);
         if (!meaning || (meaning.motion?.startsWith('Arrow') && event.target.closest('fieldset, [type="range"]')))
             return; // leaves arrow keys to the browser within radio buttons and sliders

@@ -20,7 +20,7 @@ export class Notes {
         // on a wall: mark at the position at which a user at another computer points: { element, position, until }; null: nobody points
         this.pointer = null;
         this.list = make('ul', { id: 'notes-list' });
-        this.ofPlant = make('ul', { id: 'plant-notes', hidden: true }); // notes about the whole plant, over the picture
+        this.ofPlant = make('ul', { id: 'plant-notes', hidden: true }); // list over the picture with the notes about the whole plant
         viewport.element.append(this.ofPlant);
         this.edited = null; // the note that the form changes; null: the form adds a note
         this.text = make('input', { maxlength: LONGEST, placeholder: say('notes.text'), 'aria-label': say('notes.text'), id: 'note-text' });

@@ -7,7 +7,7 @@ import { depthAt, FLOATS, isNear, moveBy, warpMatrix } from '../../core/warp_mes
 import { isWhole } from '../../core/wire.js';
 import { make } from '../common/dom.js';
 
-const KEPT = 8; // number of depth grids that may be decoded before their pictures are
+const KEPT = 8; // maximum number of newest depth grids that are kept: grids may be decoded before their pictures
 // distance from the eye to the near clipping plane, as a fraction of the nearest depth that the picture's depth grid can express
 const NEAREST = 0.05;
 // If updates come later than SLOW_MS after each other, as without a GPU, the warped picture is drawn with fewer pixels.
@@ -328,7 +328,7 @@ export class Warp {
         gl.bindTexture(gl.TEXTURE_2D, this.texture);
         const pixels = held?.frame.seq === source.picture.seq ? held.picture : viewport.canvas;
         gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-        // the coded picture may be a pixel wider and higher than the frame
+        // uses the visible size, because the coded picture may be a pixel wider and higher than the frame
         source.size = [pixels.displayWidth ?? pixels.width, pixels.displayHeight ?? pixels.height];
         for (const part of source.parts)
             this.loadPart(part);
@@ -447,7 +447,7 @@ export class Warp {
     paintPart(part, source, camera) {
         const { gl, canvas, mesh } = this, { grid, buffers } = part, { fullWidth, fullHeight } = source.picture;
         const across = canvas.width / fullWidth, up = canvas.height / fullHeight;
-        const closest = Math.max(1e-6, grid.base + grid.levels * grid.unit); // largest possible 1/z of the grid, 1/m
+        const closest = Math.max(1e-6, grid.base + grid.levels * grid.unit); // largest 1/depth that this depth grid can express, in 1/m
         part.matrix = warpMatrix(grid, source.camera, camera, NEAREST / closest);
         gl.viewport(grid.x * across, (fullHeight - grid.y - grid.height) * up, grid.width * across, grid.height * up);
         gl.uniformMatrix4fv(mesh.at('warp'), false, part.matrix);

@@ -3,7 +3,7 @@
 import { ask } from '../../core/history.js';
 import { stored } from '../common/storage.js';
 
-const ANSWER_MS = 3000; // the page starts without the view if the server does not answer in time
+const ANSWER_MS = 3000; // timeout in milliseconds; without an answer of the server, the page starts without the linked view
 
 // Replaces the short link in the page's address by the view that the server stored. Returns a promise of the view.
 export async function expand(id, token, fetcher) {

@@ -136,7 +136,7 @@ export class Timeline {
         this.go((this.wanted ?? this.atUs ?? this.session.clockUs()) + us);
     }
 
-    // --- going to a date, and from alarm to alarm
+    // --- moves the shown instant to a date, or to the next or previous alarm
 
     showDate() {
         const field = byId('time-date');

@@ -287,7 +287,7 @@ export class Plot {
         if (this.view.tags.length < 2)
             return;
         const ends = this.rows.map(({ tag }, i) => {
-            // a chart that is about to be replaced may have fewer columns than rows
+            // a chart that is about to be replaced may have fewer columns than there are rows: then no number is drawn for the row
             const k = data[i + 1]?.findLastIndex((value, n) => Number.isFinite(value) && data[0][n] <= max && data[0][n] >= min) ?? -1;
             return k < 0 ? null : { tag, x: Math.min(valToPos(data[0][k], 'x', true), bbox.left + bbox.width - size / 2),
                 y: valToPos(data[i + 1][k], this.view.unitOf(tag) || '–', true) };

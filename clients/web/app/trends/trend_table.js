@@ -12,13 +12,13 @@ export class TrendTable {
     // view: the trends, with the members that Plot uses (plot.js), and remove(tag) and setFocus(tag).
     constructor(view) {
         this.view = view;
-        this.rows = new Map(); // tag -> { cells by column }
+        this.rows = new Map(); // rows of the table: tag -> { cells by column }
         this.stats = new Map();
         this.head = byId('trend-tags').querySelector('thead');
         this.body = byId('trend-tags').querySelector('tbody');
     }
 
-    // Makes the rows of the view's tags.
+    // Makes the table's rows, one for each tag of the trend.
     build() {
         const { view } = this, head = (name) => make('th', { class: name, scope: 'col' });
         const heads = Object.fromEntries([...COLUMNS, 'known'].map((name) => [name, head(name)]));
@@ -69,7 +69,7 @@ export class TrendTable {
         }
     }
 
-    // Shows the values at the crosshair; null: none.
+    // Shows in the table the values at the instant `us` of the crosshair; null: there is no crosshair, so the cells become empty.
     point(us, series) {
         for (const tag of this.view.tags) {
             const cell = this.rows.get(tag)?.at, one = series.get(tag.name);

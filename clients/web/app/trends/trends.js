@@ -168,7 +168,7 @@ export class Trends {
         this.open();
     }
 
-    // Shows these tags, over the given span.
+    // Opens the trend with these tags, over the last spanS seconds.
     compare(tags, spanS) {
         Object.assign(this, { spanS, fixed: null });
         this.setTags(tags.slice(0, MOST));

@@ -83,7 +83,7 @@ export class Legend {
         Object.assign(this, { session, element, paramsOf, lying });
         this.lying.addEventListener('change', () => this.show(true));
         this.shown = '';
-        this.long = 240; // length of the bar in CSS pixels
+        this.long = 240; // length of the legend's colour bar in CSS pixels
         new ResizeObserver(() => this.fit()).observe(element);
         for (const name of ['params', 'shown', 'proofs'])
             session.on(name, () => this.show());
@@ -114,7 +114,7 @@ export class Legend {
     show(again = false) {
         const { model } = this.session, params = model && this.paramsOf(this.session.shown);
         const group = params && model.group(params.group);
-        this.element.hidden = !group || params.look === 'materials'; // without a field there is nothing to explain
+        this.element.hidden = !group || params.look === 'materials'; // hides the legend if the picture shows no field, or only materials
         if (!group)
             return;
         const range = this.session.rangeOf(params);

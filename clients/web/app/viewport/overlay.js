@@ -40,9 +40,11 @@ export class Overlay {
         Object.assign(this, { canvas, viewport, session, selection });
         this.context = canvas.getContext('2d');
         this.font = getComputedStyle(document.body).fontFamily;
-        this.unit = 1;     // size of a unit in CSS pixels: 1 on a desk, more on a wall
+        // size in CSS pixels of the unit in which markers and labels are measured: 1 on an ordinary page, more on a wall display
+        this.unit = 1;
         this.calm = document.body.classList.contains('pane'); // true in a pane of a wall: only abnormal readings have labels
-        // markers { tag, x, y, depth, occluded, reading }, in units, of the tags of the shown group and of tags with alarms
+        // markers { tag, x, y, depth, occluded, reading } of the tags of the shown group and of tags with alarms; x and y in units (see
+        // `unit`)
         this.all = [];
         this.markers = []; // the drawn subset of `all`
         this.places = new Map();
@@ -124,7 +126,7 @@ export class Overlay {
         return drawn.sort((a, b) => b.depth - a.depth);
     }
 
-    // Converts units to CSS pixels of the viewport.
+    // Returns the position of a marker in CSS pixels of the viewport; markers have their positions in units (this.unit).
     placeOf({ x, y }) {
         return { x: x * this.unit, y: y * this.unit };
     }

@@ -22,7 +22,7 @@ export class Viewport {
         this.context = canvas.getContext('2d', { alpha: false });
         this.decoded = []; // decoded frames that are not drawn yet: whole pictures, and rectangles of an incomplete one
         this.scheduled = false;
-        this.warp = null; // a Warp (../picture/warp.js), once it is loaded
+        this.warp = null; // draws the newest picture from the present camera: a Warp (../picture/warp.js); null: not loaded yet
         this.onTick = this.onDrawn = () => {};
         this.slot = new DecodeQueue({
             decode: (frame) => decoding.decode(frame),
@@ -110,7 +110,8 @@ export class Viewport {
             this.canvas.width = frame.fullWidth;
             this.canvas.height = frame.fullHeight;
         }
-        const { x, y, width, height } = frame; // the coded picture may be one pixel wider and higher than the frame
+        // leaves out the right and lower edge of the decoded picture, which may be one pixel wider and higher than the frame
+        const { x, y, width, height } = frame;
         this.context.drawImage(picture, 0, 0, width, height, x, y, width, height);
         picture.close();
     }

@@ -53,7 +53,7 @@ export class ClipGizmo {
         const grips = this.session.picture ? this.grips : [], views = grips.length > 0 ? this.views : [];
         for (const [key, button] of this.buttons)
             if (button.half >= views.length || !grips.some(({ id }) => id === button.dataset.id)) {
-                this.buttons.delete(key); // removed from the map first, because removing a focused button calls show() again
+                this.buttons.delete(key); // the handle is removed from the map first, because removing a focused button calls show() again
                 button.remove();
             }
         this.lines.replaceChildren();

@@ -81,7 +81,8 @@ export class Compare {
         inner.head.append(inner.importNode(make('link', { rel: 'stylesheet', href: new URL('compared.css', import.meta.url).href })));
     }
 
-    // Connects the embedded page once it shows a picture: its camera moves this one, and its keys act here.
+    // Connects the embedded page once it shows a picture. Camera moves in the embedded page move the camera of this page, too; its keyboard
+    // commands are carried out by this page.
     connect(page) {
         this.connected = page;
         page.session.on('camera', () => this.frame && this.session.setCamera(page.session.camera));

@@ -165,7 +165,7 @@ export class NamedViews {
                 if (image)
                     image.src = url;
             } catch {
-                break; // a view without a thumbnail still has its title
+                break; // stops requesting thumbnails after a failure; a view without one is still listed by its title
             }
         }
         this.drawing = false;

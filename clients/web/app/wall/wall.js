@@ -8,7 +8,7 @@ import { byId, make, setVariable, styled } from '../common/dom.js';
 
 const FAR_MS = 60000; // for this many milliseconds, the page shows the installer from which distance its text is readable
 const LEAST_PICTURE = 0.3; // smallest height of the picture as a fraction of the window's; below this, the whole page shrinks
-const TIGHT = 620; // width in units below which the date has no room next to the time
+const TIGHT = 620; // width of the display, in units of page.unit, below which the date has no room next to the time
 
 // Sets page.unit (size of a unit of the page) and calls page.onUnit() when it changes. Sets page.lying, which has a media query's
 // interface: whether legends lie horizontally. Legends and the note on simulated values have their own space, so that they cover no

@@ -11,7 +11,7 @@ const REACH = Math.cos(2 * RADIANS); // cosine of the largest angle between a ra
 const LEVEL = Math.cos(35 * RADIANS); // cosine of the steepest slope on which a user can stand
 const RAY_M = 4, RAY_WIDE_M = 0.004, RING_M = 0.5;
 const AGAIN_MS = 1000, UNANSWERED_MS = 3000; // a request without an answer is given up after UNANSWERED_MS
-const WRIST_UP_M = 0.16; // height of the panel above the hand
+const WRIST_UP_M = 0.16; // height in metres of the panel at the wrist above the hand
 
 export class Hands {
     constructor(headset) {

@@ -56,7 +56,7 @@ export class Headset {
         this.banner = new Board(this.painter, 1150, 440);
         this.veil = new Board(this.painter, 4, 4);
         showColour(this.veil, 'rgb(110 110 110 / 94%)');
-        this.marks = new Map(); // boards of markers by quality and alarm
+        this.marks = new Map(); // boards with a marker, by the quality of the reading and the alarm that they show
         this.hands = new Hands(this);
         xr.addEventListener('select', ({ inputSource }) => this.hands.pull(inputSource));
         xr.addEventListener('squeezestart', ({ inputSource }) => this.hands.grab(inputSource));
@@ -128,7 +128,7 @@ export class Headset {
         xr.requestAnimationFrame(this.next);
         const pose = frame.getViewerPose(this.space);
         if (!pose)
-            return; // the headset does not know its pose; it shows its own warning
+            return; // draws nothing while the headset does not know its pose: the headset then shows a warning of its own
         this.head = pose.transform.matrix;
         this.hands.move(frame);
         this.aim(pose);
@@ -164,7 +164,7 @@ export class Headset {
         if (!this.sent || session.camera !== this.sent || isApart(this.sent, camera)) {
             session.setCamera(camera);
             this.sent = session.camera;
-            session.connection.activeAt = Date.now(); // a user who moves the head is not idle
+            session.connection.activeAt = Date.now(); // counts as user activity, so that a user who only moves the head is not signed out
         }
     }
 
