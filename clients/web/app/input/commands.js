@@ -11,7 +11,7 @@ const ARRIVAL_MARGIN = 1.7; // distance factor that leaves a margin around an as
 const REACH_PX = { mouse: 14, pen: 18, touch: 26 };
 const HELD_US = 3.5e6;      // microseconds; an instant less than this ago counts as now
 
-// Returns the tags of the shown group that have a position and distances along the surface to other points of it. A single sensor on an
+// Returns the tags of the shown group that have a position and distances to the other points of the asset's surface. A single sensor on an
 // asset whose surface was not subdivided has no distances.
 export function sensorsOf({ model, params }) {
     const all = model.tags.filter(({ group, asset, position }) => group === params.group && asset && position);
