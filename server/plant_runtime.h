@@ -19,7 +19,7 @@ struct plant_runtime_context { /* parts that a reload keeps */
     const struct server_params *params;
     struct log *log;
     struct counters *counters;
-    struct audit *audit; /* audit trail; NULL: nothing is recorded */
+    struct audit *audit;             /* writer of the audit trail; NULL: nothing is recorded */
     struct file_writer *file_writer; /* writes what users change */
     struct workers *workers;
     struct lease_keeper *keeper; /* lease keeper of a core in a pair (leader or standby); NULL: there is no pair */
@@ -34,7 +34,7 @@ struct plant_runtime {
     struct plant_services services; /* services of the plant; on a daemon that follows a core, core_link takes the place of `sources` */
     struct publisher *publisher;    /* NULL: nothing is published */
     struct source **sources;        /* sources by index in plant->sources */
-    struct source *derived;         /* computes derived tags; NULL: there are none */
+    struct source *derived;         /* pseudo-source that computes derived tags; NULL: there are none */
     /* time spans whose points must still be read from PostgreSQL when a reload replaces the plant; the next runtime's historian reads
        them */
     struct postgres_owed owed;

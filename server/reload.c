@@ -51,7 +51,7 @@ struct reload {
     /* connection that this daemon's core ends once the core has loaded the plant, too; 0: the reload does not wait for the core */
     uint64_t follows;
     char who[TOKEN_NAME_BYTES]; /* user who asked for the next reload */
-    struct tag_save *save;      /* tag list to be saved; NULL: none */
+    struct tag_save *save;      /* tag list that the next reload saves; NULL: none */
 };
 
 void reload_count(struct counters *counters, const char *hash, bool in_force)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* UTC months and the names of their files. */
+/* Converts between UTC months and the names of their history files. */
 #include "history/month.h"
 
 #include <dirent.h>

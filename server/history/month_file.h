@@ -48,7 +48,7 @@ struct month_file *month_file_open(struct log *log, const char *folder, int mont
 struct month_file *month_file_read(struct log *log, const char *folder, int month, int *error);
 /* Converts points and buckets from now on to the units in which this plant shows its tags. `plant` must outlive the file. */
 void month_file_show_by(struct month_file *file, const struct plant *plant);
-void month_file_close(struct month_file **file); /* Closes the file. &NULL is fine; leaves NULL. */
+void month_file_close(struct month_file **file); /* Closes a month's file and sets *file to NULL; accepts a pointer to NULL. */
 /* Closes a damaged file and renames it to history-2026-11.damaged-TIME.sqlite, as month_file_open() does. */
 void month_file_set_aside(struct month_file **file);
 int month_file_month(const struct month_file *file);
@@ -88,7 +88,8 @@ struct month_file_size {
     bool shrinks;
 };
 int month_file_size(struct month_file *file, struct month_file_size *size);
-int month_file_note(struct month_file *file, int64_t t_us, const char *kind, const char *text); /* Writes a row to the table of events. */
+/* Writes an event, a time with a kind and a text, to the file's table of events. */
+int month_file_note(struct month_file *file, int64_t t_us, const char *kind, const char *text);
 
 /* Begins a read transaction, which month_file_end_read() ends: all reads in between are consistent, even if another handle writes
    meanwhile. */

@@ -36,7 +36,7 @@ struct month_file {
     int64_t *ids;                  /* id in the file of each tag, by index of the tag; 0: not known yet */
     struct month_rollups *rollups; /* rollups in progress, by tag */
     struct month_chunk *chunk;     /* the chunk (times that several blocks share) that was read last */
-    struct month_seconds *seconds; /* the newest points that this handle has read */
+    struct month_seconds *seconds; /* newest points of the file, as this handle has read them */
     /* number and stamp (increases with each write) of the row of the table `second` that was written last */
     int64_t slot, stamp;
     int64_t slot_before, stamp_before; /* slot and stamp at the beginning of the transaction; a rollback restores them */

@@ -38,7 +38,7 @@ struct month_outbox_batch {
 struct month_outbox;
 /* Opens the outbox of a month. Returns NULL with *error on failure; -ENOENT, not logged: there is no file, or the file has no outbox. */
 struct month_outbox *month_outbox_open(struct log *log, const char *folder, int month, int *error);
-void month_outbox_close(struct month_outbox **outbox); /* Closes the outbox. &NULL is fine; leaves NULL. */
+void month_outbox_close(struct month_outbox **outbox); /* Closes the outbox and sets *outbox to NULL; accepts a pointer to NULL. */
 /* *count receives an estimate of the number of points in the outbox: the difference between the last and the first sequence number. */
 int month_outbox_count(struct month_outbox *outbox, int64_t *count);
 /* Finds the sequence number of the newest point; 0: the outbox is empty. */

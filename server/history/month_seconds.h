@@ -18,7 +18,7 @@ struct month_seconds {
     /* mark: stamp of the newest row that was moved to blocks; stamp, slot: stamp and number of the newest row read */
     int64_t mark, stamp, slot;
     struct month_row *rows; /* recorded points */
-    struct month_row *held; /* newest samples, by id; id 0: none */
+    struct month_row *held; /* newest sample of each tag, by the tag's id in the file; id 0: no sample */
     size_t count, capacity, held_count, held_capacity;
 };
 

@@ -12,7 +12,7 @@ struct recorder_rows { /* zero-initialise; free `at` with mem_free() */
 
 struct recorder;
 struct recorder *recorder_create(const struct plant *plant);
-void recorder_destroy(struct recorder **recorder); /* Frees the recorder. &NULL is fine; leaves NULL. */
+void recorder_destroy(struct recorder **recorder); /* Frees the recorder and sets *recorder to NULL; accepts a pointer to NULL. */
 /* Adds a sample of a tag, and appends to `kept` the rows that must now be recorded because of the sample. */
 void recorder_put(struct recorder *recorder, int tag, const struct history_point *sample, struct recorder_rows *kept);
 /* Returns the quality of a tag's newest sample; Bad_WaitingForInitialData if it has none yet. */

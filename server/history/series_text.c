@@ -14,7 +14,7 @@ static void add_number(struct text *out, double value, const char *none)
     if (isnan(value))
         text_add(out, "%s", none);
     else
-        text_add(out, "%.10g", value + 0.0); /* adding 0.0 turns -0.0 into 0.0 */
+        text_add(out, "%.10g", value + 0.0); /* adding 0.0 turns -0.0 into 0.0, so that no minus sign is printed */
 }
 
 /* Appends a JSON string in quotes. */

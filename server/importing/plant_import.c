@@ -29,7 +29,7 @@ struct plant_import {
     enum import_phase phase;
     unsigned number; /* number of orders so far */
     struct text said;
-    char *why; /* why the last order failed; NULL: it succeeded */
+    char *why; /* reason why the last import order failed; NULL: it succeeded */
 };
 
 /* Reads the stored choice from the file, whose text is "UNITS/UP/ENCODING/MESH_UNITS"; components at the end may be missing. */

@@ -25,7 +25,7 @@ enum import_phase {
     IMPORT_READING,   /* plantcast import is running */
     IMPORT_MATCHING,  /* plantcast match is running */
     IMPORT_PREPARING, /* plantcast-prep is running */
-    IMPORT_LOADING    /* the daemon is loading the new plant */
+    IMPORT_LOADING    /* phase of an import: the daemon is loading the new plant */
 };
 
 struct plant_import;

@@ -17,7 +17,7 @@ enum loop_check_state {
     LOOP_CHECK_FAILED,
     LOOP_CHECK_CHANGED /* the tag was checked, but its address, scaling or position has changed since then: it counts as not checked */
 };
-extern const char *const loop_check_state_names[]; /* names of the states, indexed by enum loop_check_state */
+extern const char *const loop_check_state_names[]; /* names of the states of a loop check, indexed by enum loop_check_state */
 
 struct loop_check {
     enum loop_check_state state;
@@ -32,11 +32,12 @@ struct loop_checks;
 /* Reads the records of a plant. A file that cannot be read counts as empty (logged). writer: the thread that writes records; NULL: they
    are written at once. Never returns NULL. plant and writer must outlive the result. */
 struct loop_checks *loop_checks_open(struct log *log, const struct plant *plant, const char *folder, struct file_writer *writer);
-void loop_checks_close(struct loop_checks **loop_checks); /* &NULL is allowed; sets *loop_checks to NULL */
+/* destroys the loop checks and sets *loop_checks to NULL; accepts a pointer to NULL */
+void loop_checks_close(struct loop_checks **loop_checks);
 /* Queues a record of a loop check for writing to disk; after that, file_writer_collect() makes it the tag's newest check. Returns
    REFUSAL_NONE, or why it could not be queued. */
 enum refusal_code loop_checks_add(struct loop_checks *loop_checks, int tag, const struct loop_check *check);
-/* Returns the newest record of a tag. */
+/* Returns the newest loop check recorded for a tag. */
 const struct loop_check *loop_checks_of(const struct loop_checks *loop_checks, int tag);
 /* Returns true if any tag has been checked. From the first check on, all tags that have not passed are marked as unproven. */
 bool loop_checks_begun(

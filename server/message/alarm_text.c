@@ -163,7 +163,7 @@ static const char SPECIAL[] = ",\"\n\r"; /* characters that require quotes aroun
 static void add_csv_number(struct text *out, double value)
 {
     if (isfinite(value))
-        text_add(out, "%.9g", value + 0.0); /* adding 0.0 turns -0.0 into 0.0 */
+        text_add(out, "%.9g", value + 0.0); /* adding 0.0 turns -0.0 into 0.0, so that no minus sign is sent */
 }
 
 static void add_csv_alarm(struct listing *listing, const struct alarm *alarm)

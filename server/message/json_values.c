@@ -5,7 +5,7 @@
 
 json_t *number(double value)
 {
-    return isfinite(value) ? json_real(value + 0.0) : json_null(); /* adding 0.0 turns -0.0 into 0.0 */
+    return isfinite(value) ? json_real(value + 0.0) : json_null(); /* adding 0.0 turns -0.0 into 0.0, so that no minus sign is sent */
 }
 
 json_t *string(const char *text)

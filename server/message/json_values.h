@@ -8,7 +8,7 @@
 json_t *number(double value);
 /* Returns a string; null for NULL; "(not UTF-8)" for a text that is not UTF-8. */
 json_t *string(const char *text);
-/* Returns an array of three numbers. */
+/* Returns a JSON array of three numbers. */
 json_t *vector(const double v[3]);
 /* Returns an array of `count` numbers; null if count is 0. */
 json_t *number_list(const double *values, int count);

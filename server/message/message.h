@@ -203,7 +203,7 @@ struct hello_request {
     char token[TOKEN_MAX_CHARS + 1], resume[RESUME_MOST_CHARS + 1]; /* "": none */
     double idle_ms; /* milliseconds since the user was last active; negative: not stated */
     bool tokens;    /* true: the server shall send the view as a token whenever it changes */
-    bool depth;     /* the client asks for depth grids */
+    bool depth;     /* true: the client wants depth grids with its frames */
     bool anew;      /* true: resume keeps only the session's id and the sessions that follow it; the view starts fresh */
     bool has_camera, has_params;
     /* tile of a picture that is spread over many displays, which this display shows; display 0: this client shows no tile */

@@ -6,7 +6,7 @@
 
 /* tile_parse(), display_parse() and their siblings parse messages into out->hello.tile, out->wall or out->pair; send_to_wall_parse() also
    writes view and title into out->view_edit. They return false with *error saying what is wrong. */
-/* Reads the optional member `tile` of hello. */
+/* Reads the optional member `tile` (display of a wall) of the message hello. */
 bool tile_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool display_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool send_to_wall_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);

@@ -11,7 +11,7 @@ struct connection {               /* identity of one connection; lives as long a
     char address[64];             /* the client's address as text, for the log */
     enum role role;               /* role of the user, according to the last request's headers */
     struct token_holder holder;
-    char token[TOKEN_MAX_CHARS + 1]; /* token of the last request; "": none */
+    char token[TOKEN_MAX_CHARS + 1]; /* access token of the last request on this connection; "": none */
     bool from_proxy;                 /* true: a trusted proxy sent the last request */
     bool forwarded;                  /* true: the trusted proxy passed on a client's request; false also for the proxy's own checks */
     bool answered;                   /* true: all requests of this connection are answered */

@@ -15,7 +15,7 @@ struct latency_stages {
     struct histogram *input, *sensor;
 };
 
-/* Registers the histograms with the counters. */
+/* Registers the histograms of all latency stages with the server's metrics. */
 void latency_stages_init(struct latency_stages *stages, struct counters *counters);
 /* Records the stages of a frame whose first byte is being sent. */
 void latency_stages_sent(struct latency_stages *stages, const struct encoded_frame *encoded, int64_t now_ns);

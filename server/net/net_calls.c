@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Calls from other threads into the event loop. */
+/* Runs functions in the event loop on behalf of other threads, which wait meanwhile. */
 #include <pthread.h>
 
 #include "net/net.h"

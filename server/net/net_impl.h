@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The event loop's own state. Private to net*.c. */
+/* State of the event loop as a whole. Private to net*.c. */
 #ifndef NET_NET_IMPL_H
 #define NET_NET_IMPL_H
 #include <pthread.h>
@@ -16,8 +16,8 @@ struct net {
     struct lws_vhost *vhost;
     lws_sorted_usec_list_t timer; /* wakes the event loop at the monotonic time timer_ns */
     int64_t timer_ns;
-    int64_t ticked_ns;   /* monotonic: when sessions last ran their tick */
-    int64_t readings_ns; /* monotonic: when the next snapshot is due (readings.c) */
+    int64_t ticked_ns;   /* monotonic time when the sessions last ran their tick */
+    int64_t readings_ns; /* monotonic time when the next snapshot of readings is due (readings.c) */
     struct cpu_meter cpu;
     int64_t cpu_ns; /* monotonic: when the processor load (cpu) was last read */
     _Atomic bool stopping, look, drain, readings_changed, lead_ended;
@@ -76,7 +76,7 @@ bool net_take_snapshot(struct server_context *server);
 bool net_check_links(struct server_context *server);
 /* Makes changes in the plant's store wake the event loop from now on, and takes a first snapshot. */
 void net_watch_readings(struct net *net);
-/* Ends net_watch_readings(): afterwards the store may be destroyed. */
+/* Undoes net_watch_readings(): the store may be destroyed afterwards. */
 void net_unwatch_readings(struct net *net);
 /* Takes a snapshot if one is due. Returns when the next is due; INT64_MAX: not before a reading changes or a client connects. */
 int64_t net_update_readings(struct net *net, int64_t now_ns);

@@ -36,12 +36,12 @@ struct net_params {
     struct log *log;
     struct plant_services plant; /* services of the loaded plant; net_limit_services() sets unusable ones to NULL */
     struct counters *counters;
-    struct audit *audit;             /* the audit trail; NULL: nothing is recorded */
+    struct audit *audit;             /* writer of the audit trail; NULL: nothing is recorded */
     struct file_writer *file_writer; /* writes what users change; its results are collected by the event loop */
     const char *address; /* numeric address to listen on */
     int port;            /* port to listen on; 0: any free one */
     int socket_fd;       /* socket that already listens, opened by systemd (net/handed_socket.h); -1: none */
-    int64_t begun_ns;    /* monotonic: when the daemon began to start */
+    int64_t begun_ns;    /* monotonic time when the daemon began to start */
     struct access_params access;
     const struct signing_key *signing_key; /* NULL: pictures are not signed */
     unsigned codecs;                       /* bit mask of the codecs that work here (1 << enum wire_codec) */
@@ -61,12 +61,12 @@ struct net_params {
     void (*follow)(void *arg, uint64_t session);
     /* callback in the event loop that puts a saved tag list in force and takes ownership of `save`; NULL: tag lists cannot be saved */
     void (*save)(void *arg, struct tag_save *save);
-    struct plant_import *import; /* imports plants; NULL: import is off */
+    struct plant_import *import; /* service that imports plants; NULL: import is off */
     /* callback in the event loop after an import order of user `who` was accepted; set only with `import` */
     void (*import_ordered)(void *arg, const char *who);
     /* callback of the main program, called in the event loop once a second or more often; NULL: not needed */
     void (*tick)(void *arg, const struct net_status *status);
-    void *reload_arg; /* first argument of all callbacks above */
+    void *reload_arg; /* argument that is passed first to all callbacks above */
 };
 
 #endif

@@ -67,7 +67,7 @@ struct renderer_peer {
        which is removed before sending */
     json_t *answers;
     struct deed *deeds;     /* forwarded actions whose answers wait until the actions are on disk */
-    int64_t told_ns;        /* monotonic: when readings were last sent */
+    int64_t told_ns;        /* monotonic time when readings were last sent to the peer */
     int64_t since_ns;       /* monotonic time since when a message waits to be sent; 0: no message waits */
     const char *close_text; /* reason to close the connection; NULL: the connection stays open */
 };

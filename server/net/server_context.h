@@ -42,8 +42,8 @@ struct wall_displays {
 
 /* Pictures over many displays, one entry for each wall (tile_walls.c). */
 struct tile_wall {
-    char wall[NAMED_VIEW_ID_BYTES]; /* id of the wall; "": entry is free */
-    uint64_t leader;                /* id of the leading session; 0: none */
+    char wall[NAMED_VIEW_ID_BYTES]; /* id of the wall; "": this entry is not used */
+    uint64_t leader;                /* id of the session that leads the wall; 0: none */
     uint64_t asked, presented;      /* ids of two pictures of the wall: of the picture requested last, and of the picture presented last */
     /* quality ladder of the wall: steps of picture size, chosen by how long the server takes to draw and encode */
     struct quality_ladder made;
@@ -61,7 +61,7 @@ struct server_context {
         int64_t data_ns;        /* monotonic: arrival of the oldest reading that changed in the last snapshot */
         /* monotonic time when the quality of a reading next changes because the reading grows old; INT64_MAX: never */
         int64_t next_change_ns;
-        bool *links_up;         /* connection state of each source, by source index */
+        bool *links_up; /* connection state of each data source, by source index */
     } readings;
     struct history_queries *history_queries; /* NULL: nothing is recorded */
     struct history_loader *history_loader;   /* loads the readings of past instants; NULL: nothing is recorded */
@@ -79,10 +79,10 @@ struct server_context {
         int64_t still_ns; /* time to render the last refined frame that was drawn for one session alone, not shared */
     } streams;
     struct {
-        struct view_token_keys token_keys;      /* on a renderer: keys that sign view tokens */
-        char key[2 * VIEW_TOKEN_KEY_BYTES + 1]; /* on a core: the view token key for its renderers, hexadecimal; "": none */
+        struct view_token_keys token_keys;      /* renderers only: keys that sign view tokens */
+        char key[2 * VIEW_TOKEN_KEY_BYTES + 1]; /* cores only: view token key that is sent to renderers, hexadecimal; "": none */
         char refused[300]; /* text of the last refusal of a renderer that was logged, so that a repetition is not logged */
-        bool listed;       /* on a renderer: true: the core has sent its lists (of views, notes and so on) since the plant was loaded */
+        bool listed;       /* renderers only: true: the core has sent its lists (of views, notes and so on) since the plant was loaded */
         /* configuration named by the core's last refusal of this renderer, which then loaded its files again to match that configuration */
         char followed[64];
         struct renderer_peer *renderers;        /* list of all connections to /core (renderers.c) */
@@ -106,9 +106,9 @@ struct server_context {
     } room;
     struct {
         struct tokens *tokens;           /* NULL: none are configured */
-        struct openid *openid;           /* sign-in with OpenID Connect; NULL: off */
+        struct openid *openid;           /* service for signing in with OpenID Connect; NULL: off */
         struct login_throttle *throttle;
-        char *notice;                    /* text shown before users sign in; NULL: none */
+        char *notice;      /* text that the page shows before users sign in; NULL: none */
         int64_t held;      /* number of tokens not checked because of throttling and not recorded yet */
         int64_t held_ns;   /* monotonic time when unchecked tokens were last recorded in the audit trail */
         int64_t unasked;   /* number of unrecorded answers of the identity provider that belonged to no log-in or failed */
@@ -119,7 +119,7 @@ struct server_context {
         /* monotonic time since when nothing changes any more that the standby must receive; 0: changes are possible */
         int64_t lead_ended_ns;
         bool goes_down;    /* true: the server shuts down; connections are closed after their answer */
-        char goodbye[64];  /* close reason that streams get at shutdown */
+        char goodbye[64];  /* reason that streams send when they are closed at shutdown */
         int64_t drain_ns;  /* monotonic time since when the daemon drains its sessions to other daemons; 0: it does not drain */
         struct core_loss core_loss;
         int start_s; /* seconds that the daemon took to start, rounded up; 0: it is still starting */
@@ -134,11 +134,11 @@ struct server_context {
     } texts;
     struct tls *tls;   /* NULL: no TLS */
     bool local_only;   /* true: the server listens on a loopback address, without a proxy in front */
-    char machine[256]; /* the machine's host name; "": none */
+    char machine[256]; /* host name of this machine; "": not known */
     struct kept_answers kept_answers;
     uint8_t out[LWS_PRE + SLICE_BYTES]; /* buffer for writes: libwebsockets writes its framing into the LWS_PRE bytes before the data */
     struct {
-        struct log_pace pace; /* limits log lines about stream requests without Upgrade */
+        struct log_pace pace; /* rate limit of log lines about stream requests that came without the header Upgrade */
         struct upgrade_refusal {
             char address[64]; /* the client's address */
             int64_t at_ns;    /* monotonic time of the refusal */
@@ -155,7 +155,7 @@ struct server_context {
     } counters;
 };
 
-/* Returns the server context of a connection. */
+/* Returns the server context to which a libwebsockets connection belongs. */
 static inline struct server_context *server_context_of(struct lws *wsi)
 {
     return lws_context_user(lws_get_context(wsi));
@@ -193,7 +193,7 @@ void streams_on_placed(struct server_context *server);
 void streams_on_tick(struct server_context *server);
 /* Tells all sessions that readings, or the connection states of sources, changed. */
 void streams_on_readings(struct server_context *server, bool data_changed, bool links_changed);
-/* Makes all sessions send changed alarms. */
+/* Makes all sessions send the alarms that have changed to their clients. */
 void streams_on_alarms(struct server_context *server);
 /* Sends answers to users' actions that are on disk by now, or could not be written. */
 void streams_settle(struct server_context *server);
@@ -216,7 +216,7 @@ void http_on_signed(struct server_context *server, struct signing *signing);
 void http_on_pick(struct server_context *server, const struct pick_answer *answer);
 void http_on_historical_snapshot(struct server_context *server, const struct history_loader_answer *answer);
 void http_on_history_answer(struct server_context *server, struct history_answer *piece);
-/* Answers browsers that returned from the identity provider. */
+/* Answers browsers that the identity provider has sent back after a log-in. */
 void http_on_sign_ins(struct server_context *server);
 /* Answers the HTTP requests that asked for a reload, once it is done. good: the new plant is loaded; text: the result as JSON. */
 void http_on_reloaded(struct server_context *server, bool good, const char *text);

@@ -11,7 +11,7 @@ struct stream {
     struct stream *next;
     struct address_usage *usage; /* usage of the client's address; the connection holds the reference */
     int64_t in_begin_ns;         /* monotonic: when the first bytes of the message being received arrived */
-    struct text in;              /* received part of the current message */
+    struct text in;              /* part of the current message that has been received */
     size_t in_count;             /* bytes of the current message received so far, including those that were too many to store */
     struct encoded_frame *sending;
     uint32_t seq;
@@ -22,7 +22,7 @@ struct stream {
     size_t sent, sent_all; /* sent: bytes of the part that were sent; sent_all: bytes of the whole frame that were sent */
     bool cut;              /* the frame was cut short: only the end of its message is still to be sent */
     uint64_t ping, pong;   /* sequence numbers of the last ping sent and of the last pong received */
-    int64_t ping_ns;       /* monotonic: when the last ping was sent */
+    int64_t ping_ns;       /* monotonic time when the last ping was sent */
     /* progress of the first bandwidth measurement. It lasts from the sending of the first text to the pong of a ping that follows the first
        texts */
     enum { FIRST_TEXTS, FIRST_PING, FIRST_DONE } first;
@@ -34,7 +34,7 @@ struct stream {
     /* monotonic time since when the client has acknowledged no picture, 0: it acknowledges pictures; INT64_MAX once the silence was
        logged */
     int64_t silent_ns;
-    int close_code; /* WebSocket close code; 0: the connection stays open */
+    int close_code; /* WebSocket close code to send; 0: the connection stays open */
     const char *close_text;
     int64_t messages, errors, dropped; /* the session counters with these names, as last added to the metrics */
 };

@@ -304,7 +304,7 @@ static void note_first(struct stream *stream, size_t bytes, int64_t now_ns)
         stream->first_bytes += bytes;
 }
 
-/* Sends texts between frames, never inside of one. */
+/* texts are sent between frames, never inside a frame */
 bool stream_send(struct server_context *server, struct stream *stream)
 {
     struct session *session = stream->session;

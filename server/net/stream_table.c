@@ -40,7 +40,7 @@ void stream_table_add(struct server_context *server, struct stream *stream)
     stream->next = server->streams.first;
     server->streams.first = stream;
     mem_grow(&server->streams.by_client, &server->streams.by_client_capacity, (size_t)server->streams.count + 1, sizeof(struct stream *));
-    server->streams.by_client[server->streams.count++] = stream; /* session ids ascend, so the array stays sorted */
+    server->streams.by_client[server->streams.count++] = stream; /* appends the stream: session ids ascend, so the array stays sorted */
 }
 
 void stream_table_remove(struct server_context *server, const struct stream *stream)

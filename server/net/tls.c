@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loads, checks and serves the TLS certificate. */
+/* Loads and checks the TLS certificate, and serves it. */
 #include "net/tls.h"
 
 #include <errno.h>

@@ -10,9 +10,10 @@
 struct notifier_params {
     struct log *log;
     struct counters *counters;
-    const struct plant *plant;           /* must have a `notify` */
-    struct alarm_service *alarm_service; /* plant and alarm service must outlive the notifier */
-    const char *folder;                  /* folder of notify.json; the alarm journal creates it */
+    const struct plant *plant; /* must have a `notify` */
+    /* plant whose alarms are notified, and service that has these alarms; both must outlive the notifier */
+    struct alarm_service *alarm_service;
+    const char *folder;      /* folder of notify.json; the alarm journal creates it */
     void (*kept)(void *arg); /* callback on the notifier's thread after the content of notify.json has changed; NULL: no callback */
     void *kept_arg;
 };

@@ -16,7 +16,7 @@ enum { OUTBOX_ITEMS = 5000 /* maximum number of queued alarms of all recipients 
 #define OUTBOX_ALERT_US (300 * INT64_C(1000000))  /* time after which Alertmanager drops an alarm that is not sent again */
 
 struct outbox_item { /* one alarm in a message */
-    char *name;      /* name of the tag or device */
+    char *name;      /* name of the tag or device that has the alarm */
     int tag;         /* index of the tag; -1: the alarm is that of a device */
     enum alarm_kind kind;
     int priority, step; /* index of the rule's escalation step to which the notification belongs; 0: the first notification */

@@ -43,7 +43,7 @@ struct recipient_box { /* messages queued for one recipient */
     int64_t since_us; /* UTC microseconds at which the oldest queued alarm was queued */
     int64_t sent_us;  /* UTC microseconds of the last successful delivery; 0: never */
     int64_t retry_us;
-    int last_priority; /* most urgent priority in the last message */
+    int last_priority; /* most urgent alarm priority in the last message to the recipient */
     int attempts;
     int64_t left_out; /* number of alarms since the last message for which the queue was full */
     bool changed;     /* only for Alertmanager: true: alarms have changed since the last message */

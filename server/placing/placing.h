@@ -40,7 +40,7 @@ enum placed_state {
 /* A move and its result. */
 struct placed {
     struct place_move move;
-    double surface_m[3];        /* point on the asset's surface, in plant coordinates */
+    double surface_m[3];        /* nearest point on the asset's surface, in plant coordinates */
     double distance_m, limit_m; /* metres from surface_m to the requested position; users should be warned if distance_m is above limit_m */
     enum placed_state state;
 };

@@ -28,7 +28,7 @@ struct suggest_asset { /* an asset */
     size_t count;
     const float (*at_m)[3];
     double *area_m2, whole_m2;
-    float *near_m;            /* by vertex: metres to its nearest sensor */
+    float *near_m;            /* by vertex: metres to the nearest sensor */
     struct relocation *mover; /* NULL: not needed yet */
 };
 

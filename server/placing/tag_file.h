@@ -13,7 +13,7 @@ struct tag_save {
     char *path;
     char *before, *after; /* text of the present tag list, and text of the list to save */
     char *who;
-    uint64_t client; /* id of the client that gets the answer */
+    uint64_t client; /* id of the client that asked to save the list and gets the answer */
     uint32_t seq;
 };
 /* Frees a request to save a tag list. NULL is fine. */

@@ -27,7 +27,8 @@ enum distance_mode { DISTANCE_GEODESIC, DISTANCE_EUCLIDEAN, DISTANCE_HEAT, DISTA
 enum fill_mode { FILL_NONE, FILL_NEIGHBOURS }; /* whether neighbouring sensors colour the area around a sensor whose reading is Bad */
 /* display with which a client begins: values, or values relative to their alarm limits (operator's display) */
 enum plant_show { PLANT_SHOW_VALUE, PLANT_SHOW_OPERATOR };
-enum plant_start { PLANT_START_SHOWN, PLANT_START_GHOST, PLANT_START_HIDDEN }; /* initial display state of an asset */
+/* initial display state of an asset: shown, ghosted (outline only) or hidden */
+enum plant_start { PLANT_START_SHOWN, PLANT_START_GHOST, PLANT_START_HIDDEN };
 enum { PLANT_STARTS = 4096 }; /* maximum number of assets that can be hidden one by one: the first ones in the plant file */
 enum axis { AXIS_Y, AXIS_Z }; /* upward axis */
 enum data_type {
@@ -85,7 +86,7 @@ struct plant_asset {
     double conductivity;               /* W/(m K) */
     double heat_transfer;              /* W/(m2 K), to the surroundings */
     bool sensors_in_asset_frame;       /* true: X, Y, Z of the asset's tags are in the asset frame; false: in the plant frame */
-    struct plant_property *properties; /* user-defined properties, in the order of the file */
+    struct plant_property *properties; /* properties that the plant file defines for the asset, in the order of the file */
     size_t property_count;
     int line;
 };
@@ -116,7 +117,7 @@ struct plant_group {
     char *id, *quantity, *unit;
     bool as_written; /* true (`units: as-written`): values are taken to be in the group's unit, even if the tag's row states another */
     double min, max;
-    double limits[LIMIT_COUNT]; /* default limits of the group's tags; NaN: none */
+    double limits[LIMIT_COUNT]; /* default limits of tags in the group; NaN: no limit */
     struct plant_alarm_settings alarm_settings;
     enum interpolation interpolation;
     enum distance_mode distance;
@@ -134,7 +135,7 @@ struct plant_group {
     double hot_spot_m;
     bool cuts_singles; /* `singles: cut`; see plant_cuts_singles() */
     enum fill_mode fill;
-    bool log;                    /* `scale: log`; requires min > 0 */
+    bool log;                    /* true (`scale: log`): logarithmic colour scale; requires min > 0 */
     double breaks[PLANT_BREAKS]; /* ascending boundaries of the colour bands; used by views that show bands instead of a continuous scale */
     double isolines[PLANT_ISOLINES];
     int break_count, isoline_count;
@@ -177,7 +178,7 @@ struct plant_opcua {                   /* OPC UA settings of a source; texts tha
     char *server_name;                 /* host name in the server's certificate, if it differs from the host */
     char *user_certificate, *user_key; /* certificate and key of the user; used in place of a login file */
     char *path;                        /* path of the endpoint URL */
-    char *name_space;                  /* namespace URI of nodes whose address has none */
+    char *name_space;                  /* namespace URI that is used for nodes whose address states none */
     int queue;                         /* number of values that the server queues per node between two notifications */
     /* smallest change that the server reports, absolute, or as a percentage of EURange; 0: every change */
     double deadband, deadband_percent;
@@ -194,15 +195,15 @@ struct plant_source {
     int poll_ms, timeout_ms, pause_ms; /* milliseconds; pause_ms: between two requests */
     int connect_delay_ms;              /* milliseconds from connecting to the first request */
     bool close_between_polls;          /* one request per connection */
-    int max_registers, max_bits;       /* maximum registers or bits in one request */
+    int max_registers, max_bits;       /* maximum number of registers, or of bits, in one Modbus request */
     int max_gap; /* maximum number of unneeded registers or bits between two tags that are still read by one request */
     enum byte_order byte_order;
     int address_base; /* number of the first register in plain addresses: 0 or 1; base_stated: the plant file states it */
     bool base_stated;
     char *heartbeat;    /* heartbeat: name of the tag whose value must keep changing; NULL: none */
-    int heartbeat_tag;  /* index of the heartbeat tag, or -1 */
+    int heartbeat_tag;  /* index of the heartbeat tag in the plant; -1: none */
     double heartbeat_s; /* maximum time in seconds between two changes of the heartbeat; 0: no heartbeat */
-    char *file;         /* CSV file of a replay source */
+    char *file;         /* path of the CSV file that a replay source plays */
     double speed;
     bool loop;
     char *login; /* path of a file with the user on the first line, the password on the second */
@@ -266,7 +267,7 @@ struct tag_signal { /* address of a tag's value at its device, and its encoding 
     /* byte order. Values of 32 and 64 bits always have one; values of 16 bits have NONE (standard order) unless the tag's row states one;
        single bits have NONE */
     enum byte_order byte_order;
-    int scan_ms; /* scan interval in milliseconds; 0: the source's poll_ms */
+    int scan_ms; /* interval in milliseconds at which the tag is read; 0: the source's poll_ms */
 };
 
 struct tag_scale { /* conversion from the raw value to the tag's unit */
@@ -284,7 +285,7 @@ struct tag_scale { /* conversion from the raw value to the tag's unit */
     struct unit_change change; /* conversion from own_unit to the tag's unit */
 };
 
-struct tag_place { /* place of a tag's sensor on its asset */
+struct tag_place { /* position of a tag's sensor on its asset */
     /* `Place: equipment`: the exact position on the asset is unknown; the reading represents the whole asset (field/field.h) */
     bool assumed;
     bool has_position;    /* true: position_m is set; false: `node` gives the position or, without a node, the middle of the asset */
@@ -331,7 +332,7 @@ struct plant_tag {
 
 enum { PLANT_ENVIRONMENTS = 8 };
 struct plant_environment { /* panorama image that lights the plant */
-    char *name;            /* file name without its extension; never "sky" */
+    char *name;            /* name of the image file without its extension; never "sky" */
     char *path;
 };
 
@@ -343,7 +344,7 @@ struct plant_link { /* template of a link to another system's page about an asse
 };
 
 struct plant_conversion { /* a model that plantcast-prep makes by running another program */
-    char *model;          /* glTF file that the program writes */
+    char *model;          /* path of the glTF file that the program must write */
     char *from, *command; /* input file, and the command */
     double timeout_s;
     int line;
@@ -380,7 +381,7 @@ struct plant_screens { /* views, tours, other plants and walls: plant/walls/wall
 struct plant {
     struct plant_files files;
     char *name, *time_zone; /* time_zone: IANA name; default UTC */
-    enum axis up;           /* upward axis of the plant frame */
+    enum axis up;           /* upward axis of the plant's coordinate frame */
     struct plant_display display;
     struct plant_screens screens;
     struct plant_conversion *conversions;
@@ -409,7 +410,8 @@ struct plant *plant_load_without_models(const char *path);
 struct plant *plant_load_with_orphans(const char *path, struct diag *diag);
 void plant_destroy(struct plant **plant); /* Frees a plant and sets *plant to NULL; accepts a pointer to NULL. */
 
-int plant_find_asset(const struct plant *plant, const char *id); /* All plant_find functions return an index, or -1. */
+/* The plant_find_...() functions return an index; -1: there is no such item. */
+int plant_find_asset(const struct plant *plant, const char *id);
 int plant_find_group(const struct plant *plant, const char *id);
 /* Returns the index of an environment by name: 0 for "sky", 1 for the plant's first panorama, and so on; -1: unknown. */
 int plant_find_environment(const struct plant *plant, const char *name);

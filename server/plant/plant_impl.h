@@ -27,7 +27,7 @@ void plant_views_read(struct yaml_reader *reader, yaml_node_t *node, void *plant
 void plant_tours_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
 void plant_other_plants_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
 void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
-/* Reads a group's list `prepare` (plant/influence.h). */
+/* Reads a group's key `prepare`, a list of interpolations (plant/influence.h). */
 void plant_influence_read(struct yaml_reader *reader, yaml_node_t *node, void *record);
 /* plant_gp_read() reads a group's key `gp`; plant_gp_check() checks the values and sets defaults. */
 void plant_gp_read(struct yaml_reader *reader, yaml_node_t *node, void *group);
@@ -48,7 +48,7 @@ void plant_nodes_read(struct yaml_reader *reader, yaml_node_t *node, struct plan
 /* Reads an asset's `properties`. */
 void plant_properties_read(struct yaml_reader *reader, yaml_node_t *node, struct plant_asset *asset);
 void plant_properties_free(struct plant_asset *asset);
-/* Compares two assets' properties, including their order. */
+/* Returns whether two assets have the same properties in the same order. */
 bool plant_properties_same(const struct plant_asset *a, const struct plant_asset *b);
 /* Reads the key `postgres` of the plant file's `history` into a struct plant_history. */
 void plant_postgres_read(struct yaml_reader *reader, yaml_node_t *node, void *history);
@@ -62,7 +62,7 @@ void plant_publish_free(struct plant_publish **publish); /* Frees the settings a
 /* Reads the list `sources`. */
 void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
 
-/* Reads the key `tls` of a source. */
+/* Reads the key `tls` of an MQTT source: certificates and keys. */
 void plant_mqtt_read_tls(struct yaml_reader *reader, yaml_node_t *node, void *source);
 /* Checks the keys of an MQTT source, and sets defaults. */
 void plant_mqtt_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_source *source);

@@ -12,7 +12,7 @@
 
 struct picture_origin { /* facts for a picture's signed statement that the picture itself does not contain */
     const struct scene *scene;
-    const char *const *args; /* the query that the picture answers, as name=value */
+    const char *const *args; /* arguments of the query that the picture answers, as name=value */
     size_t arg_count;
     bool bare;           /* true: the viewer may not see readings, so the statement omits them */
     const char *overlay; /* overlay drawn on the picture: `full`, `bare` (no sensors and alarms) or `none` */

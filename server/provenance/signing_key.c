@@ -13,7 +13,7 @@
 #include "base/text/hex.h"
 
 struct signing_key {
-    EVP_PKEY *pair; /* key pair, or the public key alone */
+    EVP_PKEY *pair; /* OpenSSL key: a key pair, or the public key alone */
     char id[SIGNING_KEY_ID_BYTES];
 };
 

@@ -50,7 +50,7 @@ struct postgres {
     } counters;
     pthread_t thread;
     bool started;
-    int stop_fd; /* eventfd; readable: the thread must end */
+    int stop_fd; /* eventfd that becomes readable when the sending thread must end */
     pthread_mutex_t lock;
     /* --- below: under `lock` */
     bool leads, ends_lines;

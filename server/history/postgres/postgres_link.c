@@ -46,7 +46,7 @@ static bool fail_as_library(struct postgres_link *link)
     return fail(link, PQerrorMessage(link->library));
 }
 
-/* Waits for the socket. Returns false on timeout. */
+/* Waits until the connection's socket is ready. Returns false on timeout. */
 static bool wait_for(struct postgres_link *link, short events, int64_t until_ns)
 {
     for (;;) {

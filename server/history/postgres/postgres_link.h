@@ -19,11 +19,12 @@ struct postgres_link *postgres_link_open(const struct plant_postgres *postgres, 
 /* Connects like postgres_link_open(), with an explicit time limit for connecting and for each answer. */
 struct postgres_link *postgres_link_open_within(const struct plant_postgres *postgres, int stop_fd, int64_t patience_ns,
                                                 char why[POSTGRES_WHY_BYTES]);
-void postgres_link_set_patience(struct postgres_link *link, int64_t patience_ns); /* Sets the time limit for each following answer. */
-void postgres_link_close(struct postgres_link **link);                            /* Closes the connection. &NULL is fine; leaves NULL. */
-const char *postgres_link_why(const struct postgres_link *link);                  /* Returns the reason of the last failure as text. */
+/* Sets how long each of the following calls may wait for an answer. */
+void postgres_link_set_patience(struct postgres_link *link, int64_t patience_ns);
+void postgres_link_close(struct postgres_link **link); /* Closes the connection and sets *link to NULL; accepts a pointer to NULL. */
+const char *postgres_link_why(const struct postgres_link *link); /* Returns the reason of the last failure as text. */
 
-/* Runs statements. Returns false on failure. */
+/* Runs SQL statements; drops rows that they return. Returns false on failure. */
 bool postgres_link_run(struct postgres_link *link, const char *sql);
 /* Runs statements given as a format. Returns false on failure. */
 bool postgres_link_runf(struct postgres_link *link, const char *fmt, ...) __attribute__((format(printf, 2, 3)));

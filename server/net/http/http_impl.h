@@ -28,7 +28,7 @@ struct http_exchange {
     size_t count, sent;
     /* address in whose answer_bytes the body is counted; NULL: not counted. The connection holds the reference */
     struct address_usage *holder;
-    bool asks;         /* true while a history query is being answered */
+    bool asks;         /* true: the request's history query is being answered */
     bool asks_instant; /* the query comes from a renderer and asks for the readings of an instant */
     enum {
         PIECES_NONE,
@@ -76,9 +76,9 @@ int request_refuse(struct http_exchange *request, int status, enum refusal_code 
 int request_refuse_for(struct http_exchange *request, int status, const struct refusal *refusal);
 /* Answers that history cannot be read: with 500; on a renderer, which reads history from its core, with 503 and Retry-After. */
 int request_answer_unreadable(const struct server_context *server, struct http_exchange *request);
-/* Answers with JSON; takes ownership of text (mem_free). */
+/* Answers with a JSON text; takes ownership of text (mem_free). */
 int request_answer_json(struct http_exchange *request, char *text);
-/* Answers 400 with the error's text. */
+/* Answers 400 (bad request) with the error's text. */
 int request_answer_error(struct http_exchange *request, const struct message_error *error);
 /* Sets the body of the request's answer (NULL: none) and frees its previous body; takes ownership. Counts the bytes in the totals of the
    server and of the address. */

@@ -23,7 +23,7 @@ enum { TRIANGLE_BYTES = 150, BASE_BYTES = 350 << 20 };
 struct plant_models_check {
     const struct plant *plant;
     struct diag *diag;
-    struct model_header header; /* header of the model being checked */
+    struct model_header header; /* header of the model file that is being checked */
     bool *taken;                /* by node: true: the node belongs to the asset being checked */
     bool *counted;              /* by node: true: the node belongs to an asset checked so far, so its triangles are counted already */
     uint64_t triangles;         /* triangles of all models; a model that several assets share counts once */

@@ -13,7 +13,7 @@ struct model_header {
     struct model_box *boxes;  /* bounding box of each node's own mesh in scene coordinates, in the model's units and axes */
     size_t count;
     bool partial; /* true: boxes may be too small, because the model has instances, or accessors without min and max */
-    void *json;   /* the parsed JSON, which owns the names */
+    void *json;   /* parsed JSON of the model file, which owns the names */
 };
 
 /* Reads a file. Returns false with the reason in `why` on failure, and then model_header_finish() is not needed. */
@@ -23,7 +23,7 @@ uint64_t model_header_triangles(const struct model_header *header, size_t node);
 void model_header_finish(struct model_header *header);
 
 extern const struct model_box model_box_empty;
-/* Grows a box to contain another one. */
+/* Enlarges a bounding box so that it contains another box. */
 void model_box_add(struct model_box *box, const struct model_box *other);
 
 #endif

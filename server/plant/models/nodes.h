@@ -9,12 +9,12 @@
 
 struct model_node { /* node of a model. The array of nodes is in depth-first order: the sub-tree of a node is the range [node, end) */
     const char *name, *mesh; /* names of the node and its mesh; "": none */
-    int parent;              /* index of the parent node, or -1 */
+    int parent;              /* index of the node's parent; -1: the node is a root */
     uint32_t end;
     uint32_t number; /* node's index in the file; a node that was added for an instance has the index of the instanced node */
 };
 
-#define NODES_SEPARATOR '\n' /* separates the patterns of an asset */
+#define NODES_SEPARATOR '\n' /* character that separates the node patterns of an asset */
 
 /* Sets taken[i] for each node that a pattern matches, and for the node's sub-tree. Patterns that begin with ! clear it for their nodes.
    patterns NULL: all nodes. Returns false with the pattern in `why` if a pattern matches no node. */

@@ -15,7 +15,7 @@ struct yaml_reader {
 };
 
 struct text_position {
-    int line, column; /* position in the file, from 1 */
+    int line, column; /* position in the YAML file; both count from 1 */
 };
 
 struct yaml_choice { /* allowed value of a key, as text and as number; a table of choices ends with { 0 } */
@@ -39,7 +39,7 @@ struct yaml_key { /* key of a YAML mapping; a table of keys ends with { 0 } */
     const char *name;
     enum key_kind kind;
     bool required;
-    size_t offset;    /* byte offset of the member in the record */
+    size_t offset;    /* byte offset of the member in the struct into which the mapping is read */
     double low, high; /* inclusive bounds of a number; both 0: any finite number */
     const struct yaml_choice *choices;
     void (*read)(struct yaml_reader *reader, yaml_node_t *value, void *record);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads an image into 256 colours. */
+/* Reads an image and takes 256 colours of a colour map from it. */
 #include "plant/sections/image_ramp.h"
 
 #include <errno.h>

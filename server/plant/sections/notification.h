@@ -20,7 +20,7 @@ struct notify_list {
 };
 
 struct notify_mail { /* SMTP server that sends e-mail */
-    char *server;    /* URL smtps://HOST[:PORT], or smtp:// with STARTTLS; NULL: none */
+    char *server;    /* URL of the mail server: smtps://HOST[:PORT], or smtp:// with STARTTLS; NULL: none */
     char *from;
     char *user, *password_file, *ca_file; /* NULL: none */
 };

@@ -13,7 +13,8 @@ struct alarm_references {
 };
 
 void plant_alarms_read_mode(struct yaml_reader *reader, yaml_node_t *node, void *plant);
-void plant_alarms_read_group(struct yaml_reader *reader, yaml_node_t *node, void *group); /* Reads the key `alarm` of a group. */
+/* Reads the key `alarm` (alarm settings) of a group. */
+void plant_alarms_read_group(struct yaml_reader *reader, yaml_node_t *node, void *group);
 void plant_alarms_check(struct yaml_reader *reader, struct text_position place, const struct plant *plant);
 void plant_alarms_read_row(struct tag_columns *columns, struct plant *plant, struct plant_tag *tag, struct alarm_references *references);
 /* Resolves the tag names in alarm cells, once all rows are read and the plant's names are sorted; reports unknown names. Frees the

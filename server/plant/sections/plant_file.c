@@ -254,7 +254,7 @@ static void read_radius(struct yaml_reader *reader, yaml_node_t *node, void *rec
         yaml_expected(reader, node, "radius_m", "auto or a number");
 }
 
-/* Reads a list of numbers in ascending order. */
+/* Reads a key's value that must be a list of numbers in ascending order. */
 static void read_numbers(struct yaml_reader *reader, yaml_node_t *node, const char *name, int most, double *numbers, int *count)
 {
     int items = yaml_list_count(reader, node, name);

@@ -33,7 +33,7 @@ static void check_mail_address(struct yaml_reader *reader, struct text_position 
 
 /* --- lists of texts --------------------------------------------------------------------------------------------------------- */
 
-/* Reads one text, or a list of texts. */
+/* Reads a key's value that is one text or a list of texts. */
 static void read_texts(struct yaml_reader *reader, yaml_node_t *node, const char *name, struct notify_list *list,
                        void (*check)(struct yaml_reader *reader, struct text_position place, const char *name, const char *text))
 {

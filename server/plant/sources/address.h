@@ -7,9 +7,9 @@
 #include "plant/plant.h"
 
 struct modbus_address {
-    int unit; /* Modbus unit identifier; -1: not stated */
+    int unit; /* Modbus unit identifier in the address; -1: not stated */
     enum register_table table;
-    int index;                  /* register number, from 0, as on the wire */
+    int index;                  /* number of the first register, counted from 0 as in Modbus messages */
     int bit;                    /* bit number 0 to 15; -1: the whole register */
     enum byte_order byte_order; /* byte order; NONE: not stated */
 };

@@ -29,7 +29,7 @@ struct tag_text {
     const char *at;
     struct tag_row row;
     int column[EDIT_COLUMNS]; /* index of the column in the file; -1: the header lacks the column */
-    size_t width;             /* number of columns in the header */
+    size_t width;             /* number of columns in the header of the tag list */
 };
 
 /* --- reading cell positions --------------------------------------------------------------------------------------------------------- */

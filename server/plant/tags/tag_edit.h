@@ -16,7 +16,7 @@ struct tag_edit {
     bool place_only;           /* true: only clears the cell `Place` and changes nothing else */
 };
 
-struct tag_line {         /* one line that differs between two texts */
+struct tag_line {         /* line that differs between two versions of the tag list */
     int line;             /* line number, from 1, in the new text; if the line was removed, in the old text */
     char *before, *after; /* the line without its line end; NULL: the text has no such line */
 };

@@ -17,7 +17,7 @@ struct tag_list {
     struct plant *plant;
     struct tag_columns columns;
     struct plant_tag *tag;           /* tag that the current row of the file describes */
-    const struct plant_group *group; /* group of the tag, or NULL */
+    const struct plant_group *group; /* group that the current row's tag belongs to; NULL: none */
     struct tag_links links, derived;
     size_t capacity; /* of plant->tags */
     struct alarm_references references;

@@ -75,7 +75,7 @@ struct day_span {
 struct wall_tile {
     int columns, rows;     /* number of displays horizontally and vertically; 0: the wall has no picture across displays */
     double bezel_mm[2];    /* millimetres between the picture areas of two neighbouring displays: horizontally, vertically */
-    struct wall_pane pane; /* content of the picture: views or a tour */
+    struct wall_pane pane; /* pane whose content the picture shows: views or a tour */
 };
 
 struct wall {
