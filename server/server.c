@@ -60,7 +60,7 @@ struct server {
     struct plant_import *import;     /* NULL: import is off */
     pthread_mutex_t wake_lock; /* locked while the render thread wakes the event loop, so that `net` is not destroyed in the meantime */
     struct net *net;
-    char *web;        /* folder of the web client's files; NULL: none */
+    char *web;        /* folder of the web client's files; NULL: no page is served */
     int64_t begun_ns; /* monotonic time when the daemon began to start */
 };
 

@@ -26,7 +26,7 @@ struct supervision {
     } counters;
     struct service_patience *patience; /* true: the daemon asked the service manager to wait until it is ready */
     char *runtime;                     /* runtime folder of the service; NULL: there is none */
-    int64_t watchdog_ns;               /* interval of the service manager's watchdog; 0: off */
+    int64_t watchdog_ns;               /* interval in nanoseconds at which the service manager expects watchdog messages; 0: off */
     /* refused: the last reload failed; reloaded: a reload has ended and its result is still to be reported */
     _Atomic bool refused, reloaded;
     /* --- below: used only by the event loop */

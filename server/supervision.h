@@ -9,7 +9,8 @@
 struct supervision;
 /* Asks the service manager to wait, until supervision_tick() is first called with a render service that is ready. Thread: main. */
 struct supervision *supervision_create(struct log *log, struct counters *counters);
-void supervision_destroy(struct supervision **supervision); /* &NULL is allowed; sets *supervision to NULL */
+/* destroys the struct and sets *supervision to NULL; accepts a pointer to NULL */
+void supervision_destroy(struct supervision **supervision);
 /* Reports which step of the daemon's start has begun. Thread: main. */
 void supervision_starting(struct supervision *supervision, const char *what);
 /* Reports that the daemon is ready, sends watchdog messages while event loop and render thread are alive, and updates metrics. Called in

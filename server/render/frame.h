@@ -78,6 +78,6 @@ struct frame *frame_ref(struct frame *frame);
 void frame_unref(struct frame **frame);
 /* Returns the bytes of pixels of all frames and of the pool of released pixel buffers. Any thread. */
 size_t frame_bytes(void);
-void frame_drop_spares(void); /* frees the pool of released pixel buffers */
+void frame_drop_spares(void); /* frees the pixel buffers that frames have released into the pool */
 
 #endif

@@ -20,14 +20,14 @@ struct frame_context {
     const struct target *target;
     struct field *field;
     const struct fields_entry **fields; /* by asset: its field; NULL: the asset shows no field */
-    const int *visible;                 /* indices of visible assets, nearest first */
+    const int *visible;                 /* indices of the visible assets, the nearest asset first */
     size_t visible_count;
     struct shaded_colormap colormap;
     struct reference *reference; /* computes the field at each fragment; NULL: the field is interpolated between vertices */
     /* largest error of a level of detail's surface, in pixels of the frame (render/plan/lod_selection.h); 0: finest levels only */
     double error_px;
     uint64_t shape; /* content_hash_shape() of the frame plan */
-    bool gives_depth; /* true: the frame gets a depth grid */
+    bool gives_depth; /* true: a depth grid is made for the frame */
     bool measured;  /* true: the frame receives the field's values as floats instead of colours */
 };
 

@@ -9,7 +9,7 @@ enum render_store {
     STORE_LIGHT,    /* baked light, on the GPU and as copies in main memory */
     STORE_PICTURES, /* visibility buffers (triangle and light of each pixel) of views whose camera stands still */
     STORE_TARGETS,  /* framebuffers */
-    STORE_ROOM,     /* working memory of the software renderer */
+    STORE_ROOM,     /* working memory (pixel buffers and lists) of the software renderer */
     STORE_MODELS,   /* geometry on the GPU, except data mapped from files; needed for every frame, so it is never evicted */
     RENDER_STORES
 };

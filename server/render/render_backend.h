@@ -27,9 +27,9 @@ struct render_backend {
     /* Draws at least one step and continues for about budget_ns. The job's light must be ready. Returns true when only end is left to
        do. */
     bool (*step)(struct renderer *renderer, struct render_job *job, int64_t budget_ns);
-    /* Completes the frame. Returns false on failure, logged. */
+    /* Completes the frame of a job. Returns false on failure, logged. */
     bool (*end)(struct renderer *renderer, struct render_job *job);
-    /* Frees the backend's part of the job. */
+    /* Frees what the backend has stored in the job. */
     void (*abandon)(struct renderer *renderer, struct render_job *job);
     /* Submits all remaining work to the GPU without waiting; end() waits for the result. Returns false on failure, logged. NULL where there
        is no GPU. */

@@ -26,7 +26,7 @@ struct renderer {
     struct isolines isolines;
     struct shaded_colormap_cache colormaps;
     struct gl_backend *by_gl;
-    struct soft *by_soft; /* software backend; NULL: a GPU draws everything */
+    struct soft *by_soft; /* software backend; NULL: a GPU draws all frames */
     bool always_gl;
     bool gives_depth; /* frames get depth grids */
     int64_t bake_budget_ns;  /* time that each preview spends on baking light, ns; 0: a preview waits until its light is baked */

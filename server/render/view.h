@@ -30,7 +30,7 @@ struct color_scale { /* settings of a view's scale besides colour map, range and
     bool log;
     double breaks[SCALE_BREAKS]; /* ascending values that separate bands of uniform colour; used instead of a continuous ramp */
     int break_count;
-    double lines[VIEW_LINES]; /* isolines, ascending; edges of bands always have lines */
+    double lines[VIEW_LINES]; /* values of the isolines, ascending; edges of colour bands have lines in any case */
     int line_count;
 };
 
@@ -50,7 +50,7 @@ struct view {
     struct camera camera;
     uint32_t camera_seq; /* the client's sequence number of this camera, echoed in the frame */
     uint32_t params_seq; /* the client's sequence number of the parameters, echoed in the frame */
-    int64_t input_ns;    /* monotonic time at which the newest input arrived */
+    int64_t input_ns;    /* monotonic time at which the newest input of the user arrived */
     /* device pixels per CSS pixel of the page, from which the size of the area follows in which a click picks a marker; 0: counts as 1 */
     double pixel_ratio;
     struct field_params field;
@@ -62,7 +62,7 @@ struct view {
     enum tier tier;
     int selected_asset;  /* outlined; -1: none */
     double light_dir[3]; /* unit vector towards the sun, in the plant frame */
-    bool dark;           /* true: dark backdrop; field colours are unchanged */
+    bool dark;           /* true: the backdrop is dark; colours of the field are the same on both backdrops */
     enum directions_look directions;
     enum language language; /* language of the texts in the overlay, if one is drawn */
     bool strip;             /* true: the overlay contains a machine-readable legend strip */

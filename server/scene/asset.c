@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Maps and checks prepared asset files. */
+/* Maps prepared asset files into memory and checks them. */
 #include "scene/asset.h"
 
 #include <errno.h>

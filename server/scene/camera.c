@@ -10,7 +10,7 @@
 #define FIT_MARGIN 1.06  /* factor by which a picture is larger than the box fitted into it */
 #define LEAST_BOX_M 1e-4 /* side in metres of the smallest box that is framed; a smaller or empty box is framed as if it had this size */
 #define LEAST_NEAR_M 1e-6
-#define LEAST_HEIGHT_M 1e-5 /* smallest height of an orthographic picture, metres */
+#define LEAST_HEIGHT_M 1e-5 /* smallest permitted height of an orthographic picture, in metres */
 
 /* --- axes of the camera ----------------------------------------------------------------------------------------------------- */
 

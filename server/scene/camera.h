@@ -12,7 +12,7 @@
 struct camera {
     double eye_m[3], target_m[3], up[3];
     double fov_deg;  /* vertical */
-    double height_m; /* height of an orthographic picture; 0: perspective */
+    double height_m; /* height of an orthographic picture in metres; 0: perspective camera */
 };
 
 /* Returns whether all numbers are finite and within PLANT_MAX_M, the eye differs from the target, up is not along the view, and 1 <=
@@ -31,7 +31,7 @@ void camera_fit_along(struct camera *camera, const double forward[3], const doub
 /* Frames count >= 1 points: a perspective camera frames the points themselves, an orthographic one their bounding box. */
 void camera_fit_points(struct camera *camera, const double forward[3], const double (*points_m)[3], size_t count, double aspect,
                        const struct camera_window *window);
-/* Writes the unit vectors of the picture's axes. */
+/* Writes the unit vectors of the picture's axes: right, up, and forward. */
 void camera_basis(const struct camera *camera, double right[3], double up[3], double forward[3]);
 /* Returns the distance from which a camera with the default angle sees as much as an orthographic picture shows. 0: the camera is
    perspective. */

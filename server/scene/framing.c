@@ -38,7 +38,7 @@ bool framing_find(const struct plant *plant, const char *name, struct framing *f
     return framing->tag >= 0;
 }
 
-/* Computes the directions east, north and up. */
+/* Writes the unit vectors towards east, north and up in the plant frame. */
 static void compass(const struct scene *scene, double east[3], double north[3], double up[3])
 {
     bool y_up = scene->plant->up == AXIS_Y;

@@ -12,7 +12,7 @@ struct manifest {
     char *path;
     struct manifest_entry {
         char *id, *file;          /* file: name of the asset's prepared file, which is in the manifest's folder */
-        char *surface;            /* name of the stored surface (surface_store.h); NULL: none */
+        char *surface;            /* file name of the asset's stored surface (surface_store.h); NULL: none */
         char *missing;            /* reason why the asset could not be prepared and has no file; NULL: it was prepared */
         uint64_t recipe;          /* hash of all inputs from which plantcast-prep prepared the asset (plant/recipe.h) */
         uint64_t resolved_levels; /* as in struct asset */

@@ -38,7 +38,7 @@ struct scene {
     char *folder;               /* folder of the prepared files; NULL: the scene was made in memory */
     struct scene_asset *assets; /* by index in plant->assets */
     size_t asset_count;
-    double bounds_min_m[3], bounds_max_m[3]; /* box of the main part (scene/main_part.h) */
+    double bounds_min_m[3], bounds_max_m[3]; /* bounding box of the main part (scene/main_part.h), in the plant frame */
     /* box of all assets including stray pieces (scene/main_part.h); min equal to max: the same box as bounds_min_m, bounds_max_m */
     double whole_min_m[3], whole_max_m[3];
     struct scene_outside {
@@ -47,7 +47,7 @@ struct scene {
         double away_m;    /* distance of the farthest triangle from the main part, metres */
     } outside;
     double (*extremes_m)[3]; /* outermost points that a view of the whole plant has to contain (scene/extremes.h) */
-    size_t extreme_count;    /* number of extremes_m; 0: not known */
+    size_t extreme_count;    /* number of elements of extremes_m; 0: not known */
 };
 
 /* Chooses the box that near and far planes have to enclose: the box of everything. If a stray piece is so far away that the near plane

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sets of assets, and section planes. */
+/* Sets of assets as bit arrays, and section planes that cut a view. */
 #include "scene/visibility.h"
 
 #include <assert.h>

@@ -28,7 +28,7 @@ void drift_report_finish(struct drift_report *report);
 void drift_text_begin(struct text *out, const struct plant *plant, int group, int64_t to_us);
 void drift_text_add(struct text *out, const struct plant *plant, const struct drift_report *report, int tag, bool *any);
 void drift_text_end(struct text *out);
-/* Returns the name of a verdict. */
+/* Returns the name of a verdict on a sensor's drift. */
 const char *drift_verdict_name(enum drift_verdict verdict);
 
 #endif

@@ -45,7 +45,7 @@ struct encode_job {
     bool heavy;
 };
 
-struct stream_work {                  /* state of the encoding of one stream */
+struct stream_work {                  /* queue of the stream's jobs, protected by the lock; the first job is running */
     struct encode_job *first, **last; /* queue of jobs, protected by the lock; the first job is running */
     /* encoder, for codecs that keep state between frames; this member and those below belong to the job that is running */
     struct encoder *encoder;

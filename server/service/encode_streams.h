@@ -11,9 +11,9 @@ struct encode_stream {
     struct encode_stream *next;
     void *work;                 /* data that the encode queue attaches to the stream; NULL in a new stream */
     uint64_t planned;           /* sequence number of the newest frame planned, from 1; frames that are then not encoded count, too */
-    uint64_t oldest;            /* lowest sequence number whose packet is kept */
+    uint64_t oldest;            /* lowest sequence number of the frames whose packets are kept */
     uint64_t key;               /* sequence number of the newest key frame; 0: none */
-    int64_t key_ns;             /* monotonic: when the newest key frame was planned */
+    int64_t key_ns;             /* monotonic time when the newest key frame was planned */
     struct frame_request shown; /* request that caused the newest frame: its view, codec and quality */
     uint64_t content;           /* content hash of the newest frame */
     bool has_depth;             /* true: the packets that show the newest content include a depth grid */
@@ -64,7 +64,7 @@ void encode_stream_keep(struct encode_stream *stream, struct packet *packet, uin
 int encode_stream_catch_up(const struct encode_stream *stream, uint64_t from, uint64_t to, struct packet *out[ENCODE_STREAM_KEPT]);
 /* Notes that the newest frame could not be encoded: all members need a key frame. */
 void encode_stream_break(struct encode_stream *stream);
-/* Removes the client from its stream. */
+/* Removes a client from its encode stream. */
 void encode_streams_forget(struct encode_streams *streams, uint64_t client);
 /* Removes from the list, and returns, a stream that has no clients and no running job; NULL: there is none. The caller frees the stream's
    work and then calls encode_stream_destroy(). */

@@ -8,8 +8,8 @@
    answered instead, or because the requested instant is no longer loaded. The client may then show anything. */
 enum frame_absence {
     FRAME_SKIPPED,
-    FRAME_UNCHANGED, /* the client already shows this content */
-    FRAME_FAILED     /* the frame could not be made */
+    FRAME_UNCHANGED, /* no packet, because the client already shows this content */
+    FRAME_FAILED     /* no packet, because drawing or encoding the frame failed */
 };
 
 struct encoded_frame { /* owned by the code that collected it; free with encoded_frame_destroy() */

@@ -14,7 +14,7 @@ struct frame_request {
     enum urgency urgency;
     /* id of the account to which drawing time is charged: the client's address; 0: one account for all requests without an address */
     uint64_t account;
-    int64_t asked_ns; /* monotonic: when the request was made */
+    int64_t asked_ns; /* monotonic time when the request was made */
     int64_t read_ns;  /* monotonic time up to which the client knows the readings; if readings change later, another request is made */
     int step;         /* step of the quality ladder at which a preview is drawn */
     bool draft;       /* true: a refined draft, of lower quality than the final refined frame */

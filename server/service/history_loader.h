@@ -32,7 +32,7 @@ struct history_loader *history_loader_create(const struct history_loader_params 
 void history_loader_destroy(struct history_loader **loader);
 /* Requests an instant, in UTC microseconds. Replaces the client's last request if that still waits. */
 void history_loader_ask(struct history_loader *loader, uint64_t client, int64_t at_us);
-/* Drops the client's request and answers. */
+/* Drops the client's request, and answers that were not collected yet. */
 void history_loader_forget(struct history_loader *loader, uint64_t client);
 /* Returns all answers so far, oldest first; the caller frees each with mem_free. NULL: no answer. */
 struct history_loader_answer *history_loader_collect(struct history_loader *loader);

@@ -28,7 +28,7 @@ struct pending_query {
        values */
     bool buckets;
     bool listed;  /* true: the answer lists a drifting sensor already, so a comma comes before the next one */
-    bool wanted;  /* true: the client asked for the next piece */
+    bool wanted;  /* true: the client asked for the next piece of its answer */
     bool forgotten;
     uint64_t served; /* value of history_queries.served when the query's newest piece was begun; 0: no piece yet */
     struct pending_query *next;

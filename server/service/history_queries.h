@@ -26,7 +26,7 @@ struct history_answer { /* one piece of the answer to a query; free with history
 };
 
 struct history_queries;
-/* Frees the piece; sets *answer to NULL. */
+/* Frees the piece of an answer and sets *answer to NULL. */
 void history_answer_free(struct history_answer **answer);
 
 /* Starts the threads; they call notify(arg) when a piece is ready. Returns NULL if they cannot start, already logged. plant, scene and
@@ -40,7 +40,7 @@ void history_queries_destroy(struct history_queries **queries);
 bool history_queries_ask(struct history_queries *queries, const struct history_query *query);
 /* Requests the next piece of the client's answer, after the previous one was sent. */
 void history_queries_continue(struct history_queries *queries, uint64_t client);
-/* Drops the client's query and pieces. */
+/* Drops the client's query, and pieces of its answer that were not collected yet. */
 void history_queries_forget(struct history_queries *queries, uint64_t client);
 /* Returns all finished pieces so far, oldest first; the caller owns them. NULL: no piece. */
 struct history_answer *history_queries_collect(struct history_queries *queries);

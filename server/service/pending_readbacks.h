@@ -34,7 +34,7 @@ void pending_readbacks_push(struct pending_readbacks *in_flight, const struct pe
 /* Returns the frame in the list with that content hash; NULL: none. Skips frames that get an overlay and, if `depth` is true, frames
    without a depth grid. The frame stays in the list and is valid until the next pending_readbacks_pop(). */
 struct pending_readback *pending_readbacks_find(struct pending_readbacks *in_flight, uint64_t content, bool depth);
-/* Returns the readings that the frame shows. */
+/* Returns the snapshot of readings that the frame shows. */
 const struct snapshot *pending_readbacks_readings(const struct pending_readback *frame);
 /* Removes the oldest frame, which must have been read back and whose historical snapshot must have been released. Its memory is reused
    for the next frame. */

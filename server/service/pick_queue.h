@@ -24,7 +24,7 @@ void pick_queue_destroy(struct pick_queue **queue); /* destroys the queue and se
 
 /* Queues a copy of the query. Replaces the client's last query if the last one still waits. */
 void pick_queue_ask(struct pick_queue *queue, const struct pick_query *query);
-/* Drops the client's query and answers. */
+/* Drops the client's pick query, and answers that were not collected yet. */
 void pick_queue_forget(struct pick_queue *queue, uint64_t client);
 /* Returns whether a query waits. */
 bool pick_queue_has_query(struct pick_queue *queue);

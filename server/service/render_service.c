@@ -25,7 +25,7 @@ static void replace(struct frame_request *old, const struct frame_request *reque
     *old = merged;
 }
 
-/* Queues a request. The caller holds the lock. */
+/* Queues a client's frame request. The caller holds the lock. */
 static enum request_outcome put(struct render_service *service, uint64_t id, const struct frame_request *request)
 {
     struct render_client *client = render_service_find(service, id);

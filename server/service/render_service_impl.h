@@ -10,7 +10,7 @@
 
 struct render_client {
     uint64_t id, number; /* id: of the client; number: sequence number of the client's newest request whose drawing has begun */
-    bool pending;        /* true: `request` waits for its drawing to begin */
+    bool pending;        /* true: the drawing of `request` has not begun yet */
     bool has_content;
     bool has_depth; /* true: the client has the depth grid of the content that it was last sent */
     bool left; /* true: the client no longer wants the frame that the long job (a frame drawn in steps) draws for it */
@@ -37,7 +37,7 @@ struct render_service {
     /* --- below: protected by `lock` */
     enum { STARTING, RUNNING, FAILED, STOPPING } state;
     bool has_news;                         /* true: requests were queued since the render thread was last woken */
-    struct snapshot *readings;             /* newest snapshot of the event loop */
+    struct snapshot *readings;             /* copy of the event loop's newest snapshot of readings */
     const struct loop_checks *loop_checks; /* loop check records; NULL: no tag is marked as unchecked */
     bool lost;                             /* true: the GL context is lost and being rebuilt */
     int64_t asked_ns; /* monotonic time when a sign of life was requested from the render thread; 0: none is outstanding */
@@ -48,7 +48,7 @@ struct render_service {
     /* by share (scheduler_share()): drawing time already charged to the client served last, before it was served; clients that enter the
        queue start with at least this charge */
     int64_t spent_ns[SCHEDULER_SHARES];
-    struct encoded_frame *done, **done_last; /* encoded frames not collected yet, oldest first */
+    struct encoded_frame *done, **done_last; /* encoded frames that the event loop has not collected yet, oldest first */
     bool announced;                          /* params.notify was called for them */
 };
 

@@ -7,7 +7,7 @@
 #include "render/frame.h"
 
 static const int64_t MEASURE_INTERVAL_NS = 1 * NS_PER_S; /* interval between measurements */
-static const int64_t IDLE_TIMEOUT_NS = 10 * NS_PER_S;    /* time without clients after which caches are released */
+static const int64_t IDLE_TIMEOUT_NS = 10 * NS_PER_S;    /* time without clients after which the renderer's caches are released */
 static const double FIELD_SHARE = 0.3; /* part of the memory limit that values and weights of all fields together may take */
 /* Minimum reserved for memory other than models and caches: shaders, threads, the plant, and temporary memory of a frame or a light. */
 static const size_t OTHER_BYTES = (size_t)576 << 20;

@@ -4,7 +4,7 @@
 #define SERVICE_REQUEST_GROUP_H
 #include "service/frame_request.h"
 
-struct request_ticket { /* ticket: a request whose drawing has begun */
+struct request_ticket { /* ticket: a frame request whose drawing has begun */
     uint64_t client, number;
     struct frame_request request;
     int64_t wait_ns; /* nanoseconds from the input to the start of drawing */

@@ -35,7 +35,7 @@ void time_accounts_served(struct time_accounts *accounts, const struct time_acco
    frame. */
 void time_accounts_charge(struct time_accounts *accounts, uint64_t id, int share, int64_t ns);
 
-struct time_claim { /* one client's request, compared with those of others */
+struct time_claim { /* claim of one client's request to be served, which is compared with claims of others */
     const struct time_account *account;
     /* spent_ns: drawing time charged to the client itself, not to its address; asked_ns: when the client made the request */
     int64_t spent_ns, asked_ns;

@@ -21,7 +21,7 @@ struct plant_services {
     /* on a renderer (daemon that draws for a core) or a standby core: link to the core; NULL: this daemon reads its devices itself */
     struct core_link *core_link;
     struct historian *historian;     /* NULL: nothing is recorded */
-    struct notifier *notifier;       /* sends alarm notifications; NULL: none are sent */
+    struct notifier *notifier;       /* service that sends alarm notifications; NULL: none are sent */
     struct loop_checks *loop_checks; /* NULL: loops cannot be checked */
     char *tag_list;                  /* text of the tag list in force; NULL: it could not be read */
     char *history_folder;            /* NULL: nothing is recorded */

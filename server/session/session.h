@@ -155,7 +155,7 @@ void session_on_historical_snapshot(struct session *session, int64_t at_us, bool
 void session_follow(struct session *session, struct session *leader, int64_t now_ns);
 /* Replies that the session to follow does not exist. */
 void session_follow_nobody(struct session *session);
-/* Notes that the leader's view changed. */
+/* Tells a following session that its leader's view changed. */
 void session_on_leader(struct session *session, int64_t now_ns);
 /* Notes that the leader is about to be destroyed. The leader's last view stays on show until the client follows another session or
    nobody. */

@@ -28,7 +28,7 @@ struct session_context {
     const struct snapshot *snapshot;       /* the newest readings */
     int64_t history_first_us;              /* UTC microseconds at which recorded history begins; 0: nothing is recorded yet */
     int64_t changed_ns;                    /* monotonic time when a snapshot last differed from its predecessor */
-    struct alarm_text_cache *alarm_texts;  /* cache of alarm texts; NULL: no caching */
+    struct alarm_text_cache *alarm_texts;  /* cache of alarm texts for all sessions; NULL: no caching */
     bool saving;                           /* true: a reload is putting a saved tag list in force */
     /* On a renderer (daemon that draws for a core): forwards a session's message to the core, which answers later. Returns false if the
        core is not connected. NULL: this daemon is no renderer and acts on messages itself. */
@@ -52,10 +52,10 @@ struct session_context {
     const char *version;
     const struct quotas *quotas;
     const struct tokens *tokens;           /* NULL: none are configured */
-    struct openid *openid;                 /* sign-in with OpenID Connect; NULL: off */
+    struct openid *openid;                 /* service for signing in with OpenID Connect; NULL: off */
     int64_t lock_ns;                       /* monotonic duration without user activity after which the user must sign in again; 0: never */
     struct login_throttle *login_throttle; /* counts wrong tokens in `hello` messages; NULL: not counted */
-    struct audit *audit;                   /* the audit trail; NULL: nothing is recorded */
+    struct audit *audit;                   /* writer of the audit trail; NULL: nothing is recorded */
     struct file_writer *file_writer;       /* writes views, notes, walls, pairings and loop checks; NULL: they are written at once */
     /* list of answers that wait for the disk, shared by all sessions; NULL: session_destroy() drops such answers */
     struct kept_answers *kept_answers;

@@ -114,7 +114,7 @@ void session_choose_again(struct session *session, int64_t now_ns);
 
 /* Reserves pixels for a view of that size in place of the last one. Returns false with *error if that exceeds a limit. */
 bool session_reserve_pixels(struct session *session, int width_px, int height_px, struct message_error *error);
-/* Returns the session's pixels to the admission budget. */
+/* Returns the pixels that the session has reserved to the admission budget. */
 void session_release_pixels(struct session *session);
 /* Returns whether the session holds pixels for its view, so that frames may be drawn. */
 bool session_has_pixels(const struct session *session);
@@ -131,7 +131,7 @@ bool session_on_time(struct session *session, const struct time_request *request
                      struct message_error *error);
 /* Makes a new session start at an instant of the past. */
 void session_time_begin(struct session *session, int64_t at_us, double speed);
-/* Releases the reference to the historical snapshot. */
+/* Releases the session's reference to the snapshot of a past instant. */
 void session_time_end(struct session *session);
 /* Returns to the present immediately, whatever instant is being loaded. */
 void session_time_leave(struct session *session);

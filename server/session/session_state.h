@@ -33,7 +33,7 @@ struct session_identity {
     int64_t active_ns; /* monotonic time when the user was last active at the page; 0: the user was not active since the page connected */
     bool tokens;       /* true: the client wants its view as a signed view token after each change */
     struct view token_view; /* the view in the last view token that was sent */
-    int64_t token_ns;       /* monotonic: when the last view token was sent */
+    int64_t token_ns;       /* monotonic time when the last view token was sent */
     bool resumed;           /* true: this session resumed another session's view, as `welcome` tells the client */
     bool returned;          /* true until the followers of the resumed session have been moved to this one */
 };
@@ -79,7 +79,7 @@ struct frame_demand {
     int64_t input_ns;               /* monotonic time of the newest change of the view */
     int64_t data_ns;                /* monotonic time of the oldest changed reading for which no frame was requested */
     int64_t preview_ns, refined_ns; /* monotonic: when the newest frame of each tier was requested */
-    enum { REFINED_NOT, REFINED_DRAFT, REFINED_FULL } refined; /* best refined frame requested for the present view */
+    enum { REFINED_NOT, REFINED_DRAFT, REFINED_FULL } refined; /* quality of the best refined frame requested for the present view */
     /* true: a refined frame is requested and has not arrived; the render thread draws it between other sessions' frames, which may take a
        minute */
     bool refining;
@@ -122,7 +122,7 @@ struct session_following {
     uint64_t heir_wanted;     /* number of the session to which the client wants to hand the lead; 0: the lead stays */
     bool followers_changed;   /* true: the list of followers changed and must be sent */
     int64_t followers_ns;     /* monotonic: when the list of followers was last built */
-    char *followers_text;     /* list of followers, to be sent; NULL: none */
+    char *followers_text;     /* text that lists the followers, to be sent; NULL: none */
     uint32_t told_params_seq; /* params_seq of the leader's view in the last message sent to the client */
     int told_size_px[2];
 };
@@ -144,8 +144,8 @@ struct owed_texts {
     /* true: the text of that name is due; loop_checks: the complete list of loop checks is due */
     bool welcome, params, following, tags_all, tags, status, time, loop_checks;
     uint32_t params_seq;    /* sequence number of the client's message that the next `params` answers */
-    int64_t tags_ns;        /* monotonic: when tags were last sent */
-    uint32_t *tag_changes;  /* reading.changes as last sent, by tag */
+    int64_t tags_ns;        /* monotonic time when tags were last sent */
+    uint32_t *tag_changes;  /* by tag: value of reading.changes that was last sent */
     bool alarms_sent;       /* true: `alarms` was sent at least once */
     uint64_t alarms_number; /* sequence number of the last change of alarms that was sent */
     /* sequence numbers of the last changes sent to the client, one each for named views, notes, messages of desks to walls, and pointers */
@@ -161,11 +161,11 @@ struct owed_texts {
 /* Sensors that an engineer moves on trial (session_place.c). */
 struct session_placement {
     struct place_set *set; /* trial positions of this session; NULL: nothing was moved */
-    uint32_t seq;          /* sequence number of the newest `place` message */
+    uint32_t seq;          /* sequence number of the newest `place` message of the client */
     struct tag_save *save; /* tag list with the engineer's changes, which waits to be saved (session_take_save); NULL: none */
 };
 
-struct session_pick { /* a query for what is at a pixel */
+struct session_pick { /* pick: a query for what is at a pixel */
     bool pending;     /* true: `query` waits to be sent to the render service */
     struct pick_query query;
 };
@@ -190,7 +190,7 @@ struct session_tile {
     int64_t late_us; /* UTC microseconds since when the tile is dropped from the wall; 0: it takes part */
     /* out_ns: duration for which the tile is dropped; in_ns: monotonic time when it may be readmitted, or when it was readmitted last */
     int64_t out_ns, in_ns;
-    char *told; /* the last `tiles` message sent; NULL: none */
+    char *told; /* last `tiles` message sent to the client; NULL: none */
 };
 
 struct message_rate {
@@ -200,7 +200,7 @@ struct message_rate {
     bool exceeded;
 };
 
-struct session_stats { /* counts for the log and the metrics */
+struct session_stats { /* counts of messages and errors, for the log and the metrics */
     int64_t messages, errors, dropped;
 };
 
@@ -237,7 +237,7 @@ struct session {
     struct session_scope scope;
     struct wall_place display; /* the wall display that this client says it is; display 0: none */
     struct session_tile tile;
-    int64_t heard_ns;   /* monotonic: when the client's last message arrived */
+    int64_t heard_ns;   /* monotonic time when the client's last message arrived */
     int64_t settled_ns; /* value of heard_ns at the last tick at which the client showed the newest picture (none was owed to it) */
 };
 

@@ -46,7 +46,7 @@ enum relocation_state {
 /* Returns the state of the surface: being built, ready, or impossible to build. */
 enum relocation_state relocation_state(struct relocation *relocation);
 
-/* position of a sensor on the asset */
+/* result of placing a sensor on the asset */
 struct relocation_place {
     double surface_m[3]; /* nearest point on the asset; once the surface is built, hidden surfaces inside other parts are excluded */
     double distance_m;   /* distance from the requested point to surface_m, metres */

@@ -13,7 +13,7 @@
 /* maximum distance of a triangle with a fitting normal, as a multiple of the distance of the nearest triangle, at which the former is
    preferred */
 #define FACING_FACTOR 4.0
-#define ROUNDING 1e-9 /* relative rounding allowance of a distance */
+#define ROUNDING 1e-9 /* allowance for rounding errors in a distance, relative to it */
 
 void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place)
 {

@@ -12,7 +12,7 @@ enum { BASELINES_NAMED = 32, BASELINES_UNNAMED = 32, BASELINE_NAME_BYTES = 64 };
 
 struct baseline {                   /* description of one baseline */
     uint32_t id;                    /* baseline id; 0: none */
-    char name[BASELINE_NAME_BYTES]; /* name; "": unnamed, identified by its time */
+    char name[BASELINE_NAME_BYTES]; /* name of the baseline; "": unnamed, identified by its time */
     int64_t taken_utc_ns;
 };
 

@@ -55,8 +55,8 @@ struct modbus_source {
     struct modbus_unit *units;
     struct backoff backoff; /* backoff of connection attempts */
     int64_t connect_ns;     /* monotonic time before which the source makes no connection */
-    int64_t asked_ns;       /* monotonic time at which the last request ended */
-    int64_t answered_ns;    /* monotonic time of the last answer */
+    int64_t asked_ns;       /* monotonic time at which the last request to the device ended */
+    int64_t answered_ns;    /* monotonic time of the device's last answer */
     bool link_up;
     int fallen; /* number of units that have stopped answering since any unit last answered */
     struct modbus_manners manners;

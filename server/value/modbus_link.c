@@ -35,7 +35,7 @@ struct modbus_link {
     int slot_fd;
     bool open;
     bool suspect; /* true (serial line only): an abandoned request may still be answered, so the next answer may belong to that request */
-    int host;     /* index in source->hosts of the host in use */
+    int host;     /* index in source->hosts of the host that is used now */
     int answers;  /* of this connection */
     bool any_unit;
     struct modbus_answered answered; /* transaction identifier and unit in the last response, for TCP frames */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prints a read plan as text. */
+/* Prints the read plan of a Modbus source as text. */
 #include "value/read_plan_text.h"
 
 #include <string.h>

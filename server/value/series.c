@@ -56,7 +56,7 @@ static bool is(const struct series_cell *cell, const char *text, size_t length)
     return cell->length == length && !memcmp(cell->at, text, length);
 }
 
-/* Compares a cell with a name, ignoring case. */
+/* Returns whether a cell equals a name, ignoring case. */
 static bool is_called(const struct series_cell *cell, const char *name)
 {
     return cell->length == strlen(name) && !strncasecmp(cell->at, name, cell->length);

@@ -23,14 +23,14 @@ struct stamped_writer {
     size_t count;
     int64_t at_utc_ns, at_mono_ns; /* time of the pending samples */
     struct {
-        int64_t utc_ns, mono_ns; /* by tag: time of its last sample */
+        int64_t utc_ns, mono_ns; /* by tag: time that the tag's last sample states */
         bool is_stated;          /* the sender stated that time */
     } * last;
 };
 
 void stamped_writer_init(struct stamped_writer *writer, const struct plant *plant, struct store *store);
 void stamped_writer_finish(struct stamped_writer *writer);
-/* Begins a message that arrived at this time. */
+/* Begins the processing of a message that arrived at this time. */
 void stamped_writer_begin(struct stamped_writer *writer, int64_t now_mono_ns, int64_t now_utc_ns);
 /* Adds the value, not scaled yet, that the message contains for a tag. was_kept: the broker had retained the value, which may have changed
  * since, so its quality is Uncertain_LastUsableValue at best. A time ahead of our clock is replaced by the current time. A time before that

@@ -15,8 +15,8 @@ struct held {
     uint32_t quality;                          /* of the last sample */
     bool has_value, lost;                      /* lost: the tag could not be read since its last sample */
     bool dead;                                 /* true: the tag is lost, and its last value may not be used any more */
-    int64_t sampled_mono_ns;                   /* time of the last sample, Good or Bad */
-    int64_t received_mono_ns, received_utc_ns; /* arrival time of the last usable value */
+    int64_t sampled_mono_ns;                   /* time of the tag's last sample, whether Good or Bad */
+    int64_t received_mono_ns, received_utc_ns; /* arrival time of the tag's last usable value */
     int64_t changed_mono_ns;                   /* time at which the last usable value differed from the one before */
     int64_t stale_ns, flatline_ns;
     /* A quality tag gives its quality to other tags, which form a list. first_vouched: index of the first tag to which this tag gives its

@@ -42,7 +42,7 @@ void wall_remote_point(struct wall_remote *remote, const struct wall_place *plac
 /* Replaces all pointers by those of another daemon. pointed: the result of wall_remote_pointers_text() there. Returns false if it is
  * invalid. */
 bool wall_remote_mirror_pointers(struct wall_remote *remote, const json_t *pointed);
-/* Records whether a display is connected. */
+/* Records whether a wall display is connected now. */
 void wall_remote_see(struct wall_remote *remote, const char *wall, int display, bool there);
 /* Return counters that increase with each change of the messages `walls` and `pointed`. */
 uint64_t wall_remote_number(const struct wall_remote *remote);

@@ -57,7 +57,7 @@ struct draw_batches { /* zero-initialise, then set log */
 
 /* Frees all memory and GL buffers. */
 void draw_batches_finish(struct draw_batches *batches);
-/* Empties the batches for a new pass. */
+/* Removes all batches, commands and instances at the beginning of a pass. */
 void draw_batches_begin(struct draw_batches *batches, size_t model_count);
 /* Copies an instance into the pass's list and returns its index there. */
 uint32_t draw_batches_add_instance(struct draw_batches *batches, const struct draw_instance *instance);

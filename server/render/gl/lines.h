@@ -11,7 +11,7 @@ struct gl_lines {
     struct render_texture mask;
 };
 
-/* Compiles the programs. Returns false on failure, logged. */
+/* Compiles the shader programs for edges and outlines. Returns false on failure, logged. */
 bool lines_init(struct gl_lines *lines, struct log *log);
 void lines_finish(struct gl_lines *lines);
 /* Darkens the frame where depth or normal change abruptly. */

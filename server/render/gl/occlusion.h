@@ -24,11 +24,11 @@ struct occlusion { /* culling state of the frame drawn last; zero-initialise, th
     struct occlusion_box *boxes;
     struct occlusion_asset *assets;
     size_t box_count, asset_count;
-    size_t box_capacity, asset_capacity; /* capacities of `boxes` and `assets`, elements */
-    size_t box_room;                     /* capacity of box_buffer on the GPU, bytes */
+    size_t box_capacity, asset_capacity; /* number of elements for which `boxes` and `assets` have room */
+    size_t box_room;                     /* number of bytes for which the GPU buffer box_buffer has room */
 };
 
-/* Compiles the program. Returns false on failure, logged. */
+/* Compiles the shader program of the box test. Returns false on failure, logged. */
 bool occlusion_init(struct occlusion *occlusion, struct log *log);
 void occlusion_finish(struct occlusion *occlusion);
 /* Collects the boxes of all visible assets; call before opaque draws are collected. Returns false if the frame has fewer than

@@ -12,7 +12,7 @@ struct section_caps {
     struct model_draws draws;
 };
 
-/* Compiles the programs. Returns false on failure, logged. */
+/* Compiles the shader programs for section caps. Returns false on failure, logged. */
 bool section_caps_init(struct section_caps *caps, struct log *log);
 void section_caps_finish(struct section_caps *caps);
 /* Draws the caps of all section planes; does nothing if the view has none. */

@@ -22,7 +22,7 @@ struct light_set {
     double texture_from_plant[16]; /* matrix from the plant frame to texture coordinates and depth of sun_map */
     double texel_m, depth_m;       /* side of a texel of sun_map, and range of its depths, metres */
     GLuint sun_map;
-    GLuint ground; /* RG8: sun and openness of the ground */
+    GLuint ground; /* texture of the ground in the format RG8: visible part of the sun, and openness */
     struct pool *pool;
     struct pool_slice **baked; /* baked light per asset, 4 bytes per vertex: light, ambient, openness, sun */
     size_t bytes;
@@ -33,7 +33,7 @@ struct light_set {
 struct bake_programs {
     GLuint sky, sun, faces_sky, faces_sun, ground_sky, ground_sun;
 };
-/* Compiles the programs. Returns false on failure, logged. */
+/* Compiles the shader programs of the bake. Returns false on failure, logged. */
 bool bake_programs_init(struct bake_programs *programs, struct log *log);
 void bake_programs_finish(struct bake_programs *programs);
 

@@ -6,11 +6,11 @@
 #define RENDER_BAKE_FACES_H
 #include "render/gl/gpu_scene.h"
 
-enum { BAKE_FACE_SAMPLES = 6 }; /* samples per triangle; must match shaders/bake.comp */
+enum { BAKE_FACE_SAMPLES = 6 }; /* number of light samples per large triangle; must match shaders/bake.comp */
 
 struct bake_faces {
     size_t count;
-    GLuint corners; /* GL buffer with three vertex indices per triangle */
+    GLuint corners; /* GL buffer with the vertex indices of the large triangles, three each */
     GLuint sums;    /* GL buffer with three sums per vertex: weight, openness and sun, in units of 1/256 */
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sampling of the GGX distribution. Pure. */
+/* Samples directions of the GGX distribution (microfacet normals). Pure. */
 #ifndef RENDER_GGX_H
 #define RENDER_GGX_H
 #include <math.h>

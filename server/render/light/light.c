@@ -9,7 +9,7 @@
 #include "base/mem.h"
 
 static const size_t LIGHT_BYTES = 256 << 20;
-static const int64_t LOAD_TIMEOUT_NS = 60 * NS_PER_S; /* time limit for loading an environment map */
+static const int64_t LOAD_TIMEOUT_NS = 60 * NS_PER_S; /* time to wait for an environment map to load */
 
 static void find_ground(struct light *light)
 {

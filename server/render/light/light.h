@@ -13,14 +13,14 @@ struct light {
     struct bake_programs programs;
     /* matrix to the plant frame, from the ground's texture coordinates (x, y) and the height above the ground (z) */
     double plant_from_ground[16];
-    double ground_height_m; /* coordinate of the ground along the up axis */
+    double ground_height_m; /* height of the ground: its coordinate along the up axis */
     /* bytes of GPU memory: limit, and sum over all light sets; a set that is held is never dropped, even above the limit */
     size_t bound_bytes, bytes;
     struct light_set sets[LIGHT_SETS];
     struct bake *bake; /* in progress; NULL: none */
     uint64_t uses, last_id;
     bool kept;                      /* true: the openness file has been written, or writing was attempted and failed */
-    struct openness_writer *writer; /* writer of the openness file; NULL: not writing */
+    struct openness_writer *writer; /* thread that writes the openness file; NULL: not writing */
 };
 
 /* Compiles the programs; bakes nothing yet. Returns false on failure, logged. */

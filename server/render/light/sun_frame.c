@@ -8,7 +8,7 @@
 #include "base/math/vec.h"
 #include "render/matrix.h"
 
-enum { TRIED_ANGLES = 32 }; /* number of angles tried in a quarter turn */
+enum { TRIED_ANGLES = 32 }; /* number of rotations tried within a quarter turn around the sun's direction */
 
 struct sun_extent {
     /* bounds along three axes, relative to the scene's centre, in metres: across and up as seen from the sun, and towards the sun */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Chooses labels by rank, distance and free space. */
+/* Chooses which markers get a label, by rank, distance and free space. */
 #include "render/overlay/labels_impl.h"
 
 #include <math.h>

@@ -25,7 +25,7 @@ struct pen {
     const struct scene *scene;
     const struct snapshot *snapshot;
     const struct loop_checks *loop_checks; /* NULL: none */
-    bool bare;                             /* true: draws no markers, sensor labels and alarms */
+    bool bare;                             /* true: markers, sensor labels and alarms are not drawn */
     double unit, text_px;
     struct label_box taken[PEN_MAX_TAKEN]; /* occupied areas */
     int taken_count;
@@ -46,7 +46,7 @@ void pen_rounded_path(struct pen *pen, const struct label_box *box);
 void pen_rgb(struct pen *pen, const uint8_t rgb[3]);
 void pen_ink(struct pen *pen, double alpha);
 void pen_dark(struct pen *pen, double alpha);
-/* Sets the font. size: a multiple of text_px. */
+/* Sets the font of the following texts. size: a multiple of text_px. */
 void pen_font(struct pen *pen, double size, bool bold);
 /* Returns the width of a text in the current font. */
 double pen_text_width(struct pen *pen, const char *text);
@@ -73,7 +73,7 @@ double overlay_bar_left(struct pen *pen);
 int overlay_strip_height(int width_px, int height_px);
 /* Writes the legend strip over the lowest rows of the frame, if the frame is large enough. bgrx: the frame's pixels. */
 void overlay_strip(struct pen *pen, uint8_t *bgrx, int stride_bytes);
-/* Draws the legend of the selected half. */
+/* Draws the legend of the half of the view that the pen has selected. */
 void overlay_legend(struct pen *pen);
 /* Returns whether both halves of a split view have equal legends. Afterwards the pen draws on the right half. */
 bool overlay_legend_is_shared(struct pen *pen);
@@ -89,7 +89,7 @@ bool overlay_unproven(const struct pen *pen, int tag);
 /* Draws an alarm ring. The colour shows the priority, the form the state: thick: unacknowledged; thin: acknowledged; hollow: returned to
    normal but not acknowledged. */
 void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_status word);
-/* Returns whether the selected half has arrows. */
+/* Returns whether the half of the view that the pen has selected shows arrows. */
 bool overlay_has_arrows(const struct pen *pen);
 /* overlay_arrow_px returns the length of the longest arrow in pixels, overlay_arrow_value the value that this length means. */
 double overlay_arrow_px(const struct pen *pen);
@@ -100,7 +100,7 @@ void overlay_arrow(struct pen *pen, double x, double y, double dx_px, double dy_
 bool overlay_is_unknown_direction(const struct frame_label *label);
 /* Draws the cross that marks an unknown direction. */
 void overlay_unknown_direction(struct pen *pen, double x, double y);
-/* Draws the arrows of the selected half. */
+/* Draws the arrows in the half of the view that the pen has selected. */
 void overlay_arrows(struct pen *pen);
 /* Draws markers, alarm rings and labels of the selected half. */
 void overlay_markers(struct pen *pen);

@@ -18,7 +18,7 @@ static const double MEASURED_PX = 3, MEASURED_M = 0.005;
 
 struct pick_spot { /* state of one pick */
     const struct scene *scene;
-    const struct view *view; /* view of the half that contains the pixel */
+    const struct view *view; /* view of the half of the frame that contains the picked pixel */
     const struct snapshot *snapshot;
     struct raycast_hit hit;
     double meter_per_pixel; /* width of a pixel at the hit point, in metres */

@@ -32,7 +32,7 @@ struct pick {
         double distance_m; /* distance of the sensor in metres, of the kind that the view uses (straight or geodesic) */
         double value;
         uint32_t quality;
-    } nearest[PICK_NEAREST]; /* sensors that contribute to the value, nearest first */
+    } nearest[PICK_NEAREST]; /* sensors that contribute to the value at the pixel, nearest first */
     int sensor;              /* tag whose marker is at the pixel, a visible one if there is any; -1: none */
     bool sensor_occluded;
     bool assumed; /* true if the sensor's position on its asset is unknown, so that its reading is used for the whole asset */

@@ -15,13 +15,13 @@
 struct fields_entry {
     int asset;
     struct field_params params;
-    double step;            /* smallest value step that can be seen (scale_step) */
+    double step;            /* smallest difference of values that is visible in the colours (scale_step) */
     uint64_t flags_version; /* scalars->flags_version of the shown values */
     /* value of scalars->travel (sum of all changes so far) when the shown values were computed, less the error known then. `scalars->travel
        - travel` is an upper bound of the error of any shown value */
     double travel;
     uint64_t content; /* hash of the first `hashed` shown scalars, as many as the last request needed */
-    size_t hashed;          /* SIZE_MAX: `content` is out of date */
+    size_t hashed;    /* number of shown scalars that `content` covers; SIZE_MAX: `content` is out of date */
     /* sensors of a field that is evaluated at pixels; count 0: the field is interpolated between vertices, from `shown` */
     struct pixel_field pixels;
     struct scalar *shown;

@@ -14,7 +14,7 @@ struct frame_plan {
     /* key of the light set that the frame uses: the one that the view asks for or, while that is not ready, the most similar one */
     struct light_key lit_by;
     double error_px; /* largest error of a level of detail's surface, in pixels of the frame (lod_selection.h); 0: finest levels only */
-    int *visible;    /* indices of visible assets, nearest first */
+    int *visible;    /* indices of the visible assets, the nearest asset first */
     size_t visible_count;
     /* by index in `visible`: number of the asset's vertices, from the first in the file on, that drawing and labelling read */
     size_t *vertex_counts;

@@ -15,7 +15,7 @@ struct view_constants { /* matrices and planes of a view. Eye space has the axes
     /* orthographic view: distance from the near to the far plane, divided by camera_parallel_m() (the viewing distance of an equivalent
        perspective camera); perspective view: 0 */
     double depth_scale;
-    double planes[6][4]; /* frustum planes, normals inward, in the plant frame */
+    double planes[6][4]; /* planes of the view frustum in the plant frame; their normals point inward */
 };
 
 /* Computes all constants for a view of the scene. Near and far planes enclose the scene's bounds. */

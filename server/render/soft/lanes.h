@@ -18,7 +18,7 @@
 #define SOFT_JOIN(name, set) name##set
 #define SOFT_IN_SET(name, set) SOFT_JOIN(name, set)
 
-enum { LANES = 8 }; /* numbers per vector; must be at most SOFT_STRETCH_LEAST */
+enum { LANES = 8 }; /* number of elements per vector; must be at most SOFT_STRETCH_LEAST */
 typedef float lanes __attribute__((vector_size(32), aligned(4)));
 typedef int32_t lanes_int __attribute__((vector_size(32), aligned(4)));
 typedef uint32_t lanes_uint __attribute__((vector_size(32), aligned(4)));
@@ -162,7 +162,7 @@ SOFT_INLINE lanes_int lanes_from_bytes(const uint8_t *at)
     return __builtin_convertvector(eight, lanes_int);
 }
 
-/* Returns table[at] for each lane of `at`. */
+/* Looks up table[i] for the index i in each lane of `at`. */
 SOFT_INLINE lanes lanes_look_up(const float *table, lanes_int at)
 {
 #ifdef __AVX2__

@@ -158,7 +158,7 @@ SOFT_INLINE lanes_int backdrop_at(const struct raster *raster, const struct heig
     return gather(raster->soft->backdrops, tile * SKY_BACKDROPS + at);
 }
 
-/* Multiplies colours by factor / 256. */
+/* Multiplies each channel of eight packed colours by factor / 256. */
 SOFT_INLINE lanes_int darkened(lanes_int color, lanes_int factor)
 {
     lanes_uint by = (lanes_uint)factor, bgrx = (lanes_uint)color;

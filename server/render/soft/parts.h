@@ -10,7 +10,7 @@ enum { PART_TRIANGLES = 256, PART_VERTICES = 256 };
 
 struct soft_part {
     struct asset_cluster cluster; /* bounding box and normal cone */
-    uint32_t first_vertex;        /* index of the part's first vertex in soft_parts.vertices */
+    uint32_t first_vertex;        /* index of the part's first vertex in the array soft_parts.vertices */
     /* index of the part's first value in soft_parts.corners. A part has three consecutive lists there, each with one corner of all its
        triangles: first corners, second corners, third corners */
     uint32_t first_corner;
@@ -29,7 +29,7 @@ struct soft_parts {
     uint8_t *corners; /* corners of triangles: indices of vertices within the part; see soft_part.first_corner for the order */
     float *planes; /* planes of the triangles (n . p + d = 0), part by part; for each part first all n.x, then all n.y, all n.z and all d */
     uint8_t *closed; /* by index in `vertices`: 1: the vertex belongs to a closed body; 0: it belongs to none. NULL: not computed yet */
-    bool blended;    /* true: at least one part is blended */
+    bool blended;    /* true: at least one part is blended (transparent) */
     size_t part_count, vertex_count, corner_count;
     size_t part_capacity, vertex_capacity, place_capacity, corner_capacity, plane_capacity;
 };

@@ -16,7 +16,7 @@ struct coloring {
     /* log: the scale is logarithmic; rich: there are isolines, or the scale is logarithmic, so the slower code path is used */
     bool log, rich;
     struct frame *frame;
-    const struct band_lists *lists; /* sensor lists of the band being coloured */
+    const struct band_lists *lists; /* lists of near sensors for the cells of the band that is being coloured */
 };
 
 /* Returns the index, within the band, of the cell (square of pixels) that contains a pixel. */

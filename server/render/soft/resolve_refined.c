@@ -226,7 +226,7 @@ static void add_item(const struct refined *refined, struct refined_row *row, con
 struct mixed_pixel {
     size_t at; /* index of the pixel in the arrays of samples */
     int column, y;
-    size_t first, end; /* range of the blended fragments over the pixel */
+    size_t first, end; /* range of the blended (transparent) fragments that cover the pixel */
 };
 
 /* Adds a pixel that shows several surfaces, and its items (surfaces to shade), to the row. */

@@ -14,7 +14,7 @@
 #include "render/pick/isolines.h"
 
 struct soft;    /* shared by all frames */
-struct refined; /* a refined frame that is drawn in steps */
+struct refined; /* refined frame while it is drawn in steps */
 
 /* Returns NULL when out of memory, logged. All arguments must outlive the renderer. */
 struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky,

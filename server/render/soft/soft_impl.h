@@ -70,7 +70,7 @@ struct soft_pixels { /* field of a mesh that is evaluated at pixels; positions a
     float place_from_pixel[4][4]; /* matrix, column by column */
 };
 
-struct soft_rect { /* rectangle in pixels; right and bottom are included */
+struct soft_rect { /* rectangle in pixels; the row `bottom` and the column `right` belong to it */
     int left, top, right, bottom;
 };
 
@@ -86,7 +86,7 @@ struct soft_found { /* list of the parts of one mesh that may be visible; its me
     const struct soft_parts *parts;
     uint32_t material; /* index, among the materials of all models, of the mesh's first material */
     bool both_sides;
-    float eye_m[3]; /* eye position in the file's coordinates */
+    float eye_m[3]; /* eye position in the coordinates of the asset file, in metres */
     struct soft_rect rect;
     /* id of the first triangle of the first item; an item is a part, and the ids of each next item begin PART_TRIANGLES higher */
     uint32_t first_id;
@@ -96,7 +96,7 @@ struct soft_found { /* list of the parts of one mesh that may be visible; its me
 
 struct soft_light {       /* copy of a light_set, read back from the GPU */
     uint64_t id;          /* id of the light set; 0: an empty entry */
-    uint8_t (**baked)[4]; /* baked light by asset, then by vertex */
+    uint8_t (**baked)[4]; /* baked light, indexed by asset and then by vertex */
     /* shadow map of the sun in square tiles; a tile takes two cache lines and is stored row by row, so that neighbouring texels mostly
        share cache lines */
     uint16_t *sun_map;
@@ -141,14 +141,14 @@ struct raster { /* source and target of one frame's rasterization; its memory is
     const float *lines;
     struct frame_uniforms block;
     struct soft_mesh *meshes;
-    struct soft_found *found; /* by mesh: its parts that may be visible */
+    struct soft_found *found; /* by mesh: list of its parts that may be visible */
     size_t found_capacity;
     size_t mesh_count, vertex_count;
     size_t mesh_capacity;
     struct soft_pixels *pixels;
     size_t pixels_count, pixels_capacity;
     int row_bias; /* offset that is added to the row of the colour map in a MARK_PIXELS mark, so that the stored number is not negative */
-    int width_px, height_px, pitch_px; /* pitch_px: row length, a multiple of LANES */
+    int width_px, height_px, pitch_px; /* pitch_px: number of elements from one row to the next, a multiple of LANES */
     /* largest distance of a sample from the pixel's centre along x or y; bounding rectangles of parts are enlarged by it. Previews: 0 */
     float reach_px;
     float *depth;
@@ -164,7 +164,7 @@ struct raster { /* source and target of one frame's rasterization; its memory is
        through which view rays enter the space that is kept */
     float cuts[CLIP_MAX_PLANES][4];
     int cut_count, entry_count;
-    float shift_px[2];  /* offset of the samples from pixel centres */
+    float shift_px[2];  /* offset of this pass's samples from the pixel centres, in pixels */
     bool counts_bodies; /* true: the frame has section caps, for which the closed bodies at each pixel are counted (caps.c) */
     bool blends;        /* true: some of the parts (groups of triangles) found are blended (transparent) */
     bool has_ground;

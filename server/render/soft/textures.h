@@ -10,7 +10,7 @@ enum { TEXTURE_LEVELS = 16 };
 
 struct soft_texture {
     const uint8_t (*levels[TEXTURE_LEVELS])[4]; /* mipmap levels; the finest level points into the asset file */
-    uint8_t (*coarse)[4];                       /* memory of the coarser levels; owned */
+    uint8_t (*coarse)[4];                       /* memory of all mipmap levels but the finest; owned by this struct */
     const float *linear; /* table that converts a byte to 0..1: to linear light for sRGB textures, otherwise in proportion */
     int width_px, height_px, level_count;
     bool repeat;
@@ -19,7 +19,7 @@ struct soft_texture {
 struct soft_material {
     const struct asset_material *of;
     const struct soft_texture *maps[MODEL_MAPS]; /* NULL: none */
-    bool mapped;                                 /* true: at least one texture map is set */
+    bool mapped;                                 /* true: the material has at least one texture map */
     bool blended;
     bool cut_out; /* true: the alpha of the base colour cuts holes */
 };

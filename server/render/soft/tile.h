@@ -43,7 +43,7 @@ struct soft_sample { /* one sample per pixel of a tile, stored row by row from t
 };
 #define ID_BACK 0x80000000u /* flag of a triangle id, only for meshes that a section plane cuts: the triangle looks away from the eye */
 
-struct soft_fragment { /* a blended (transparent) triangle at one sample */
+struct soft_fragment { /* fragment: a blended (transparent) triangle at one sample of a pixel */
     uint32_t pixel;    /* index of the pixel in the arrays of samples */
     uint32_t id, layer;
     float depth;

@@ -98,7 +98,7 @@ struct visibility_buffer {
     uint8_t *ink;
     uint8_t *veil; /* coverage by ghost lines, 0..255. NULL: there are no ghosts */
     uint8_t veil_bgr[3];
-    bool lined;   /* true: slopes are stored, which isolines need */
+    bool lined;   /* true: slopes of corner weights are stored, because isolines need them */
     float *depth; /* depth for placing isoline labels, rows of width_px. NULL: there are none */
     struct visibility_band *bands;
     struct visibility_mesh *meshes;

@@ -126,7 +126,7 @@ static int64_t usual(const struct admission *admission, of_share *of)
     return found;
 }
 
-struct moving_sessions { /* number of sessions whose camera moves */
+struct moving_sessions { /* numbers of sessions whose camera moves */
     /* own: moving sessions of the address in question; all: moving sessions of all addresses; others: number of other addresses that have
        moving sessions */
     int own, all, others;

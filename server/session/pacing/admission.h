@@ -9,7 +9,7 @@
 
 enum { ADMISSION_WINDOWS = 3, ADMISSION_RETRY_S = 10 };
 
-struct admission_window { /* figures about one second of drawing */
+struct admission_window { /* statistics of one second of drawing */
     int64_t drawing_ns;   /* render time of frames that a client waits for; excludes refined frames, which yield to others */
     int64_t moving_ns;    /* part of drawing_ns that was spent on frames of moving cameras */
     int64_t drawn;        /* number of frames in moving_ns; a frame shared by several sessions counts once */
@@ -21,7 +21,7 @@ struct admission_window { /* figures about one second of drawing */
 struct address_share {  /* use that one client address makes of the server; zero-initialise */
     uint64_t account;   /* id of the address; equals frame_request.account in the requests of its sessions */
     bool exempt_pixels; /* true: the quota on pixels per address does not apply to this address */
-    int64_t pixels;     /* pixels of all views of the address */
+    int64_t pixels;     /* number of pixels of all views of the address */
     int moving;         /* number of sessions of the address whose camera moved within the last second */
     int sessions;
     struct admission_window newest, now;
@@ -35,7 +35,7 @@ struct admission {
     int64_t begin_ns; /* monotonic start of `now` */
     /* content id of the last frame counted. Clients that share a frame report it one after the other; with this id it counts once */
     uint64_t last_content;
-    int64_t pixels;               /* pixels of all views of all addresses */
+    int64_t pixels;               /* number of pixels of all views of all addresses */
     struct address_share *shares; /* linked list of the addresses that have sessions */
 };
 

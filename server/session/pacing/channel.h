@@ -12,7 +12,7 @@
    or two samples; a slow network does so all the time. So the minimum of the last two samples counts, and of the last three for
    decoding. */
 enum { CHANNEL_LAST = 3 };
-struct channel_last { /* ring of the last samples; zero-initialise */
+struct channel_last { /* ring buffer of the last samples of one figure; zero-initialise */
     double at[CHANNEL_LAST];
     int count; /* number of samples so far, reduced before it can overflow */
 };
@@ -34,7 +34,7 @@ struct channel_ack {
     int64_t decode_ns; /* decoding time as reported by the client; negative: not reported */
 };
 
-/* Updates the estimate with an acknowledgement. */
+/* Updates the channel estimate with an acknowledgement of the client. */
 void channel_on_ack(struct channel *channel, const struct channel_ack *ack);
 /* Updates the bandwidth estimate from messages other than frames: `bytes` bytes had arrived after took_ns. */
 void channel_on_bytes(struct channel *channel, size_t bytes, int64_t took_ns);

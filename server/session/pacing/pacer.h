@@ -43,7 +43,7 @@ enum pacer_state { PACER_FLOWS, PACER_STALLS, PACER_DEAD };
 enum pacer_ack { PACER_ACK_NEW, PACER_ACK_OLD, PACER_ACK_NEVER_SENT };
 
 void pacer_init(struct pacer *pacer);
-/* Returns whether another frame may be requested now. */
+/* Returns whether another frame may be requested for the client now. */
 bool pacer_may_ask(const struct pacer *pacer, int64_t now_ns);
 /* Counts a frame that was requested. */
 void pacer_asked(struct pacer *pacer);

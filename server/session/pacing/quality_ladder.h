@@ -22,7 +22,7 @@ struct quality_ladder { /* initialise with quality_ladder_init() */
        condition does not hold now */
     int64_t good_since_ns, easy_since_ns, bad_since_ns;
     int64_t up_ns, down_ns; /* monotonic: when the step last went up, and down */
-    int64_t patience_ns;    /* delay before the next step up */
+    int64_t patience_ns;    /* delay in nanoseconds before the ladder may step up again */
 };
 
 /* Initialises the ladder at QUALITY_LADDER_FIRST. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds texts about readings and their data sources. */
+/* Builds JSON texts about readings and their data sources. */
 #include "session/reply/reply_impl.h"
 
 #include "base/text/json_text.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shares one `tags` text among many sessions. */
+/* Builds one `tags` message for many sessions that need the same text. */
 #include "session/reply/tag_text_cache.h"
 
 #include <string.h>

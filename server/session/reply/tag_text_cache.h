@@ -11,7 +11,7 @@ struct tag_text_cache { /* zero-initialise */
     uint32_t *before;
     int64_t taken_ns; /* time of the snapshot that `text` shows */
     bool all;
-    char *text; /* the cached message; NULL: none yet */
+    char *text; /* `tags` message in the cache; NULL: none yet */
 };
 
 /* Returns the text that reply_tags_text() would; the caller frees it with mem_free. cache NULL: nothing is cached. Updates `sent`. */

@@ -9,7 +9,7 @@
 
 struct tile_layout {
     int columns, rows;
-    int display_px[2];       /* pixels of one display: across, down */
+    int display_px[2];       /* size of one display in pixels: width, height */
     int width_px, height_px; /* size of one tile's picture, which may have fewer pixels than its display */
     int gap_px[2];           /* pixels between two neighbouring tiles: horizontally, vertically */
     int margin_px[2];        /* width of the margin around all tiles: left and right; above and below */

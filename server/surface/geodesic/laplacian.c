@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Assembles finite element matrices, triangle by triangle. */
+/* Assembles finite element matrices from the contributions of single triangles. */
 #include "surface/geodesic/laplacian.h"
 
 #include <cblas.h>

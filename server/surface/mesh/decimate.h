@@ -7,7 +7,7 @@
 /* input of decimate_mesh(): the points that may be removed, and the conditions for it */
 struct decimate_params {
     const uint32_t *part; /* per triangle */
-    const char *keep;     /* by point: 1 for points that must stay */
+    const char *keep;     /* by point: 1: decimation must not remove the point */
     double within_m;      /* largest displacement of the surface */
     double longest_m;     /* maximum length in metres of an edge that a collapse may create */
 };

@@ -9,7 +9,7 @@ struct borders {
     size_t edge_count;
     uint32_t *points; /* points on border edges */
     size_t point_count;
-    uint32_t *slot;     /* by point: its index in `points`, or TRIMESH_NONE */
+    uint32_t *slot;     /* by mesh point: its index in `points`; TRIMESH_NONE: it is on no border */
     double *shortest_m; /* by border point: length of the shortest edge of any triangle at it */
     /* edges at the border points. The indices in `edges` of those at border point i are at[first[i]] up to, but without, at[first[i +
        1]] */

@@ -18,7 +18,7 @@ void face_triangulation_finish(struct face_triangulation *face);
 /* Adds the mesh's point `id`, which is at (x, y) in the face's plane, to the triangulation. Returns the point's index in the triangulation;
  * no triangle uses the point yet. */
 uint32_t face_triangulation_add_point(struct face_triangulation *face, uint32_t id, double x, double y);
-/* Appends a triangle of three points. */
+/* Appends a triangle of three points to the triangulation. */
 void face_triangulation_add_tri(struct face_triangulation *face, uint32_t a, uint32_t b, uint32_t c);
 /* Splits the triangle that contains the point, or the two triangles at the edge that contains it. */
 void face_triangulation_insert(struct face_triangulation *face, uint32_t point);

@@ -36,7 +36,7 @@ struct mqtt_client {
     _Atomic int users;
     _Atomic int status; /* status: the library's result of the connection attempt; errno_then: errno at that time */
     int errno_then;
-    char said[160]; /* last error that the library logged */
+    char said[160]; /* text of the last error that the MQTT library logged */
     /* --- below: used only by the thread that calls mqtt_client_serve() */
     int refusal; /* reason code with which the broker refused the connection; 0: none */
     char *const *topics;

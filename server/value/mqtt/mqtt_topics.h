@@ -7,7 +7,7 @@
 #include "plant/plant.h"
 
 struct mqtt_topic {
-    const char *name; /* topic name, owned by the plant */
+    const char *name; /* name of the topic, owned by the plant */
     const int *tags;  /* indices in plant->tags of the topic's tags, sorted by path */
     size_t tag_count;
 };

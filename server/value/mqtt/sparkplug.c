@@ -39,7 +39,7 @@ struct sparkplug {
     struct sparkplug_params params;
     struct sparkplug_node *nodes;
     size_t node_count;
-    size_t *node_of; /* by topic: index of its node */
+    size_t *node_of; /* by topic: index of the node to which the topic belongs */
     bool *is_born;   /* by topic: true: the node or device is alive (its birth certificate arrived, and no death certificate since) */
     uint32_t *types; /* by tag: data type of its metric, as stated in the birth certificate; 0: no birth certificate contains the metric */
     struct stamped_value *last;  /* last value, by tag */

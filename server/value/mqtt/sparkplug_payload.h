@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum sparkplug_form { /* type of a metric's value on the wire */
+enum sparkplug_form { /* form in which a message contains a metric's value */
                       SPARKPLUG_NOTHING,
                       SPARKPLUG_INT,
                       SPARKPLUG_LONG,

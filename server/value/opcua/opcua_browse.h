@@ -9,7 +9,7 @@ struct opcua_variable {
     const char *address;     /* address of the variable's node, nsu=URI;s=NAME, as a tag list states it */
     const char *description; /* description; may be "" */
     bool is_bit;
-    size_t elements; /* number of array elements; 0: not an array */
+    size_t elements; /* number of elements, if the variable is an array; 0: it is not */
 };
 
 /* Calls `found` for each numeric variable below the folder Objects, except the standard variables of every server. The client must be

@@ -15,10 +15,10 @@ struct opcua_client {
     const struct opcua_nodes *nodes;
     const struct opcua_events *events;
     struct opcua_security security;
-    char *url;         /* endpoint URL with the host's name */
+    char *url;         /* endpoint URL that contains the host's name */
     char *numeric_url; /* endpoint URL with the host's IP address, to which the connection is made */
     UA_Logger logger;
-    char said[160];                  /* last error that the library logged */
+    char said[160];                  /* text of the last error that the library logged */
     UA_Client *library;              /* open62541 client of the channel that is open; NULL: no channel is open */
     UA_EndpointDescription endpoint; /* endpoint that was chosen, whose certificate has been checked */
     bool lost;                       /* the subscription is lost */

@@ -25,7 +25,7 @@ UA_StatusCode opcua_security_check(const struct opcua_security *security, UA_Byt
 /* Configures a client: our certificate in all policies, and the user from the file `login` (NULL: anonymous). Returns false with the reason
  * in `why`. The logger in `config` must be set before the call. */
 bool opcua_security_apply(const struct opcua_security *security, const char *login, UA_ClientConfig *config, char why[200]);
-/* Returns the URI of a security policy. */
+/* Returns the URI that identifies a security policy. */
 const char *opcua_policy_uri(enum opcua_policy policy);
 
 #endif
