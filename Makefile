@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Plantcast: `make run` and `make test` do everything; the README says the rest.
-# config = release | debug | asan | tsan | fuzz;  CC = gcc | clang;  build = folder for all that is made;
-# CODECS = jpeg: without H.264, and so without libavcodec.
+# Builds Plantcast. `make run` builds and starts the demo plant, `make test` builds and runs the tests; README.md lists the other goals.
+# config = release | debug | asan | tsan | fuzz;  CC = gcc | clang;  build = folder of all build results;
+# CODECS = jpeg: builds without H.264, and therefore without libavcodec.
 config ?= release
 build  ?= build
 .DEFAULT_GOAL := all
@@ -24,7 +24,7 @@ out := $(build)/$(config)
 gen := $(build)/gen
 bin := $(if $(filter release,$(config)),$(build),$(out)/bin)
 
-# What asks for no packages, and compiles nothing.
+# Goals that compile nothing themselves, and therefore need no development packages.
 no_packages := deps test-deps run test check test-long clean style layers deb bundle image test-deploy
 packages := yaml-0.1 jansson sqlite3 libzstd libpq libcurl libmodbus libmosquitto libprotobuf-c libwebsockets libssl libcrypto cjose \
             libturbojpeg \
@@ -37,8 +37,8 @@ ifneq ($(filter h264,$(CODECS)),)
 packages += libavcodec libavformat libavutil
 defines  := -DPLANTCAST_H264
 endif
-# OPC UA: by open62541, built beside the build with faults mended that a server could use (deploy/open62541), or none. OPEN62541=system:
-# the system's, for whoever knows that it has them mended.
+# The OPC UA library open62541. By default, deploy/open62541 builds it with patches against faults that a malicious server could exploit.
+# OPEN62541=system links the system's library: use it only if that library contains these patches.
 asked := $(or $(MAKECMDGOALS),all)
 ifeq ($(OPEN62541)$(shell pkg-config --exists 'open62541 >= 1.4 open62541 < 1.5' 2>/dev/null && echo yes),systemyes)
 opcua_cflags := $(shell pkg-config --cflags open62541)
@@ -53,7 +53,7 @@ pkg_cflags := $(shell pkg-config --cflags $(packages) 2>/dev/null) $(opcua_cflag
 pkg_libs   := $(shell pkg-config --libs $(packages) 2>/dev/null) -lflann -lcholmod -lopenblas -lmeshoptimizer -ltinygltf -ldraco \
               -lyuv $(opcua_libs) -lm -ldl
 
-# What does not ask for packages needs them: without, say so at once.
+# All other goals stop here with a list of the missing development packages.
 ifneq ($(filter-out $(no_packages),$(asked)),)
 missing := $(foreach p,$(packages),$(if $(shell pkg-config --exists $(p) 2>/dev/null && echo yes),,$(p))) \
            $(if $(wildcard /usr/bin/glad),,python3-glad)
@@ -70,7 +70,7 @@ cflags   = -std=c11 -D_GNU_SOURCE $(warn) -Wstrict-prototypes -Wmissing-prototyp
 cxxflags = -std=c++17 -D_GNU_SOURCE $(warn) $(common) $(CXXFLAGS)
 ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed -Wl,-z,relro,-z,now $(LDFLAGS)
 
-# --- what is built: one archive per layer, left to right ------------------------------------------------------------------
+# --- programs and archives: one archive per layer, in link order ------------------------------------------------------------------
 layers   := base audit plant surface value history alarm notify loopcheck views corelink scene field placing importing gpu render encode \
             provenance message service access session net
 layers   := $(foreach l,$(layers),$(if $(wildcard server/$(l)/*.c),$(l)))
@@ -92,18 +92,18 @@ programs := $(if $(wildcard server/main.c),$(bin)/plantcastd) $(if $(wildcard pr
             $(if $(wildcard clients/cli/main.c),$(bin)/plantcast) $(if $(filter h264,$(CODECS)),$(bin)/plantcast-film) \
             $(if $(import_sources),$(bin)/plantcast-import) \
             $(if $(filter %/main.c,$(match_sources)),$(bin)/plantcast-match) $(if $(sim_sources),$(bin)/plantcast-sim)
-# Commands that set up, back up and restore the service.
+# Scripts that set up, back up and restore the service.
 scripts  := $(addprefix $(bin)/plantcast-,init backup restore)
 modules  := $(bin)/plantcast-images.so $(if $(filter h264,$(CODECS)),$(bin)/plantcast-h264.so)
-# Readers of other formats, each where its library is (plantcast import --formats).
+# Importers of other CAD formats. Each is built if its library is installed (`plantcast import --formats` lists them).
 occt     := $(dir $(wildcard /usr/include/opencascade/STEPCAFControl_Reader.hxx))
-# From 7.8 on (Debian 13) its readers have libraries of other names.
+# OpenCASCADE 7.8 (Debian 13) renamed the libraries of its STEP and IGES readers.
 occt_libs := $(if $(wildcard /usr/lib/*/libTKDESTEP.so),DESTEP DEIGES,XDESTEP XDEIGES STEP STEPBase IGES)
 occt_libs := $(patsubst %,-lTK%,$(occt_libs) XSBase RWMesh XCAF LCAF CAF CDF Mesh Offset Fillet Bool BO ShHealing Prim TopAlgo GeomAlgo \
     GeomBase BRep G3d G2d Math ernel)
 assimp   := $(wildcard /usr/include/assimp/Importer.hpp)
 readers  := $(if $(occt),$(bin)/plantcast-import-occt) $(if $(assimp),$(bin)/plantcast-import-assimp)
-# Views as video (clients/video), where its libraries are; else the build says which are missing.
+# plantcast-video (clients/video) is built if its libraries are installed; otherwise the build lists the missing ones.
 video_packages := gio-2.0 gstreamer-app-1.0 gstreamer-rtsp-server-1.0 pangocairo jansson
 video_missing := $(if $(filter h264,$(CODECS)),,H.264) \
     $(foreach p,$(video_packages),$(if $(shell pkg-config --exists $(p) 2>/dev/null && echo yes),,$(p)))
@@ -113,14 +113,14 @@ video_cflags := $(if $(video),$(patsubst -I%,-isystem %,$(shell pkg-config --cfl
 .PHONY: all programs web run demo test check test-long bench gpu-bench style layers headers deps test-deps golden-update install clean help
 all: $(programs) $(or $(video),no-video) $(scripts) $(modules) $(readers) \
     $(if $(PACKED),,$(bin)/plantcast-import-ifc/ifc.mjs) web
-# The page's charts. Without them nothing is built.
+# The page's chart library. The build fails without it.
 clients/web/vendor/uPlot.js: clients/web/package-lock.json
 	@echo "  NPM  $(@D)"; deploy/vendor $(build)/npm && touch $@
-# The reader of IFC, likewise.
+# The IFC importer, downloaded from npm. Without a network the build continues, and `plantcast import` refuses IFC files.
 ifc := preprocess/import/readers/package-lock.json $(wildcard preprocess/import/readers/*.mjs)
 $(bin)/plantcast-import-ifc/ifc.mjs: $(ifc)
 	@echo "  NPM  $(@D)"; deploy/vendor_ifc $(build)/npm-ifc $(@D); [ ! -f $@ ] || touch $@
-# Icons of the page, numbers that it shares with the shaders, and its version.
+# Generated modules of the page: its icons, the constants that it shares with the shaders, and its version.
 page := $(filter-out clients/web/made/%,$(wildcard clients/web/*.* clients/web/*/*.* clients/web/*/*/*.*))
 clients/web/made/version.js: deploy/stamp deploy/join $(page) clients/web/vendor/uPlot.js shaders/constants.glsl
 	@echo "  WEB  $(@D)"; deploy/stamp clients/web shaders/constants.glsl deploy/join
@@ -135,13 +135,13 @@ no-video:
 $(scripts): $(bin)/plantcast-%: deploy/%
 	@mkdir -p $(@D); cp $< $@
 
-# What reads images, and H.264, is loaded when it is needed.
+# Shared objects that programs load on demand: readers of images, and the H.264 encoder.
 $(programs): $(call objects,$(lazy)) | $(modules)
 $(bin)/plantcastd: $(call objects,$(wildcard server/*.c)) $(archives)
 	$(link)
 $(bin)/plantcast-prep: $(call objects,preprocess/main.c) $(out)/lib/prep.a $(archives)
 	$(link)
-# Reads what strangers' programs wrote: neither the daemon nor plantcast-prep links it.
+# The importer reads untrusted files, so its code is linked neither into the daemon nor into plantcast-prep.
 $(bin)/plantcast-import: $(call objects,preprocess/import/main.c) $(out)/lib/import.a $(out)/lib/match.a $(out)/lib/prep.a $(archives)
 	$(link) -lGLU -lminizip -lz
 by_occt := $(call objects,$(basename $(filter-out preprocess/import/readers/assimp%,$(wildcard preprocess/import/readers/*.cc))))
@@ -167,10 +167,10 @@ $(out)/lib/link.a: $(call objects,$(filter-out $(if $(link_lazy),%_lazy.c,client
 $(out)/lib/cli.a: $(call objects,$(filter-out %/main.c,$(wildcard clients/cli/*.c clients/cli/*/*.c)))
 $(bin)/plantcast: $(call objects,clients/cli/main.c $(link_lazy)) $(out)/lib/cli.a $(out)/lib/link.a $(archives)
 	$(link)
-# Films: no other program links libavformat.
+# Only plantcast-film links libavformat.
 $(bin)/plantcast-film: $(call objects,$(wildcard clients/film/*.c)) $(out)/lib/cli.a $(out)/lib/link.a $(archives)
 	$(link)
-# Neither the daemon nor another program links its libraries.
+# Only plantcast-video links GStreamer and Pango.
 video_objects := $(call objects,$(if $(video),$(wildcard clients/video/*.c)))
 $(video_objects) $(patsubst %,$(out)/obj/%.alone,$(wildcard clients/video/*.h)): CFLAGS += $(video_cflags)
 $(bin)/plantcast-video: $(video_objects) $(call objects,$(lazy)) $(out)/lib/link.a $(archives)
@@ -185,7 +185,7 @@ $(out)/lib/$(1).a: $(call objects,$(filter-out $(without),$(wildcard $(foreach d
     $(if $(filter base,$(1)),$(embedded)) $(if $(filter gpu,$(1)),$(glad))
 endef
 $(foreach l,$(layers),$(eval $(call archive_rule,$(l))))
-# Loops of the software rasterizer once more for machines with AVX2, and for those with AVX-512 (render/soft/kernels.h).
+# Loops of the software rasterizer, compiled again for AVX2 (`wide`) and for AVX-512 (`widest`); see render/soft/kernels.h.
 wide_names := faces feature_edges kernels pixel_lists raster resolve resolve_field resolve_preview resolve_surfaces
 wide_sources := $(wide_names:%=server/render/soft/%.c)
 wide_objects := $(foreach w,wide widest,$(patsubst %.c,$(out)/obj/%.$(w).o,$(wide_sources)))
@@ -198,9 +198,9 @@ $(out)/lib/sim.a: $(call objects,$(filter-out %/sim.c,$(sim_sources)))
 $(out)/lib/%.a:
 	@mkdir -p $(@D); rm -f $@; $(AR) rcs $@ $^
 
-# Headers that are made.
+# Generated headers.
 made_headers := $(gen)/glad/include/glad/gl.h $(patsubst %,$(gen)/words_%.h,refused overlay video)
-# Loops that choose between two numbers become wide only if no comparison can trap.
+# The compiler vectorises loops that select one of two numbers only if comparisons cannot trap.
 $(call objects,$(addsuffix .c,server/surface/surface_field preprocess/subdivision/interp_weights protocol/distance_pack)): \
     CFLAGS += -fno-trapping-math
 $(out)/obj/%.o: %.c Makefile $(out)/codecs | $(made_headers)
@@ -212,7 +212,7 @@ $(out)/obj/%.o: %.cc Makefile | $(made_headers)
 $(out)/obj/%.wide.o: %.c Makefile | $(made_headers)
 	@mkdir -p $(@D); echo "  CC   $< (wide)"
 	@$(CC) $(cflags) -mavx2 -DSOFT_SET=_wide -c -o $@ $<
-# No product and sum in one, which has other bits.
+# No fused multiply-add: its rounding would give other pixels than the other instruction sets.
 $(out)/obj/%.widest.o: %.c Makefile | $(made_headers)
 	@mkdir -p $(@D); echo "  CC   $< (widest)"
 	@$(CC) $(cflags) -mavx2 $(addprefix -mavx512,f vl bw dq) -mprefer-vector-width=256 -ffp-contract=off -DSOFT_SET=_widest -c -o $@ $<
@@ -226,14 +226,14 @@ $(out)/obj/gen/%.o: $(gen)/%.c
 	@mkdir -p $(@D)
 	@$(CC) $(cflags) -w -c -o $@ $<
 
-# What Sparkplug B is on the wire (server/value/mqtt/).
+# The parser of Sparkplug B messages (server/value/mqtt/).
 $(gen)/sparkplug_b.pb-c.c: server/value/mqtt/sparkplug_b.proto
 	@mkdir -p $(@D); echo "  PB   $<"; protoc-c --proto_path=$(<D) --c_out=$(@D) $<
 $(gen)/sparkplug_b.pb-c.h: $(gen)/sparkplug_b.pb-c.c ;
 $(out)/obj/server/value/mqtt/sparkplug_payload.o: | $(gen)/sparkplug_b.pb-c.h
 $(out)/lib/value.a: $(out)/obj/gen/sparkplug_b.pb-c.o
 
-# The GL and EGL loaders, made without a network.
+# The loaders of GL and EGL. glad generates them without a network.
 $(gen)/glad/src/gl.c $(gen)/glad/src/egl.c: $(gen)/glad/include/glad/gl.h
 $(gen)/glad/include/glad/gl.h:
 	@mkdir -p $(gen); echo "  GLAD $(gen)/glad"
@@ -241,18 +241,18 @@ $(gen)/glad/include/glad/gl.h:
 	    c --loader >$(gen)/glad.log 2>&1 || { cat $(gen)/glad.log; exit 1; }
 	@rm -rf $(gen)/glad; mv $(gen)/glad.new $(gen)/glad
 
-# What the programs are built from, for plantcast_build_info; COMMIT=... where there is no repository.
+# The commit that the metric plantcast_build_info reports. Set COMMIT=... to build outside a repository.
 COMMIT ?= $(or $(shell git rev-parse --short=12 HEAD 2>/dev/null),unknown)
 $(shell mkdir -p $(gen); echo '#define PLANTCAST_COMMIT "$(COMMIT)"' | cmp -s - $(gen)/commit.h || \
         echo '#define PLANTCAST_COMMIT "$(COMMIT)"' >$(gen)/commit.h)
 
-# Shaders, colour maps and the fleet page, as C strings found by name (server/base/text/embedded.h).
+# Shaders, colour maps and the fleet page as C strings that are looked up by name (server/base/text/embedded.h).
 embedded_files := $(wildcard shaders/*.vert shaders/*.frag shaders/*.comp shaders/*.glsl shaders/maps/*.csv clients/fleet/* \
                              clients/web/core/phrases.js clients/web/words/fleet.*.js)
 $(gen)/embedded.c: deploy/embed $(embedded_files)
 	@mkdir -p $(@D); deploy/embed $(embedded_files) >$@.new && mv $@.new $@
 
-# Words that programs share with the page, one file per subject and language.
+# Texts that programs share with the page: one file per subject and language.
 word_files = $(foreach l,$(2),clients/web/words/$(1).$(l).js)
 $(gen)/words_refused.h: $(call word_files,refused,en)
 $(gen)/words_overlay.h: $(call word_files,overlay,en ko de)
@@ -263,10 +263,10 @@ $(gen)/words_%.h: deploy/words
 # --- tests: one program per file --------------------------------------------------------------------------------------------
 unit_tests := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/unit/*_test.c))
 gpu_tests  := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/gpu/*_test.c))
-# An archive, as the layers: a test is linked with what it uses, and does not load the 285 libraries of all of them.
+# Test support is an archive, so that each test links only the members that it uses, not the 285 libraries of all members together.
 support    := $(out)/lib/support.a
 $(support): $(call objects,$(wildcard tests/support/*.c tests/support/*.cc))
-# The exact solver that distances are held against, by CGAL.
+# Tests that compare distances with an exact solver of CGAL.
 $(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: $(call objects,$(wildcard tests/oracle/*.cc))
 $(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: pkg_libs += -lgmp -lmpfr
 $(out)/tests/unit/rvm_test $(out)/tests/unit/rvm_fuzz_test: $(out)/lib/import.a
@@ -276,36 +276,36 @@ $(out)/tests/unit/revision_test: pkg_libs += -lminizip -lexpat
 match_tests := $(foreach t,match tag_export,$(out)/tests/unit/$(t)_test)
 $(match_tests): $(out)/lib/match.a
 $(match_tests): pkg_libs += -lminizip -lexpat
-# Writes STEP and IGES files to be read again.
+# Writes STEP and IGES files for the tests of the importer.
 $(out)/obj/tests/cad/step_samples.o: CXXFLAGS += -isystem $(occt)
 $(out)/tests/cad/step_samples: $(call objects,tests/cad/step_samples)
 	@mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -pie -o $@ $^ $(occt_libs)
 $(out)/tests/bench/codec_bench: $(out)/lib/link.a
-# Those that need no module do not load it, as programs do not: it is where theirs would be installed.
+# Copies of the loadable modules, in the place relative to the tests where programs search for theirs.
 modules_of_tests := $(addprefix $(out)/tests/lib/plantcast/,$(notdir $(modules)))
 $(modules_of_tests): $(out)/tests/lib/plantcast/%: $(bin)/%
 	@mkdir -p $(@D); cp $< $@.new && mv $@.new $@
 $(out)/tests/%: $(out)/obj/tests/%.o $(call objects,$(lazy)) $(support) $(archives) $(out)/lib/prep.a $(sim_archive) | $(modules_of_tests)
 	$(link) -lcmocka
-# Draws as the command line does.
+# Programs that use the drawing code of the command line.
 $(out)/tests/gallery/album $(out)/tests/validation/compare: $(out)/lib/cli.a $(out)/lib/link.a
 $(out)/tests/validation/compare: ldflags += -Wl,--wrap=field_scalars_of
-# What stands before the real one, where a GPU is to fail.
+# A libEGL that tests preload to simulate a failing GPU.
 $(out)/tests/faults/libEGL.so.1: $(out)/obj/tests/faults/gl_faults.pic.o
 	@mkdir -p $(@D); echo "  LINK $@"; $(CC) $(ldflags) -shared -o $@ $<
-# Kills a program where the test says; sets its clock wrong.
-# Also preloaded into programs without a sanitizer, and run where LeakSanitizer cannot work.
+# Libraries that tests preload to kill a program at a chosen call, or to change its clock. Built without sanitizers, because they are
+# also preloaded into programs without a sanitizer, and run where LeakSanitizer cannot work.
 $(out)/obj/tests/faults/%.o: CFLAGS += -fno-sanitize=all
 $(out)/tests/faults/%: ldflags += -fno-sanitize=all
 $(out)/tests/faults/%.so: $(out)/obj/tests/faults/%.pic.o
 	@mkdir -p $(@D); echo "  LINK $@"; $(CC) $(ldflags) -shared -o $@ $<
-# Takes the place of a reader.
+# Replaces an importer's reader in tests of its sandbox.
 $(out)/tests/faults/escape: $(out)/obj/tests/faults/escape.o
 	@mkdir -p $(@D); echo "  LINK $@"; $(CC) $(ldflags) -pie -o $@ $<
-# Where memory runs out: the test decides.
+# These tests make chosen allocations fail.
 $(out)/tests/unit/relocation_test: ldflags += -Wl,--wrap=mem_try_array
 $(out)/tests/gpu/field_memory_test: ldflags += -Wl,--wrap=mem_try_array,--wrap=pool_take
-# The wall clock: the test sets it.
+# This test sets the wall clock.
 $(out)/tests/unit/historian_test: ldflags += -Wl,--wrap=clock_utc_ns
 .SECONDARY:
 
@@ -315,8 +315,8 @@ include deploy/deploy.mk
 clean:
 	rm -rf $(build)
 
-# Objects depend on this stamp, so that a build with other codecs, or without OPC UA, compiles again. Goals in no_packages do not know
-# whether OPC UA is there, and leave the stamp alone.
+# Objects depend on this stamp, so that a build with other codecs or without OPC UA recompiles them. Goals in no_packages do not check
+# for OPC UA, and do not write the stamp.
 ifneq ($(filter-out $(no_packages),$(asked)),)
 parts := $(CODECS) $(if $(opcua_libs),opcua)
 $(shell mkdir -p $(out); echo '$(parts)' | cmp -s - $(out)/codecs || echo '$(parts)' >$(out)/codecs)

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Running the tests, the checks of the source, and the bench.
+# Goals that run tests, checks of the source, and benchmarks.
 jobs := -j$(shell nproc)
 test: test-deps
 	@deploy/compile $(build)/compile.log $(MAKE) --no-print-directory $(jobs) tests checked
 	@tests/run $(out) $(bin) quick
-# What a developer runs before each commit.
+# The tests to run before each commit.
 check: test-deps
 	@deploy/compile $(build)/compile.log $(MAKE) --no-print-directory $(jobs) tests checked
 	@tests/run $(out) $(bin) check
-# All sweeps whole, each GL test on each context; then all under each sanitizer, and built by clang.
+# All sweeps in full and each GL test on each context; then a build with clang, and the tests under each sanitizer.
 test-long: test-deps
 	@deploy/compile $(build)/compile.log $(MAKE) --no-print-directory $(jobs) tests checked
 	@tests/run $(out) $(bin) whole
@@ -28,25 +28,25 @@ test-long: test-deps
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) LOSSES=20 node --test tests/e2e/gpu.mjs
 	@PLANTCAST_BIN=$(bin) VIDEO_S=600 node --test --test-name-pattern='every second' tests/e2e/video.mjs
 	@$(MAKE) --no-print-directory validation scale soak
-# 10 million triangles in 2,000 assets, prepared, killed and continued, within 8 GB: some minutes.
+# Prepares 10 million triangles in 2,000 assets within 8 GB, is killed, and continues. Takes some minutes.
 scale: all $(out)/tests/scale/facility
 	@tests/scale/run $(out) $(bin) --kill
 	@tests/scale/run $(out) $(bin) --singles 250 --assets 100 --triangles 22200
 
-# A day of a plant's life in an hour, or in so many minutes: make soak minutes=5. Then half an hour of clients that come, drag, stall and
-# are cut off. Then a whole host with a fault a minute for two hours; alone: make soak-host minutes=30.
+# Simulates a day of a plant in one hour (`make soak minutes=5`: in five minutes), then half an hour of clients that connect, drag, stall
+# and disconnect, then two hours of a whole host with a fault each minute. `make soak-host minutes=30` runs only the last part.
 soak: all tests
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) MINUTES=$(or $(minutes),60) node --test tests/long/day.mjs
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) SOAK_S=$(or $(SOAK_S),1800) node --test tests/e2e/flow.mjs
 	@$(MAKE) --no-print-directory soak-host
-# seed=N repeats the order of the faults of an earlier run. The table is in build/soak-host.txt, also during the run.
+# seed=N repeats the order of the faults of an earlier run. The run updates the table in build/soak-host.txt after each fault.
 soak-host: all $(out)/tests/faults/clock_off.so
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) MINUTES=$(or $(minutes),120) $(if $(seed),SEED=$(seed)) \
 	    tests/long/contained node tests/long/host.mjs
 .PHONY: soak soak-host
 
 checked: demo plants style layers headers
-# Plants that many tests show, where their models are.
+# Prepares the plants that many tests use, if their models are present.
 plants: $(foreach p,$(if $(wildcard ../shared/data/models/plm_plant_equipment.glb),plant_room) \
     $(if $(wildcard ../shared/data/models/cookie_factory_mixer.glb),cookie_line),$(out)/prepared/$(p))
 $(out)/prepared/%: tests/plants/%.yaml FORCE | $(bin)/plantcast-prep
@@ -65,7 +65,7 @@ style:
 	@tests/style
 layers:
 	@tests/layers
-# Every header stands alone; one that has not changed since, nor what it includes, is not looked at again.
+# Checks that each header compiles alone. Headers are checked again when they or their includes change.
 stand_alone := $(filter-out $(if $(video),,clients/video/%),$(shell git ls-files -co --exclude-standard '*.h'))
 stand_alone := $(patsubst %.h,$(out)/obj/%.h.alone,$(stand_alone))
 headers: $(stand_alone)
@@ -77,23 +77,23 @@ bench: test-deps
 	@$(MAKE) --no-print-directory all demo $(bench_programs) $(out)/tests/scale/facility $(out)/tests/relay/relay
 	@[ "$(PEERS)" != 1 ] || deploy/deps long
 	@PEERS=$(PEERS) tests/bench/run $(out) $(bin)
-# Only what is streamed.
+# The benchmarks of streaming only.
 stream-bench: test-deps
 	@$(MAKE) --no-print-directory all demo $(out)/tests/relay/relay
 	@tests/bench/run $(out) $(bin) stream
 .PHONY: stream-bench
-# The demo plant and the paper's experiments, on a GPU.
+# The benchmarks of the demo plant and of the paper's experiments on a GPU.
 gpu-bench: test-deps
 	@$(MAKE) --no-print-directory all demo $(out)/tests/bench/paper_bench $(out)/tests/bench/render_bench
 	@$(bin)/plantcast-prep build/demo/plant.yaml
 	@tests/bench/run $(out) $(bin) gpu
-# The tables of tests/bench/RESULTS.md and its plots, from the last `make bench PEERS=1`, stream-bench and gpu-bench. What lies between the
-# tables is written by hand, and stays.
+# Writes the tables and plots of tests/bench/RESULTS.md from the last `make bench PEERS=1`, stream-bench and gpu-bench. Keeps the text
+# between the tables.
 results:
 	@tests/bench/results tests/bench $(wildcard build/bench.json build/stream-bench.json build/gpu-bench.json)
 .PHONY: results
 
-# Distances along surfaces with many seeds; the table of accuracy in tests/bench/RESULTS.md is of the worst of them all.
+# Tests distances along surfaces with many seeds, and writes the worst errors to the accuracy table of tests/bench/RESULTS.md.
 seeds ?= 40
 accuracy: $(patsubst %,$(out)/tests/unit/%_test,surface accuracy contact)
 	@mkdir -p $(build)/accuracy; for s in $$(seq $(seeds)); do for t in surface accuracy contact; do \
@@ -103,26 +103,26 @@ accuracy: $(patsubst %,$(out)/tests/unit/%_test,surface accuracy contact)
 	@tests/bench/accuracy tests/bench/RESULTS.md $(build)/accuracy/surface.* $(build)/accuracy/accuracy.* $(build)/accuracy/contact.*
 .PHONY: accuracy
 
-# The field held against simulated heat conduction: build/validation. write=1: the tables and pictures of tests/validation too.
+# Compares the field with simulated heat conduction; results are in build/validation. write=1 also updates tests/validation.
 validation: test-deps
 	@$(MAKE) --no-print-directory all $(out)/tests/validation/compare
 	@tests/validation/run $(out) $(bin) $(if $(write),--write)
 .PHONY: validation
 
-# Every way of looking at a plant, to be looked at: build/gallery/sheet.png. only="demo cookie_line viewer": parts of it.
+# Draws every kind of view for visual inspection into build/gallery/sheet.png. only="demo cookie_line viewer" draws some parts.
 gallery: test-deps
 	@deploy/deps gallery
 	@$(MAKE) --no-print-directory all demo $(out)/tests/gallery/album
 	@tests/gallery/run $(out) $(bin) $(only)
 .PHONY: gallery
 
-# Makes the golden pictures anew, on llvmpipe. Look at them before they are committed.
+# Draws the golden pictures again, on llvmpipe. Inspect them before committing.
 golden-update: $(out)/tests/gpu/golden_test
 	@PLANTCAST_GL=egl-surfaceless GOLDEN_UPDATE=1 $<
 
 .PHONY: check checked tests unit gpu scale
 
-# `make fuzz seconds=600`: each fuzzer in turn, from its seeds in tests/fuzz/NAME; what it finds is written to build/.
+# `make fuzz seconds=600` runs each fuzzer in turn from its seeds in tests/fuzz/NAME, and writes inputs that fail to build/.
 seconds ?= 60
 fuzzers := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/fuzz/*_fuzz.c))
 fuzz:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Why a test failed, in a few lines, from the TAP that it printed; the first and the last of them say most."""
+"""Extracts from TAP output why a test failed, in a few lines: first and last lines are the most informative."""
 
 import os
 import re
@@ -9,10 +9,10 @@ MOST_LINES, MOST_CHARACTERS, MOST_PLACES = 7, 180, 3
 DIFFERS = re.compile(r"^[+-] {2,}")
 FIELD = re.compile(r"^\s*(\w+): ?(.*)$")
 SEED = re.compile(r"\bseed\b", re.I)
-BEFORE = 3      # lines that a C test says before its result
-LAST_WORDS = 5  # of a program that ended without a result
+BEFORE = 3      # lines of output before a C test's result
+LAST_WORDS = 5  # last lines of a program that ended without a result
 C_PLACE = re.compile(r"^(# )?\S+:\d+: error:|^# Test failed with exception")
-# Of a report of many lines, the ones that say what it is.
+# Lines that identify the failure within a long report.
 HEADLINE = re.compile(r"ERROR: \w*Sanitizer|WARNING: ThreadSanitizer|runtime error:|SUMMARY: ")
 
 
@@ -42,7 +42,7 @@ def of_yaml(block):
     places = [place(text) for text in fields.get("stack", [])]
     places = [text for text in dict.fromkeys(places) if text] or [place(text) for text in fields.get("location", [])]
     error = fields.get("error", [])
-    apart = [line for line in error[2:] if DIFFERS.match(line)]  # of two large things
+    apart = [line for line in error[2:] if DIFFERS.match(line)]  # differing lines of two large values
     what = shortened(error[:1] + apart if apart else error, MOST_LINES - 1)
     return what + ["at " + " < ".join(text for text in places[:MOST_PLACES] if text)]
 

@@ -33,7 +33,7 @@ def say(text):
 def freeze(pid, name):
     """The thread that was stopped; it is to be waited for once it is dead. None: it could not be."""
     libc = ctypes.CDLL(None, use_errno=True)
-    for task in sorted(os.listdir("/proc/%d/task" % pid), key=int):  # those that a thread starts inherit its name
+    for task in sorted(os.listdir("/proc/%d/task" % pid), key=int):  # child threads inherit the name of the thread that starts them
         with open("/proc/%d/task/%s/comm" % (pid, task)) as file:
             if file.read().strip() != name:
                 continue
@@ -41,7 +41,7 @@ def freeze(pid, name):
             if libc.ptrace(request, int(task), None, None) != 0:
                 say("frozen: not: %s" % os.strerror(ctypes.get_errno()))
                 return None
-        os.waitpid(int(task), WALL)  # until it stands still
+        os.waitpid(int(task), WALL)  # returns when the thread has stopped
         say("frozen: %s" % name)
         return int(task)
     say("frozen: not: no thread %s" % name)
@@ -69,7 +69,7 @@ def listen():
 
 
 def start(command, variables, listening):
-    if listening:  # the shell has the number that the program will have
+    if listening:  # LISTEN_PID must be the program's process id, which is the shell's before exec
         command = ["/bin/sh", "-c", 'LISTEN_FDS=1 LISTEN_PID=$$ exec "$@" 3<&%d' % listening.fileno(), "sh"] + command
     child = subprocess.Popen(command, env=variables, stdin=subprocess.DEVNULL, start_new_session=True,
                              pass_fds=[listening.fileno()] if listening else [])
