@@ -84,7 +84,7 @@ static bool join_some(const struct part_box *boxes, const uint32_t *list, size_t
     return filler < count;
 }
 
-/* Returns the axis whose halving leaves the fewest boxes in both halves, or -1 if no halving helps. */
+/* Returns the axis along which the cell should be halved: the one with the fewest boxes that lie in both halves; -1: no halving helps. */
 static int best_axis(const struct part_box *boxes, const uint32_t *list, size_t count, const struct box_cell *cell)
 {
     int best = -1;

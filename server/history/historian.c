@@ -184,8 +184,8 @@ static void take_mirrored(struct historian *historian, int64_t t_us)
         historian->mirrored_us = t_us;
 }
 
-/* Ends the following of the leading daemon, because this daemon takes the lead at t_us. The former leader may have recorded more after the
-   connection was lost, and sent that to PostgreSQL. */
+/* Stops following the leading daemon, because this daemon takes the lead at t_us. The former leader may have recorded more after the
+   connection was lost, and sent that to PostgreSQL: those points must be read from there. */
 static void begin_to_lead(struct historian *historian, int64_t t_us)
 {
     if (historian->mirrored_us)

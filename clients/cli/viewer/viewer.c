@@ -91,8 +91,8 @@ static void on_text(struct viewer *viewer)
     json_decref(o);
 }
 
-/* Records a latency sample for every camera up to camera_seq, also for those that newer ones replaced before they were drawn: their
-   senders, too, waited until this frame. */
+/* Records a latency sample for every camera that was sent up to camera_seq. The server skips a camera that a newer one replaces before the
+   picture is drawn; such a camera counts as shown by this frame. */
 static void record_input(struct viewer *viewer, uint32_t camera_seq, int64_t now_ns)
 {
     if (camera_seq > viewer->camera_seq) /* this camera was never sent */

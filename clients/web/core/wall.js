@@ -17,8 +17,8 @@ export function readWall(search) {
     return { inches: sane(inches, 10, 400, USUAL.inches), metres: sane(metres, 0.5, 50, USUAL.metres) };
 }
 
-// Returns by how much the page must be larger than on a desk. screen: size in CSS pixels; with the diagonal in inches it gives the size of
-// a pixel.
+// Returns by how much the page must be larger than on an ordinary screen. screen: size in CSS pixels; with the diagonal in inches it gives
+// the size of a pixel.
 export function wallScale({ inches, metres }, screen) {
     const needed = metres * 1000 * Math.tan((MINUTES / 60) * (Math.PI / 180));
     const larger = needed / (CAPITAL * SMALLEST_PX * millimetresPerPx(inches, screen));

@@ -54,7 +54,8 @@ function pictureAgeMs(session) {
     return picture.oldestAgeMs + Math.max(0, session.clockUs() - picture.sentTimeUs) / 1000;
 }
 
-// Adds the normal page in an iframe, without controls. Returns an object whose `page` is that page's, or null until it is loaded.
+// Adds the normal page in an iframe, without controls. Returns an object whose member `page` is the global object `plantcast` of the page
+// in the iframe, or null until that is loaded.
 function pageIn({ wall, theme, body }, kind, place) {
     const query = new URLSearchParams({ wall: `${wall.inches},${wall.distance_m}`, pane: kind, hangs: place, ...(theme ? { theme } : {}) });
     const frame = make('iframe', { src: `./?${query}`, tabindex: -1 });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A display that shows one tile of a picture across many displays: its part of the picture without a border, dots at readings, alarm
-// labels, notes, and a desk's pointer. Title and legend appear once on the wall. One display, the leading one, chooses what all show.
+// labels, notes, and the position at which a user at another computer points. Title and legend appear once on the wall. One display, the
+// leading one, chooses what all show.
 import { isGone } from '../core/alarms.js';
 import { projector } from '../core/camera.js';
 import { Connection } from '../core/connection.js';

@@ -28,9 +28,9 @@ function furnish(element, attributes, children) {
     return element;
 }
 
-// Inserts words into the elements below `root` according to their attributes: data-say gives the text, data-label, data-title and data-hint
-// (placeholder) those attributes, data-name label and title. data-key is the keyboard shortcut. data-icon is drawn before the text. In the
-// collapsed toolbar each icon shows its name.
+// Inserts words into the elements below `root`, by keys in their attributes: data-say gives the text, data-label the aria-label, data-title
+// the title, data-hint placeholder and aria-label, data-name title and aria-label. data-key is the keyboard shortcut, which the title
+// shows. data-icon is drawn before the text. In the collapsed toolbar each icon shows its name.
 export function sayAll(root) {
     for (const element of root.querySelectorAll('[data-say], [data-label], [data-title], [data-hint], [data-name], [data-icon]')) {
         const { say: text, label, title, hint, name, key, icon: drawn } = element.dataset;
