@@ -24,7 +24,7 @@ struct helper_params {
     /* receives the program's last line on stderr if it ended with HELPER_PARTLY (mem_free); NULL: that exit status counts as a failure */
     char **remark;
     bool notifies;       /* true: the program may report its progress to the service manager */
-    int lent;            /* descriptor of this process that the program gets as HELPER_LENT; 0: none */
+    int lent;            /* open descriptor of this process, such as a lock, that the program inherits as HELPER_LENT; 0: none */
     int timeout_s;       /* seconds after which the program is told to end; 30 s later it is killed; 0: no limit */
     size_t memory_bytes; /* memory limit in bytes, both of each process of the program and of all in its cgroup together; 0: no limit */
     const char *timeout_option, *memory_option; /* names of the options that raise these limits, for messages to the user */

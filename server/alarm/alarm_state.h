@@ -41,7 +41,7 @@ struct alarm_rule {
 
 enum alarm_outcome { ALARM_CHANGED, ALARM_AS_IT_WAS, ALARM_REFUSED /* not possible in this state */ };
 
-/* Applies an event to an alarm's state. Returns whether the state changed, stayed, or refused the event. */
+/* Applies an event to an alarm's state. Returns whether the state changed, remained the same, or does not allow the event. */
 enum alarm_outcome alarm_state_step(struct alarm_state *state, const struct alarm_rule *rule, enum alarm_event event);
 /* Returns the state as one word of ISA-18.2. */
 enum alarm_status alarm_state_status(const struct alarm_state *state, const struct alarm_rule *rule);

@@ -207,7 +207,8 @@ static int by_tag_and_kind(const void *pa, const void *pb, void *list_ptr)
     return a->tag != b->tag ? a->tag - b->tag : (int)a->kind - (int)b->kind;
 }
 
-/* Builds the indices by tag: the entries of tag t have the positions from firsts[t] to firsts[t + 1] - 1. */
+/* Builds the indices of alarms and feeds by tag: the entries of tag t have the positions from first_alarm[t] (first_feed[t]) to
+   first_alarm[t + 1] - 1 (first_feed[t + 1] - 1). */
 static void index_all(struct alarms *alarms)
 {
     size_t tags = alarms->plant->tag_count;

@@ -12,7 +12,7 @@
 #include "value/store.h"
 
 #define CORE_SILENT_NS (2 * INT64_C(1000000000))
-enum { CORE_URLS = 4, CORE_ACTS = 256 /* CORE_ACTS: maximum number of acts that wait for answers */ };
+enum { CORE_URLS = 4, CORE_ACTS = 256 /* maximum number of forwarded user actions that wait for the core's answer */ };
 
 struct core_link_params {
     struct log *log;

@@ -12,11 +12,10 @@
 #define FIELD_DRIFT_H
 #include "field/neighbours.h"
 
-enum { DRIFT_HOURS = 168, DRIFT_HOURS_LEAST = 84 }; /* DRIFT_HOURS: hours of a week; DRIFT_HOURS_LEAST: fewest hours with values of all
-                                                       sensors for which a verdict is given */
-enum { DRIFT_NEAREST = 2 };                         /* largest number of nearest sensors whose readings become terms of the model */
-#define DRIFT_SIGMAS 3.0 /* DRIFT_FOUND is meant for a drift over the week of at least this many standard deviations (struct drift:
-                            scatter) */
+/* DRIFT_HOURS: hours of a week; DRIFT_HOURS_LEAST: fewest hours with values of all sensors for which a verdict is given */
+enum { DRIFT_HOURS = 168, DRIFT_HOURS_LEAST = 84 };
+enum { DRIFT_NEAREST = 2 }; /* largest number of nearest sensors whose readings become terms of the model */
+#define DRIFT_SIGMAS 3.0    /* smallest drift over the week that is to be found, in standard deviations (struct drift: scatter) */
 /* least estimated drift for a verdict, in standard deviations; below DRIFT_SIGMAS, because estimates of a drift of DRIFT_SIGMAS are
    sometimes too small */
 #define DRIFT_SIGMAS_LEAST 2.5

@@ -108,7 +108,7 @@ function pageOf(model, notes, journal, [fromUs, toUs], missing) {
     ];
 }
 
-// Shows the list, only to operators and engineers, because it names users.
+// Shows the handover page to operators and engineers only, because the page names users.
 async function show() {
     const { role } = await get('me');
     if (!['operator', 'engineer'].includes(role))

@@ -96,9 +96,9 @@ static void take_unpaired(struct node_pairing *p)
 
 enum run_rule {
     RUN_SINGLE, /* pair a run (candidates that compare equal) only if it has exactly one old and one new candidate */
-    RUN_PLACED, /* pair candidates of a run whose bounding boxes are at the same position */
-    /* pair a run with one old and one new candidate; else those at the same position, then the remaining ones in order if there are as many
-     * old as new ones */
+    RUN_PLACED, /* pair candidates of a run (candidates that compare equal) whose bounding boxes are at the same position */
+    /* a run (candidates that compare equal) with one old and one new candidate: pair these two; a longer run: pair candidates at the same
+     * position, then pair the rest in order if as many old as new candidates remain */
     RUN_ORDERED
 };
 

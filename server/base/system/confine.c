@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Calls Landlock by raw system calls: the headers of Debian 12 know only ABI 2. */
+/* Confines processes by Landlock and seccomp. Defines the constants of Landlock itself and uses raw system calls, because the headers of
+   Debian 12 know only ABI 2 of Landlock. */
 #include "base/system/confine.h"
 
 #include <errno.h>

@@ -17,7 +17,8 @@ onmessage = ({ data }) => {
         ({ scale } = data);
         [band.width, band.height] = [data.width, data.height];
     }
-    // only 'beat' and 'rest' set `rests`: a hidden page may send messages with a new size, but it still rests
+    // `rests` (the page is hidden, and its silence is no fault) changes only by the messages 'beat' and 'rest': a hidden page may send
+    // its new size, but remains hidden
     if (typeof data === 'string')
         rests = data === 'rest';
     silent = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Helpers for panels, cards and dialogs.
+// Functions that panels, cards and dialogs share, for example to replace an element's children and to make a close button.
 import { say } from '../../core/words.js';
 import { icon, make } from './dom.js';
 
