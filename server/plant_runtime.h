@@ -24,7 +24,7 @@ struct plant_runtime_context { /* parts that a reload keeps */
     struct workers *workers;
     struct lease_keeper *keeper; /* lease keeper of a core in a pair (leader or standby); NULL: there is no pair */
     bool *follows;               /* true: another core polls devices and owns the alarms; plant_runtime_lead() sets it to false */
-    void (*notify)(void *arg);   /* called by any thread when frames or alarm changes can be collected */
+    void (*notify)(void *arg);   /* callback on any thread when frames or alarm changes can be collected */
     void *notify_arg;
 };
 

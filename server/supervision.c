@@ -16,7 +16,7 @@
 
 /* interval at which the render thread is checked, and minimum time between two watchdog messages */
 static const int64_t CHECK_INTERVAL_NS = 2 * NS_PER_S;
-enum { START_LIMIT_S = 600 }; /* seconds that one step of the daemon's start may take */
+enum { START_LIMIT_S = 600 }; /* time limit in seconds for one step of the daemon's start */
 
 struct supervision {
     struct log *log;

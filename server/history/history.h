@@ -18,7 +18,7 @@ struct history_reader *history_reader_create(struct log *log, const char *folder
 /* Makes the reader convert all series to the units in which this plant shows its tags; without this call, values have the units of the
    time of recording. (history_at() converts by its own `tags`.) `plant` must outlive the reader. */
 void history_reader_show_by(struct history_reader *reader, const struct plant *plant);
-void history_reader_destroy(struct history_reader **reader); /* Frees the reader. &NULL is fine; sets it to NULL. */
+void history_reader_destroy(struct history_reader **reader); /* Frees the reader and sets *reader to NULL; accepts a pointer to NULL. */
 
 /* A series of one tag: its points or, if there are more points than requested, buckets of equal length. Both show spikes in full. */
 struct history_series {

@@ -100,7 +100,7 @@ static bool find_columns(struct history_import *import)
     }
     if (import->tag >= 0 && import->value >= 0) {
         import->unit = csv_find(&import->csv, "Unit");
-        /* true: the columns are those that series_text_csv_head() writes */
+        /* true: the file was written by `plantcast history export`, because its columns are those of series_text_csv_head() */
         import->counts->exported = import->csv.header.count == 5 && import->tag == 0 && import->time == 1 && import->value == 2 &&
                                    import->quality == 3 && import->unit == 4;
         return true;

@@ -111,7 +111,7 @@ static const char *const sql[SQL_COUNT] = {
 static const struct database_format format = {
     APPLICATION_ID,
     HISTORY_VERSION,
-    /* small pages, because each second changes only few bytes of the table `second` */
+    /* small pages of the SQLite file, because each second changes only few bytes of the table `second` */
     "PRAGMA page_size = 1024; PRAGMA auto_vacuum = INCREMENTAL; PRAGMA cache_size = -16000; PRAGMA wal_autocheckpoint = 32000",
     schemas,
     sql,

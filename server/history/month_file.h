@@ -84,7 +84,7 @@ int month_file_clear_held(struct month_file *file);
    age in the outbox are deleted too; *unsent is increased by their number. */
 int month_file_cut(struct month_file *file, int64_t until_us, bool shrink, int64_t *unsent);
 struct month_file_size {
-    int64_t bytes, free_bytes; /* size on disk; size of the unused space in the file */
+    int64_t bytes, free_bytes; /* bytes: size of the file on disk; size of the unused space within the file */
     bool shrinks;
 };
 int month_file_size(struct month_file *file, struct month_file_size *size);

@@ -39,7 +39,7 @@ struct month_file {
     struct month_seconds *seconds; /* newest points of the file, as this handle has read them */
     /* number and stamp (increases with each write) of the row of the table `second` that was written last */
     int64_t slot, stamp;
-    int64_t slot_before, stamp_before; /* slot and stamp at the beginning of the transaction; a rollback restores them */
+    int64_t slot_before, stamp_before; /* values of slot and stamp when the transaction began, which a rollback restores */
 };
 
 /* Returns a prepared statement of enum month_statement, ready to bind and step (base/files/database.h). */

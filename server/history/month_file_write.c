@@ -289,7 +289,8 @@ static int move_tag(struct month_file *file, int tag, const struct month_chunk *
 {
     int error = 0;
     if (tag >= 0 && !file->rollups[tag].loaded)
-        error = load_rollups(file, tag, rows->id); /* the rollups must be loaded before the new points are in blocks */
+        /* before the new points are in blocks: rollups computed from the blocks would count these points twice */
+        error = load_rollups(file, tag, rows->id);
     points->count = 0;
     for (size_t i = 0; i < count && !error; i++) {
         if (points->count && points->at[points->count - 1].t_us == rows[i].point.t_us)

@@ -11,7 +11,7 @@
 struct history_bucket {
     int64_t t_us;     /* start time of the bucket; a multiple of its length */
     double low, high; /* extremes of the line within the bucket, including where the line enters and leaves it; NaN: no usable value */
-    double mean;      /* mean over the time within the bucket in which there was a value */
+    double mean;      /* mean of the value over that time within the bucket in which there was a value */
     /* first: value at the bucket's start, or of its first point if no line leads into the bucket; last: value at the bucket's end. NaN:
        no value */
     double first, last;

@@ -17,7 +17,7 @@ struct import_order {
     char up[IMPORT_CHOICE_BYTES];         /* upward axis of models that do not state one: y or z; empty: the reader's default */
     char mesh_units[IMPORT_CHOICE_BYTES]; /* like `units`, but only for models in OBJ, STL, PLY or 3DS; empty: the reader's default */
     char encoding[IMPORT_ENCODING_BYTES]; /* encoding of tag list and models; empty: as the file states, or detected */
-    struct import_source source;          /* data source of the tags; without a host: unchanged */
+    struct import_source source;          /* data source of the tags; without a host, the plant's data source stays unchanged */
 };
 
 enum import_phase {

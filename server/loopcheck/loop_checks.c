@@ -122,8 +122,8 @@ static void read_row(struct loop_checks *loop_checks, const struct csv *csv)
     const char *fingerprint = csv_text(csv, FINGERPRINT), *result = csv_text(csv, RESULT);
     bool passed = !strcmp(result, loop_check_state_names[LOOP_CHECK_PASSED]);
     if (strlen(fingerprint) != 16 ||
-        (!passed && strcmp(result, loop_check_state_names[LOOP_CHECK_FAILED]) != 0)) /* the row is incomplete: it was cut off while it
-                                                                                        was written */
+        /* an incomplete row, cut off while it was written, is ignored */
+        (!passed && strcmp(result, loop_check_state_names[LOOP_CHECK_FAILED]) != 0))
         return;
     loop_checks->begun = true;
     if (tag < 0)
@@ -212,7 +212,7 @@ static int append(struct file_job *job)
 {
     const struct row_job *own = (const struct row_job *)job;
     const struct text *row = &own->row;
-    mkdir(own->folder, 0777); /* result ignored: if this fails, opening the file reports the reason */
+    mkdir(own->folder, 0777); /* result ignored: if the folder cannot be created, opening the file reports the reason */
     FILE *file = fopen(own->path, "a+b");
     if (!file)
         return -errno;

@@ -42,7 +42,7 @@ const struct loop_check *loop_checks_of(const struct loop_checks *loop_checks, i
 /* Returns true if any tag has been checked. From the first check on, all tags that have not passed are marked as unproven. */
 bool loop_checks_begun(
     const struct loop_checks *loop_checks);
-uint64_t loop_checks_number(const struct loop_checks *loop_checks); /* returns a sequence number that increases with each record */
+uint64_t loop_checks_number(const struct loop_checks *loop_checks); /* returns a number that increases with each recorded loop check */
 /* Returns the sequence number of the newest record of this tag; 0: it is from before the start of the daemon. */
 uint64_t loop_checks_number_of(const struct loop_checks *loop_checks, int tag);
 /* Appends CSV: a header line, then the newest check of every tag that has a source. */

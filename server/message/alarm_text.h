@@ -24,7 +24,7 @@ struct alarm_query {
     bool csv;
     int limit;                         /* maximum number of rows */
     int64_t offset;                    /* for /api/v1/alarms: number of alarms to skip */
-    char tag[256];                     /* name of a tag or a device; empty: all */
+    char tag[256];                     /* name of a tag or a device whose alarms are wanted; empty: all alarms */
     int64_t from_us, to_us, before_id; /* for the journal */
 };
 /* Parses decoded arguments such as `limit=100`, `format=csv`. journal: also accepts the arguments of /api/v1/alarms/journal. Returns

@@ -60,7 +60,7 @@ enum signed_frames { SIGNED_NONE, SIGNED_REFINED, SIGNED_ALL };
    with a view */
 enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32, RESUME_MOST_CHARS = 8191 };
 
-enum params_given { /* bits of struct params_change: which members a params message has */
+enum params_given { /* bits of params_change.given, one for each member that a params message may have */
                     GIVEN_GROUP = 1 << 0,
                     GIVEN_INTERPOLATION = 1 << 1,
                     GIVEN_DISTANCE = 1 << 2,
@@ -258,7 +258,7 @@ struct params_context {
     struct baselines *baselines;     /* NULL: no baselines here */
     const struct snapshot *snapshot; /* readings from which a change of parameters may store a baseline; NULL: there are none */
     int64_t now_us;                  /* UTC time in microseconds against which times in the arguments of a query are checked */
-    bool bare;                       /* for queries: true: the picture has no legend and no clock */
+    bool bare;                       /* true (only in queries): the picture has no legend and no clock */
 };
 /* Applies a change of parameters to a view. If part of the change is wrong, returns false with *error and leaves the view unchanged. If the
    change names another group, the view first gets that group's default parameters. */

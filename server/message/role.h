@@ -12,7 +12,7 @@ enum role {
     ROLE_OPEN,     /* anyone, under --open-viewers */
     ROLE_VIEWER,
     ROLE_OPERATOR,
-    ROLE_ENGINEER, /* engineers, and every user on the daemon's own machine */
+    ROLE_ENGINEER, /* role of engineers, and of every user on the daemon's own machine */
 };
 
 /* Returns true if tokens of a role are for daemons, not for people. */

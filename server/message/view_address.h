@@ -7,7 +7,7 @@
 
 #include "message/message_error.h"
 
-/* Callback for one field, decoded; value "" if the field has none. Returns false to stop. */
+/* Callback that receives one field of the address, decoded; value "": the field has no value. Returns false to stop. */
 typedef bool view_address_field(void *arg, const char *name, char *value);
 /* Calls `take` for each field of an address. Returns false if `take` returned false, after which no more fields are passed. */
 bool view_address_each(const char *address, view_address_field *take, void *arg);

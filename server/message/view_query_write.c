@@ -9,7 +9,8 @@
 #include "field/colormap.h"
 #include "message/names.h"
 
-static const double ROUNDING = 1e-12; /* tolerance when comparing unit vectors, because reading the query normalises them again */
+/* tolerance for comparing unit vectors of a view, because reading the written query normalises them again */
+static const double ROUNDING = 1e-12;
 
 /* --- lists of arguments ------------------------------------------------------------------------------------------------------- */
 

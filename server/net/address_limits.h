@@ -10,7 +10,7 @@ struct address_usage {
     bool local;          /* loopback: 127.x or ::1 */
     int refs, connections, sessions;
     int named;               /* number of connections from a reverse proxy whose last request named this client address */
-    int pictures, questions; /* count of HTTP requests for pictures and for history that are being answered */
+    int pictures, questions; /* numbers of HTTP requests that are being answered: for pictures, and for history */
     int64_t answer_bytes;    /* bytes of HTTP answers that the client has not read yet */
     struct address_share share;
     int64_t rate_begin_ns, messages; /* number of stream messages within the second that began at rate_begin_ns (monotonic) */

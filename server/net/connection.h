@@ -6,7 +6,7 @@
 #include "net/server_context.h"
 
 struct connection {               /* identity of one connection; lives as long as the connection */
-    struct address_usage *usage;  /* usage of the address that opened the connection; a reference */
+    struct address_usage *usage;  /* quota usage of the address that opened the connection (a reference) */
     struct address_usage *client; /* usage of the client's address: behind a proxy, the address that the last request names; a reference */
     char address[64];             /* the client's address as text, for the log */
     enum role role;               /* role of the user, according to the last request's headers */

@@ -9,7 +9,7 @@
 #include "net/renderers.h"
 
 static const int64_t SEND_NS = 2 * NS_PER_S; /* time limit within which the standby must have received everything */
-static const int64_t TAKE_NS = NS_PER_S;     /* time limit for the standby to take the lease */
+static const int64_t TAKE_NS = NS_PER_S;     /* time limit within which the standby must have taken the lease */
 
 /* Returns the next step of handing over the lead; returns `step` itself while that step is not finished. */
 static enum hand_over_step next_step(struct net *net, enum hand_over_step step)

@@ -31,7 +31,7 @@ static const int64_t SETTLE_NS = 5 * NS_PER_MS;
 static const int64_t SETTLED_NS = 1500 * NS_PER_MS;
 /* TICK_NS: interval between ticks of the sessions; REST_NS: the same while no session has timed work within the next second */
 static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S;
-static const int64_t GOODBYE_NS = 500 * NS_PER_MS;       /* time for close frames and answers to be sent at shutdown */
+static const int64_t GOODBYE_NS = 500 * NS_PER_MS;       /* time for which shutdown waits until close frames and answers are sent */
 static const int64_t RECORD_INTERVAL_NS = 60 * NS_PER_S; /* minimum time between two audit entries about tokens not checked */
 static const int64_t FILE_CHECK_INTERVAL_NS = NS_PER_S;  /* interval between checks of the token and certificate files */
 enum { SPARE_FILES = 256 }; /* file descriptors reserved for uses other than connections: models, sources, the database */

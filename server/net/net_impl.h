@@ -19,7 +19,7 @@ struct net {
     int64_t ticked_ns;   /* monotonic time when the sessions last ran their tick */
     int64_t readings_ns; /* monotonic time when the next snapshot of readings is due (readings.c) */
     struct cpu_meter cpu;
-    int64_t cpu_ns; /* monotonic: when the processor load (cpu) was last read */
+    int64_t cpu_ns; /* monotonic time when the processor load (cpu) was last read */
     _Atomic bool stopping, look, drain, readings_changed, lead_ended;
     struct { /* hand_over.c */
         enum hand_over_step step;

@@ -37,7 +37,7 @@ struct net_params {
     struct plant_services plant; /* services of the loaded plant; net_limit_services() sets unusable ones to NULL */
     struct counters *counters;
     struct audit *audit;             /* writer of the audit trail; NULL: nothing is recorded */
-    struct file_writer *file_writer; /* writes what users change; its results are collected by the event loop */
+    struct file_writer *file_writer; /* thread that writes what users change to disk; the event loop collects its results */
     const char *address; /* numeric address to listen on */
     int port;            /* port to listen on; 0: any free one */
     int socket_fd;       /* socket that already listens, opened by systemd (net/handed_socket.h); -1: none */

@@ -8,7 +8,8 @@
 #include "value/quality.h"
 
 static const int64_t MIN_INTERVAL_NS = 100 * NS_PER_MS; /* minimum time between two snapshots, however often readings change */
-static const int64_t GATHER_NS = 10 * NS_PER_MS;        /* delay that collects all readings of one device message into one frame */
+/* delay of a snapshot after a change, so that one frame shows all readings of one device message */
+static const int64_t GATHER_NS = 10 * NS_PER_MS;
 
 static int64_t later(int64_t a_ns, int64_t b_ns)
 {

@@ -30,7 +30,7 @@ struct lists_seen {
 
 struct deed {
     struct session *session; /* session that carries out the action (session_proxy.h) */
-    json_t *id;              /* id of the renderer's message, repeated in the answer */
+    json_t *id;              /* JSON id of the renderer's message, which the answer repeats */
     struct deed *next;
 };
 
@@ -43,7 +43,7 @@ struct renderer_peer {
     /* state of the peer. RENDERER_VOTES: a core that only votes about which core leads: it may not follow this core, for example because
        its version differs, but its promises not to take the lead count (corelink/lease.h) */
     enum { RENDERER_NEW, RENDERER_TAKEN, RENDERER_VOTES, RENDERER_REFUSED } state;
-    char *refusal;     /* why the peer is refused; NULL: the peer is not refused */
+    char *refusal;     /* reason why the peer is refused; NULL: the peer is not refused */
     bool refusal_sent; /* true: the reason of the refusal was sent to a peer that only votes */
     bool other_configuration; /* true: the peer is refused only because its configuration differs from this core's */
     struct core_sent sent;

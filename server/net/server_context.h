@@ -58,13 +58,13 @@ struct server_context {
     struct { /* readings.c */
         struct snapshot *snapshot;
         uint32_t *changes;      /* by tag: the counter `changes` of the reading in the last snapshot */
-        int64_t data_ns;        /* monotonic: arrival of the oldest reading that changed in the last snapshot */
+        int64_t data_ns;        /* monotonic time when the oldest of the readings arrived that changed in the last snapshot */
         /* monotonic time when the quality of a reading next changes because the reading grows old; INT64_MAX: never */
         int64_t next_change_ns;
         bool *links_up; /* connection state of each data source, by source index */
     } readings;
     struct history_queries *history_queries; /* NULL: nothing is recorded */
-    struct history_loader *history_loader;   /* loads the readings of past instants; NULL: nothing is recorded */
+    struct history_loader *history_loader;   /* service that loads the readings of past instants; NULL: nothing is recorded */
     struct {
         struct picture_signer *signer; /* NULL: pictures are not signed */
         char key_id[SIGNING_KEY_ID_BYTES];
@@ -96,7 +96,7 @@ struct server_context {
         int uploads;                   /* number of uploads in progress */
         struct web_site *site;         /* the web client's files */
         char *content_policy;          /* header Content-Security-Policy of every answer */
-        struct log_pace stuck_heads;   /* limits log lines about requests whose head did not end */
+        struct log_pace stuck_heads;   /* rate limit of log lines about requests whose head did not end */
     } http;
     struct {
         const struct quotas *quotas;
@@ -112,7 +112,7 @@ struct server_context {
         int64_t held;      /* number of tokens not checked because of throttling and not recorded yet */
         int64_t held_ns;   /* monotonic time when unchecked tokens were last recorded in the audit trail */
         int64_t unasked;   /* number of unrecorded answers of the identity provider that belonged to no log-in or failed */
-        int64_t looked_ns; /* monotonic: when the files of tokens and certificate were last checked */
+        int64_t looked_ns; /* monotonic time when the files of tokens and certificate were last checked */
     } logins;
     struct {
         bool hands_over; /* true: this leading core is handing the lead to its standby; users' messages are ignored meanwhile */

@@ -9,8 +9,8 @@ struct stream {
     struct lws *wsi;
     struct session *session;
     struct stream *next;
-    struct address_usage *usage; /* usage of the client's address; the connection holds the reference */
-    int64_t in_begin_ns;         /* monotonic: when the first bytes of the message being received arrived */
+    struct address_usage *usage; /* quota usage of the client's address; the connection holds the reference */
+    int64_t in_begin_ns;         /* monotonic time when the first bytes of the message being received arrived */
     struct text in;              /* part of the current message that has been received */
     size_t in_count;             /* bytes of the current message received so far, including those that were too many to store */
     struct encoded_frame *sending;
@@ -36,7 +36,7 @@ struct stream {
     int64_t silent_ns;
     int close_code; /* WebSocket close code to send; 0: the connection stays open */
     const char *close_text;
-    int64_t messages, errors, dropped; /* the session counters with these names, as last added to the metrics */
+    int64_t messages, errors, dropped; /* values of the session's counters with these names that are already added to the metrics */
 };
 
 /* --- stream_table.c --- */

@@ -37,7 +37,7 @@ struct notifier {
     struct recipient_counters *counters; /* by index of the recipient */
     counter *lost, *spool_good;
     bool *failing;   /* by index of the recipient: true: the last delivery to the recipient failed */
-    uint64_t number; /* change number of the newest alarm change that was processed */
+    uint64_t number; /* change number of the newest change of an alarm that the notifier has processed */
     bool looked, unsaved;
     /* value of outbox_counts.lost up to which lost notifications are in the metrics; not 0 at the start if a reload restored the outbox */
     int64_t lost_before;

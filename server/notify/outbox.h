@@ -30,7 +30,7 @@ struct outbox_message {
     char id[OUTBOX_ID_BYTES];        /* id of the message, the same for each attempt to send it */
     const struct outbox_item *items; /* alarms, most urgent first */
     size_t count;
-    int64_t left_out; /* number of alarms that did not fit into the message */
+    int64_t left_out; /* number of further alarms, for which the message has no room */
     int64_t made_us;
 };
 

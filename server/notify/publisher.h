@@ -10,7 +10,7 @@ struct publisher_params {
     struct counters *counters;
     const struct plant *plant; /* must have a `publish` */
     struct store *store;
-    struct alarm_service *alarm_service; /* plant, store and alarm service must outlive the publisher */
+    struct alarm_service *alarm_service; /* plant, store of readings and alarm service; all must outlive the publisher */
 };
 
 struct publisher;

@@ -16,7 +16,7 @@ struct placing_params {
     struct workers *workers;
     const struct scene *scene;
     const char *folder;        /* folder of the prepared files; read only by placing_create() */
-    void (*notify)(void *arg); /* called on any thread when placing_collect() has new results */
+    void (*notify)(void *arg); /* callback on any thread when placing_collect() has new results */
     void *notify_arg;
 };
 struct placing;
@@ -72,7 +72,7 @@ struct sensor_coverage_answer {
     struct {
         int asset;
         struct sensor_coverage coverage;
-    } * assets; /* coverage of each asset that has sensors of the group */
+    } * assets; /* coverage of each asset that has sensors of the requested group */
     struct sensor_coverage_answer *next;
 };
 /* Computes on a worker the sensor coverage of a group on all its assets, with the moves of `set` (NULL: none). far_m: distance in metres

@@ -15,7 +15,7 @@
 #define PLANT_GP_NOISE 0.005    /* assumed standard deviation of a reading's noise, as a fraction of the group's range */
 
 #define PLANT_SEEN_PART 0.05 /* smallest difference that is visible in the colours, as a fraction of the group's range */
-#define PLANT_HOT_SPOT_M 0.5 /* size in metres of the hot spots for which blind areas are computed */
+#define PLANT_HOT_SPOT_M 0.5 /* size in metres of the hot spots for which blind areas (where sensors miss a hot spot) are computed */
 
 /* Returns whether plantcast-prep computes the weights of an interpolation; false: the daemon computes them from distances. */
 static inline bool interpolation_is_prepared(enum interpolation interpolation)

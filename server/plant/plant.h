@@ -24,7 +24,8 @@ enum interpolation {
 };
 /* DISTANCE_HEAT: geodesic distances by the heat method (Crane et al., 2013), as in Kim & Suh, Electronics 2025, 14(15), 2938 */
 enum distance_mode { DISTANCE_GEODESIC, DISTANCE_EUCLIDEAN, DISTANCE_HEAT, DISTANCES };
-enum fill_mode { FILL_NONE, FILL_NEIGHBOURS }; /* whether neighbouring sensors colour the area around a sensor whose reading is Bad */
+/* filling of the area around a sensor whose reading is Bad: none, or the field of neighbouring sensors */
+enum fill_mode { FILL_NONE, FILL_NEIGHBOURS };
 /* display with which a client begins: values, or values relative to their alarm limits (operator's display) */
 enum plant_show { PLANT_SHOW_VALUE, PLANT_SHOW_OPERATOR };
 /* initial display state of an asset: shown, ghosted (outline only) or hidden */
@@ -91,7 +92,7 @@ struct plant_asset {
     int line;
 };
 
-struct plant_alarm_settings { /* how and when alarms of this group or tag are raised and cleared */
+struct plant_alarm_settings { /* settings by which alarms of this group or tag are raised and cleared */
     double deadband;          /* engineering units */
     double on_delay_s, off_delay_s;
     /* priority of the alarms LL and HH, from 1 (most urgent) to ALARM_PRIORITIES; L and H get the next less urgent priority */
@@ -123,7 +124,7 @@ struct plant_group {
     enum distance_mode distance;
     double strength, decay, power;
     double radius_m;   /* radius R of Algorithm 1 of Kim & Suh (field/field.h), metres; 0: the largest distance on the asset */
-    double reach_m;    /* metres beyond which a sensor has no influence; INFINITY: no limit */
+    double reach_m;    /* distance in metres beyond which a sensor has no influence; INFINITY: no limit */
     unsigned prepared; /* bit mask of the interpolations that plantcast-prep computes (plant/influence.h), including the group's own */
     double disc_m;     /* radius in metres of the disc that represents a sensor in the interpolations harmonic, fin and gp */
     double ambient;    /* temperature of the surroundings for `fin`, in the group's unit; NaN: not stated */
@@ -145,7 +146,7 @@ struct plant_group {
 enum { PLANT_COLORMAPS = 16 };
 struct plant_colormap { /* a colour map that is read from an image */
     char *name;
-    uint8_t rgb[256][3]; /* colours in sRGB, from the group's `min` to its `max` */
+    uint8_t rgb[256][3]; /* colours in sRGB, of values from the group's `min` (index 0) to its `max` (index 255) */
 };
 
 enum transport { TRANSPORT_TCP, TRANSPORT_RTU_TCP /* RTU frames over TCP */, TRANSPORT_RTU /* a serial line */ };
@@ -156,7 +157,7 @@ enum mqtt_payload { MQTT_NUMBER /* text: one number */, MQTT_JSON, MQTT_SPARKPLU
 struct plant_mqtt { /* MQTT settings of a source or of `publish`; texts that are not given are NULL */
     enum mqtt_payload payload;
     int protocol;    /* protocol version; 4: MQTT 3.1.1; 5: MQTT 5 */
-    bool persistent; /* persistent session: the broker keeps messages while we are disconnected */
+    bool persistent; /* true: persistent session: the broker keeps messages while we are disconnected */
     int qos, keepalive_s;
     char *client_id;
     bool has_tls;
@@ -273,7 +274,7 @@ struct tag_signal { /* address of a tag's value at its device, and its encoding 
 struct tag_scale { /* conversion from the raw value to the tag's unit */
     enum scaling kind;
     double raw_low, raw_high, scaled_low, scaled_high; /* range of raw values, and the range to which it is scaled, in own_unit */
-    bool has_range;                                    /* true: scaled_low to scaled_high is the instrument's measuring range */
+    bool has_range;                                    /* true: the range scaled_low to scaled_high is the instrument's measuring range */
     /* true: raw_low and raw_high are 4 and 20 mA, so a current outside of that range is judged by NAMUR NE 43 (overrange or broken wire) */
     bool ne43;
     struct plant_sentinel sentinels[PLANT_SENTINELS];
@@ -298,7 +299,7 @@ struct tag_validity {                 /* conditions under which a tag's reading 
     double stale_s; /* age in seconds from which the tag's reading is stale; default: three poll intervals, at least 5 s */
     bool states_stale;                /* the row states stale_s */
     double flatline_s;                /* seconds without any change after which the tag's value is uncertain; 0: never */
-    struct plant_quality_tag quality; /* another tag that states whether the reading is valid */
+    struct plant_quality_tag quality; /* quality tag: another tag that states whether this tag's reading is valid */
 };
 
 struct tag_alarms {
@@ -343,7 +344,7 @@ struct plant_link { /* template of a link to another system's page about an asse
     bool of_tags;
 };
 
-struct plant_conversion { /* a model that plantcast-prep makes by running another program */
+struct plant_conversion { /* rule by which plantcast-prep makes a model: it runs another program */
     char *model;          /* path of the glTF file that the program must write */
     char *from, *command; /* input file, and the command */
     double timeout_s;
@@ -354,11 +355,11 @@ struct plant_files {
     char *path, *folder; /* path of the plant file, and its folder without trailing slash */
     char *tags_path;
     char hash[17];       /* hash of plant file and tag list in hexadecimal, which identifies the configuration */
-    bool keeps_orphans;  /* set while loading: tags of assets that do not exist are accepted (plant_load_with_orphans()) */
-    bool without_models; /* set while loading: missing model files are accepted (plant_load_without_models()) */
+    bool keeps_orphans;  /* true while loading: tags of assets that do not exist are accepted (plant_load_with_orphans()) */
+    bool without_models; /* true while loading: missing model files are accepted (plant_load_without_models()) */
 };
 
-struct plant_display { /* initial display of a client, and the choices of its user */
+struct plant_display { /* initial display of a client, and what its user can choose */
     struct plant_view view;
     enum plant_show show;
     bool no_reprojection; /* true: clients get no depth grids, and so cannot move a picture before the next one arrives */

@@ -19,7 +19,7 @@ static const float MARK_PX = 48; /* Largest distance in pixels from a marker's p
 /* Pool of released pixel buffers. Reusing them is faster: fresh memory from the kernel costs more time in page faults than filling a frame
    takes. */
 enum { SPARES = 4 };
-static const size_t SPARE_BYTES = (size_t)16 << 20; /* largest buffer that the pool keeps; larger frames are rare */
+static const size_t SPARE_BYTES = (size_t)16 << 20; /* size in bytes of the largest buffer that the pool keeps; larger frames are rare */
 static struct {
     pthread_mutex_t lock;
     struct {

@@ -11,7 +11,7 @@
 
 struct frame_marker {
     int tag;
-    float x_px, y_px; /* pixels from the top left of the frame; may lie outside the frame */
+    float x_px, y_px; /* position in pixels from the top left of the frame; may lie outside the frame */
     uint8_t occluded; /* 1: a surface hides the marker, or it lies outside the frame; 0: visible */
     uint32_t quality; /* OPC UA quality of the reading shown; for a difference the worse of the two readings */
     /* reading in engineering units, 0 if its quality is Bad. If the view shows differences: reading minus baseline; if it shows distances:
@@ -53,7 +53,7 @@ struct frame {
     struct frame_label *labels;
     size_t label_count;
     int64_t data_utc_ns;   /* UTC time in nanoseconds of the snapshot of readings that the frame shows */
-    bool clock_unset;      /* true if the clock that gave data_utc_ns was not synchronised */
+    bool clock_unset;      /* true: the clock that gave data_utc_ns was not synchronised */
     int64_t oldest_age_ns; /* age in nanoseconds of the oldest reading that the frame uses; INT64_MAX: it uses none */
     /* largest error, in engineering units and rounded up, of values in areas that the frame marks as uncertain; 0: no area is marked */
     double drawn_error;

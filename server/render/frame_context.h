@@ -23,7 +23,7 @@ struct frame_context {
     const int *visible;                 /* indices of the visible assets, the nearest asset first */
     size_t visible_count;
     struct shaded_colormap colormap;
-    struct reference *reference; /* computes the field at each fragment; NULL: the field is interpolated between vertices */
+    struct reference *reference; /* object that computes the field at each fragment; NULL: the field is interpolated between vertices */
     /* largest error of a level of detail's surface, in pixels of the frame (render/plan/lod_selection.h); 0: finest levels only */
     double error_px;
     uint64_t shape; /* content_hash_shape() of the frame plan */

@@ -29,7 +29,7 @@ struct render_job {
     bool keeps; /* true: after this job, a frame of the same view with other readings is drawn in about the time of a preview */
 };
 
-/* Takes ownership of the frame; copies the context's lists and view. */
+/* Initialises a job: takes ownership of the frame, and copies view and lists of the frame context. */
 void render_job_init(struct render_job *job, const struct frame_context *context, struct frame *frame);
 /* Copies the fields so that later frames do not change them: buffers on the GPU (on_gpu) or vertex values in main memory. Returns false
    when out of memory (main or GPU), logged. */

@@ -10,7 +10,7 @@
 #include "render/view.h"
 #include "shaders/constants.glsl"
 
-enum { COLORMAP_ROWS = 65 }; /* brightness steps; odd, so that the middle step leaves the colour unchanged */
+enum { COLORMAP_ROWS = 65 }; /* number of brightness steps; odd, so that the middle step leaves the colour unchanged */
 enum { COLORMAP_BELOW = 0, COLORMAP_ABOVE = COLORMAP_PLACES + 1, COLORMAP_PATTERNS };
 enum colormap_pattern { PATTERN_HATCH_LIGHT, PATTERN_HATCH_DARK, PATTERN_STIPPLE, PATTERN_PLAIN_LIGHT, PATTERN_PLAIN_DARK, PATTERN_COUNT };
 enum { COLORMAP_COLUMNS = COLORMAP_PATTERNS + PATTERN_COUNT };

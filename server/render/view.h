@@ -12,14 +12,14 @@
 #include "scene/visibility.h"
 
 enum look {
-    LOOK_DEFAULT,  /* field colours, shaded only by changing L* by up to 7; PBR for assets without a field */
+    LOOK_DEFAULT, /* field colours, shaded only by changing L* by up to 7; PBR for assets without a field */
     /* PBR with the field as albedo (Fig. 13 of Kim & Suh, Electronics 2025, 14(15), 2938); labelled in the picture, since shading changes
        the colours */
     LOOK_GLOSSY,
     LOOK_FLAT,     /* no shading */
-    LOOK_MATERIALS /* no field: all assets with their models' materials in full colour */
+    LOOK_MATERIALS /* the view shows no field, but all assets in full colour with the materials of their models */
 };
-/* how sensor directions are drawn, for groups that have directions */
+/* form in which sensor directions are drawn, for groups that have directions */
 enum directions_look { DIRECTIONS_ARROWS, DIRECTIONS_STROKES, DIRECTIONS_NONE };
 enum tier { TIER_PREVIEW, TIER_REFINED };
 #define VIEW_MAX_SIDE_PX 8192
@@ -68,9 +68,9 @@ struct view {
     bool strip;             /* true: the overlay contains a machine-readable legend strip */
     int environment;        /* index of the environment map: 0: the built-in sky; 1 and up: those of the plant file */
     struct visibility visibility;
-    int64_t at_us;           /* the instant shown, UTC microseconds; 0: now. Set it with view_set_instant() */
+    int64_t at_us;           /* instant that the view shows, UTC microseconds; 0: now. Set it with view_set_instant() */
     bool split;              /* true: two halves side by side under one camera: this struct is the left half, `right` the right half */
-    struct split_half right; /* right half; zero if the view is not split */
+    struct split_half right; /* content of the right half; all zero if the view is not split */
 };
 
 /* Returns the unit of the shown values: the group's unit, or "m" for distances. */

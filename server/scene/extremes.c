@@ -90,7 +90,7 @@ static void add_asset(const struct scene *scene, const struct scene_asset *asset
 void extremes_find(struct scene *scene)
 {
     double directions[DIRECTIONS][3], points[DIRECTIONS][3], most[DIRECTIONS];
-    for (int d = 0; d < DIRECTIONS; d++) { /* directions on a spiral around the sphere, by the golden angle */
+    for (int d = 0; d < DIRECTIONS; d++) { /* makes the directions: points on a spiral around the sphere, turned by the golden angle */
         double z = 1 - (2 * d + 1.0) / DIRECTIONS, turn = d * M_PI * (3 - sqrt(5)), flat = sqrt(1 - z * z);
         memcpy(directions[d], (double[]){ flat * cos(turn), flat * sin(turn), z }, sizeof(directions[d]));
         most[d] = -INFINITY;

@@ -84,7 +84,7 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
     for (size_t g = 0; g < plant->group_count; g++) {
         const struct plant_group *group = &plant->groups[g];
         size_t placed = plant_prepares_any(group) ? count_placed(plant, sensors, count, (int)g) : 0;
-        /* without sensors, preparation writes no influence file, so none is required */
+        /* no sensors: plantcast-prep then writes no influence file, so none is required */
         bool heat = placed > 0 && group->heat && !has_entry(log, asset, g, INFLUENCE_HEAT, placed);
         if (heat || (placed > 0 && group->directed && !has_entry(log, asset, g, INFLUENCE_TRANSPORT, placed))) {
             log_err(log, "asset %s: has no usable %s for group %s; run plantcast-prep %s", asset->plant->id,

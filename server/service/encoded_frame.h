@@ -12,7 +12,7 @@ enum frame_absence {
     FRAME_FAILED     /* no packet, because drawing or encoding the frame failed */
 };
 
-struct encoded_frame { /* owned by the code that collected it; free with encoded_frame_destroy() */
+struct encoded_frame { /* encoded frame; the code that collected it owns it, and frees it with encoded_frame_destroy() */
     uint64_t client;
     uint64_t number;       /* sequence number of the client's request, assigned when drawing begins: a larger number shows a newer state */
     struct packet *packet; /* NULL: none; `absence` says why */
@@ -20,7 +20,7 @@ struct encoded_frame { /* owned by the code that collected it; free with encoded
     int earlier_count;
     enum frame_absence absence; /* only if packet is NULL */
     struct frame_request request;
-    int64_t wait_ns; /* nanoseconds from the input to the start of drawing */
+    int64_t wait_ns; /* nanoseconds from the user's input to the start of drawing */
     int64_t made_ns; /* monotonic: when encoding ended */
     struct encoded_frame *next;
 };

@@ -25,7 +25,7 @@ struct history_query {
        queries both are -1 */
     int group, tag;
     bool gaps;      /* instead of series, the query asks for the periods in which nothing was recorded */
-    bool journal;   /* instead of series, the query asks for the alarm journal, filtered by `alarms` */
+    bool journal;   /* true: instead of series, the query asks for the alarm journal, filtered by `alarms` */
     struct alarm_query alarms;
 };
 

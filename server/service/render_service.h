@@ -21,9 +21,9 @@ struct render_service_params {
     const struct gl_device *gl_device; /* GPU to use; NULL: the first hardware GPU that works */
     const struct scene *scene;
     struct store *store;
-    struct baselines *baselines;           /* stored baselines; NULL: differences to baselines cannot be shown */
-    struct snapshot_cache *snapshot_cache; /* readings of past instants; NULL: past instants cannot be shown */
-    struct trials *trials;                 /* sensors that engineers move on trial; NULL: trials cannot be shown */
+    struct baselines *baselines;           /* store of baselines; NULL: differences to baselines cannot be shown */
+    struct snapshot_cache *snapshot_cache; /* cache of readings of past instants; NULL: past instants cannot be shown */
+    struct trials *trials;                 /* registry of sensors that engineers move on trial; NULL: trials cannot be shown */
     struct workers *workers;
     size_t memory_bytes;      /* limit on the daemon's memory in bytes, models included; 0: chosen for the machine */
     const char *h264_library; /* name of the libavcodec encoder; NULL: the default one */

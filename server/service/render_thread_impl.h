@@ -11,13 +11,13 @@
 struct thread_memory { /* memory of the caches (render_thread_memory.c) */
     counter *stores[RENDER_STORES], *fields, *frames, *bound;
     size_t other;           /* peak, in bytes, of the memory that the process used besides models and caches; decays slowly */
-    int64_t looked_ns;      /* monotonic: when the memory in use was last measured */
-    int64_t trimmed_ns;     /* monotonic: when free heap memory was last returned to the system */
+    int64_t looked_ns;      /* monotonic time when the memory in use was last measured */
+    int64_t trimmed_ns;     /* monotonic time when free heap memory was last returned to the system */
     int64_t alone_since_ns; /* monotonic time since when the service has had no client; 0: there are clients */
     bool released;          /* true: the caches were released, and no frame was drawn since */
 };
 
-struct long_job {                                 /* a frame that is drawn in steps, between other clients' frames */
+struct long_job {                                 /* long job: a frame that is drawn in steps, between other clients' frames */
     struct split_view *split;                     /* the frame being drawn; NULL: no long job is running */
     struct request_group group;                   /* requests that the frame answers */
     const struct historical_snapshot *historical; /* reference to the readings of a past instant; NULL: the readings are in `snapshot` */
@@ -37,7 +37,7 @@ struct render_thread {
     struct renderer *renderer;
     struct snapshot *snapshot; /* the newest readings taken */
     bool stale; /* true: `snapshot` was handed over with a submitted frame, so a new snapshot must be taken before it is used again */
-    struct request_group same; /* scratch memory: requests that are answered without drawing a frame */
+    struct request_group same; /* scratch memory for a group of requests that are answered without drawing a frame */
     struct recent_frames recent;
     struct long_job long_job;
     /* suspended long job (a frame drawn in steps) that draws a large frame; it continues once a smaller frame of another address, which may

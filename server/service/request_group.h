@@ -7,7 +7,7 @@
 struct request_ticket { /* ticket: a frame request whose drawing has begun */
     uint64_t client, number;
     struct frame_request request;
-    int64_t wait_ns; /* nanoseconds from the input to the start of drawing */
+    int64_t wait_ns; /* nanoseconds from the user's input to the start of drawing */
 };
 
 struct request_group { /* zero-initialise; free with request_group_finish() */

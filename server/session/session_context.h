@@ -41,7 +41,7 @@ struct session_context {
     bool imports;                             /* engineers may import plants */
     const char *signing_key;                  /* id of the key that signs pictures; NULL: pictures are not signed */
     bool live;                                /* true: at least one data source is connected */
-    struct clock_state clock;                 /* whether the wall clock is set, and its error */
+    struct clock_state clock;                 /* state of the wall clock: whether it is set, and its estimated error */
     /* monotonic time until which some session's camera counts as moving; refined frames of other sessions wait until then, because they
        would make its pictures stutter */
     int64_t moving_until_ns;
@@ -54,7 +54,7 @@ struct session_context {
     const struct tokens *tokens;           /* NULL: none are configured */
     struct openid *openid;                 /* service for signing in with OpenID Connect; NULL: off */
     int64_t lock_ns;                       /* monotonic duration without user activity after which the user must sign in again; 0: never */
-    struct login_throttle *login_throttle; /* counts wrong tokens in `hello` messages; NULL: not counted */
+    struct login_throttle *login_throttle; /* counter of wrong tokens in `hello` messages, by address; NULL: not counted */
     struct audit *audit;                   /* writer of the audit trail; NULL: nothing is recorded */
     struct file_writer *file_writer;       /* writes views, notes, walls, pairings and loop checks; NULL: they are written at once */
     /* list of answers that wait for the disk, shared by all sessions; NULL: session_destroy() drops such answers */

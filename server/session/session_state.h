@@ -78,7 +78,7 @@ struct frame_demand {
     bool input, data, any;
     int64_t input_ns;               /* monotonic time of the newest change of the view */
     int64_t data_ns;                /* monotonic time of the oldest changed reading for which no frame was requested */
-    int64_t preview_ns, refined_ns; /* monotonic: when the newest frame of each tier was requested */
+    int64_t preview_ns, refined_ns; /* monotonic times when the newest preview, and the newest refined frame, was requested */
     enum { REFINED_NOT, REFINED_DRAFT, REFINED_FULL } refined; /* quality of the best refined frame requested for the present view */
     /* true: a refined frame is requested and has not arrived; the render thread draws it between other sessions' frames, which may take a
        minute */
@@ -121,7 +121,7 @@ struct session_following {
     struct view own_view;     /* the session's own view while it follows a leader */
     uint64_t heir_wanted;     /* number of the session to which the client wants to hand the lead; 0: the lead stays */
     bool followers_changed;   /* true: the list of followers changed and must be sent */
-    int64_t followers_ns;     /* monotonic: when the list of followers was last built */
+    int64_t followers_ns;     /* monotonic time when the list of followers was last built */
     char *followers_text;     /* text that lists the followers, to be sent; NULL: none */
     uint32_t told_params_seq; /* params_seq of the leader's view in the last message sent to the client */
     int told_size_px[2];
@@ -147,7 +147,7 @@ struct owed_texts {
     int64_t tags_ns;        /* monotonic time when tags were last sent */
     uint32_t *tag_changes;  /* by tag: value of reading.changes that was last sent */
     bool alarms_sent;       /* true: `alarms` was sent at least once */
-    uint64_t alarms_number; /* sequence number of the last change of alarms that was sent */
+    uint64_t alarms_number; /* sequence number of the last change of alarms that was sent to the client */
     /* sequence numbers of the last changes sent to the client, one each for named views, notes, messages of desks to walls, and pointers */
     uint64_t views_sent, notes_sent, walls_sent, pointers_sent;
     int64_t notes_at_us;                /* instant for which notes were last sent, UTC microseconds; 0: the present */
@@ -235,7 +235,7 @@ struct session {
     struct message_rate rate;
     struct session_stats stats;
     struct session_scope scope;
-    struct wall_place display; /* the wall display that this client says it is; display 0: none */
+    struct wall_place display; /* wall display as which the client has introduced itself; display 0: none */
     struct session_tile tile;
     int64_t heard_ns;   /* monotonic time when the client's last message arrived */
     int64_t settled_ns; /* value of heard_ns at the last tick at which the client showed the newest picture (none was owed to it) */

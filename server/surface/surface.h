@@ -80,7 +80,7 @@ void surface_debug_mesh(const struct surface *surface, struct surface_debug_mesh
 struct surface_place {
     double position_m[3]; /* nearest point on the surface */
     double distance_m;    /* from the requested point */
-    uint32_t vertex;      /* model vertex nearest to position_m, in a straight line */
+    uint32_t vertex;      /* model vertex nearest to position_m, by straight-line distance */
 };
 /* Projects a point onto the surface. The result includes the model vertex nearest to the projection. */
 void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place);
@@ -88,7 +88,7 @@ void surface_nearest(const struct surface *surface, const double point_m[3], str
 /* point on the surface, given by a triangle and its barycentric weights there */
 struct surface_point {
     uint32_t tri; /* of the sampled surface */
-    /* weights: of the triangle's corners; distance_m: from the point that was projected */
+    /* weights: barycentric, of the triangle's corners; distance_m: distance from the point that was projected */
     double weights[3], point_m[3], distance_m;
 };
 /* Finds the surface point nearest to point_m. With `normal`, prefers, among triangles about equally near, one whose normal is close to it,

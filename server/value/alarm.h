@@ -10,10 +10,10 @@ enum alarm_kind {
     ALARM_LL,
     ALARM_L,
     ALARM_H,
-    ALARM_HH,   /* the reading is beyond a limit of the tag; the values ALARM_HH and following are 1 + enum limit */
-    ALARM_ON,   /* the alarm bit of the tag, which another alarm system sets, is set */
-    ALARM_BAD,  /* the quality of the tag's reading is Bad (OPC UA severity) */
-    ALARM_LINK, /* a device has failed, so that none of its measurements can be used */
+    ALARM_HH,   /* kind of alarm: the reading is beyond a limit of the tag; the values ALARM_HH and following are 1 + enum limit */
+    ALARM_ON,   /* kind of alarm: the tag's alarm bit is set, which another alarm system controls */
+    ALARM_BAD,  /* kind of alarm: the quality of the tag's reading is Bad (OPC UA severity) */
+    ALARM_LINK, /* kind of alarm: a device has failed, so that none of its measurements can be used */
     ALARM_KINDS
 };
 

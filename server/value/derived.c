@@ -101,7 +101,7 @@ void derived_compute(struct derived_state *state, struct store *store, int64_t n
     store_snapshot(store, now_mono_ns, now_utc_ns, state->snapshot);
     for (size_t i = 0; i < plant->derived_count; i++) {
         struct reading *reading = &state->snapshot->readings[plant->derived[i]];
-        /* the result may be an input of derived tags later in the list */
+        /* also updates the snapshot, because the result may be an input of derived tags later in the list */
         *reading = combine(state, &plant->tags[plant->derived[i]]);
         write_new(state, store, i, reading);
     }

@@ -28,7 +28,7 @@ struct source_impl {
     /* callback, on any thread, that interrupts a wait in which the source's thread does not watch stop_fd; NULL: this kind of source has no
        such wait */
     void (*interrupt)(struct source *source);
-    /* frees the source; its thread has ended or never ran */
+    /* callback that frees the source, after its thread has ended or if it never ran */
     void (*destroy)(struct source *source);
 };
 

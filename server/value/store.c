@@ -13,7 +13,7 @@
 struct held {
     double value;                              /* last usable value */
     uint32_t quality;                          /* of the last sample */
-    bool has_value, lost;                      /* lost: the tag could not be read since its last sample */
+    bool has_value, lost;                      /* lost: true: the tag could not be read since its last sample */
     bool dead;                                 /* true: the tag is lost, and its last value may not be used any more */
     int64_t sampled_mono_ns;                   /* time of the tag's last sample, whether Good or Bad */
     int64_t received_mono_ns, received_utc_ns; /* arrival time of the tag's last usable value */

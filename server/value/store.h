@@ -57,7 +57,7 @@ struct mirrored {
     uint32_t quality; /* quality that the core (daemon that reads the devices) shows, including the effect of the reading's age */
     double value;     /* last usable value, if has_value */
     bool has_value;
-    int64_t received_mono_ns, received_utc_ns; /* arrival time of the value; received_mono_ns: on this machine's monotonic clock */
+    int64_t received_mono_ns, received_utc_ns; /* arrival time of the value: in UTC; received_mono_ns: on this machine's monotonic clock */
 };
 /* Writes readings of a core (daemon that reads the devices) in place of samples: their quality is the core's, and their age here does not
  * change it. Listeners are not called. store_link_lost(), store_tags_lost() and store_tags_dead() apply to such readings too. */

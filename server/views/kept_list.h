@@ -12,7 +12,7 @@
 struct kept_list_kind {
     const char *file, *key; /* file: file name; key: name of the JSON member that contains the list */
     const char *members;    /* names of the members that each entry must have, as words for a log message, such as "id, text and time_us" */
-    bool (*good)(const json_t *list); /* returns whether a list from a file is valid */
+    bool (*good)(const json_t *list); /* callback that returns whether a list from a file is valid */
 };
 
 /* list of entries; the owner of this struct may read `list`, but only the functions below change it */

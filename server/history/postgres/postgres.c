@@ -43,7 +43,7 @@ struct outbox_note {
 struct postgres {
     struct postgres_params params;
     char *folder;
-    int64_t ended_us; /* time of the last point in the files when the sending thread started */
+    int64_t ended_us; /* time of the last point recorded in the history files, when the sending thread started */
     struct history_tag *tags;
     struct {
         counter *up, *points, *waiting, *lost, *restored;

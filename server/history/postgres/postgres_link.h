@@ -43,7 +43,7 @@ void postgres_copy_text(struct postgres_link *link, const char *text);
 void postgres_copy_bool(struct postgres_link *link, bool value);
 bool postgres_copy_end(struct postgres_link *link); /* Sends all rows. */
 
-/* postgres_int32(), postgres_double() and so on read columns of rows in binary format. */
+/* Functions such as postgres_int32() and postgres_double(), which read columns of result rows in binary format. */
 int32_t postgres_int32(const PGresult *result, int row, int column);
 int64_t postgres_int64(const PGresult *result, int row, int column);
 int64_t postgres_time(const PGresult *result, int row, int column);

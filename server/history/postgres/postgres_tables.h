@@ -11,11 +11,11 @@ enum { POSTGRES_VERSION = 1 };
 struct postgres_tables { /* state of one connection; zero-initialise, free with postgres_tables_finish() */
     struct postgres_link *link;
     int plant; /* id of the plant in the database */
-    int month; /* month whose tags are in `tags`, in months since January 1970 */
+    int month; /* month (months since January 1970) whose tags are in `tags` */
     struct postgres_tag {
         int32_t id; /* id of the tag in the database; 0: not known */
         char *unit;
-    } * tags; /* tags of the month, by their id in the month's file */
+    } * tags; /* array of the month's tags, indexed by their id in the month's file */
     size_t tag_capacity;
 };
 

@@ -19,7 +19,7 @@ struct http_exchange {
     struct lws *wsi;
     /* usage of the client's address while the request waits; no reference of its own: the connection holds one */
     struct address_usage *usage;
-    bool head;              /* the request is HEAD: the answer has no body */
+    bool head;              /* true: the request's method is HEAD, so the answer has no body */
     bool close;             /* true: the connection is closed after this answer */
     bool sandboxed; /* true: the answer belongs to a sandboxed document (opaque origin), which Chromium runs in a process of its own */
     char *set_cookie;       /* value of the header Set-Cookie of the next answer; NULL: the answer sets no cookie */

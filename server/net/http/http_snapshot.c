@@ -14,7 +14,7 @@
 #include "net/connection.h"
 
 enum { NAME_BYTES = 256 };
-enum { LEGEND_LEAST_PX = 256 }; /* a narrower picture has no room for a legible legend */
+enum { LEGEND_LEAST_PX = 256 }; /* smallest width in pixels of a picture that has room for a legible legend */
 
 static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = true };
 

@@ -9,7 +9,7 @@
 #include "base/log/log.h"
 
 struct site_file {
-    char *path; /* path of the URL, decoded, with its leading '/' */
+    char *path; /* path in the URL, decoded, with its leading '/' */
     char *bytes;
     size_t count;
     const char *type; /* MIME type, static text */

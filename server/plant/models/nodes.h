@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 struct model_node { /* node of a model. The array of nodes is in depth-first order: the sub-tree of a node is the range [node, end) */
-    const char *name, *mesh; /* names of the node and its mesh; "": none */
+    const char *name, *mesh; /* names of the node and of its mesh; "": it has none */
     int parent;              /* index of the node's parent; -1: the node is a root */
     uint32_t end;
     uint32_t number; /* node's index in the file; a node that was added for an instance has the index of the instanced node */

@@ -10,8 +10,8 @@
 #include "base/text/diag.h"
 
 struct csv_cell {
-    char *text;       /* text without quotes; surrounding blanks are removed unless the cell was quoted */
-    int line, column; /* position in the file, from 1; column counts characters */
+    char *text;       /* text of the cell without quotes; surrounding blanks are removed unless the cell was quoted */
+    int line, column; /* position of the cell in the file, from 1; column counts characters */
 };
 
 struct csv_row {

@@ -22,7 +22,7 @@ enum tag_column {
 
 struct tag_columns {
     struct csv csv;
-    int at[COL_COUNT]; /* index of the column in the file, or -1 */
+    int at[COL_COUNT]; /* by column: its index in the file; -1: the file lacks the column */
 };
 
 /* Opens the list and finds its columns; unknown and duplicate columns are reported. Returns false if the list cannot be read (reported). */

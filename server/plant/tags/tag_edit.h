@@ -18,7 +18,7 @@ struct tag_edit {
 
 struct tag_line {         /* line that differs between two versions of the tag list */
     int line;             /* line number, from 1, in the new text; if the line was removed, in the old text */
-    char *before, *after; /* the line without its line end; NULL: the text has no such line */
+    char *before, *after; /* text of the line in both versions, without its line end; NULL: that version lacks the line */
 };
 struct tag_lines { /* zero-initialise */
     struct tag_line *at;

@@ -47,7 +47,7 @@ enum pane_kind { PANE_VIEWS, PANE_TREND, PANE_ALARMS, PANE_TILES, PANE_CLOCK, PA
 extern const char *const pane_kind_names[]; /* names of pane kinds, by enum pane_kind: the keys of a pane in the plant file */
 
 struct wall_pane {
-    char *area, *title; /* area: name of the pane's area in the grid; title NULL: no title */
+    char *area, *title; /* area: name of the area in the display's grid that the pane fills; title NULL: no title */
     enum pane_kind kind;
     /* content of the pane, depending on `kind`: names of views, shown in turn; names of tags of a trend or of tiles; the text; the name of
        a tour; or the name of another plant */

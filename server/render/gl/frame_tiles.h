@@ -16,7 +16,7 @@ struct frame_tiles {
     int *in_tile; /* indices of the assets that the current tile shows */
 };
 struct tile {
-    int x_px, y_px, width_px, height_px; /* rectangle in pixels, from the top left of the frame */
+    int x_px, y_px, width_px, height_px; /* one tile: a rectangle in pixels, from the top left of the frame */
 };
 
 /* Divides the frame into tiles. whole: true: one tile covers the whole frame; false: tiles have at most 16 cells. */

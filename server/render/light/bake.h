@@ -20,7 +20,7 @@ struct light_set {
     uint64_t id; /* unique, never reused; 0: empty */
     struct light_key key;
     double texture_from_plant[16]; /* matrix from the plant frame to texture coordinates and depth of sun_map */
-    double texel_m, depth_m;       /* side of a texel of sun_map, and range of its depths, metres */
+    double texel_m, depth_m;       /* side of a texel of sun_map, and difference between the ends of its depth range, in metres */
     GLuint sun_map;
     GLuint ground; /* texture of the ground in the format RG8: visible part of the sun, and openness */
     struct pool *pool;

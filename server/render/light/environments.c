@@ -154,7 +154,7 @@ void environments_finish(struct environments *environments)
         struct environment_slot *slot = &environments->slots[i];
         glDeleteBuffers(1, &slot->irradiance);
         glDeleteTextures(1, &slot->mirrored);
-        if (i > 0) /* index 0, the built-in sky, is shared by all renderers */
+        if (i > 0) /* slot 0, the built-in sky, is not freed: all renderers share it */
             environment_finish(&slot->of);
         task_unref(&slot->task);
     }

@@ -24,7 +24,7 @@ bool openness_upload(struct openness *openness, const struct gpu_scene *gpu_scen
 /* Uploads the ground's openness into byte 1 of each texel of its texture. */
 void openness_upload_ground(const struct openness *openness, GLuint ground);
 
-struct openness_writer; /* writes the openness file in a thread of its own */
+struct openness_writer; /* writer of the openness file, which runs on a thread of its own */
 /* Starts to write the plant's openness file. slices: ranges with baked vertices in the GPU buffer, one per asset; ground: the ground's
    texture; both are read during the call. A failure to write is logged later. Returns NULL if the plant has no folder, or no thread could
    be started. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Boxes that labels, markers and blocked areas occupy in one frame, in a grid. */
+/* Records which boxes of a frame are occupied by labels, markers and blocked areas, in a grid for fast queries. */
 #include "base/mem.h"
 #include "render/overlay/labels_impl.h"
 

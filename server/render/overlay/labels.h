@@ -25,7 +25,7 @@ struct label_area {
     double unit;
     const struct label_box *blocked;
     size_t blocked_count;
-    /* writes the width and height that a call-out for these items would have */
+    /* callback that writes the width and height that a call-out (shared label) for these items would have */
     void (*measure)(void *arg, const int *members, size_t count, double size[2]);
     void *arg;
 };

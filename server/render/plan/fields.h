@@ -25,9 +25,9 @@ struct fields_entry {
     /* sensors of a field that is evaluated at pixels; count 0: the field is interpolated between vertices, from `shown` */
     struct pixel_field pixels;
     struct scalar *shown;
-    size_t count, ready; /* count: vertices of the file; ready: the first `ready` values are shown */
+    size_t count, ready; /* count: number of the asset file's vertices; ready: number of values, from the first on, that `shown` holds */
     struct pool_slice *slice;
-    bool uploaded;  /* true if `slice` (range of a GPU buffer) holds the shown values */
+    bool uploaded;  /* true: `slice` (range of a GPU buffer) holds the shown values */
     GLuint sensors; /* buffer of sensors for shaders that compute the field at each fragment (render/reference/reference.h); 0: none */
     int64_t oldest_age_ns;
     double drawn_error; /* largest error of the shown values (field/scalars.h) */

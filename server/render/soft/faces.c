@@ -243,7 +243,7 @@ SOFT_INLINE lanes_int may_face(const float *planes, int rounded, const float eye
    FACE_BACK for triangles that look away from the eye, else 0. */
 SOFT_INLINE void keep_faces(struct soft_tile *tile, const struct eight *eight, int first, lanes_int back)
 {
-    /* eight struct soft_face, transposed: word i of face l is words[i][l] */
+    /* eight elements of struct soft_face, transposed: 32-bit word i of face l is words[i][l] */
     uint32_t words[sizeof(struct soft_face) / sizeof(uint32_t)][LANES];
     float nearest[LANES];
     *(lanes_int *)words[0] = eight->corners[0] | eight->corners[1] << 16;
@@ -277,7 +277,7 @@ void soft_find_faces(struct soft_tile *tile, const struct soft_mesh *mesh, const
         lanes_int p = lanes_from_bytes(first + i), q = lanes_from_bytes(second + i), r = lanes_from_bytes(third + i);
         lanes x0 = lanes_look_up(corners->x, p), x1 = lanes_look_up(corners->x, q), x2 = lanes_look_up(corners->x, r);
         lanes y0 = lanes_look_up(corners->y, p), y1 = lanes_look_up(corners->y, q), y2 = lanes_look_up(corners->y, r);
-        lanes area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0); /* rows go down, so front faces have a negative area */
+        lanes area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0); /* y of the frame points down, so front faces have a negative area */
         lanes_int turned = area > 0.0f;
         struct eight eight = {
             .corners = { p, lanes_choose_int(turned, q, r), lanes_choose_int(turned, r, q) },

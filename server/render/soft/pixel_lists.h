@@ -14,7 +14,7 @@
 enum { PIXEL_FEW = 8, CELL_SHIFT = 4, CELL_PX = 1 << CELL_SHIFT, SQUARE_CELLS = 8, PIXEL_TERMS = 10 };
 
 struct pixel_cell {        /* one cell (a square of CELL_PX pixels), as far as its pixels show one mesh */
-    float low[3], high[3]; /* box around the surface points that the pixels show, metres */
+    float low[3], high[3]; /* box in metres around the surface points that the cell's pixels show */
     uint16_t column, row;  /* position of the cell in the frame, in cells from the top left */
     uint32_t mesh;
 };

@@ -14,7 +14,7 @@ extern const float refined_samples[SAMPLES][2];
 
 /* Special ids of samples that show no triangle; other values are triangle ids (render/soft/tile.h). */
 #define ID_NOTHING 0xffffffffu
-#define ID_CAP 0xfffffffeu /* the sample shows a section cap: the cut face of a closed body */
+#define ID_CAP 0xfffffffeu /* special id: the sample shows a section cap, the cut face of a closed body */
 
 enum { NORMAL_X, NORMAL_Y, NORMAL_Z, AMBIENT, OPEN, TINT }; /* indices of vertex attributes in arrays that have eight elements per vertex */
 enum { BASE, METALLIC = 3, ROUGHNESS, EMISSIVE }; /* indices of material attributes in arrays that have eight elements per material */
@@ -51,7 +51,7 @@ struct refined {
 
 struct refined_item { /* one surface within a pixel */
     struct soft_triangle triangle;
-    float x, y;     /* point of the frame, in pixels, where the surface is shaded */
+    float x, y;     /* position in the frame, in pixels, at which the surface is shaded */
     uint16_t share; /* area of the pixel that the surface covers, 0..VISIBILITY_SHARES */
 };
 

@@ -78,8 +78,8 @@ struct soft_item { /* a part (group of neighbouring triangles, parts.h) that may
     float near;    /* depth of the part's nearest point; above 1: the part reaches in front of the near plane */
     struct soft_rect rect;
     uint32_t part;
-    bool cut;    /* true if a section plane cuts through the part (group of triangles) */
-    bool beyond; /* true if section planes remove the whole part; it is listed because it may bound a body that is cut open */
+    bool cut;    /* true: a section plane cuts through the part (group of triangles) */
+    bool beyond; /* true: section planes remove the whole part; it is listed because it may bound a body that is cut open */
 };
 
 struct soft_found { /* list of the parts of one mesh that may be visible; its memory is reused from frame to frame */
@@ -95,7 +95,7 @@ struct soft_found { /* list of the parts of one mesh that may be visible; its me
 };
 
 struct soft_light {       /* copy of a light_set, read back from the GPU */
-    uint64_t id;          /* id of the light set; 0: an empty entry */
+    uint64_t id;          /* id of the light set; 0: the entry is empty */
     uint8_t (**baked)[4]; /* baked light, indexed by asset and then by vertex */
     /* shadow map of the sun in square tiles; a tile takes two cache lines and is stored row by row, so that neighbouring texels mostly
        share cache lines */
@@ -201,7 +201,8 @@ struct soft { /* shared by all frames */
     struct soft_light lights[SOFT_LIGHTS];
     uint64_t uses;
     struct soft_parts **parts;                      /* parts (groups of triangles) by model, then by level; made when first needed */
-    struct visibility_store kept[TIER_REFINED + 1]; /* by tier: visibility buffers of views whose camera stands still */
+    /* by tier (preview or refined): visibility buffers of views whose camera stands still */
+    struct visibility_store kept[TIER_REFINED + 1];
     /* hashes (content_hash_shape()) of the last previews drawn; if a hash is repeated, the camera stands still */
     uint64_t shapes[SOFT_SHAPES];
     size_t shape_count;

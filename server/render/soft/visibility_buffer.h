@@ -65,7 +65,7 @@ struct visibility_band { /* a band: group of pixel rows; written by one worker *
     /* by triangle: slopes of the corner weights over the frame; only filled in where there are isolines */
     struct visibility_slopes *slopes;
     struct visibility_part *parts;
-    struct visibility_gloss *gloss; /* by index in `parts`; only filled in for the glossy look */
+    struct visibility_gloss *gloss; /* light of each element of `parts`; only filled in for the glossy look */
     struct visibility_mixed *mixed;
     struct pixel_cell *cells; /* cells that show fields of many sensors (pixel_lists.h), sorted by square, then by mesh */
     size_t triangle_count, part_count, mixed_count;
@@ -90,16 +90,16 @@ struct visibility_buffer {
     int width_px, height_px, band_rows, band_count;
     uint32_t *surfaces;             /* per pixel, as described above */
     uint32_t *weights;              /* by pixel: weights of two corners of its triangle, 16 bits each: second corner | third corner << 16 */
-    uint8_t *rows;                  /* row of the colour map (brightness) for each pixel */
+    uint8_t *rows;                  /* by pixel: row of the colour map, which is a brightness step */
     struct visibility_gloss *gloss; /* by pixel: light on it in the glossy look; NULL: another look, in which `rows` holds the brightness */
     const struct soft_tones *tones; /* set with gloss; not owned */
     /* ink of each pixel (VISIBILITY_INK: lines drawn over its colour). visibility_buffer_settle() draws ink and veil (coverage by ghost
        lines) over colours that no reading changes, and sets both to 0 there */
     uint8_t *ink;
-    uint8_t *veil; /* coverage by ghost lines, 0..255. NULL: there are no ghosts */
+    uint8_t *veil; /* by pixel: coverage by ghost lines, 0..255; NULL: there are no ghosts */
     uint8_t veil_bgr[3];
     bool lined;   /* true: slopes of corner weights are stored, because isolines need them */
-    float *depth; /* depth for placing isoline labels, rows of width_px. NULL: there are none */
+    float *depth; /* depth of each pixel, for placing isoline labels; rows of width_px; NULL: not stored */
     struct visibility_band *bands;
     struct visibility_mesh *meshes;
     size_t mesh_count, mesh_capacity, vertex_count;

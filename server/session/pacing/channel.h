@@ -21,7 +21,7 @@ struct channel { /* estimate for the connection to one client; zero-initialise; 
     int64_t rtt_ns[2], rtt_begin_ns; /* minimum round trip: [0] in the current measuring window, [1] in the one before; 0: not measured */
     double ns_per_byte; /* nanoseconds that the network needs per byte, smoothed; reacts faster to a slowdown than to a recovery */
     double lag_ns;      /* time from sending to acknowledgement, minus round trip and decoding, smoothed: the delay that the network adds */
-    double decode_ns;   /* decoding time of a frame as reported by the client, ns, smoothed */
+    double decode_ns;   /* decoding time of a frame in nanoseconds, as reported by the client, smoothed */
     struct channel_last last_ns_per_byte, last_lag_ns, last_decode_ns;
     int64_t arrived_ns, acked_ns;
     bool decoding; /* true: the client decodes one frame after the other without a pause, so frames queue at its decoder */

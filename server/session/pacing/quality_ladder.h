@@ -21,7 +21,7 @@ struct quality_ladder { /* initialise with quality_ladder_init() */
     /* monotonic times since when these conditions hold: a better step fits; a larger picture fits; decoding takes too long. 0: the
        condition does not hold now */
     int64_t good_since_ns, easy_since_ns, bad_since_ns;
-    int64_t up_ns, down_ns; /* monotonic: when the step last went up, and down */
+    int64_t up_ns, down_ns; /* monotonic times when the ladder last stepped up, and last stepped down */
     int64_t patience_ns;    /* delay in nanoseconds before the ladder may step up again */
 };
 

@@ -14,7 +14,7 @@ struct kept_view {
     char secret[RESUME_CHARS + 1];
     struct token_holder holder;
     struct resumed what;
-    int64_t until_ns; /* expiry of the kept view, set when its connection is lost */
+    int64_t until_ns; /* monotonic time at which the view is dropped, set when its connection is lost */
 };
 
 struct resumes {

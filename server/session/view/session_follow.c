@@ -9,7 +9,7 @@
 
 void session_ask_follow(struct session *session, const struct message *message)
 {
-    if (session_is_tile(session)) /* a tile always follows its wall's leader, so the message is ignored */
+    if (session_is_tile(session)) /* ignores the message: a tile always follows its wall's leader */
         return;
     session->following.wanted = message->follow;
     session->following.asked = true;

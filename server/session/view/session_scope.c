@@ -54,7 +54,7 @@ static bool read_view(const struct session *session, const struct named_view *na
     view->camera_seq = before.camera_seq;
     view->params_seq = before.params_seq;
     view->tier = before.tier;
-    view_set_instant(view, before.at_us, before.field.slot); /* a session that shows a past instant stays at that instant */
+    view_set_instant(view, before.at_us, before.field.slot); /* keeps the instant of a session that shows the past */
     view_set_trial(view, before.field.trial);
     return true;
 }
@@ -187,7 +187,7 @@ static bool shows_note(const struct session *session, const json_t *item)
 static const struct {
     const char *type, *list;
     bool (*keeps)(const struct session *session, const json_t *item);
-    bool of_tags; /* true: filter the message only for a display without pictures */
+    bool of_tags; /* true: the list is filtered only for a display without pictures */
 } filters[] = {
     { "tags", "values", shows_row, true },  { "alarms", "alarms", shows_alarm, true }, { "views", "list", shows_view, false },
     { "notes", "list", shows_note, false }, { "walls", "list", is_ours, false },       { "walls", "displays", is_own, false },

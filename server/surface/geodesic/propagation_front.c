@@ -78,7 +78,7 @@ static inline void offer(const struct propagation *propagation, struct propagati
         return;
     if (front->item_count == front->item_capacity)
         mem_grow(&front->items, &front->item_capacity, front->item_count + 1, sizeof(*front->items));
-    /* the value is not negative; converting it via int64_t takes a single instruction */
+    /* conversion to unsigned by way of int64_t, which takes a single instruction; correct, because the value is not negative */
     uint64_t number = (uint64_t)(int64_t)(distance_m * propagation->steps_per_m);
     uint32_t *bucket = &front->buckets[(number > front->at ? number : front->at) & (propagation->bucket_count - 1)];
     front->items[front->item_count] = (struct propagation_item){ point, *bucket };
@@ -160,7 +160,7 @@ struct front_turn {
     lanes d, reached;
     uint32_t empty;                   /* number of consecutive empty buckets */
     float offered_m[PROPAGATION_FAN]; /* offers to the fan's points */
-    uint32_t takes;                   /* bit mask of lanes: neighbours whose distance the offer lowers */
+    uint32_t takes;                   /* bit mask of lanes whose neighbour's distance the offer lowers */
 };
 
 /* Takes the next point from the buckets and makes its fans (neighbours and triangles around it) the current ones. Returns false if all
@@ -174,7 +174,7 @@ SIMD_BODY bool next_point(const struct propagation *propagation, struct front_tu
         while (*bucket != TRIMESH_NONE) {
             struct propagation_item item = front->items[*bucket];
             *bucket = item.next;
-            if (front->settled[item.point]) /* skip a point that was already processed with a shorter distance */
+            if (front->settled[item.point]) /* skips a point that was already processed with a shorter distance */
                 continue;
             front->settled[item.point] = 1;
             turn->d = front->distance_m[item.point] - (lanes){ 0 };

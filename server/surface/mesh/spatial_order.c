@@ -8,7 +8,7 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define BITS 21 /* bits per coordinate; three coordinates fit into a 64-bit key */
+#define BITS 21 /* bits per coordinate, so that three coordinates fit into a 64-bit key */
 
 struct keyed {
     uint64_t key;

@@ -20,8 +20,8 @@ struct tri_edges {
     uint32_t *of_side;
 };
 
-/* Both build the edges. `tris` must outlive the result. Free with tri_edges_finish(). tri_edges_init() aborts when out of memory;
- * tri_edges_try_init() returns false, and then nothing needs freeing. */
+/* Build the edges of a mesh. tri_edges_init() aborts when out of memory; tri_edges_try_init() returns false, and then nothing needs
+   freeing. `tris` must outlive the result. Free with tri_edges_finish(). */
 void tri_edges_init(struct tri_edges *e, const uint32_t (*tris)[3], size_t tri_count);
 bool tri_edges_try_init(struct tri_edges *e, const uint32_t (*tris)[3], size_t tri_count);
 /* Frees the lists. */

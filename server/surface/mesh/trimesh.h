@@ -12,7 +12,7 @@
 struct trimesh {
     double (*points)[3];
     uint32_t (*tris)[3];
-    uint32_t *tri_source; /* index of the model triangle that this triangle is a piece of */
+    uint32_t *tri_source; /* by triangle: index of the model triangle of which the triangle is a piece */
     uint32_t *tri_times;  /* by triangle: number of model triangles with these three points; NULL: not counted */
     size_t point_count, point_capacity, tri_count, tri_capacity, source_capacity, times_capacity;
 };

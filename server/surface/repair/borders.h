@@ -5,7 +5,7 @@
 #include "surface/repair/parts.h"
 
 struct borders {
-    uint32_t (*edges)[2], *edge_tri; /* edges: both points of each border edge; edge_tri: the one triangle at it */
+    uint32_t (*edges)[2], *edge_tri; /* border edges: both points of each edge; edge_tri: the one triangle at each edge */
     size_t edge_count;
     uint32_t *points; /* points on border edges */
     size_t point_count;

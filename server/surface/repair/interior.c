@@ -25,7 +25,7 @@
    touching, parts.h) */
 #define SLIVER 2.0
 
-struct solid { /* a closed part, in its state before surface sampling */
+struct solid { /* closed part of the surface, in its state before surface sampling */
     uint32_t part;
     /* true: the part is a thin plate. A triangle that ends inside it is near both sides of the plate, so distances do not show on which
        side the triangle is */

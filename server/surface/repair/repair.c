@@ -95,7 +95,7 @@ static void join_near(void *arg, size_t i, size_t j, double distance_m)
         mesh_edit_merge_points(s->edit, b->points[i], b->points[j], distance_m);
 }
 
-/* Returns the end other than p of the border edge whose index is at[n]. */
+/* Returns the other end of a border edge of which p is an end. n: position of the edge's index in the array `at`. */
 static uint32_t beyond(const struct seams *s, uint32_t n, uint32_t p)
 {
     const uint32_t *edge = s->borders->edges[s->borders->at[n]];

@@ -20,7 +20,7 @@
 #include "value/lookup.h"
 #include "value/mqtt/sparkplug_payload.h"
 
-enum { TOPICS_AT_ONCE = 8 };         /* number of topics in one subscribe request; some brokers refuse more */
+enum { TOPICS_AT_ONCE = 8 };         /* maximum number of topics in one subscribe request; some brokers refuse more */
 enum { SESSION_KEPT_S = 7 * 86400 }; /* seconds for which the broker keeps a persistent session after a disconnection */
 static const char SYSTEM_CERTIFICATES[] = "/etc/ssl/certs";
 static const int64_t CHORES_NS = 500 * NS_PER_MS; /* interval at which the library checks its keep-alive timer */
@@ -34,7 +34,7 @@ struct mqtt_client {
     mosquitto_property *properties;
     int done_fd; /* descriptor that becomes readable once the connection attempt has ended */
     _Atomic int users;
-    _Atomic int status; /* status: the library's result of the connection attempt; errno_then: errno at that time */
+    _Atomic int status; /* status: result code of the connection attempt; errno_then: errno at that time */
     int errno_then;
     char said[160]; /* text of the last error that the MQTT library logged */
     /* --- below: used only by the thread that calls mqtt_client_serve() */

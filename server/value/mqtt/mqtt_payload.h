@@ -16,7 +16,7 @@ enum mqtt_found {
     MQTT_WRONG,  /* the value in the payload is not a number: the tag becomes Bad */
 };
 
-struct mqtt_reader { /* selects the value of one tag in a JSON payload */
+struct mqtt_reader { /* reader of one tag's value in a JSON payload: where the value, time and quality are */
     const struct plant_mqtt *mqtt;
     const char *path; /* JSON path of the value; "": the value is the whole payload, or its member `value` */
     const char *tag;

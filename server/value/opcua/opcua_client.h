@@ -9,7 +9,7 @@
 
 struct opcua_client;
 
-/* callbacks, which any function with a deadline may make */
+/* callbacks of a session; any function with a deadline may call them */
 struct opcua_events {
     void *arg;
     void (*value)(void *arg, size_t node, const UA_DataValue *value); /* `node`: index in opcua_nodes */
