@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the influence of an asset's sensors and writes the file KEY.influence (protocol/ASSET.md). Thread: one, which uses the
- * workers. */
+/* Computes the influence of an asset's sensors and writes the file KEY.influence (protocol/ASSET.md). Each function is called by one thread
+ * at a time, and distributes its work to the threads of the `struct workers` that it is given. */
 #ifndef PREPROCESS_INFLUENCE_INFLUENCE_FILE_H
 #define PREPROCESS_INFLUENCE_INFLUENCE_FILE_H
 #include "base/log/log.h"

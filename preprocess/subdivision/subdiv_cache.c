@@ -18,8 +18,9 @@
 /* largest doubt (subdiv_cache.h: weight of the sensors that changed since the measurement) of a finding that is used. Measured: with this
  * doubt, one in a thousand edges with an error of about one colour step is wrong by a tenth of a colour step or more. */
 #define MAX_DOUBT 0.05f
-/* above MAX_DOUBT, up to this doubt (weight of the sensors that changed since the measurement), a finding is used only if its error is so
- * far from every limit that the changes cannot move it across one */
+/* Largest doubt of a finding that may be used at all. Between MAX_DOUBT and this doubt, a finding (the measured error of an edge) is used
+ * only if the changed sensors cannot move its error across a limit that decides whether the edge is split. With more doubt, the edge is
+ * measured again. */
 #define MAX_SETTLED 0.5f
 #define LITTLE 0.4f /* share of SUBDIV_AIM; an edge whose error at the midpoint is smaller was not measured at other points */
 

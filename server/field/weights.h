@@ -135,7 +135,7 @@ struct weights_terms {
     const uint8_t *marked; /* for each entry of this list: 1 if the column is also added to sums->marked */
     size_t count;
 };
-/* Sums of one block, which weights_add() adds to. */
+/* Sums over sensors for each vertex of one block of KERNEL_BLOCK vertices. weights_add() adds to them. */
 struct weights_sums {
     double *values; /* sum of factor times column */
     /* total: sum of the weights of all columns in the list; marked: sum of those that are marked. NULL: not needed (marked requires

@@ -81,8 +81,8 @@ static void print_json(const struct pending_query *question, const struct plant_
         text_add(out, "]}\n");
 }
 
-/* Appends the text of the query's next tag, which the core writes: the same bytes as this daemon would write. Returns false if the core did
-   not answer. */
+/* Requests the history of the query's next tag from the core and appends it to the answer (JSON or CSV), in the same format in which this
+   daemon writes the history that it records itself. Returns false if the core did not answer. */
 static bool fetch_tag(const struct history_queries *queries, struct core_history *core, struct pending_query *question, struct text *out)
 {
     const struct history_query *query = &question->query;

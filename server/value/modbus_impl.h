@@ -39,8 +39,8 @@ struct modbus_manners {       /* the device's manners: how it handles connection
     /* true: a late first answer on this connection is not the unit's fault, because the gateway may still be waiting for the unit
        `timed_out` */
     bool first_excused;
-    /* number of consecutive connections that failed (the device refused them, or closed them at the start), each right after a connection
-       on which the device had answered */
+    /* number of connections since the device's last answer that the device refused or closed at once, shortly after that answer: it
+       needs a pause between connections. Doubles the time until the next try */
     int failed_connections;
     bool ends_said;
 };

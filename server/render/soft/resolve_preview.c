@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colours a rectangle of a preview from its marks (contents of pixels, soft_impl.h). Shadow and backdrop are looked up for visible surfaces
-   only. */
+/* Colours a rectangle of a preview picture. The rasterizer has written a mark into each pixel: what it shows (soft_impl.h). Shadows are
+   looked up only for pixels that show a surface. */
 #include <string.h>
 
 #include "render/soft/kernels.h"

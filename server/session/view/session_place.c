@@ -26,7 +26,7 @@ static bool can_place(const struct session *session, struct message_error *error
     return false;
 }
 
-/* Shows the trial positions in the view and tells the client. */
+/* Draws the session's view with the trial positions of the sensors that the client is placing, and sends these positions to the client. */
 static void show(struct session *session, int64_t now_ns)
 {
     view_set_trial(&session->view, place_set_trial(session->placement.set));

@@ -14,7 +14,7 @@ struct parts_finding {
         /* open_m: total length of the patch's edges with one face; branching_m: total length of its edges with three or more faces, of
          * which only one belongs to the patch */
         double open_m, branching_m, area_m2;
-        double doubles_m2; /* area of triangles that occur at least twice as often in the model as the other triangles of the part */
+        double doubles_m2; /* area of triangles that the model contains at least twice as often as the rarest triangle of the part */
         bool loose;        /* true: the patch is open and only stands on other patches, like a fin on a tube */
     } * patches;
 };
