@@ -57,7 +57,8 @@ struct core_link {
     /* heard_ns: time of the newest message. least_ns: smallest difference of the two machines' monotonic clocks on this connection.
        readings_ns: arrival time of the previous message with readings. core_readings_read() takes and updates both */
     int64_t heard_ns, begun_ns, least_ns, readings_ns;
-    bool ended, taken, votes, introduced, clock_said;  /* votes: this node, a standby, uses the connection only to promise the leader not to take over; it gets no readings */
+    /* votes: this node, a standby, uses the connection only to promise the leader not to take over, and gets no readings */
+    bool ended, taken, votes, introduced, clock_said;
     bool at_fault;       /* true: the connection failed because this node or the core is configured wrongly; false: the connection was
                             lost */
     char why[WHY_BYTES]; /* why this connection ended */
