@@ -15,7 +15,8 @@
 
 /* --- preparation that does not depend on the correlation range, and is therefore done only once -------------------------------- */
 
-/* Lists for each mesh point the sensors whose disc contains it, sorted. */
+/* A sensor's disc is the set of mesh points that its reading averages. Lists for each row of the Laplacian (a mesh point) the sensors whose
+ * discs contain the point, in the order of their indices: the list of row r is sensors[first[r]] .. sensors[first[r + 1] - 1]. */
 static void list_sensors(const struct influence_mesh *mesh, const struct laplacian *laplacian, size_t *first, uint32_t *sensors,
                          double *shares)
 {

@@ -275,8 +275,9 @@ static bool is_worth(const struct levels_making *making, const struct level *las
     return now <= (is_far(making, last, error_m) ? FAR_WORTH : NEAR_WORTH) * before;
 }
 
-/* Adds a level with the parts in their current versions (simplification steps). *error_out_m receives the level's error. Returns false
- * without adding the level if its triangle count is too large because omitted parts had to be restored. */
+/* Adds a level with the parts in their current versions (simplification steps). *error_out_m receives the level's error. A part
+ * that earlier levels omitted as too small is restored if the level would otherwise look wrong. Returns false without adding the level if
+ * these parts bring its triangle count so near to the previous level's that it is not worth storing. */
 static bool add_level(struct levels_making *making, struct levels *levels, float *error_out_m)
 {
     size_t count, parts = making->welds.part_count;

@@ -69,7 +69,8 @@ struct weights {
                                 NULL */
     const float *priors;     /* for interpolation gp: standard deviation of the field at each vertex without any sensor */
     float deviation;         /* for interpolation gp: standard deviation of the prior */
-    float *errors;           /* for each vertex: linear interpolation error of the adjacent triangles (drawn_error.h); NULL: not measured */
+    float *errors;           /* for each vertex: largest error of linear interpolation within the adjacent triangles; unit and method in
+                                drawn_error.h; NULL: not measured */
     float largest_error;     /* largest element of `errors` */
     /* [b]: fraction of the surface whose interpolation error is at least 2^-b, the largest of all measured levels of detail. For
        prepared interpolations the fraction of the vertices */

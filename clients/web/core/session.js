@@ -194,7 +194,7 @@ export class Session {
         return this.ownOf(this.group);
     }
 
-    // Returns the default parameters of another group.
+    // Returns the default picture parameters (range, colours, ...) of a sensor group.
     ownOf(group) {
         const own = group ? { ...pick(group, GROUPS_OWN), range: [group.min, group.max], strength: 1, decay: 1 } : {};
         return { ...this.model?.start, ...own };

@@ -45,7 +45,8 @@ int database_open_beside(struct database *database);
    it cannot be renamed. Logged in both cases. */
 bool database_set_aside(struct database *database);
 
-/* Returns a statement of the format, reset and ready to bind and step; owned by the database. Returns NULL if the statement cannot be
+/* Returns the prepared statement number `index` of the file's format (struct database_format), reset and ready to bind and step; owned by
+   the database. Returns NULL if the statement cannot be
    prepared; the functions that bind and step accept NULL. */
 sqlite3_stmt *database_statement(struct database *database, int index);
 /* Steps a statement once. Returns the SQLite code. */

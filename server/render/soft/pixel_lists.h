@@ -20,7 +20,8 @@ struct pixel_cell {        /* one cell (a square of CELL_PX pixels), as far as i
 };
 
 struct pixel_list {
-    const uint32_t *sensors; /* indices of the near sensors in field->sensors; NULL: the first `count` sensors */
+    const uint32_t *sensors; /* indices in field->sensors of the near sensors: those evaluated at each pixel of the cell; NULL: the first
+                                `count` sensors */
     size_t first;            /* index of the list's first sensor in pixel_lists.sensors */
     int count;
     bool all_used;  /* true: all listed sensors have a reading that counts */
