@@ -21,7 +21,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 
 SECONDS, MOST_FRAMES, SETS = 3.0, 96, 3
-VERSION, SECTIONS, POSITIONS, INDICES, PRIMITIVES, LEVELS = 5, 15, 0, 5, 6, 7  # protocol/ASSET.md
+VERSION, SECTIONS, POSITIONS, INDICES, PRIMITIVES, LEVELS = 6, 15, 0, 5, 6, 7  # protocol/ASSET.md
 
 
 def read_asset(folder):
