@@ -201,9 +201,6 @@ class step_writer
         }
         if (type == "IFCORIENTEDEDGE")
             return "ORIENTED_EDGE('',*,*," + text_of(from[2]) + (from[3].is(".F.") ? ",.F.)" : ",.T.)");
-        /* a 3D curve with additional curves in the parameter space of surfaces is not converted: web-ifc builds the item instead */
-        if (type == "IFCSURFACECURVE" || type == "IFCSEAMCURVE")
-            throw unsupported(type);
         for (const auto &known : names)
             if (type == known[0]) {
                 to << known[1] << "('',";
@@ -211,6 +208,8 @@ class step_writer
                 to << ')';
                 return to.str();
             }
+        /* 3D curves with additional curves in the parameter space of surfaces (IFCSURFACECURVE, IFCSEAMCURVE) are not converted: web-ifc
+           builds the item instead */
         throw unsupported(type);
     }
 
