@@ -112,6 +112,36 @@ CASE(nodes_are_looked_up)
           { "tags.csv", 5, 1, "tag T4: asset A: the model has no node '#9'" });
 }
 
+/* A node without triangles has its place at the origin of its frame, as in plantcast-prep. */
+CASE(nodes_without_triangles_are_compared)
+{
+    mem_free(temp_write_text(c->folder, "n.gltf",
+                             "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0,1,2,3,4,5,6]}],"
+                             "\"nodes\":[{\"name\":\"P\",\"mesh\":0},{\"name\":\"S\"},{\"name\":\"S\",\"translation\":[5,0,0]},"
+                             "{\"name\":\"T\"},{\"name\":\"T\",\"mesh\":0},{\"name\":\"U\",\"translation\":[1,2,3]},"
+                             "{\"name\":\"U\",\"translation\":[1,2,3]}],"
+                             "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+                             "\"accessors\":[{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,1,1]}]}"));
+    check(c, "  - { id: A, model: n.gltf }\n", "[]", "Tag Name,Group,Asset,Node\nT1,g,A,S\nT2,g,A,T\nT3,g,A,U\n", NULL);
+    FOUND(c, { "tags.csv", 2, 1, "tag T1: asset A: the model has 2 nodes 'S', in different places (#1, #2)" },
+          { "tags.csv", 3, 1, "tag T2: asset A: the model has 2 nodes 'T', in different places (#3, #4)" });
+}
+
+CASE(nodes_that_are_nowhere_are_refused)
+{
+    static const char *const transforms[] = { "\"translation\":[1e16,0,0]",
+                                              "\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,-1e300,0,1]" };
+    for (size_t i = 0; i < sizeof(transforms) / sizeof(*transforms); i++) {
+        struct model_header header;
+        char why[300] = "", *text = mem_printf("{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"name\":\"P\"},{%s}]}", transforms[i]);
+        char *path = temp_write_text(c->folder, "far.gltf", text);
+        assert_false(model_header_read(&header, path, why, sizeof(why)));
+        assert_string_equal(why, "has node 1 with a position that is not finite or exceeds 1e15");
+        mem_free(path);
+        mem_free(text);
+    }
+}
+
 /* Coordinates of sensors on the equipment reveal the model's up axis and unit. */
 CASE(sensors_tell_units_and_axes)
 {

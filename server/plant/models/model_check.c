@@ -117,17 +117,19 @@ static void check_places(struct plant_models_check *check, size_t asset_index, c
     mem_free(sensors);
 }
 
+/* Computes the place of a node as plantcast-prep does: the middle of its triangles, or the origin of its frame if it has none. */
 static void place_of(const struct model_header *header, uint32_t node, double out[3])
 {
     struct model_box box = model_box_empty;
     for (uint32_t i = node; i < header->nodes[node].end; i++)
         model_box_add(&box, &header->boxes[i]);
     for (int axis = 0; axis < 3; axis++)
-        out[axis] = box.low[axis] <= box.high[axis] ? (box.low[axis] + box.high[axis]) / 2 : NAN;
+        out[axis] = box.low[axis] <= box.high[axis] ? (box.low[axis] + box.high[axis]) / 2 : header->origins[node][axis];
 }
 
 /* Returns whether all nodes that have a certain name have the same position. If the asset itself has nodes of that name, only these are
-   compared. *count receives the number of nodes compared. */
+   compared. *count receives the number of nodes compared. Returns true if the header does not state all positions, because plantcast-prep
+   compares them later. */
 static bool is_one_place(const struct plant_models_check *check, const struct plant_asset *asset, size_t *count)
 {
     size_t own = 0;
@@ -136,12 +138,13 @@ static bool is_one_place(const struct plant_models_check *check, const struct pl
         if (check->taken[check->found[i]])
             check->found[own++] = check->found[i];
     *count = own ? own : *count;
+    if (check->header.partial)
+        return true;
     place_of(&check->header, check->found[0], first);
     for (size_t i = 1; i < *count; i++) {
         place_of(&check->header, check->found[i], other);
         for (int axis = 0; axis < 3; axis++)
-            /* a coordinate that is unknown is NaN: the comparison is then false, and the coordinate counts as equal */
-            if (fabs(other[axis] - first[axis]) * asset->unit_m > SAME_PLACE_M)
+            if (!(fabs(other[axis] - first[axis]) * asset->unit_m <= SAME_PLACE_M))
                 return false;
     }
     return true;

@@ -17,11 +17,13 @@ enum { MAX_JSON_BYTES = 512 << 20, MAX_DEPTH = 512, GLB_HEAD_BYTES = 20 };
 
 const struct model_box model_box_empty = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
 
+static const double MAX_COORDINATE = 1e15; /* limit of the numbers in the matrix of a node, as in plantcast-prep */
+
 struct header_walk {
     struct model_header *header;
     const json_t *nodes, *meshes, *accessors;
     bool *seen;
-    size_t capacity, box_capacity;
+    size_t capacity, box_capacity, origin_capacity;
     char *why;
     size_t why_bytes;
 };
@@ -202,9 +204,14 @@ static bool walk_node(struct header_walk *walk, const json_t *reference, int par
     double local[16], world[16];
     local_of(node, local);
     transform_multiply(parent_world, local, world);
+    for (int i = 0; i < 16; i++)
+        if (!(fabs(world[i]) <= MAX_COORDINATE))
+            return wrong(walk->why, walk->why_bytes, "has node %zu with a position that is not finite or exceeds 1e15", number);
     mem_grow(&header->nodes, &walk->capacity, header->count + 1, sizeof(*header->nodes));
     mem_grow(&header->boxes, &walk->box_capacity, header->count + 1, sizeof(*header->boxes));
     header->partial |= mesh && json_object_get(json_object_get(node, "extensions"), "EXT_mesh_gpu_instancing");
+    mem_grow(&header->origins, &walk->origin_capacity, header->count + 1, sizeof(*header->origins));
+    memcpy(header->origins[self], world + 12, sizeof(header->origins[self]));
     header->boxes[self] = mesh ? box_of_mesh(walk, mesh, world) : model_box_empty;
     header->nodes[header->count++] =
         (struct model_node){ .name = name_of(node), .mesh = name_of(mesh), .parent = parent, .number = (uint32_t)number };
@@ -301,5 +308,6 @@ void model_header_finish(struct model_header *header)
     json_decref(header->json);
     mem_free(header->nodes);
     mem_free(header->boxes);
+    mem_free(header->origins);
     *header = (struct model_header){ 0 };
 }

@@ -11,6 +11,7 @@ struct model_box { /* axis-aligned bounding box; empty if a coordinate of its lo
 struct model_header {
     struct model_node *nodes; /* nodes of the scene, depth first */
     struct model_box *boxes;  /* bounding box of each node's own mesh in scene coordinates, in the model's units and axes */
+    double (*origins)[3];     /* origin of each node's own frame in scene coordinates, in the model's units and axes */
     size_t count;
     bool partial; /* true: boxes may be too small, because the model has instances, or accessors without min and max */
     void *json;   /* parsed JSON of the model file, which owns the names */
