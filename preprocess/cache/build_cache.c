@@ -33,10 +33,10 @@ bool build_cache_needs_sensors(enum build_cache_kind kind)
     return kinds[kind].needs_sensors;
 }
 
-bool build_cache_open(struct cache_file *entry, const char *folder, enum build_cache_kind kind, uint64_t key)
+bool build_cache_open(struct cache_file *entry, struct log *log, const char *folder, enum build_cache_kind kind, uint64_t key)
 {
     char *path = build_cache_path(folder, kind, key);
-    bool good = cache_file_open(entry, path, kinds[kind].magic, key);
+    bool good = cache_file_open_if_good(entry, log, path, kinds[kind].magic, key);
     mem_free(path);
     return good;
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The build cache: files that one run of plantcast-prep leaves for the next in the folder of prepared files. An entry is a file of one kind
  * for one key: key, length and checksum, followed by its bytes (cache_file.h). Entries are replaced as a whole and are never required: a
- * missing, truncated or damaged entry, or one of another version or key, counts as absent. Thread: any, one writer per entry. */
+ * missing, truncated or damaged entry, or one of another version or key, counts as absent; damage is logged. Thread: any, one writer per
+ * entry. */
 #ifndef PREPROCESS_CACHE_BUILD_CACHE_H
 #define PREPROCESS_CACHE_BUILD_CACHE_H
 #include <stdbool.h>
@@ -31,8 +32,8 @@ const char *build_cache_ending(enum build_cache_kind kind);
 bool build_cache_needs_sensors(enum build_cache_kind kind);
 
 /* Maps an entry into memory for reading; close it with cache_file_close(). Returns false if there is no valid entry; then it need not be
- * closed. */
-bool build_cache_open(struct cache_file *entry, const char *folder, enum build_cache_kind kind, uint64_t key);
+ * closed. Logs damaged files. */
+bool build_cache_open(struct cache_file *entry, struct log *log, const char *folder, enum build_cache_kind kind, uint64_t key);
 /* Writes an entry that consists of these parts, in order, and replaces an existing one. Returns 0 or -errno. */
 int build_cache_write(const char *folder, enum build_cache_kind kind, uint64_t key, const struct atomic_file_part *parts,
                       size_t part_count);

@@ -3,6 +3,7 @@
  * distances. */
 #include "preprocess/cache/distance_cache.h"
 
+#include <errno.h>
 #include <fcntl.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -63,26 +64,31 @@ static void deal_slots(struct distance_cache *cache)
     mem_free(taken);
 }
 
-void distance_cache_open(struct distance_cache *cache, const char *folder, uint64_t key, size_t length, const double (*places_m)[3],
-                         size_t count)
+void distance_cache_open(struct distance_cache *cache, struct log *log, const char *folder, uint64_t key, size_t length,
+                         const double (*places_m)[3], size_t count)
 {
-    char *path = build_cache_path(folder, BUILD_CACHE_DISTANCES, key);
-    *cache = (struct distance_cache){ .key = key, .length = length, .places_m = places_m, .count = count };
-    cache->fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    *cache = (struct distance_cache){ .log = log, .key = key, .length = length, .places_m = places_m, .count = count };
+    cache->path = build_cache_path(folder, BUILD_CACHE_DISTANCES, key);
+    cache->fd = open(cache->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     cache->may_write = cache->fd >= 0;
+    if (cache->fd < 0)
+        log_warn(log, "cache file %s: cannot be opened: %s; distances are computed again", cache->path, strerror(errno));
     cache->slots = mem_array(count, sizeof(*cache->slots));
     for (size_t p = 0; p < count; p++)
         cache->slots[p] = SIZE_MAX;
     deal_slots(cache); /* if the cache file could not be opened, deal_slots() only initialises the cache and assigns no slots */
-    mem_free(path);
 }
 
 void distance_cache_close(struct distance_cache *cache)
 {
-    if (!cache->slots)
+    if (!cache->path)
         return;
     if (cache->fd >= 0)
         close(cache->fd);
+    if (cache->damaged > 0)
+        log_warn(cache->log, "cache file %s: the distances of %zu sensors are damaged or incomplete; they are computed again", cache->path,
+                 cache->damaged);
+    mem_free(cache->path);
     mem_free(cache->slots);
     *cache = (struct distance_cache){ 0 };
 }
@@ -93,14 +99,15 @@ static bool fetch(void *arg, size_t source, float *distances_m)
     struct distance_slot slot;
     off_t at = slot_at(cache, cache->slots[source]);
     uint16_t *codes = mem_try_array(cache->length, sizeof(*codes));
-    bool good = codes && file_read(cache->fd, &slot, sizeof(slot), at) &&
-                memcmp(slot.place_m, cache->places_m[source], sizeof(slot.place_m)) == 0 &&
-                file_read(cache->fd, codes, cache->length * sizeof(*codes), at + (off_t)sizeof(slot)) &&
+    bool there = codes && file_read(cache->fd, &slot, sizeof(slot), at) &&
+                 memcmp(slot.place_m, cache->places_m[source], sizeof(slot.place_m)) == 0;
+    bool good = there && file_read(cache->fd, codes, cache->length * sizeof(*codes), at + (off_t)sizeof(slot)) &&
                 slot.checksum == checksum_of(cache, source, codes);
     for (size_t i = 0; i < cache->length && good; i++)
         distances_m[i] = asset_distance_of(codes[i]);
     mem_free(codes);
     cache->kept += good;
+    cache->damaged += there && !good;
     return good;
 }
 

@@ -1,16 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cache of geodesic distances by sensor position: the file KEY.columns in the folder of prepared files. One entry ("column") holds the
  * distances of all surface points from one sensor, in 16 bits each (protocol/asset_distance.h). Computed distances are rounded to the same
- * precision, so that results do not depend on the cache. The file can be deleted at any time; a damaged entry counts as absent. The file
- * grows to the largest number of sensors that the asset ever had at once. */
+ * precision, so that results do not depend on the cache. The file can be deleted at any time; damaged entries are logged and count as
+ * absent. The file grows to the largest number of sensors that the asset ever had at once. */
 #ifndef PREPROCESS_CACHE_DISTANCE_CACHE_H
 #define PREPROCESS_CACHE_DISTANCE_CACHE_H
 #include <stdatomic.h>
 #include <stdint.h>
 
+#include "base/log/log.h"
 #include "surface/surface.h"
 
 struct distance_cache {
+    struct log *log;
+    char *path;
     int fd;
     atomic_bool may_write;
     uint64_t key;
@@ -19,13 +22,14 @@ struct distance_cache {
     size_t count;
     size_t *slots;      /* by sensor position: index of its slot (file range of one column); SIZE_MAX: it has no slot */
     atomic_size_t kept; /* number of sensor positions whose column (distances) was found in the file */
+    atomic_size_t damaged; /* number of sensor positions whose column in the file is damaged, or was not completely written */
 };
 
 /* Opens or creates FOLDER/KEY.columns and looks up which of the `count` sensor positions places_m (asset frame, metres; must outlive the
  * cache) have an entry there. length: count of distances in a column. Never fails: if the file cannot be opened, the cache is empty. */
-void distance_cache_open(struct distance_cache *cache, const char *folder, uint64_t key, size_t length, const double (*places_m)[3],
-                         size_t count);
-/* Closes the file and frees the cache's arrays. A zeroed cache is allowed. */
+void distance_cache_open(struct distance_cache *cache, struct log *log, const char *folder, uint64_t key, size_t length,
+                         const double (*places_m)[3], size_t count);
+/* Closes the file, logs if columns were damaged, and frees the cache's arrays. A zeroed cache is allowed. */
 void distance_cache_close(struct distance_cache *cache);
 /* Returns the cache as callbacks for surface_field_init(), which fetches the columns that the cache contains and stores those it computes.
  * Valid until distance_cache_close(). Thread: the callbacks may run on any thread, each call for a different source (sensor). */

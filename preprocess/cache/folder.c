@@ -40,6 +40,11 @@ static char *path_of(const char *folder, uint64_t key, const char *ending)
     return mem_printf("%s/%016" PRIx64 "%s", folder, key, ending);
 }
 
+char *folder_asset_path(const char *folder, uint64_t key)
+{
+    return path_of(folder, key, ASSET);
+}
+
 char *folder_influence_path(const char *folder, uint64_t key)
 {
     return path_of(folder, key, INFLUENCE);
@@ -170,12 +175,24 @@ void folder_draft_close(struct folder_draft *draft)
     *draft = (struct folder_draft){ 0 };
 }
 
-char *folder_report(const char *folder, uint64_t key)
+/* Parses the text of a file. Returns NULL if the text is damaged, which is logged with the loss that this causes. */
+static json_t *parse(struct log *log, const char *path, const char *text, size_t size, const char *loss)
+{
+    json_error_t error;
+    json_t *root = json_loadb(text, size, 0, &error);
+    if (!root)
+        log_warn(log, "%s:%d: damaged: %s; %s", path, error.line, error.text, loss);
+    return root;
+}
+
+json_t *folder_report(struct log *log, const char *folder, uint64_t key)
 {
     size_t size;
     char *path = path_of(folder, key, REPORT), *text = text_read_file(path, REPORT_MAX_BYTES, &size);
+    json_t *report = text ? parse(log, path, text, size, "the asset's numbers are missing in reports") : NULL;
     mem_free(path);
-    return text;
+    mem_free(text);
+    return report;
 }
 
 static void add_surface(json_t *asset, const char *folder, uint64_t key)
@@ -188,10 +205,9 @@ static void add_surface(json_t *asset, const char *folder, uint64_t key)
 
 /* Adds a bit mask of the levels of detail in which subdivision left no interpolation error of the field. The daemon need not measure the
  * errors of these levels (server/field/drawn_error.h). */
-static void add_resolved(json_t *asset, const char *folder, uint64_t key)
+static void add_resolved(json_t *asset, struct log *log, const char *folder, uint64_t key)
 {
-    char *text = folder_report(folder, key);
-    json_t *report = text ? json_loads(text, 0, NULL) : NULL, *level;
+    json_t *report = folder_report(log, folder, key), *level;
     json_int_t resolved = 0;
     size_t i;
     json_array_foreach(json_object_get(report, "levels"), i, level)
@@ -203,7 +219,6 @@ static void add_resolved(json_t *asset, const char *folder, uint64_t key)
     }
     json_object_set_new(asset, "resolved_levels", json_integer(resolved));
     json_decref(report);
-    mem_free(text);
 }
 
 /* Adds the texts about the model's textures and extensions that are not drawn. If this run did not parse the model, takes them from the
@@ -224,9 +239,9 @@ static void add_left_out(json_t *asset, const struct folder_entry *entry, const 
     json_decref(texts);
 }
 
-static char *manifest_text(const char *folder, const struct folder_entry *entries, size_t count, const char *old)
+/* old_root: contents of the old manifest; NULL: there is none. */
+static char *manifest_text(struct log *log, const char *folder, const struct folder_entry *entries, size_t count, const json_t *old_root)
 {
-    json_t *old_root = old ? json_loads(old, 0, NULL) : NULL;
     json_t *assets = json_array(), *root = json_pack("{s:i, s:o}", "format", 2, "assets", assets);
     for (size_t i = 0; i < count; i++) {
         char key[KEY_DIGITS + 1], recipe[KEY_DIGITS + 1], *file = folder_file_name(entries[i].key);
@@ -243,14 +258,13 @@ static char *manifest_text(const char *folder, const struct folder_entry *entrie
         if (entries[i].missing)
             json_object_set_new(asset, "missing", missing ? missing : json_string("the folder cannot be used for preparing"));
         add_surface(asset, folder, entries[i].geometry_key);
-        add_resolved(asset, folder, entries[i].key);
+        add_resolved(asset, log, folder, entries[i].key);
         add_left_out(asset, &entries[i], json_object_get(old_root, "assets"));
         json_array_append_new(assets, asset);
         mem_free(file);
     }
     char *text = json_dumps(root, JSON_COMPACT);
     json_decref(root);
-    json_decref(old_root);
     return text;
 }
 
@@ -305,11 +319,14 @@ static void remove_left_overs(const char *folder, const struct folder_entry *ent
         closedir(dir);
 }
 
-int folder_finish(const char *folder, const struct folder_entry *entries, size_t count, size_t *removed)
+int folder_finish(struct log *log, const char *folder, const struct folder_entry *entries, size_t count, size_t *removed)
 {
     char *path = mem_printf("%s/" MANIFEST, folder);
     size_t size = 0;
-    char *old = text_read_file(path, MANIFEST_MAX_BYTES, &size), *text = manifest_text(folder, entries, count, old);
+    char *old = text_read_file(path, MANIFEST_MAX_BYTES, &size);
+    json_t *old_root = old ? parse(log, path, old, size, "it is written again, without notes on parts of models that are not drawn") : NULL;
+    char *text = manifest_text(log, folder, entries, count, old_root);
+    json_decref(old_root);
     int status = text ? 0 : -ENOMEM;
     if (text && (!old || size != strlen(text) || memcmp(old, text, size) != 0))
         status = atomic_file_put(path, text, strlen(text));

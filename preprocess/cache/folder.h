@@ -3,6 +3,7 @@
    unless a function says otherwise. */
 #ifndef PREPROCESS_CACHE_FOLDER_H
 #define PREPROCESS_CACHE_FOLDER_H
+#include <jansson.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -23,7 +24,8 @@ struct folder_file {
 /* Returns the file name KEY.asset. The caller frees it (mem_free). */
 char *folder_file_name(uint64_t key);
 
-/* Returns the path FOLDER/KEY.influence. The caller frees it (mem_free). */
+/* Return the paths FOLDER/KEY.asset and FOLDER/KEY.influence. The caller frees them (mem_free). */
+char *folder_asset_path(const char *folder, uint64_t key);
 char *folder_influence_path(const char *folder, uint64_t key);
 
 /* Takes the folder's lock file, so that only one process at a time prepares into it. Returns the file descriptor, which holds the lock
@@ -54,8 +56,8 @@ void folder_draft_send(const struct folder_draft *draft);
 int folder_put(struct folder_draft *draft, const char *folder, uint64_t key, const char *report);
 /* Unmaps and closes the draft. The kernel deletes the file unless folder_put() has named it. A zeroed draft is allowed. */
 void folder_draft_close(struct folder_draft *draft);
-/* Returns the text of KEY.report.json, or NULL if there is none. The caller frees it (mem_free). */
-char *folder_report(const char *folder, uint64_t key);
+/* Returns the contents of KEY.report.json, which the caller frees (json_decref). Returns NULL if the file is missing or damaged, logged. */
+json_t *folder_report(struct log *log, const char *folder, uint64_t key);
 
 /* An asset's entry in the manifest. */
 struct folder_entry {
@@ -72,7 +74,7 @@ struct folder_entry {
     size_t left_out_count;
 };
 /* Writes manifest.json for these entries, unless it is unchanged. Then deletes files whose key no entry has; *removed receives their number
- * (removed NULL: deletes nothing). Returns 0 or -errno. */
-int folder_finish(const char *folder, const struct folder_entry *entries, size_t count, size_t *removed);
+ * (removed NULL: deletes nothing). Logs a damaged old manifest. Returns 0 or -errno. */
+int folder_finish(struct log *log, const char *folder, const struct folder_entry *entries, size_t count, size_t *removed);
 
 #endif

@@ -8,11 +8,11 @@
 #include "base/mem.h"
 #include "preprocess/cache/build_cache.h"
 
-void model_cache_read(struct model_cache *cache, const char *folder)
+void model_cache_read(struct model_cache *cache, struct log *log, const char *folder)
 {
     struct cache_file kept;
     *cache = (struct model_cache){ 0 };
-    if (build_cache_open(&kept, folder, BUILD_CACHE_MODELS, 0)) {
+    if (build_cache_open(&kept, log, folder, BUILD_CACHE_MODELS, 0)) {
         struct unpack from = { kept.bytes, kept.count, false };
         cache->at = unpack_array(&from, &cache->count, sizeof(*cache->at));
         cache->nodes = unpack_array(&from, &cache->node_count, sizeof(*cache->nodes));

@@ -8,6 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/log/log.h"
+
 /* The geometry hash (geometry_hash()) of a recipe. A recipe is the hash of a model and of the parameters that cut an asset out of the model
  * (build_recipe()). */
 struct model_cache_geometry {
@@ -25,7 +27,7 @@ struct model_cache {
 };
 
 /* Reads the cache from the folder; a missing or damaged file gives an empty cache. Finish with model_cache_finish(). */
-void model_cache_read(struct model_cache *cache, const char *folder);
+void model_cache_read(struct model_cache *cache, struct log *log, const char *folder);
 /* Writes the cache to the folder, replacing the file. Returns 0 or -errno. */
 int model_cache_write(const struct model_cache *cache, const char *folder);
 /* Frees the lists and zeroes the cache. */

@@ -211,8 +211,12 @@ static bool shape_of_folder(struct diff_side *side, const struct diff_side_asset
 {
     char file_why[200] = "is missing";
     *shape = (struct diff_side_shape){ 0 };
-    if (folder_open(&shape->file, side->path, asset->key, file_why) != 1)
-        return wrong(why, "prepared file: %s", file_why);
+    if (folder_open(&shape->file, side->path, asset->key, file_why) != 1) {
+        char *path = folder_asset_path(side->path, asset->key);
+        wrong(why, "prepared file %.250s: %s", path, file_why);
+        mem_free(path);
+        return false;
+    }
     const struct asset_view *view = &shape->file.view;
     const struct asset_level *finest = &view->levels[0];
     memcpy(shape->origin_m, view->header->origin_m, sizeof(shape->origin_m));

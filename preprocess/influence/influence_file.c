@@ -404,11 +404,11 @@ bool influence_file_make(struct log *log, struct workers *workers, const struct 
     return good && status == 0;
 }
 
-bool influence_file_good(const char *folder, uint64_t key)
+bool influence_file_good(const char *folder, uint64_t key, char why[CACHE_FILE_WHY_BYTES])
 {
     struct cache_file file;
     char *path = folder_influence_path(folder, key);
-    bool good = cache_file_open(&file, path, INFLUENCE_MAGIC, key);
+    bool good = cache_file_open(&file, path, INFLUENCE_MAGIC, key, why);
     if (good)
         cache_file_close(&file);
     mem_free(path);

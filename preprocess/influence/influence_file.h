@@ -3,6 +3,7 @@
  * at a time, and distributes its work to the threads of the `struct workers` that it is given. */
 #ifndef PREPROCESS_INFLUENCE_INFLUENCE_FILE_H
 #define PREPROCESS_INFLUENCE_INFLUENCE_FILE_H
+#include "base/files/cache_file.h"
 #include "base/log/log.h"
 #include "base/workers.h"
 #include "plant/sensors.h"
@@ -44,7 +45,7 @@ struct influence_input {
 bool influence_is_wanted(const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count);
 /* Computes the interpolations that the groups request and writes the file. Returns false with the reason in why. */
 bool influence_file_make(struct log *log, struct workers *workers, const struct influence_input *input, char why[200]);
-/* Returns whether the influence file of the asset with this key exists and is complete. */
-bool influence_file_good(const char *folder, uint64_t key);
+/* Returns whether the influence file of the asset with this key exists and is complete; if not, why receives the reason. */
+bool influence_file_good(const char *folder, uint64_t key, char why[CACHE_FILE_WHY_BYTES]);
 
 #endif

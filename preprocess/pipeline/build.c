@@ -2,7 +2,6 @@
 /* Builds one asset: from a parsed model, or cached geometry, to the bytes of its file. */
 #include "preprocess/pipeline/build.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -256,8 +255,8 @@ static void split(struct build *build)
     linear_error_init(&linear, input->plant, input->sensors, input->sensor_count, (const float(*)[3])places);
     build->keeps = input->folder && build->geometry.index_count / 3 >= GEOMETRY_CACHE_TRIANGLES;
     if (build->keeps) {
-        sample_cache_open(&build->sample_cache, input->folder, input->geometry_key);
-        subdiv_cache_open(&build->findings, input->folder, input->distances_key, &linear);
+        sample_cache_open(&build->sample_cache, build->log, input->folder, input->geometry_key);
+        subdiv_cache_open(&build->findings, build->log, input->folder, input->distances_key, &linear);
     }
     build->failed[0] = !subdivide_levels(&build->levels, &build->geometry,
                                          &(struct subdiv_input){ .linear = &linear,
@@ -515,6 +514,19 @@ static bool build_file(struct build *build)
     return good;
 }
 
+static bool unpack(struct build *build)
+{
+    const struct build_input *input = build->input;
+    enum build_cache_kind damaged;
+    if (geometry_cache_unpack(input->cache, build->log, build->workers, &build->geometry, &build->levels, &build->measured.surface,
+                              &damaged))
+        return true;
+    char *path = build_cache_path(input->folder, damaged, input->geometry_key);
+    wrong(build->why, "the contents of cache file %.300s are damaged, or memory ran out: delete the file and run again", path);
+    mem_free(path);
+    return false;
+}
+
 /* Gets the geometry: from the cache, together with levels and surface, or else by cutting it out of the model. */
 static bool begin(struct build *build)
 {
@@ -524,10 +536,8 @@ static bool begin(struct build *build)
     int64_t since_ns = clock_mono_ns();
     if (!input->cache && !geometry_cut(&build->geometry, input->model, &input->geometry, build->why))
         return false;
-    if (input->cache &&
-        !geometry_cache_unpack(input->cache, build->log, build->workers, &build->geometry, &build->levels, &build->measured.surface))
-        return wrong(build->why, "%016" PRIx64 ".surface is damaged, or memory ran out: delete the file and run again",
-                     input->geometry_key);
+    if (input->cache && !unpack(build))
+        return false;
     *report = (struct build_report){ .nodes = g->node_count,
                                      .triangles = g->index_count / 3,
                                      .vertices = g->vertex_count,

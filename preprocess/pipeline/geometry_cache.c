@@ -30,11 +30,11 @@ static bool read_rest(struct geometry_cache *cache)
     return !rest.bad;
 }
 
-bool geometry_cache_open(struct geometry_cache *cache, const char *folder, uint64_t key)
+bool geometry_cache_open(struct geometry_cache *cache, struct log *log, const char *folder, uint64_t key)
 {
     *cache = (struct geometry_cache){ 0 };
-    bool good = build_cache_open(&cache->parts, folder, BUILD_CACHE_GEOMETRY, key) &&
-                build_cache_open(&cache->surface, folder, BUILD_CACHE_SURFACE, key) && read_rest(cache);
+    bool good = build_cache_open(&cache->parts, log, folder, BUILD_CACHE_GEOMETRY, key) &&
+                build_cache_open(&cache->surface, log, folder, BUILD_CACHE_SURFACE, key) && read_rest(cache);
     if (!good)
         geometry_cache_close(cache);
     return good;
@@ -158,7 +158,7 @@ void geometry_cache_pack(struct text *parts, const struct geometry *geometry, co
 }
 
 bool geometry_cache_unpack(const struct geometry_cache *cache, struct log *log, struct workers *workers, struct geometry *geometry,
-                           struct levels *levels, struct surface **surface)
+                           struct levels *levels, struct surface **surface, enum build_cache_kind *damaged)
 {
     struct unpack from = { 0 }, surface_from = { cache->surface.bytes, cache->surface.count, false };
     from.at = cached_parts(cache, &from.left);
@@ -167,6 +167,7 @@ bool geometry_cache_unpack(const struct geometry_cache *cache, struct log *log, 
     *surface = from.bad ? NULL : surface_unpack(&surface_from, log, workers);
     if (*surface)
         return true;
+    *damaged = from.bad ? BUILD_CACHE_GEOMETRY : BUILD_CACHE_SURFACE;
     levels_finish(levels);
     geometry_finish(geometry);
     return false;

@@ -246,13 +246,31 @@ static void take_file(struct prepare_asset *asset, const struct asset_view *view
         asset->surface_distances_m[s] = view->sensors[s].surface_distance_m;
 }
 
-static void take_report(struct prepare_asset *asset, const char *folder)
+static void take_report(const struct prepare_run *run, struct prepare_asset *asset)
 {
-    char *text = folder_report(folder, asset->key);
-    json_t *numbers = text ? json_loads(text, 0, NULL) : NULL;
+    json_t *numbers = folder_report(run->log, run->params->folder, asset->key);
     asset->reported = numbers && build_report_from_json(numbers, &asset->report);
     json_decref(numbers);
-    mem_free(text);
+}
+
+/* Opens the asset's prepared file and checks its influence file, if the asset needs one. Returns as folder_open(). If a file is damaged,
+ * *damaged receives its path and what is wrong with it; the caller frees the text. */
+static int open_prepared(const struct prepare_run *run, const struct prepare_asset *asset, struct folder_file *file, char **damaged)
+{
+    const char *folder = run->params->folder;
+    char why[CACHE_FILE_WHY_BYTES], *path = folder_asset_path(folder, asset->key);
+    int found = folder_open(file, folder, asset->key, why);
+    if (found == 1 && influence_is_wanted(run->prepare->plant, asset->sensors, asset->sensor_count) &&
+        !influence_file_good(folder, asset->key, why)) {
+        folder_close(file);
+        mem_free(path);
+        path = folder_influence_path(folder, asset->key);
+        found = -1;
+    }
+    if (found < 0)
+        *damaged = mem_printf("%s: %s", path, why);
+    mem_free(path);
+    return found;
 }
 
 static void look_at_some(void *arg, size_t begin, size_t end)
@@ -261,22 +279,12 @@ static void look_at_some(void *arg, size_t begin, size_t end)
     for (size_t i = begin; i < end && !is_stopped(run); i++) {
         struct prepare_asset *asset = &run->prepare->assets[i];
         struct folder_file file;
-        char why[200];
         if (!is_possible(run, asset) || asset->same_as != i)
             continue;
-        int found = folder_open(&file, run->params->folder, asset->key, why);
-        if (found == 1 && influence_is_wanted(run->prepare->plant, asset->sensors, asset->sensor_count) &&
-            !influence_file_good(run->params->folder, asset->key)) {
-            folder_close(&file);
-            snprintf(why, sizeof(why), "the influence of the asset's sensors is missing or damaged");
-            found = -1;
-        }
-        if (found < 0)
-            asset->rebuilt_because = mem_strdup(why);
-        if (found != 1)
+        if (open_prepared(run, asset, &file, &asset->rebuilt_because) != 1)
             continue;
         take_file(asset, &file.view);
-        take_report(asset, run->params->folder);
+        take_report(run, asset);
         asset->state = PREPARE_UNCHANGED;
         folder_close(&file);
     }
@@ -386,7 +394,7 @@ static int heavier_first(const void *a, const void *b, void *arg)
 /* Opens the geometry cache of an asset. Returns false if the model must be parsed instead. */
 static bool find_stock(const struct prepare_run *run, struct prepare_asset *asset)
 {
-    return asset->sensor_count > 0 && geometry_cache_open(&asset->cache, run->params->folder, asset->geometry_key);
+    return asset->sensor_count > 0 && geometry_cache_open(&asset->cache, run->log, run->params->folder, asset->geometry_key);
 }
 
 static double own_triangles(const struct prepare_asset *asset, const struct model_file *model)
@@ -485,7 +493,7 @@ static void warn(struct prepare_run *run, const struct prepare_asset *asset)
 {
     const struct plant *plant = run->prepare->plant;
     if (asset->rebuilt_because)
-        diag_warning(run->diag, plant->files.path, asset->plant->line, 0, "asset %s: the prepared file was not usable (%s) and is rebuilt",
+        diag_warning(run->diag, plant->files.path, asset->plant->line, 0, "asset %s: a prepared file was not usable and is rebuilt (%s)",
                      asset->plant->id, asset->rebuilt_because);
     for (size_t s = 0; asset->surface_distances_m && s < asset->sensor_count; s++) {
         const struct plant_tag *tag = &plant->tags[asset->sensors[s].tag];
@@ -554,7 +562,7 @@ static void write_manifest(struct prepare_run *run)
         name_left_out(prepare, i, &entries[i]);
         next += asset->sensor_count;
     }
-    int status = folder_finish(run->params->folder, entries, prepare->asset_count, run->failed ? NULL : &prepare->removed);
+    int status = folder_finish(run->log, run->params->folder, entries, prepare->asset_count, run->failed ? NULL : &prepare->removed);
     if (status != 0)
         fail(run, prepare->plant->files.path, 0, "%s: the manifest cannot be written: %s", run->params->folder, strerror(-status));
     mem_free(entries);
@@ -577,7 +585,7 @@ bool prepare_run(struct prepare *prepare, struct log *log, struct workers *worke
         fail(&run, plant->files.path, 0, "%s: cannot be created: %s", params->folder, strerror(errno));
     int lock = run.failed ? -1 : folder_lock(params->folder, log, params->stop);
     if (!run.failed) {
-        model_cache_read(&run.known, params->folder);
+        model_cache_read(&run.known, log, params->folder);
         find_keys(&run);
         sort_out(&run);
         build_all(&run);

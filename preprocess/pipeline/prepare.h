@@ -27,7 +27,7 @@ struct prepare_asset {
     struct geometry_cache cache; /* the geometry cache, open while the asset is built; parts.bytes NULL: not open */
     size_t same_as;              /* index of the first asset with the same key; both use that asset's file */
     enum prepare_state state;
-    char *rebuilt_because; /* defect of the existing file, because of which it was built again; NULL: none */
+    char *rebuilt_because; /* path of a damaged prepared file, and its defect, because of which it was built again; NULL: none */
     uint32_t triangles, vertices;
     bool reported; /* true: `report` is valid; always for a built asset, for an unchanged asset only if KEY.report.json exists */
     struct build_report report;

@@ -84,13 +84,13 @@ static size_t unreachable(const struct sensor_distances *measured, size_t vertex
 }
 
 /* Computes the distances from all sensors. Distances from a sensor whose position has not changed come from the cache. */
-static bool solve(struct sensor_distances *measured, const struct build_input *input, uint32_t triangles, uint32_t *kept)
+static bool solve(struct sensor_distances *measured, struct log *log, const struct build_input *input, uint32_t triangles, uint32_t *kept)
 {
     const double(*places_m)[3] = (const double(*)[3])measured->places_m;
     struct distance_cache columns = { 0 };
     bool keep = input->folder && triangles >= GEOMETRY_CACHE_TRIANGLES;
     if (keep)
-        distance_cache_open(&columns, input->folder, input->distances_key, surface_column_length(measured->surface), places_m,
+        distance_cache_open(&columns, log, input->folder, input->distances_key, surface_column_length(measured->surface), places_m,
                             input->sensor_count);
     const struct surface_columns known = distance_cache_for_surface(&columns);
     bool good = surface_field_init(&measured->field, measured->surface, places_m, input->sensor_count, keep ? &known : NULL);
@@ -110,7 +110,7 @@ bool sensor_distances_find(struct sensor_distances *measured, struct log *log, s
         measured->surface = surface_create(log, workers, (const float(*)[3])g->positions_m, g->vertex_count, g->indices, g->index_count / 3,
                                            &(struct surface_params){ .tolerance_m = input->geometry.tolerance_m, .why = cause });
     int64_t made_ns = clock_mono_ns();
-    if (!measured->surface || !solve(measured, input, g->index_count / 3, &report->kept_sensors))
+    if (!measured->surface || !solve(measured, log, input, g->index_count / 3, &report->kept_sensors))
         return wrong(why, "the asset's distances to %zu sensors cannot be computed: %s", input->sensor_count, cause);
     drop_sensors(measured, workers, input);
     report->unreachable_vertices = unreachable(measured, g->vertex_count);

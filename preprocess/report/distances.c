@@ -39,7 +39,7 @@ bool distances_print(const struct prepare *prepare, const char *folder, int asse
     const struct prepare_asset *asset = &prepare->assets[asset_number];
     int column = column_of(asset, tag);
     struct folder_file file;
-    char why[200] = "there is none";
+    char why[200] = "missing";
     if (column < 0) {
         diag_error(diag, prepare->plant->files.tags_path, prepare->plant->tags[tag].line, 0, "tag %s is not a sensor of asset %s",
                    prepare->plant->tags[tag].name, asset->plant->id);
@@ -52,7 +52,9 @@ bool distances_print(const struct prepare *prepare, const char *folder, int asse
         return false;
     }
     if (folder_open(&file, folder, asset->key, why) != 1) {
-        diag_error(diag, prepare->plant->files.path, asset->plant->line, 0, "asset %s: its file in %s: %s", asset->plant->id, folder, why);
+        char *path = folder_asset_path(folder, asset->key);
+        diag_error(diag, prepare->plant->files.path, asset->plant->line, 0, "asset %s: its file %s: %s", asset->plant->id, path, why);
+        mem_free(path);
         return false;
     }
     if (!folder_unpack(&file)) {

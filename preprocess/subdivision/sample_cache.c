@@ -16,11 +16,11 @@
 #define FULL 0.85
 #define WORTH 0.5 /* minimum share of a run's lookups that the file must answer; below it, the file is rewritten */
 
-void sample_cache_open(struct sample_cache *sample_cache, const char *folder, uint64_t key)
+void sample_cache_open(struct sample_cache *sample_cache, struct log *log, const char *folder, uint64_t key)
 {
     *sample_cache = (struct sample_cache){ 0 };
     pthread_mutex_init(&sample_cache->lock, NULL);
-    if (build_cache_open(&sample_cache->file, folder, BUILD_CACHE_SAMPLES, key)) {
+    if (build_cache_open(&sample_cache->file, log, folder, BUILD_CACHE_SAMPLES, key)) {
         sample_cache->known = (const uint64_t *)(const void *)sample_cache->file.bytes;
         sample_cache->slot_count = sample_cache->file.count / sizeof(*sample_cache->known);
     }

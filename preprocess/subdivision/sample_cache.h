@@ -28,7 +28,7 @@ struct sample_cache_notes { /* lookups recorded by one thread; initialise with z
 };
 
 /* Opens the cache of a key. A missing file gives an empty cache. Close with sample_cache_close(). */
-void sample_cache_open(struct sample_cache *sample_cache, const char *folder, uint64_t key);
+void sample_cache_open(struct sample_cache *sample_cache, struct log *log, const char *folder, uint64_t key);
 /* Unmaps the file and frees the recorded lookups. */
 void sample_cache_close(struct sample_cache *sample_cache);
 /* Writes the lookups of this run if enough lookups were missing from the file. Ignores errors: then nothing is cached. */

@@ -181,14 +181,14 @@ static void read_file(struct subdiv_cache *cache, const struct linear_error *lin
     }
 }
 
-void subdiv_cache_open(struct subdiv_cache *cache, const char *folder, uint64_t key, const struct linear_error *linear)
+void subdiv_cache_open(struct subdiv_cache *cache, struct log *log, const char *folder, uint64_t key, const struct linear_error *linear)
 {
     *cache = (struct subdiv_cache){ .applies = true };
     for (size_t g = 0; g < linear->group_count; g++)
         cache->applies &= is_local(&linear->groups[g]);
     if (cache->applies)
         list_sensors(linear, &cache->sensors);
-    if (cache->applies && build_cache_open(&cache->file, folder, BUILD_CACHE_SUBDIVISION, key))
+    if (cache->applies && build_cache_open(&cache->file, log, folder, BUILD_CACHE_SUBDIVISION, key))
         read_file(cache, linear);
 }
 

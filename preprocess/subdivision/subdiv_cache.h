@@ -40,7 +40,7 @@ struct subdiv_cache {
 
 /* Opens the findings (measured errors) of the last run that were stored under this key, and determines which sensors have changed since.
  * Never fails: without a usable file the cache is empty. linear must outlive the cache. */
-void subdiv_cache_open(struct subdiv_cache *cache, const char *folder, uint64_t key, const struct linear_error *linear);
+void subdiv_cache_open(struct subdiv_cache *cache, struct log *log, const char *folder, uint64_t key, const struct linear_error *linear);
 /* Unmaps the file and frees the arrays. A zeroed cache is allowed. */
 void subdiv_cache_close(struct subdiv_cache *cache);
 /* Writes this run's findings (measured errors) to the file, when subdivision has ended. Write errors are ignored: then the next run

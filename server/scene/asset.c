@@ -67,9 +67,9 @@ bool asset_open_influence(struct log *log, struct asset *asset)
         return true;
     const size_t length = strlen(asset->path), stem = length > sizeof(ending) - 1 ? length - (sizeof(ending) - 1) : length;
     const struct asset_header *header = asset->view.header;
-    char why[200] = "missing, damaged or of another version";
+    char why[CACHE_FILE_WHY_BYTES];
     char *path = mem_printf("%.*s.influence", (int)stem, asset->path);
-    bool good = cache_file_open(&asset->influence_file, path, INFLUENCE_MAGIC, header->key) &&
+    bool good = cache_file_open(&asset->influence_file, path, INFLUENCE_MAGIC, header->key, why) &&
                 influence_view_init(&asset->influence, asset->influence_file.bytes, asset->influence_file.count, header->vertex_count, why);
     if (!good) {
         log_err(log, "influence file %s: %s", path, why);

@@ -238,7 +238,8 @@ static void damage(const char *path, bool cut)
     size_t size;
     char *bytes = text_read_file(path, (size_t)1 << 30, &size);
     assert_non_null(bytes);
-    for (size_t i = size / 8; i < size; i += size / 8) /* damages every column and every part of the cached mesh */
+    /* damages every part of the cached mesh, and the distances of every column, which begin after 32 bytes */
+    for (size_t i = size / 8 + 40; i < size; i += size / 8)
         bytes[i] ^= 4;
     assert_int_equal(atomic_file_put(path, bytes, cut ? size / 3 : size), 0);
     mem_free(bytes);
@@ -255,6 +256,9 @@ CASE(what_is_damaged_is_made_anew)
         damage(columns, cut);
         json_t *asset = prepare(c, tags, "kept", &model_read);
         assert_true(model_read);
+        prep_case_says(&c->err, stock);
+        prep_case_says(&c->err, cut ? "truncated: " : "damaged: checksum ");
+        prep_case_says(&c->err, columns);
         assert_int_equal(number(asset, "stocked"), 0);
         assert_in_range(number(asset, "kept_sensors"), 0, cut ? 1 : 0);
         assert_as_fresh(c, tags, asset);
@@ -286,6 +290,8 @@ CASE(points_are_found_once)
         ino_t before = file_number(spots); /* inode of the existing file while another one is written */
         json_t *asset = prepare(c, tags, "kept", &model_read);
         assert_false(model_read);
+        if (i)
+            prep_case_says(&c->err, spots);
         assert_true((file_number(spots) == before) == (i == 0));
         assert_as_fresh(c, tags, asset);
         json_decref(asset);

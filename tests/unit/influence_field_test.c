@@ -751,7 +751,8 @@ CASE(test_damaged_file)
             assert_int_equal(truncate(path, 100), 0);
         assert_false(use(&u, c));
         prep_case_expect(c, "$PLANT", 0);
-        prep_case_says(&c->err, "the influence of the asset's sensors is missing or damaged");
+        prep_case_says(&c->err, path);
+        prep_case_says(&c->err, way ? "truncated: 100 bytes, the header says" : "damaged: checksum");
         assert_true(use(&u, c));
         finish(&u);
     }

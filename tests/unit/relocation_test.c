@@ -130,7 +130,7 @@ enum sight { UNSEEN, SEEN_FINEST, SEEN_COARSE };
 static enum sight *sights_of(const struct relocation_shape *shape)
 {
     struct cache_file kept;
-    assert_true(cache_file_open(&kept, shape->surface_path, SURFACE_MAGIC, shape->surface_key));
+    assert_true(cache_file_open(&kept, shape->surface_path, SURFACE_MAGIC, shape->surface_key, (char[CACHE_FILE_WHY_BYTES]){ 0 }));
     struct surface *surface = surface_unpack(&(struct unpack){ kept.bytes, kept.count, false }, the_log, workers);
     assert_non_null(surface);
     enum sight *sights = mem_array(shape->vertex_count, sizeof(*sights));

@@ -2,7 +2,11 @@
 /* Reads and writes cache files: a header with magic, key, byte count and checksum precedes the content. */
 #include "base/files/cache_file.h"
 
+#include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -19,32 +23,82 @@ struct cache_head {
     uint64_t checksum; /* XXH3-64 of the content, seeded with the key */
 };
 
-static bool is_good(const struct cache_file *file, const char *magic, uint64_t key)
+enum file_state { FILE_GOOD, FILE_MISSING, FILE_OTHER, FILE_DAMAGED }; /* FILE_OTHER: of another kind, version or key */
+
+static enum file_state __attribute__((format(printf, 3, 4))) found(char *why, enum file_state state, const char *fmt, ...)
 {
-    const struct cache_head *head = file->map;
-    return file->map_bytes >= sizeof(*head) && memcmp(head->magic, magic, sizeof(head->magic)) == 0 && head->key == key &&
-           head->count == file->map_bytes - sizeof(*head) && head->checksum == XXH3_64bits_withSeed(head + 1, head->count, key);
+    va_list ap;
+    va_start(ap, fmt);
+    vsnprintf(why, CACHE_FILE_WHY_BYTES, fmt, ap);
+    va_end(ap);
+    return state;
 }
 
-bool cache_file_open(struct cache_file *file, const char *path, const char *magic, uint64_t key)
+static enum file_state map_file(struct cache_file *file, const char *path, char *why)
 {
-    struct stat st;
+    struct stat st = { 0 };
     int fd = open(path, O_RDONLY | O_CLOEXEC);
-    *file = (struct cache_file){ 0 };
+    if (fd < 0 && errno == ENOENT)
+        return found(why, FILE_MISSING, "missing");
     if (fd >= 0 && fstat(fd, &st) == 0 && S_ISREG(st.st_mode) && st.st_size > 0) {
         file->map_bytes = (size_t)st.st_size;
         file->map = mmap(NULL, file->map_bytes, PROT_READ, MAP_PRIVATE, fd, 0);
         file->map = file->map == MAP_FAILED ? NULL : file->map;
+    } else if (fd >= 0) {
+        errno = S_ISDIR(st.st_mode) ? EISDIR : ENODATA;
     }
+    int cause = errno;
     if (fd >= 0)
         close(fd);
-    if (!file->map || !is_good(file, magic, key)) {
+    return file->map ? FILE_GOOD : found(why, FILE_DAMAGED, "cannot be read: %s", strerror(cause));
+}
+
+static enum file_state check(const struct cache_file *file, const char *magic, uint64_t key, char *why)
+{
+    const struct cache_head *head = file->map;
+    if (file->map_bytes < sizeof(*head))
+        return found(why, FILE_DAMAGED, "truncated: %zu bytes, the header alone has %zu", file->map_bytes, sizeof(*head));
+    if (memcmp(head->magic, magic, sizeof(head->magic)) != 0)
+        return found(why, FILE_OTHER, "of another version, or not a file of this kind (it does not begin with %.8s)", magic);
+    if (head->key != key)
+        return found(why, FILE_OTHER, "made from other input (key %016" PRIx64 ", expected %016" PRIx64 ")", head->key, key);
+    if (head->count != file->map_bytes - sizeof(*head))
+        return found(why, FILE_DAMAGED, "%s: %zu bytes, the header says %" PRIu64,
+                     head->count > file->map_bytes - sizeof(*head) ? "truncated" : "too long", file->map_bytes,
+                     head->count + sizeof(*head));
+    uint64_t sum = XXH3_64bits_withSeed(head + 1, head->count, key);
+    if (sum != head->checksum)
+        return found(why, FILE_DAMAGED, "damaged: checksum %016" PRIx64 ", the header says %016" PRIx64, sum, head->checksum);
+    return FILE_GOOD;
+}
+
+static enum file_state open_file(struct cache_file *file, const char *path, const char *magic, uint64_t key, char *why)
+{
+    *file = (struct cache_file){ 0 };
+    enum file_state state = map_file(file, path, why);
+    if (state == FILE_GOOD)
+        state = check(file, magic, key, why);
+    if (state != FILE_GOOD) {
         cache_file_close(file);
-        return false;
+        return state;
     }
     file->bytes = (const char *)file->map + sizeof(struct cache_head);
     file->count = file->map_bytes - sizeof(struct cache_head);
-    return true;
+    return FILE_GOOD;
+}
+
+bool cache_file_open(struct cache_file *file, const char *path, const char *magic, uint64_t key, char why[CACHE_FILE_WHY_BYTES])
+{
+    return open_file(file, path, magic, key, why) == FILE_GOOD;
+}
+
+bool cache_file_open_if_good(struct cache_file *file, struct log *log, const char *path, const char *magic, uint64_t key)
+{
+    char why[CACHE_FILE_WHY_BYTES];
+    enum file_state state = open_file(file, path, magic, key, why);
+    if (state == FILE_DAMAGED)
+        log_warn(log, "cache file %s: %s; its contents are computed again", path, why);
+    return state == FILE_GOOD;
 }
 
 void cache_file_close(struct cache_file *file)

@@ -65,8 +65,12 @@ bool openness_open(struct openness *openness, const struct gpu_scene *gpu_scene)
 {
     char *path = path_of(gpu_scene);
     *openness = (struct openness){ 0 };
-    bool good = path && cache_file_open(&openness->file, path, magic, key_of(gpu_scene)) &&
-                openness->file.count == GROUND_TEXELS + vertices_of(gpu_scene);
+    bool good = path && cache_file_open_if_good(&openness->file, gpu_scene->gl->log, path, magic, key_of(gpu_scene));
+    if (good && openness->file.count != GROUND_TEXELS + vertices_of(gpu_scene)) {
+        log_warn(gpu_scene->gl->log, "cache file %s: has %zu values, the plant needs %zu; they are computed again", path,
+                 openness->file.count, GROUND_TEXELS + vertices_of(gpu_scene));
+        good = false;
+    }
     mem_free(path);
     if (!good)
         openness_close(openness);
