@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "base/mem.h"
 #include "plant/models/transform.h"
 #include "preprocess/cache/folder.h"
 #include "preprocess/pipeline/sensor_distances.h"
