@@ -174,8 +174,8 @@ static bool find_client(struct server_context *server, struct lws *wsi, struct c
 static bool has_token_in_query(struct lws *wsi)
 {
     char argument[4096]; /* size of the header buffer: larger than all headers of a request together that libwebsockets keeps */
-    for (int i = 0; lws_hdr_fragment_length(wsi, WSI_TOKEN_HTTP_URI_ARGS, i) > 0; i++)
-        if (lws_hdr_copy_fragment(wsi, argument, sizeof(argument), WSI_TOKEN_HTTP_URI_ARGS, i) > 0 && access_argument_is_token(argument))
+    for (int i = 0; lws_hdr_copy_fragment(wsi, argument, sizeof(argument), WSI_TOKEN_HTTP_URI_ARGS, i) >= 0; i++)
+        if (access_argument_is_token(argument))
             return true;
     return false;
 }

@@ -156,6 +156,18 @@ test('snapshots: a picture, or what is wrong with the question', { skip }, async
         assert.equal((await get(plant.port, `/snapshot.png?${query}`)).status, 400, query);
 });
 
+test('no argument of a query is ignored: not the 64th, nor one after an empty one, and 65 are refused', { skip }, async () => {
+    const ask = (count, last) => get(plant.port, `/snapshot.png?width=64&height=64${'&power=2'.repeat(count - 3)}&${last}`);
+    for (const count of [33, 64])
+        for (const [last, status] of [['look=flat', 200], ['look=none', 400]])
+            assert.equal((await ask(count, last)).status, status, `${count} arguments, ${last}`);
+    const more = await ask(65, 'look=flat');
+    assert.deepEqual([more.status, more.body.toString()], [400, 'the query has more than 64 arguments\n']);
+    for (const [query, status] of [['&&look=none', 400], ['&look=flat&&power=x', 400], ['&token=x', 400], ['look=flat&&token=x', 400],
+        ['&look=flat&', 200], ['', 200]])
+        assert.equal((await get(plant.port, `/snapshot.png?${query}`)).status, status, query);
+});
+
 test('orthographic cameras, fits, picks, and what is hidden', { skip }, async () => {
     const client = await PlainClient.open(plant.port);
     await client.hello();

@@ -190,18 +190,38 @@ int http_answer(struct lws *wsi, int status, const char *text)
     return lws_write(wsi, (unsigned char *)text, strlen(text), LWS_WRITE_HTTP_FINAL) < 0 ? -1 : 0;
 }
 
+/* Returns whether argument i of the query is empty, as the second one of `a=1&&b=2`. libwebsockets turns an empty last argument into "/".
+   *end: true: there is no argument i. */
+static bool is_empty_arg(struct lws *wsi, int i, bool *end)
+{
+    char text[2] = "";
+    int length = lws_hdr_fragment_length(wsi, WSI_TOKEN_HTTP_URI_ARGS, i);
+    *end = length == 0 && lws_hdr_copy_fragment(wsi, text, sizeof(text), WSI_TOKEN_HTTP_URI_ARGS, i) < 0;
+    if (length == 1)
+        lws_hdr_copy_fragment(wsi, text, sizeof(text), WSI_TOKEN_HTTP_URI_ARGS, i);
+    return length == 0 || text[0] == '/';
+}
+
 bool request_args(struct lws *wsi, struct args *args, struct message_error *error)
 {
-    int count = 0;
-    for (; count < MAX_ARGS && lws_hdr_fragment_length(wsi, WSI_TOKEN_HTTP_URI_ARGS, count) > 0; count++) {
-        if (lws_hdr_copy_fragment(wsi, args->bytes[count], MAX_ARG_BYTES, WSI_TOKEN_HTTP_URI_ARGS, count) < 0) {
-            message_fail(error, "bad_field", "argument %d is longer than %d bytes", count + 1, MAX_ARG_BYTES - 1);
+    args->count = 0;
+    for (int i = 0;; i++) {
+        bool end, empty = is_empty_arg(wsi, i, &end);
+        if (end)
+            return true;
+        if (empty)
+            continue;
+        if (args->count == MAX_ARGS) {
+            message_fail(error, "bad_field", "the query has more than %d arguments", MAX_ARGS);
             return false;
         }
-        args->list[count] = args->bytes[count];
+        char *arg = args->bytes[args->count];
+        if (lws_hdr_copy_fragment(wsi, arg, MAX_ARG_BYTES, WSI_TOKEN_HTTP_URI_ARGS, i) < 0) {
+            message_fail(error, "bad_field", "argument %d is longer than %d bytes", i + 1, MAX_ARG_BYTES - 1);
+            return false;
+        }
+        args->list[args->count++] = arg;
     }
-    args->count = (size_t)count;
-    return true;
 }
 
 const char *arg_of(const struct args *args, const char *name)

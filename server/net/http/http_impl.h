@@ -47,7 +47,7 @@ struct http_exchange {
     struct http_exchange *next;  /* next in server->http.waiting */
 };
 
-enum { MAX_ARGS = 32, MAX_ARG_BYTES = 2048 };
+enum { MAX_ARGS = 64, MAX_ARG_BYTES = 2048 };
 struct args { /* decoded arguments of a query */
     char bytes[MAX_ARGS][MAX_ARG_BYTES];
     const char *list[MAX_ARGS];
