@@ -17,7 +17,7 @@
 #include "helper_program.h"
 
 /* OWN_MB: memory limit in MB of plantcast-import itself, without the processes that read files for it */
-enum { FILES = 3, MAX_ARGUMENTS = 300, OWN_MB = 512 };
+enum { FILES = 3, OWN_MB = 512 };
 static const size_t max_bytes = (size_t)256 << 20;
 
 struct texts {
@@ -35,10 +35,10 @@ struct import_job {
     bool undoes;    /* true: an undo is running, which params.stop does not end */
 };
 
-struct arguments {
-    const char *at[MAX_ARGUMENTS + 1]; /* ends with NULL */
-    char *own[MAX_ARGUMENTS];          /* texts to be freed */
-    size_t count, owned;
+struct arguments { /* zero-initialise */
+    const char **at; /* ends with NULL */
+    char **own;      /* arguments that are freed with the list */
+    size_t count, capacity, owned, own_capacity;
 };
 
 static void remember(const struct import_job *job, struct texts *texts)
@@ -97,8 +97,25 @@ void import_job_end(struct import_job **pointer)
 
 static void add(struct arguments *list, const char *argument)
 {
-    if (list->count < MAX_ARGUMENTS)
-        list->at[list->count++] = argument;
+    mem_grow(&list->at, &list->capacity, list->count + 2, sizeof(*list->at));
+    list->at[list->count++] = argument;
+    list->at[list->count] = NULL;
+}
+
+/* Adds an argument and takes ownership of the text (mem_free). */
+static void add_own(struct arguments *list, char *argument)
+{
+    mem_grow(&list->own, &list->own_capacity, list->owned + 1, sizeof(*list->own));
+    list->own[list->owned++] = argument;
+    add(list, argument);
+}
+
+static void arguments_finish(struct arguments *list)
+{
+    for (size_t i = 0; i < list->owned; i++)
+        mem_free(list->own[i]);
+    mem_free(list->own);
+    mem_free(list->at);
 }
 
 /* Adds an exported file to the program's arguments. A symlink is resolved, because the files that a model refers to are in the folder of
@@ -106,10 +123,7 @@ static void add(struct arguments *list, const char *argument)
 static void add_export(struct arguments *list, const struct import_job *job, const char *name)
 {
     char real[PATH_MAX], *path = mem_printf("%s/%s", plant_import_exports(job->params.import), name);
-    if (list->owned < MAX_ARGUMENTS) {
-        list->own[list->owned] = realpath(path, real) ? mem_strdup(real) : mem_strdup(path);
-        add(list, list->own[list->owned++]);
-    }
+    add_own(list, mem_strdup(realpath(path, real) ? real : path));
     mem_free(path);
 }
 
@@ -142,22 +156,17 @@ static struct helper_params params_of(struct import_job *job, enum import_phase 
 static char *run(struct import_job *job, struct arguments *list, enum import_phase phase, char **remark)
 {
     struct helper_params params = params_of(job, phase);
-    list->at[list->count] = NULL;
     params.arguments = list->at;
     params.remark = remark;
     params.memory_bytes = ((size_t)job->params.quotas->at[QUOTA_IMPORT_MB] + OWN_MB) << 20;
     params.memory_option = "--limit import-megabytes";
-    char *why = helper_run(&params);
-    for (size_t i = 0; i < list->owned; i++)
-        mem_free(list->own[i]);
-    return why;
+    return helper_run(&params);
 }
 
 static void add_limit(struct arguments *list, const char *option, int64_t limit)
 {
-    list->own[list->owned] = mem_printf("%" PRId64, limit);
     add(list, option);
-    add(list, list->own[list->owned++]);
+    add_own(list, mem_printf("%" PRId64, limit));
 }
 
 /* Adds options that limit each process that reads a file; run() limits all these processes together. */
@@ -171,9 +180,8 @@ static void add_limits(struct arguments *list, const struct import_job *job)
    lock. */
 static void add_lent(struct arguments *list)
 {
-    list->own[list->owned] = mem_printf("%d", HELPER_LENT);
     add(list, "--folder-lent");
-    add(list, list->own[list->owned++]);
+    add_own(list, mem_printf("%d", HELPER_LENT));
 }
 
 static void add_option(struct arguments *list, const char *option, const char *value)
@@ -207,13 +215,15 @@ static char *read_models(struct import_job *job, const struct import_order *orde
             add_export(&list, job, exports->at[i].name);
             models++;
         }
-    return models > 0 ? run(job, &list, IMPORT_READING, remark) : mem_strdup("no model has been uploaded yet");
+    char *why = models > 0 ? run(job, &list, IMPORT_READING, remark) : mem_strdup("no model has been uploaded yet");
+    arguments_finish(&list);
+    return why;
 }
 
 static void add_source(struct arguments *list, const struct import_source *source)
 {
-    list->own[list->owned] = mem_printf("%s%s%s", source->host, *source->port ? ":" : "", source->port);
-    add_option(list, "--modbus", list->own[list->owned++]);
+    add(list, "--modbus");
+    add_own(list, mem_printf("%s%s%s", source->host, *source->port ? ":" : "", source->port));
     add_option(list, "--unit", source->unit);
     add_option(list, "--byte-order", source->order);
     add_option(list, "--address-base", source->base);
@@ -252,6 +262,7 @@ static char *match_tags(struct import_job *job, const struct import_order *order
     } else if (!order->models) {
         why = mem_strdup("no tag list has been uploaded yet");
     }
+    arguments_finish(&list);
     mem_free(decisions);
     return why;
 }
@@ -338,6 +349,7 @@ char *import_job_undo(struct import_job *job)
     add(&list, job->folder);
     job->undoes = true;
     char *why = run(job, &list, IMPORT_READING, NULL);
+    arguments_finish(&list);
     job->undoes = false;
     return why;
 }
