@@ -129,7 +129,10 @@ test('uploads: names, sizes, other sites, one import at a time', options, async 
         assert.equal((await put('x.glb', 'x', { 'Sec-Fetch-Site': 'cross-site' })).status, 403);
         assert.equal((await served.post('/run', undefined, { Origin: 'http://elsewhere.example' })).status, 403);
         assert.equal((await served.post('/run?units=km')).status, 400);
-        assert.equal((await served.post('/nothing', 'x')).status, 405);
+        const nothing = await served.post('/nothing', 'x');
+        assert.equal(nothing.status, 405);
+        assert.deepEqual((await nothing.text()).match(/\/[\w/]+/g).filter((path) => /import/.test(path)).map((path) => path.slice(15)),
+            ['upload', 'remove', 'run', 'decide', 'source', 'cancel']);
         assert.equal((await served.api('/matches')).status, 404, 'none yet');
         assert.deepEqual(readdirSync(join(served.folder, 'exports')), [], 'nothing of these is there');
         assert.deepEqual(readdirSync(served.root), ['plant']);
@@ -186,7 +189,8 @@ test('a daemon that brings no plants in has none of these', options, async () =>
     try {
         const url = `http://127.0.0.1:${plant.port}/api/v1/import`;
         assert.equal((await fetch(url)).status, 404);
-        assert.equal((await fetch(`${url}/upload?name=x.glb`, { method: 'POST', body: 'x' })).status, 405);
+        const upload = await fetch(`${url}/upload?name=x.glb`, { method: 'POST', body: 'x' });
+        assert.deepEqual([upload.status, await upload.text()], [405, 'only GET and HEAD are allowed (POST: /api/v1/reload, /logout)\n']);
         assert.equal(existsSync(join(plant.folder, 'exports')), false);
     } finally {
         await plant.destroy();

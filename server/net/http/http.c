@@ -240,6 +240,16 @@ static int serve_post(struct server_context *server, struct http_exchange *reque
     return import_post(server, request, path);
 }
 
+static int refuse_method(const struct server_context *server, struct http_exchange *request)
+{
+    struct text text = { 0 };
+    request->close = true; /* close the connection after the answer, because the client may send a body that nobody will read */
+    text_add(&text, "only GET and HEAD are allowed (POST: %s, %s", RELOAD_PATH, LOGOUT_PATH);
+    import_add_posts(server, &text);
+    text_add(&text, ")\n");
+    return request_answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, HTTP_TEXT, text.at, text.length, "allow:", "GET, HEAD");
+}
+
 static int serve(struct server_context *server, struct http_exchange *request, const char *path)
 {
     bool post = lws_hdr_total_length(request->wsi, WSI_TOKEN_POST_URI) > 0 &&
@@ -252,11 +262,8 @@ static int serve(struct server_context *server, struct http_exchange *request, c
     counter_inc(server->counters.requests, 1);
     connection_set_answered(server, request->wsi, false);
     stuck_head_arrived(request->wsi);
-    if (!get && !request->head && !post) {
-        request->close = true; /* close the connection after the answer, because the client may send a body that nobody will read */
-        static const char text[] = "only GET and HEAD are allowed (POST: /api/v1/reload, /logout)\n";
-        return request_answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, HTTP_TEXT, mem_strdup(text), strlen(text), "allow:", "GET, HEAD");
-    }
+    if (!get && !request->head && !post)
+        return refuse_method(server, request);
     if (!connection_identify(server, request->wsi, &refusal)) {
         counter_inc(server->counters.refused, 1);
         return refuse(request, &refusal);

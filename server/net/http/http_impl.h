@@ -147,6 +147,8 @@ bool request_may_change(struct server_context *server, struct http_exchange *req
 
 /* Returns whether this is an import path for POST. */
 bool import_takes_post(const struct server_context *server, const char *path);
+/* Appends ", PATH" for each import path for POST. */
+void import_add_posts(const struct server_context *server, struct text *out);
 /* Begins a POST, whose body may follow in later events. */
 int import_post(struct server_context *server, struct http_exchange *request, const char *path);
 /* import_take_body() takes a piece of the body; import_end_body() is called after the last piece. */

@@ -353,6 +353,12 @@ bool import_takes_post(const struct server_context *server, const char *path)
     return server->params.import && find_post(path) < POSTS;
 }
 
+void import_add_posts(const struct server_context *server, struct text *out)
+{
+    for (size_t i = 0; i < POSTS && server->params.import; i++)
+        text_add(out, ", %s", posts[i].path);
+}
+
 int import_post(struct server_context *server, struct http_exchange *request, const char *path)
 {
     struct message_error error = { 0 };
