@@ -59,11 +59,20 @@ static const char *source_of(const struct plant *plant, const struct plant_tag *
     return tag->source < 0 ? "" : plant->sources[tag->source].id;
 }
 
+/* Prints a limit, or "none" for NaN. Returns `out`. */
+static const char *limit_text(double limit, char out[32])
+{
+    snprintf(out, 32, isnan(limit) ? "none" : "%g", limit);
+    return out;
+}
+
 static void compare_limits(struct plant_diff *diff, const struct plant_tag *a, const struct plant_tag *b)
 {
+    char before[32], after[32];
     for (int i = 0; i < LIMIT_COUNT; i++)
         if (!same_number(a->alarms.limits[i], b->alarms.limits[i]))
-            say(diff, "tag %s: %s %g > %g", b->name, plant_limit_names[i], a->alarms.limits[i], b->alarms.limits[i]);
+            say(diff, "tag %s: %s %s > %s", b->name, plant_limit_names[i], limit_text(a->alarms.limits[i], before),
+                limit_text(b->alarms.limits[i], after));
 }
 
 static bool same_place(const struct tag_place *a, const struct tag_place *b)

@@ -71,7 +71,7 @@ test('what changed is said; sessions, alarms and readings go on', options, async
     writeFileSync(tagsFile, `${limited}XX-9,400007,Float,bar,spare,,,,,,1,\n`);
     const shown = client.pictures.length, answer = await reload();
     assert.equal(answer.status, 200, JSON.stringify(answer));
-    assert.deepEqual(answer.changes.sort(), ['tag PI-1: H nan > 9', 'tag XX-9 added']);
+    assert.deepEqual(answer.changes.sort(), ['tag PI-1: H none > 9', 'tag XX-9 added']);
     assert.equal(answer.before, first);
     const again = await client.text('welcome');
     assert.equal(again.plant.configuration, answer.configuration);
