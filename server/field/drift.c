@@ -232,6 +232,19 @@ void drift_fit(const double *values, const double *predicted, const double *near
         out->verdict = DRIFT_NONE;
 }
 
+const char *drift_unknown_cause(const struct drift *drift, size_t sensors)
+{
+    if (drift->verdict != DRIFT_UNKNOWN)
+        return "";
+    if (sensors < MIN_SENSORS)
+        return "fewer than 3 sensors of the group on the asset";
+    if (drift->hours < DRIFT_HOURS_LEAST)
+        return "fewer than 84 hours with readings of the sensor and its neighbours";
+    if (drift->error * DRIFT_ERRORS <= drift->scatter * DRIFT_SIGMAS)
+        return "fewer than 3 sensors that do not drift";
+    return "changes of the plant could hide a drift";
+}
+
 /* Computes each sensor's own offset by least squares of value[hour][sensor] = own[sensor] + common[hour], over all values that are not
    NaN. */
 static void find_own(const double *values, int hours, size_t count, double *own)

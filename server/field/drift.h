@@ -35,6 +35,9 @@ struct drift {
     int hours;      /* number of hours used */
 };
 
+/* Returns what is missing for a verdict (static text, without commas); "": there is a verdict. sensors: number of sensors that were
+   compared. */
+const char *drift_unknown_cause(const struct drift *drift, size_t sensors);
 /* Decides whether one sensor drifts. values, predicted: by hour; NaN: no value. nearest: [nearest_count][hours], readings of at most
    DRIFT_NEAREST nearest sensors. noise: error and recording resolution of a reading, above 0. */
 void drift_fit(const double *values, const double *predicted, const double *nearest, int nearest_count, int hours, double noise,

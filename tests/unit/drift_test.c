@@ -180,16 +180,22 @@ TEST(test_what_cannot_be_told_is_unknown)
     drift_fit(values, predicted, NULL, 0, DRIFT_HOURS, 0.2, &drift);
     assert_int_equal(drift.verdict, DRIFT_UNKNOWN);
     assert_true(isnan(drift.change) && drift.hours == DRIFT_HOURS_LEAST - 1);
+    assert_non_null(strstr(drift_unknown_cause(&drift, 3), "fewer than 84 hours"));
+    assert_non_null(strstr(drift_unknown_cause(&drift, 2), "fewer than 3 sensors of the group"));
     for (int h = 0; h < DRIFT_HOURS; h++) {
         predicted[h] = 50 + h;
         values[h] = 50 + 1.1 * h;
     }
     drift_fit(values, predicted, NULL, 0, DRIFT_HOURS, 0.2, &drift);
     assert_int_equal(drift.verdict, DRIFT_UNKNOWN);
+    assert_non_null(strstr(drift_unknown_cause(&drift, 3), "changes of the plant"));
     for (int h = 0; h < DRIFT_HOURS; h++) /* all sensors are stuck: no drift, although a drift would be detected */
         values[h] = predicted[h] = 50;
     drift_fit(values, predicted, NULL, 0, DRIFT_HOURS, 0.2, &drift);
     assert_int_equal(drift.verdict, DRIFT_NONE);
+    assert_string_equal(drift_unknown_cause(&drift, 3), "");
+    drift.verdict = DRIFT_UNKNOWN; /* as drift_find() sets it if all others drift */
+    assert_non_null(strstr(drift_unknown_cause(&drift, 3), "that do not drift"));
 }
 
 /* --- real series ---------------------------------------------------------------------------------------------------------- */

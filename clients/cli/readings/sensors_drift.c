@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `plantcast sensors drift`: finds sensors that drifted away from what their neighbours predict, in a week of recorded history. */
 #include <getopt.h>
+#include <math.h>
 #include <stdio.h>
 
 #include "base/clock.h"
@@ -29,9 +30,18 @@ static void print_usage(FILE *out)
           "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml)\n"
           "  --folder DIR       folder of recorded readings (default: the one that the plant file names, else\n"
           "                     next to the plant file)\n"
-          "Output: CSV of tag,verdict (found, none, unknown),change,error,scatter,unit,hours.\n"
+          "Output: CSV of tag,verdict (found, none, unknown),change,error,scatter,unit,hours,cause.\n"
+          "With the verdict unknown, cause says what is missing; a number that cannot be computed is empty.\n"
           "Exit status: 0 no sensor drifts, 1 a sensor drifts.\n",
           out);
+}
+
+/* Prints a number and a comma; NaN: only the comma. */
+static void print_number(double number)
+{
+    if (!isnan(number))
+        printf("%.4g", number);
+    putchar(',');
 }
 
 static int print_report(const struct plant *plant, const struct drift_report *report, int group)
@@ -39,8 +49,11 @@ static int print_report(const struct plant *plant, const struct drift_report *re
     int found = 0;
     for (size_t i = 0; i < report->count; i++) {
         const struct drift *drift = &report->drifts[i];
-        printf("%s,%s,%.4g,%.4g,%.4g,%s,%d\n", plant->tags[neighbours_tag(report->neighbours, i)].name,
-               drift_verdict_name(drift->verdict), drift->change, drift->error, drift->scatter, plant->groups[group].unit, drift->hours);
+        printf("%s,%s,", plant->tags[neighbours_tag(report->neighbours, i)].name, drift_verdict_name(drift->verdict));
+        print_number(drift->change);
+        print_number(drift->error);
+        print_number(drift->scatter);
+        printf("%s,%d,%s\n", plant->groups[group].unit, drift->hours, drift_unknown_cause(drift, report->count));
         found += drift->verdict == DRIFT_FOUND;
     }
     return found;
@@ -51,7 +64,7 @@ static int print_report(const struct plant *plant, const struct drift_report *re
 static int look_at(const struct scene *scene, struct history_reader *reader, int only, int64_t to_us)
 {
     int found = 0;
-    puts("tag,verdict,change,error,scatter,unit,hours");
+    puts("tag,verdict,change,error,scatter,unit,hours,cause");
     for (int g = 0; g < (int)scene->plant->group_count; g++)
         for (size_t a = 0; a < scene->asset_count && (only < 0 || g == only); a++) {
             struct drift_report report;

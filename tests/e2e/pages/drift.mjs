@@ -72,7 +72,10 @@ test('the tool says the same; a week before nothing is known', options, async ()
     assert.deepEqual(out.trim().split('\n').slice(1).map((line) => line.split(',').slice(0, 2)), sensors.map((s) => [s.tag, s.verdict]));
     const before = runProgram('plantcast', ['sensors', 'drift', plant.file, '--group', 'temperature', '--to', '-7d']);
     assert.equal(before.code, 0, before.err);
-    assert.ok(before.out.trim().split('\n').slice(1).every((line) => line.split(',')[1] === 'unknown'), before.out);
+    const few = 'fewer than 84 hours with readings of the sensor and its neighbours';
+    assert.deepEqual(before.out.trim().split('\n').slice(1), [1, 2, 3, 4].map((n) => `TI-${n},unknown,,,,°C,0,${few}`));
+    const alone = runProgram('plantcast', ['sensors', 'drift', plant.file, '--group', 'pressure']);
+    assert.match(alone.out, /^PI-1,unknown,,,,bar,0,fewer than 3 sensors of the group on the asset$/m);
     assert.equal(runProgram('plantcast', ['sensors', 'drift', plant.file, '--group', 'speed']).code, 2);
     for (const query of ['', 'group=speed', 'tag=TI-9', 'group=temperature&to=never'])
         assert.equal((await ask(query))[0], 400, query);
