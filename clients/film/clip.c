@@ -7,6 +7,7 @@
 
 #include "base/mem.h"
 #include "clients/cli/picture/offline_renderer.h"
+#include "clients/cli/picture/saved_view.h"
 #include "clients/link/daemon.h"
 #include "commands.h"
 #include "message/views_message.h"
@@ -204,7 +205,9 @@ static int from_daemon(struct film *film)
 {
     int code = 2;
     film->statements = film->options->is_signed ? film_statements_create() : NULL;
-    if (daemon_url_parse(film->options->from, &film->url) && snapshot_query(film->options, &film->query)) {
+    if (film->options->view && !saved_view_add_from_daemon(film->options))
+        code = 1;
+    else if (daemon_url_parse(film->options->from, &film->url) && snapshot_query(film->options, &film->query)) {
         char *answer = film->options->tour ? ask_tours(film) : NULL;
         code = (answer || !film->options->tour) && make_of(film, download, answer) ? 0 : 1;
     }

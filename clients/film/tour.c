@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "message/view_address.h"
+#include "clients/cli/picture/saved_view.h"
 #include "render/overlay/text_face.h"
 
 static const char *word(const json_t *o, const char *name)
@@ -47,20 +47,7 @@ const char *tour_text(const json_t *stop)
 
 bool tour_add_view(const json_t *stop, struct snapshot_options *options)
 {
-    struct view_address address = { 0 };
-    struct message_error error;
-    bool good = view_address_read(&address, word(stop, "view"), &error);
-    if (!good)
-        fprintf(stderr, "plantcast: view '%s': %s\n", word(stop, "id"), error.text);
-    for (size_t i = 0; i < address.count && good; i++) {
-        char *equals = strchr(address.args[i], '=');
-        /* skips the parameter `at` of the view, because the film sets the instant of each picture */
-        bool instant = !strncmp(address.args[i], "at=", 3);
-        *equals = 0;
-        good = instant || snapshot_add_arg(options, address.args[i], equals + 1);
-    }
-    view_address_finish(&address);
-    return good;
+    return saved_view_add_address(options, word(stop, "id"), word(stop, "view"));
 }
 
 static void write_instant(FILE *file, double s)

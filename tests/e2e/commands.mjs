@@ -2,10 +2,11 @@
 // The command line as a client: many commands at once over https, and through a proxy that serves the daemon below a path.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { copyFileSync, existsSync, mkdirSync, writeFileSync } from 'node:fs';
+import { appendFileSync, copyFileSync, existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { connect, createServer } from 'node:net';
 import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
+import { PlainClient } from './support/plain_client.mjs';
 import { BIN, notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 
 const skip = notBuilt();
@@ -84,6 +85,53 @@ test('a path in front of the daemon\'s own is kept: tags, snapshot and stream', 
     assert.match(wrong.err, /404/);
     assert.equal((await run('tags', `${at}/b?x=1`)).code, 2, 'a query is no path');
 });
+
+test('snapshot --view: views of the plant file and of the page, by id or title, with a daemon and without', { skip, timeout: 100000 },
+    async () => {
+        const tokens = join(plant.folder, 'view_tokens'), token = (name) => join(plant.folder, `${name}.token`);
+        for (const [name, ...more] of [['all', '--role', 'operator'], ['some', '--role', 'viewer', '--views', 'boxes']])
+            writeFileSync(token(name), (await run('token', 'add', tokens, '--name', name, ...more)).out);
+        appendFileSync(plant.file, 'views: [{ id: boxes, title: Both boxes, view: "group=temperature&camera=0,-8,0,0,0,0,0,0,1,30" }]\n');
+        await plant.startDaemon('--tokens', tokens);
+        const bearer = `Authorization: Bearer ${readFileSync(token('all'), 'utf8').trim()}`;
+        const client = await PlainClient.open(plant.port, { headers: [bearer] });
+        await client.hello();
+        const save = async (id, title, view) => {
+            client.say({ type: 'save_view', seq: 1, id, title, view });
+            assert.equal((await client.text('view_saved')).kept, true);
+        };
+        await save('pump', 'Pump, close', 'group=pressure&camera=9,0,0,3,0,0,0,0,1,30,2&at=5&hide=E-101&tag=PI-1');
+        await save('pump-2', 'Twice', 'group=pressure');
+        await save('pump-3', 'Twice', 'group=pressure');
+        client.close();
+        const url = `http://127.0.0.1:${plant.port}/`, png = join(plant.folder, 'view.png');
+        const there = async (from, view, ...more) => {
+            const { code, out, err } = await run('snapshot', from, '--view', view, '--size', '320x180', '--pick', '160,90', ...more);
+            assert.equal(code, 0, err);
+            const { asset, unit, position } = JSON.parse(out);
+            return [asset, unit, ...position.map((x) => Math.round(x * 100) / 100)];
+        };
+        const refused = async (from, why, ...more) => {
+            const { code, err } = await run('snapshot', from, '-o', png, ...more);
+            assert.equal(code, 1);
+            assert.match(err, why);
+        };
+        const front = ['E-101', '°C', 0, -0.5, 0], pump = ['P-101A', 'bar', 3.5, 0, 0], mine = ['--token-file', token('all')];
+        for (const [from, ...more] of [[url, ...mine], [plant.file]]) {
+            assert.deepEqual(await there(from, 'boxes', ...more), front);
+            assert.deepEqual(await there(from, 'Both boxes', ...more), front);
+            assert.deepEqual(await there(from, 'pump', ...more), pump);
+            assert.deepEqual(await there(from, 'Pump, close', ...more), pump);
+            assert.deepEqual(await there(from, 'pump', ...more, '--camera', '3,-8,0,3,0,0'), ['P-101A', 'bar', 3, -0.5, 0]);
+            assert.deepEqual(await there(from, 'pump', ...more, '--hide', '', '--camera', '0,-8,0,0,0,0', '--group', 'temperature'), front);
+            for (const name of ['pimp', 'Twice'])
+                await refused(from, new RegExp(`no view has the id '${name}', or is the only one with this title; ids and titles of the ` +
+                    'views:\n  boxes +Both boxes\n  pump +Pump, close\n  pump-2 +Twice\n  pump-3 +Twice\n$'), '--view', name, ...more);
+        }
+        assert.equal((await run('snapshot', url, '--view', 'boxes', '-o', png, '--token-file', token('some'))).code, 0);
+        await refused(url, /answers 403: .*boxes/, '--view', 'pump', '--token-file', token('some'));
+        await refused(url, /answers 401/, '--view', 'pump');
+    });
 
 const film = (url, ...more) => ['clip', url, '-o', join(plant.folder, 'film.mp4'), '--from', '-20s', '--to', '-10s', '--speed', '10',
     '--fps', '1', '--size', '64x64', ...more];

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Draws pictures of a prepared plant without a daemon, with values from a file or from recorded history. */
 #include "offline_renderer.h"
+#include "saved_view.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -134,6 +135,8 @@ bool offline_renderer_open_plant(struct offline_renderer *offline, struct snapsh
 int offline_renderer_open(struct offline_renderer *offline, struct snapshot_options *options, struct view *view)
 {
     if (!offline_renderer_open_plant(offline, options))
+        return 1;
+    if (options->view && !saved_view_add_from_plant(options, offline->log, offline->plant))
         return 1;
     return add_colormaps(offline, options) && offline_renderer_take_view(offline, options, view) ? 0 : 2;
 }

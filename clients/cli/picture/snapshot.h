@@ -16,6 +16,7 @@ struct snapshot_options {
     size_t arg_count;
     const char *values[SNAPSHOT_MAX]; /* CSV files */
     size_t value_count;
+    const char *view; /* id or title of a named view whose parameters the picture has (saved_view.h); NULL: none */
     bool pick; /* true: also prints the equipment and the value at the pixel place_px */
     double place_px[2];
     const char *baseline; /* CSV file of values or, for a daemon, name of a saved baseline; NULL: none */

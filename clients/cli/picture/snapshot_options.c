@@ -44,6 +44,9 @@ static const char instant_usage[] =
     "  INSTANT                 a time: 2026-11-20T10:00:00Z (or offset +01:00), seconds since 1970, or -8h (8 hours ago)\n"
     "  --size WxH              width and height of the picture in pixels (default: 1280x720)\n";
 static const char view_usage[] =
+    "  --view NAME             camera and all settings of the named view with this id or title, of the plant file or\n"
+    "                          saved on the page. The readings are the present ones, or those of --at. Other options\n"
+    "                          replace settings of the view\n"
     "Camera:\n"
     "  --camera EX,EY,EZ,TX,TY,TZ[,FOV]\n"
     "                          position of the camera (E) and the point it looks at (T) in metres, in\n"
@@ -178,6 +181,7 @@ enum own_option {
     OPTION_OUT,
     OPTION_PICK,
     OPTION_BASELINE,
+    OPTION_VIEW,
     OPTION_AT,
     OPTION_FROM,
     OPTION_TO,
@@ -202,6 +206,7 @@ static const struct option own[] = {
     { "out", required_argument, NULL, OPTION_OUT },
     { "pick", required_argument, NULL, OPTION_PICK },
     { "baseline", required_argument, NULL, OPTION_BASELINE },
+    { "view", required_argument, NULL, OPTION_VIEW },
     { "at", required_argument, NULL, OPTION_AT },
     { "from", required_argument, NULL, OPTION_FROM },
     { "to", required_argument, NULL, OPTION_TO },
@@ -290,6 +295,7 @@ static bool take_own(struct snapshot_options *options, int option, const char *t
     case OPTION_OUT: options->out = text; return true;
     case OPTION_PICK: return parse_pick(options, text);
     case OPTION_BASELINE: options->baseline = text; return true;
+    case OPTION_VIEW: options->view = text; return true;
     case OPTION_AT: return parse_instant(text, &options->at, &options->at_us);
     case OPTION_FROM: return parse_instant(text, &options->from_text, &options->from_us);
     case OPTION_TO: return parse_instant(text, &options->to_text, &options->to_us);
@@ -327,7 +333,7 @@ static int wrong(bool clip, const char *text)
 
 static bool only_size(const struct snapshot_options *options)
 {
-    bool only = !options->baseline;
+    bool only = !options->baseline && !options->view;
     for (size_t i = 0; i < options->arg_count; i++)
         only = only && (!strncmp(options->args[i], "width=", 6) || !strncmp(options->args[i], "height=", 7));
     return only;

@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Finds a named view by id or title in the list of a daemon or of a plant, and adds its parameters to those of the command line. */
+#include "saved_view.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "clients/link/daemon.h"
+#include "message/view_address.h"
+#include "views/named_views.h"
+
+static const char *word(const json_t *view, const char *name)
+{
+    const char *text = json_string_value(json_object_get(view, name));
+    return text ? text : "";
+}
+
+static bool is_given(const struct snapshot_options *options, size_t count, const char *name)
+{
+    size_t length = strlen(name);
+    for (size_t i = 0; i < count; i++)
+        if (!strncmp(options->args[i], name, length) && options->args[i][length] == '=')
+            return true;
+    return false;
+}
+
+/* Returns true if the command line, the first `count` arguments, replaces this parameter of a view. */
+static bool is_replaced(const struct snapshot_options *options, size_t count, const char *name)
+{
+    static const struct {
+        const char *given, *replaces;
+    } together[] = { { "camera", "projection" },
+                     { "camera", "height_m" },
+                     { "projection", "height_m" },
+                     { "clip", "clip_box" },
+                     { "clip_box", "clip" } };
+    bool replaced = is_given(options, count, name) || (!strcmp(name, "baseline") && options->baseline);
+    for (size_t i = 0; i < sizeof(together) / sizeof(together[0]); i++)
+        replaced = replaced || (!strcmp(together[i].replaces, name) && is_given(options, count, together[i].given));
+    return replaced;
+}
+
+bool saved_view_add_address(struct snapshot_options *options, const char *id, const char *text)
+{
+    struct view_address address = { 0 };
+    struct message_error error;
+    size_t given = options->arg_count;
+    bool good = view_address_read(&address, text, &error);
+    if (!good)
+        fprintf(stderr, "plantcast: view '%s': %s\n", id, error.text);
+    for (size_t i = 0; i < address.count && good; i++) {
+        char *equals = strchr(address.args[i], '=');
+        *equals = 0;
+        if (!strcmp(address.args[i], "at") || is_replaced(options, given, address.args[i]))
+            continue;
+        good = snapshot_add_arg(options, address.args[i], equals + 1);
+        if (!good)
+            fprintf(stderr, "plantcast: view '%s': more than %d parameters, with those of the command line\n", id, SNAPSHOT_MAX);
+    }
+    view_address_finish(&address);
+    return good;
+}
+
+/* Returns the view with this id, else the only one with this title, borrowed from the list; NULL: none. */
+static const json_t *find(const json_t *list, const char *name)
+{
+    const json_t *view, *titled = NULL;
+    size_t i, count = 0;
+    json_array_foreach(list, i, view) {
+        if (!strcmp(word(view, "id"), name))
+            return view;
+        if (!strcmp(word(view, "title"), name)) {
+            titled = view;
+            count++;
+        }
+    }
+    return count == 1 ? titled : NULL;
+}
+
+static void print_unknown(const json_t *list, const char *from, const char *name)
+{
+    const json_t *view;
+    size_t i;
+    fprintf(stderr, "plantcast: %s: no view has the id '%s', or is the only one with this title; %s\n", from, name,
+            json_array_size(list) ? "ids and titles of the views:" : "there are no views");
+    json_array_foreach(list, i, view) fprintf(stderr, "  %-24s %s\n", word(view, "id"), word(view, "title"));
+}
+
+/* list: JSON array of the views; NULL: none. */
+static bool add_from(struct snapshot_options *options, const json_t *list)
+{
+    const json_t *view = find(list, options->view);
+    if (!view)
+        print_unknown(list, options->from, options->view);
+    return view && saved_view_add_address(options, word(view, "id"), word(view, "view"));
+}
+
+bool saved_view_add_from_daemon(struct snapshot_options *options)
+{
+    struct daemon_url url;
+    struct text body = { 0 };
+    int status = daemon_url_parse(options->from, &url) ? daemon_get(&url, "/api/v1/views", &body) : 0;
+    const char *answer = body.at ? body.at : "";
+    bool good = status == 200;
+    if (good) {
+        json_t *message = json_loads(answer, 0, NULL);
+        good = add_from(options, json_object_get(message, "list"));
+        json_decref(message);
+    } else if (status == 403) {
+        /* a token that permits only pictures of some views: the daemon decides which, by their ids */
+        good = snapshot_add_arg(options, "view", options->view);
+    } else if (status) {
+        fprintf(stderr, "plantcast: %s: the daemon answers %d: %s\n", options->from, status, answer);
+    }
+    text_finish(&body);
+    return good;
+}
+
+bool saved_view_add_from_plant(struct snapshot_options *options, struct log *log, const struct plant *plant)
+{
+    char *folder = options->history ? mem_strdup(options->history) : plant_history_folder(plant);
+    struct named_views *views = named_views_open(log, plant, folder, NULL);
+    json_t *message = named_views_message(views, NULL);
+    bool good = add_from(options, json_object_get(message, "list"));
+    json_decref(message);
+    named_views_close(&views);
+    mem_free(folder);
+    return good;
+}
