@@ -19,20 +19,20 @@ bool access_allowed_at(const struct access_params *params, bool loopback, const 
 {
     bool tls = params->tls_cert_path && params->tls_key_path;
     if (params->behind_proxy && !params->tokens_path && !params->open_viewers)
-        *why = "--behind-proxy: a user behind the proxy needs a token (add --tokens FILE), or add --open-viewers";
+        *why = "--behind-proxy needs --tokens FILE, so that users behind the proxy can sign in, or --open-viewers";
     else if (params->openid_path && !params->tokens_path)
-        *why = "--openid needs --tokens FILE: tokens still work while the identity provider does not answer";
+        *why = "--openid needs --tokens FILE: with a token, users can sign in while the identity provider does not answer";
     else if (params->lock_min && !params->tokens_path)
         *why = "--lock-after needs --tokens FILE: locked users sign in again with a token";
     else if (params->behind_proxy && params->host_count == 0)
-        *why = "--behind-proxy needs --host NAME: the host name in the proxy's address";
+        *why = "--behind-proxy needs --host NAME: the host name under which browsers reach the proxy";
     else if (params->behind_proxy && params->trust_local)
-        *why = "--trust-local excludes --behind-proxy: behind a proxy everyone seems to be on this machine";
+        *why = "--trust-local cannot be combined with --behind-proxy: requests from a proxy on this machine seem to come from local users";
     else if ((params->tls_cert_path != NULL) != (params->tls_key_path != NULL))
-        *why = "--tls-cert and --tls-key belong together";
+        *why = "give both --tls-cert and --tls-key, or neither";
     else if (!loopback && !params->open_viewers && !(tls && params->tokens_path))
-        *why = "everyone who reaches that address could watch and eavesdrop. Only loopback addresses are served without\nTLS and tokens "
-               "(--tls-cert, --tls-key and --tokens); --open-viewers serves pictures, and nothing else, to everyone";
+        *why = "without TLS and tokens, everybody who reaches this address could use the plant and eavesdrop. Give\n--tls-cert, --tls-key "
+               "and --tokens, or give --open-viewers, which serves pictures, and nothing else, to everybody";
     else
         return true;
     return false;
@@ -143,7 +143,7 @@ char *access_notice_read(struct log *log, const char *path)
         good = n > 0 && text[at];
     }
     if (!good) {
-        log_err(log, "notice %s: %s", path, text ? "a text in UTF-8 is expected" : strerror(errno));
+        log_err(log, "notice %s: %s", path, text ? "the file must contain UTF-8 text and must not be empty" : strerror(errno));
         mem_free(text);
         return NULL;
     }

@@ -54,7 +54,7 @@ static bool good_list(const json_t *list)
     return true;
 }
 
-static const struct kept_list_kind KIND = { PAIRINGS_FILE, "devices", "id, hash, wall, display, from, by and time_us", good_list };
+static const struct kept_list_kind KIND = { PAIRINGS_FILE, "devices", "the keys id, hash, wall, display, from, by and time_us", good_list };
 
 struct pairings *pairings_open(struct log *log, const char *folder, struct file_writer *writer)
 {
@@ -208,8 +208,9 @@ static bool make_room(struct pairings *pairings, size_t from)
     }
     if (victim == pairings->count)
         return false;
-    log_info(pairings->kept.log, "pairing: all %d codes are in use; dropped the newest of %s, which held %zu", PAIRINGS,
-             pairings->waiting[victim].from, most);
+    log_info(pairings->kept.log,
+             "pairing: all %d pairing codes are in use; dropped the newest waiting display of address %s, which had %zu waiting displays",
+             PAIRINGS, pairings->waiting[victim].from, most);
     forget(pairings, victim);
     return true;
 }

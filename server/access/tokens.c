@@ -142,7 +142,7 @@ int tokens_parse_line(const char *line, struct token_holder *out, const char **w
     int count = 0;
     *out = (struct token_holder){ .until_utc_ns = INT64_MAX };
     if (strcspn(line, "\r\n#") >= sizeof(copy)) {
-        *why = "it is too long";
+        *why = "the line is too long";
         return -1;
     }
     snprintf(copy, strcspn(line, "\r\n#") + 1, "%s", line);
@@ -167,23 +167,23 @@ int tokens_parse_line(const char *line, struct token_holder *out, const char **w
         return 0;
     int role = name_find(names_role, words[0]);
     if (role < ROLE_VIEWER && !role_is_node((enum role)role))
-        *why = "the role is viewer, operator, engineer, renderer or standby";
+        *why = "expected the role viewer, operator, engineer, renderer or standby";
     else if (count != 3 && count != WORDS)
-        *why = "expected ROLE NAME SHA-256 [until YYYY-MM-DD] [unattended] [views ID,... | display WALL:NUMBER] [plant PLANT]";
+        *why = "expected a line ROLE NAME SHA-256 [until YYYY-MM-DD] [unattended] [views ID,... | display WALL:NUMBER] [plant PLANT]";
     else if (!views_good)
         *why = "expected ids of views, separated by commas, after `views`";
     else if (!display_good)
-        *why = "expected WALL:NUMBER after `display`";
+        *why = "expected a display as WALL:NUMBER after `display`";
     else if ((limited || display) && role != ROLE_VIEWER)
-        *why = "`views` and `display` limit viewers only";
+        *why = "`views` and `display` are allowed only for the role viewer";
     else if (!plant_good)
         *why = "expected the name of a plant after `plant`";
     else if (!tokens_name_valid(words[1]))
-        *why = "a name is made of letters, digits and -_.@";
+        *why = "the name may contain only letters, digits and -_.@";
     else if (!hex_read(words[2], out->hash, TOKEN_HASH_BYTES))
         *why = "expected a SHA-256 of 64 hexadecimal digits";
     else if (count == WORDS && (strcmp(words[3], "until") != 0 || !tokens_parse_day(words[4], &out->until_utc_ns)))
-        *why = "expected until YYYY-MM-DD";
+        *why = "expected the last day as `until YYYY-MM-DD`";
     else {
         out->role = (enum role)role;
         strcpy(out->name, words[1]);
@@ -221,12 +221,12 @@ void tokens_print_line(struct text *out, const struct token_holder *holder)
 static const char *fault_of(const struct stat *st)
 {
     if (!S_ISREG(st->st_mode))
-        return "it is not a file";
+        return "the path is not a regular file";
     if (st->st_uid != 0 && st->st_uid != geteuid())
-        return "its owner is neither root nor the daemon's user";
+        return "the file's owner is neither root nor the daemon's user; change the owner with chown";
     if (st->st_mode & (S_IWGRP | S_IWOTH | S_IROTH))
-        return "other users may read or write it: chmod 640 or stricter";
-    return st->st_size > MAX_FILE_BYTES ? "it is too large" : NULL;
+        return "other users may read or write the file; set chmod 640 or stricter";
+    return st->st_size > MAX_FILE_BYTES ? "the file is too large" : NULL;
 }
 
 static void take_line(struct tokens *tokens, const char *line, int number)

@@ -232,7 +232,7 @@ test('a session that is left alone is locked, but not that of a wall; and what i
     assert.match(start('--tokens', file, '--lock-after', 'soon').err, /expected minutes/);
     assert.match(start('--notice', path('none')).err, /notice .*none: No such file/);
     writeFileSync(notice, Buffer.from([0xff, 0xfe]));
-    assert.match(start('--notice', notice).err, /a text in UTF-8 is expected/);
+    assert.match(start('--notice', notice).err, /the file must contain UTF-8 text/);
 });
 
 test('a daemon does not start for others without TLS and tokens, nor with what is not safe', { skip }, () => {
@@ -243,11 +243,11 @@ test('a daemon does not start for others without TLS and tokens, nor with what i
     const cases = [
         [['--listen', '0.0.0.0'], /--open-viewers/], [['--listen', '0.0.0.0', '--tokens', tokensFile], /TLS and tokens/],
         [['--tokens', bad], /other users may read/], [['--tokens', path('none')], /No such file/],
-        [['--tls-cert', path('first.pem')], /belong together/],
+        [['--tls-cert', path('first.pem')], /give both --tls-cert and --tls-key/],
         [['--tls-cert', path('first.pem'), '--tls-key', path('second.key')], /TLS: .*key/],
-        [['--tls-cert', plant.file, '--tls-key', path('first.key')], /TLS: .*plant\.yaml/], [['--behind-proxy'], /needs a token/],
+        [['--tls-cert', plant.file, '--tls-key', path('first.key')], /TLS: .*plant\.yaml/], [['--behind-proxy'], /needs --tokens/],
         [['--behind-proxy', '--tokens', tokensFile], /--host/],
-        [['--behind-proxy', '--host', 'x', '--tokens', tokensFile, '--trust-local'], /everyone seems to be on this machine/],
+        [['--behind-proxy', '--host', 'x', '--tokens', tokensFile, '--trust-local'], /--trust-local cannot be combined with/],
     ];
     for (const [args, why] of cases) {
         const result = start(...args);

@@ -85,7 +85,7 @@ test('--check reads the files of options, and names the one that cannot be used'
     const notice = runProgram('plantcastd', ['--check', plant.file, '--notice', join(plant.folder, 'missing')]);
     assert.equal(notice.code, 1);
     assert.match(notice.err, /\/missing/);
-    assert.match(runProgram('plantcastd', ['--check', plant.file, '--tls-cert', wrong]).err, /--tls-cert and --tls-key belong together/);
+    assert.match(runProgram('plantcastd', ['--check', plant.file, '--tls-cert', wrong]).err, /give both --tls-cert and --tls-key/);
 });
 
 test('HTTP: what is there, what is not, and how it is said', { skip }, async () => {
@@ -447,7 +447,7 @@ test('an encoder that is not there is said by its name, and clients get JPEG', {
     try {
         assert.equal(other.prepare().code, 0);
         await other.startDaemon('--h264', 'h264_nothing');
-        const said = /no encoder for it named 'h264_nothing'[^]*H\.264 encoder h264_nothing does not work on this machine/;
+        const said = /no H\.264 encoder named 'h264_nothing'[^]*H\.264 encoder h264_nothing does not work on this machine/;
         assert.match(other.daemon.said, said);
         const client = await PlainClient.open(other.port);
         assert.equal((await client.hello({ codecs: ['h264', 'jpeg'] })).codec, 'jpeg');

@@ -61,7 +61,7 @@ test('what leads out of the folder is not copied, by whatever name', { skip }, (
     const ways = [[(path) => symlinkSync(secret, path), /symbolic link/],
         [(path) => linkSync(secret, path), /another hard link/],
         [(path) => { writeFileSync(path, 'x'); chownSync(path, 1, 1); }, /owner differs from the owner of its folder/],
-        [(path) => mkdirSync(path), /not a file/]];
+        [(path) => mkdirSync(path), /not a regular file/]];
     for (const name of names) {
         const path = join(history, name);
         for (const [put, why] of ways) {

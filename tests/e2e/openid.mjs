@@ -152,14 +152,14 @@ test('answers that are not to be believed: each is refused by name, and nobody i
         ['alg HS256', /not signed/, (claims, header) => { header.alg = 'HS256'; }],
         ['wrong audience', /another audience/, (claims) => { claims.aud = 'other'; }],
         ['expired', /expired/, (claims) => { claims.exp = now() - 120; }],
-        ['from the future', /time of issue is implausible/, (claims) => { claims.iat = now() + 300; }],
+        ['from the future', /time of issue of the ID token is implausible/, (claims) => { claims.iat = now() + 300; }],
         ['wrong issuer', /another issuer/, (claims) => { claims.iss = 'https://evil.example'; }],
         ['wrong nonce', /nonce/, (claims) => { claims.nonce = 'other'; }],
         ['no nonce', /nonce/, (claims) => { delete claims.nonce; }],
         ['an unknown key', /key that the provider does not publish/, (claims, header) => { header.kid = 'other'; }],
-        ['a changed signature', /signature is invalid/, () => {}, () => 'AAAA'],
-        ['no role', /none of the groups of kim has a role/, (claims) => { claims.groups = ['cleaners']; }],
-        ['no groups', /none of the groups/, (claims) => { delete claims.groups; }],
+        ['a changed signature', /signature of the ID token is invalid/, () => {}, () => 'AAAA'],
+        ['no role', /user kim: none of the user's groups has a role/, (claims) => { claims.groups = ['cleaners']; }],
+        ['no groups', /none of the user's groups/, (claims) => { delete claims.groups; }],
     ];
     for (const [name, why, change, sign = null] of cases) {
         const browser = new Browser();
@@ -189,7 +189,7 @@ test('a code, a state or a whole answer once more, another browser, another issu
     assert.match(await code.text(), /refuses the code: invalid_grant/);
     const other = await browser.begin();
     other.searchParams.set('iss', 'https://evil.example');
-    assert.match(await (await browser.get(other)).text(), /the answer comes from another issuer/);
+    assert.match(await (await browser.get(other)).text(), /the provider's answer names another issuer/);
     const denied = await browser.begin();
     denied.searchParams.delete('code');
     denied.searchParams.set('error', 'access_denied');
@@ -239,7 +239,7 @@ test('who loses rights loses the session, and a smaller role counts at once', { 
     provider.status = 400;
     assert.equal((await second.until('a close', (c) => c.closed)).code, 1008);
     provider.status = 200;
-    await recorded('the end', (line) => line.event === 'leave' && /ended the log-in/.test(line.why ?? ''));
+    await recorded('the end', (line) => line.event === 'leave' && /ended the user's sign-in/.test(line.why ?? ''));
 });
 
 test('a provider that is away: who is in stays, nobody new comes, and a token opens', { skip }, async () => {
@@ -250,7 +250,7 @@ test('a provider that is away: who is in stays, nobody new comes, and a token op
     const { port: its } = provider;
     const waiting = await browser.begin();
     await provider.close();
-    await plant.daemon.line(/openid: http.*nobody can sign in; signed-in users stay signed in/);
+    await plant.daemon.line(/openid: http.*users cannot sign in by OpenID Connect; signed-in users stay signed in/);
     await sleep(2500);
     assert.equal(client.closed, null);
     assert.equal((await browser.me()).role, 'operator');

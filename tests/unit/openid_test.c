@@ -122,7 +122,7 @@ CASE(test_signatures)
     expect(f, sign(f->key, "RS256", NULL, CLAIMS), "n1", NULL, NULL);
     /* an unknown key leads to one more request for the keys; a wrong signature by a known key does not */
     assert_int_equal(expect(f, sign(f->other, "RS256", "k2", CLAIMS), "n1", NULL, "does not publish"), ID_TOKEN_NO_KEY);
-    assert_int_equal(expect(f, sign(f->other, "RS256", "k1", CLAIMS), "n1", NULL, "signature is invalid"), ID_TOKEN_BAD);
+    assert_int_equal(expect(f, sign(f->other, "RS256", "k1", CLAIMS), "n1", NULL, "signature of the ID token is invalid"), ID_TOKEN_BAD);
     /* rotated */
     json_array_append_new(json_object_get(f->jwks, "keys"), public_part(f->other));
     expect(f, sign(f->other, "RS256", "k2", CLAIMS), "n1", NULL, NULL);
@@ -156,9 +156,9 @@ CASE(test_algorithms)
     mem_free(good);
     char *text = cjose_jwk_to_json(f->key, false, NULL);
     cjose_jwk_t *secret = cjose_jwk_create_oct_spec((const uint8_t *)text, strlen(text), NULL);
-    expect(f, sign(secret, "HS256", "k1", CLAIMS), "n1", NULL, "not signed, or not with a public-key algorithm");
+    expect(f, sign(secret, "HS256", "k1", CLAIMS), "n1", NULL, "not signed with a public-key algorithm");
     json_array_append_new(json_object_get(f->jwks, "keys"), json_pack("{s:s,s:s,s:s}", "kty", "oct", "kid", "o1", "k", "c2VjcmV0"));
-    expect(f, sign(secret, "HS256", "o1", CLAIMS), "n1", NULL, "not with a public-key algorithm");
+    expect(f, sign(secret, "HS256", "o1", CLAIMS), "n1", NULL, "not signed with a public-key algorithm");
     cjose_jwk_release(secret);
     free(text);
     expect(f, mem_strdup(""), "n1", NULL, "not signed");

@@ -122,7 +122,7 @@ CASE(a_token_may_be_for_one_display)
     }
     char *line = mem_printf("operator x %064d display room:1", 0);
     assert_int_equal(tokens_parse_line(line, &read, &why), -1);
-    assert_non_null(strstr(why, "limit viewers only"));
+    assert_non_null(strstr(why, "are allowed only for the role viewer"));
     mem_free(line);
     text_finish(&text);
 }
@@ -266,7 +266,7 @@ CASE(a_token_may_be_for_some_views)
     holder.role = ROLE_OPERATOR;
     tokens_print_line(&text, &holder);
     assert_int_equal(tokens_parse_line(text.at, &read, &why), -1);
-    assert_string_equal(why, "`views` and `display` limit viewers only");
+    assert_string_equal(why, "`views` and `display` are allowed only for the role viewer");
     text_finish(&text);
     assert_false(tokens_views_valid("") || tokens_views_valid("a,,b") || tokens_views_valid("a b") || tokens_views_valid("a,"));
 }

@@ -77,17 +77,18 @@ static enum id_token_fault read_claims(const char *token, const json_t *jwks, js
     const char *alg = header ? cjose_header_get(header, CJOSE_HDR_ALG, NULL) : NULL;
     const char *kid = header ? cjose_header_get(header, CJOSE_HDR_KID, NULL) : NULL;
     enum id_token_fault fault = ID_TOKEN_BAD;
-    *why = "it is not signed, or not with a public-key algorithm";
+    *why = "the ID token is not signed with a public-key algorithm";
     if (header && json_object_get(header, "crit"))
-        *why = "it requires an extension (crit) that is not supported";
+        *why = "the ID token requires an extension (crit) that is not supported";
     else if (kty_of(alg)) {
         fault = verify(jws, jwks, alg, kid);
-        *why = fault == ID_TOKEN_NO_KEY ? "it is signed with a key that the provider does not publish" : "its signature is invalid";
+        *why = fault == ID_TOKEN_NO_KEY ? "the ID token is signed with a key that the provider does not publish"
+                                        : "the signature of the ID token is invalid";
     }
     if (fault == ID_TOKEN_GOOD && (!cjose_jws_get_plaintext(jws, &text, &count, NULL) ||
                                    !(*claims = json_loadb((char *)text, count, JSON_REJECT_DUPLICATES, NULL)))) {
         fault = ID_TOKEN_BAD;
-        *why = "its claims are not JSON";
+        *why = "the claims of the ID token are not JSON";
     }
     cjose_jws_release(jws);
     return fault;
@@ -115,18 +116,18 @@ static const char *fault_of(const json_t *claims, const struct id_token_expected
     const json_t *exp = json_object_get(claims, "exp"), *iat = json_object_get(claims, "iat"), *nbf = json_object_get(claims, "nbf");
     double now_s = (double)expected->now_s, oldest_s = now_s - OLDEST_S - (double)expected->patience_s;
     if (!iss || strcmp(iss, expected->config->issuer) != 0)
-        return "it comes from another issuer";
+        return "the ID token comes from another issuer (iss)";
     if (!is_for_us(claims, expected->config->client_id))
-        return "it is meant for another audience";
+        return "the ID token is meant for another audience (aud)";
     if (!sub || !*sub || (expected->sub && strcmp(sub, expected->sub) != 0))
-        return "its subject (sub) is missing or differs";
+        return "the subject (sub) of the ID token is missing or differs";
     if (!json_is_number(exp) || now_s >= json_number_value(exp) + ID_TOKEN_SKEW_S + (double)expected->patience_s)
-        return "it has expired; do the clocks agree?";
+        return "the ID token has expired; check the clocks of this machine and of the provider";
     if (!json_is_number(iat) || json_number_value(iat) > now_s + ID_TOKEN_SKEW_S || json_number_value(iat) < oldest_s ||
         (nbf && !(json_number_value(nbf) <= now_s + ID_TOKEN_SKEW_S)))
-        return "its time of issue is implausible; do the clocks agree?";
+        return "the time of issue of the ID token is implausible; check the clocks of this machine and of the provider";
     if (expected->nonce && (!nonce || strcmp(nonce, expected->nonce) != 0))
-        return "it belongs to another log-in (nonce)";
+        return "the ID token belongs to another log-in (nonce)";
     return NULL;
 }
 

@@ -98,9 +98,9 @@ enum openid_finish openid_finish(struct openid *openid, const struct openid_retu
         return OPENID_FOREIGN;
     }
     bool other = is_other_issuer(openid, brought->iss);
-    const char *why = other            ? "the answer comes from another issuer"
+    const char *why = other            ? "the provider's answer names another issuer (iss) than the file of --openid"
                       : brought->error ? "the provider refused the sign-in"
-                      : !brought->code ? "the provider sent no code"
+                      : !brought->code ? "the provider's answer has no authorization code"
                                        : NULL;
     if (why) {
         char *text = brought->error ? mem_printf("%s: %.80s", why, brought->error) : mem_strdup(why);
@@ -177,9 +177,9 @@ static const char *take_claims(const struct openid_config *config, const json_t 
     *out = (struct token_holder){ .signed_in = true, .until_utc_ns = made_s * NS_PER_S + (int64_t)(config->hours * 3600e9) };
     out->role = id_token_role(config, claims);
     if (!id_token_name(config, claims, out->name, sizeof(out->name)))
-        return "the ID token has no name that can be displayed";
+        return "the ID token has no user name that can be displayed; check name_claim in the core's file of --openid";
     if (clock_utc_ns() >= out->until_utc_ns)
-        return "the ID token is older than a session may last; sign in again";
+        return "the ID token is older than the maximum duration of a session; sign in again";
     return out->role == ROLE_NOBODY ? "none of the groups in the ID token has a role at the core" : NULL;
 }
 

@@ -89,11 +89,13 @@ static void complete(struct openid_config *config, const char *path)
 static void check(struct yaml_reader *reader, const struct yaml_map *map, const struct openid_config *config)
 {
     if (yaml_map_good(map, "issuer") && is_unsafe(config->issuer))
-        yaml_error(reader, yaml_map_place(map, "issuer"), "issuer: expected https://, or http:// on this machine");
+        yaml_error(reader, yaml_map_place(map, "issuer"),
+                   "issuer: expected an address that begins with https://; http:// is allowed only for this machine");
     if (yaml_map_good(map, "url") && is_unsafe(config->url))
-        yaml_error(reader, yaml_map_place(map, "url"), "url: expected the page's address: https://, or http:// on this machine");
+        yaml_error(reader, yaml_map_place(map, "url"),
+                   "url: expected the page's address, which begins with https://; http:// is allowed only for this machine");
     if (yaml_map_good(map, "scope") && strncmp(config->scope, "openid", 6) != 0)
-        yaml_error(reader, yaml_map_place(map, "scope"), "scope: must begin with openid");
+        yaml_error(reader, yaml_map_place(map, "scope"), "scope: expected a list of scopes that begins with openid");
 }
 
 struct openid_config *openid_config_read(struct log *log, const char *path)

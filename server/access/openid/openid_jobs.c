@@ -57,7 +57,9 @@ void openid_revoke_later(struct openid *openid, const char *refresh_token)
     if (openid->revocations.count >= PEOPLE) {
         openid_free_job(openid_take_job(&openid->revocations));
         log_warn(openid->params.log,
-                 "openid: more than %d refresh tokens wait for revocation; the oldest is dropped and stays valid until it expires", PEOPLE);
+                 "openid: more than %d refresh tokens wait for revocation at the provider; the oldest token is not revoked and stays valid "
+                 "until its expiry",
+                 PEOPLE);
     }
     openid_add_job(openid, &openid->revocations, &(struct openid_job){ .revoke = mem_strdup(refresh_token) });
 }

@@ -17,8 +17,8 @@ void openid_say(struct openid *openid, const char *why)
 {
     bool was_failing = atomic_exchange(&openid->failing, why != NULL);
     if (why && !was_failing)
-        log_event(openid->params.log, LOG_ERROR, EVENT_OPENID_FAILS, "openid: %s: %s; nobody can sign in; signed-in users stay signed in",
-                  openid->config->issuer, why);
+        log_event(openid->params.log, LOG_ERROR, EVENT_OPENID_FAILS,
+                  "openid: %s: %s; users cannot sign in by OpenID Connect; signed-in users stay signed in", openid->config->issuer, why);
     else if (!why && was_failing)
         log_info(openid->params.log, "openid: %s answers again", openid->config->issuer);
     counter_set(openid->good, !why);
@@ -37,12 +37,12 @@ static const char *fault_of(const struct openid_config *config, const struct ope
 {
     const char *issuer = json_string_value(json_object_get(reply->json, "issuer"));
     if (reply->status != 200 || !json_is_object(reply->json))
-        return "its configuration (/.well-known/openid-configuration) is missing";
+        return "the provider's configuration (/.well-known/openid-configuration) cannot be read";
     if (!issuer || strcmp(issuer, config->issuer) != 0)
-        return "its configuration names another issuer";
+        return "the provider's configuration (/.well-known/openid-configuration) names another issuer";
     for (size_t i = 0; i < 3; i++)
         if (!json_is_string(json_object_get(reply->json, (const char *[]){ "authorization_endpoint", "token_endpoint", "jwks_uri" }[i])))
-            return "its configuration lacks an endpoint";
+            return "the provider's configuration (/.well-known/openid-configuration) lacks an endpoint";
     return NULL;
 }
 

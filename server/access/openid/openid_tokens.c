@@ -42,7 +42,7 @@ static bool secret_in_form(struct openid *openid)
 static bool post(struct openid *openid, const char *endpoint, const struct text *form, struct openid_reply *reply)
 {
     char *url = openid_endpoint(openid, endpoint);
-    *reply = (struct openid_reply){ .why = "it has no such endpoint" };
+    *reply = (struct openid_reply){ .why = "the provider's configuration names no such endpoint" };
     bool answered = url && openid_post(openid->config, url, form->at, secret_in_form(openid), &openid->stopping, reply);
     mem_free(url);
     return answered;
@@ -66,12 +66,12 @@ static struct person *make_person(struct openid *openid, json_t *claims, const j
     bool told;
     openid_complete(openid, claims, text_of(tokens, "access_token"), &told);
     if (!id_token_name(openid->config, claims, holder.name, sizeof(holder.name))) {
-        *why = mem_strdup("it has no name that can be displayed");
+        *why = mem_strdup("the ID token has no user name that can be displayed; check name_claim in the file of --openid");
         return NULL;
     }
     holder.role = id_token_role(openid->config, claims);
     if (holder.role == ROLE_NOBODY) {
-        *why = mem_printf("none of the groups of %s has a role here", holder.name);
+        *why = mem_printf("user %s: none of the user's groups has a role; check roles in the file of --openid", holder.name);
         return NULL;
     }
     struct person *person = mem_new(sizeof(*person));
@@ -83,7 +83,7 @@ static struct person *make_person(struct openid *openid, json_t *claims, const j
 
 static struct person *take_tokens(struct openid *openid, const struct openid_job *job, const json_t *tokens, char **why)
 {
-    const char *id_token = text_of(tokens, "id_token"), *fault = "there is none";
+    const char *id_token = text_of(tokens, "id_token"), *fault = "the provider sent no ID token";
     bool unsure;
     json_t *claims = id_token ? openid_verify(openid, id_token, job->sign_in.nonce, NULL, &unsure, &fault) : NULL;
     struct person *person = claims ? make_person(openid, claims, tokens, why) : NULL;
@@ -142,11 +142,11 @@ static enum openid_rights take_claims(struct openid *openid, struct person *pers
         return RIGHTS_GONE;
     }
     if (!told && !id_token_has_groups(openid->config, claims)) {
-        *why = "the provider does not send groups";
+        *why = "the provider did not send the user's groups";
         return RIGHTS_UNKNOWN;
     }
     person->holder.role = id_token_role(openid->config, claims);
-    *why = "none of the user's groups has a role here any more";
+    *why = "none of the user's groups has a role any longer";
     return person->holder.role == ROLE_NOBODY ? RIGHTS_GONE : RIGHTS_SAME;
 }
 
@@ -167,10 +167,10 @@ static enum openid_rights refresh(struct openid *openid, struct person *person, 
     *why = "the provider does not answer";
     if (answered && is_refusal(reply.status) && error && strcmp(error, "invalid_grant") != 0) {
         /* the provider refuses this server, not the person: the client secret may have expired */
-        *why = "the provider refuses the request";
+        *why = "the provider refuses the request to renew the sign-in";
     } else if (answered && is_refusal(reply.status)) {
         rights = RIGHTS_GONE;
-        *why = "the provider ended the log-in";
+        *why = "the provider ended the user's sign-in";
     } else if (answered && reply.status == 200) {
         const char *id_token = text_of(reply.json, "id_token");
         bool unsure = false;
@@ -198,7 +198,7 @@ static enum openid_rights ask_again(struct openid *openid, struct person *person
         *why = "the provider sent no refresh token, and the access token has expired";
     } else if (openid_get(openid->config, url, person->access_token, &openid->stopping, &reply) && is_refusal(reply.status)) {
         rights = RIGHTS_GONE;
-        *why = "the provider ended the log-in";
+        *why = "the provider ended the user's sign-in";
     } else if (reply.status == 200 && json_is_object(reply.json)) {
         const char *sub = text_of(reply.json, "sub");
         rights = sub && !strcmp(sub, person->sub) ? take_claims(openid, person, reply.json, why) : RIGHTS_GONE;
