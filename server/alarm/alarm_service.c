@@ -218,7 +218,7 @@ static void add_counters(struct alarm_service *service)
         counters_add(c, "plantcast_alarms_standing", "gauge", "Shown alarms whose cause has persisted for more than a day.");
     service->counters.chattering =
         counters_add(c, "plantcast_alarms_chattering", "gauge", "Alarms raised three times or more within the last minute.");
-    service->counters.held = counters_add(c, "plantcast_alarms_held", "gauge", "Active alarms whose measurement is bad.");
+    service->counters.held = counters_add(c, "plantcast_alarms_held", "gauge", "Active alarms whose reading is Bad.");
     service->counters.rate = counters_add(c, "plantcast_alarms_recent", "gauge", "Alarms raised within the last ten minutes.");
     service->counters.raised = counters_add(c, "plantcast_alarms_raised_total", "counter", "Alarms raised.");
     service->counters.lost =

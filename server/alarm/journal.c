@@ -88,9 +88,10 @@ static void try_to_write(struct journal *journal, bool now)
         journal->retry_after_ns = wait_ns < NS_PER_S ? NS_PER_S : wait_ns > RETRY_MAX_S * NS_PER_S ? RETRY_MAX_S * NS_PER_S : wait_ns;
         journal->retry_ns = mono_ns + journal->retry_after_ns;
         if (!journal->failing)
-            log_err(journal->log, "alarms: the journal cannot be written (%s); new rows are kept in memory", strerror(-error));
+            log_err(journal->log, "alarms: the alarm journal cannot be written (%s); new alarm events are kept in memory",
+                    strerror(-error));
     } else if (journal->failing) {
-        log_info(journal->log, "alarms: the journal can be written again");
+        log_info(journal->log, "alarms: the alarm journal can be written again");
         journal->retry_after_ns = 0;
     }
     journal->failing = error != 0;
@@ -142,7 +143,7 @@ static void *run(void *arg)
         try_to_write(journal, urgent);
     try_to_write(journal, true);
     if (journal->taken.count)
-        log_err(journal->log, "alarms: %zu rows of the journal lost: they could not be written", journal->taken.count);
+        log_err(journal->log, "alarms: %zu alarm events lost: the alarm journal could not be written", journal->taken.count);
     return NULL;
 }
 

@@ -160,7 +160,7 @@ int journal_file_forget(struct journal_file *file, int64_t before_us)
 {
     sqlite3_stmt *s = database_statement(&file->db, SQL_FORGET);
     sqlite3_bind_int64(s, 1, before_us);
-    return database_fail(&file->db, database_run(&file->db, s), "old rows cannot be deleted");
+    return database_fail(&file->db, database_run(&file->db, s), "old alarm events cannot be deleted");
 }
 
 /* --- reading ---------------------------------------------------------------------------------------------------------------- */

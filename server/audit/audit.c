@@ -202,7 +202,7 @@ static void say_lost(struct audit *audit)
     audit->lost_count = 0;
     if (!lost)
         return;
-    char *what = mem_printf("%" PRId64 " entries were lost while the file could not be written", lost);
+    char *what = mem_printf("%" PRId64 " audit entries were lost while the audit file could not be written", lost);
     pthread_mutex_unlock(&audit->thread.lock);
     audit_say(audit, &(struct audit_entry){ .event = "audit", .result = "failed", .what = what });
     pthread_mutex_lock(&audit->thread.lock);

@@ -57,10 +57,10 @@ static void disconnect(struct audit_syslog *syslog)
 static void say(struct audit_syslog *syslog, const char *why)
 {
     if (why && !syslog->failing)
-        log_event(syslog->params.log, LOG_ERROR, EVENT_AUDIT_NOT_SENT, "audit: %s cannot be reached: %s; lines are queued and sent later",
-                  syslog->params.syslog, why);
+        log_event(syslog->params.log, LOG_ERROR, EVENT_AUDIT_NOT_SENT,
+                  "audit: syslog server %s cannot be reached: %s; audit lines are queued and sent later", syslog->params.syslog, why);
     else if (!why && syslog->failing)
-        log_info(syslog->params.log, "audit: %s accepts lines again", syslog->params.syslog);
+        log_info(syslog->params.log, "audit: syslog server %s accepts audit lines again", syslog->params.syslog);
     syslog->failing = why != NULL;
     counter_set(syslog->good, !syslog->failing);
 }
@@ -202,15 +202,15 @@ struct audit_syslog *audit_syslog_start(const struct audit_params *params)
     syslog->url = mem_printf("https://%s%s", params->syslog, colon ? "" : ":6514");
     if (gethostname(syslog->host, sizeof(syslog->host) - 1) != 0 || !syslog->host[0] || strpbrk(syslog->host, " \t"))
         strcpy(syslog->host, "-");
-    syslog->good = counters_add(params->counters, "plantcast_audit_syslog_good", "gauge", "1 while the syslog server takes audit lines.");
-    syslog->lost =
-        counters_add(params->counters, "plantcast_audit_syslog_lost_total", "counter", "Audit lines that the syslog server was not sent.");
+    syslog->good = counters_add(params->counters, "plantcast_audit_syslog_good", "gauge", "1 while the syslog server accepts audit lines.");
+    syslog->lost = counters_add(params->counters, "plantcast_audit_syslog_lost_total", "counter",
+                                "Audit lines not sent to the syslog server: queue full.");
     counter_set(syslog->good, 1);
     pthread_mutex_init(&syslog->lock, NULL);
     clock_cond_init(&syslog->wake);
     if (curl_global_init(CURL_GLOBAL_DEFAULT) == CURLE_OK && pthread_create(&syslog->thread, NULL, run, syslog) == 0)
         return syslog;
-    log_err(params->log, "audit: libcurl or a thread could not be started");
+    log_err(params->log, "audit: sending to the syslog server cannot start: libcurl or a thread failed");
     mem_free(syslog->url);
     mem_free(syslog);
     return NULL;

@@ -31,7 +31,7 @@ static void compare(struct audit_walk *walk, const struct audit_chain *with, con
 {
     const struct audit_chain *end = &walk->report->end;
     if (with->seq == end->seq && strcmp(with->hash, end->hash) != 0)
-        set_fault(walk->report, mem_printf("%s: line %" PRIu64 " differs from the one in %s", path, end->seq, whose));
+        set_fault(walk->report, mem_printf("%s: line %" PRIu64 " differs from the line recorded in %s", path, end->seq, whose));
 }
 
 static void verify_file(struct audit_walk *walk, const char *path)
@@ -46,7 +46,7 @@ static void verify_file(struct audit_walk *walk, const char *path)
     }
     report->files++;
     for (ssize_t n; report->good && (n = getline(&line, &capacity, file)) > 0;) {
-        const char *why = "it is truncated";
+        const char *why = "the line is truncated";
         number++;
         if (line[n - 1] != '\n' || !audit_chain_check(&report->end, line, (size_t)n - 1, report->lines == 0, &why)) {
             set_fault(report, mem_printf("%s:%zu: %s", path, number, why));
@@ -108,18 +108,19 @@ void audit_file_verify(const char *path, const struct audit_chain *known, struct
     if (report->good)
         verify_file(&walk, path);
     if (report->good && report->lines == 0 && walk.head.seq == 0)
-        set_fault(
-            report,
-            mem_printf("%s: has no lines; a daemon writes one when it starts, so the trail was emptied, or this is not an audit trail",
-                       path));
+        set_fault(report, mem_printf("%s: the file has no lines, although a daemon writes a line at each start: the audit trail was "
+                                     "emptied, or this is not an audit trail",
+                                     path));
     if (report->good && !has_head)
-        set_fault(report, mem_printf("%s: is missing: removed last lines cannot be detected", head_path));
+        set_fault(report, mem_printf("%s: the file is missing: without it, removed last lines cannot be detected", head_path));
     if (report->good && walk.head.seq > report->end.seq)
         set_fault(report, mem_printf("%s: ends at line %" PRIu64 "; the last %" PRIu64 " lines were removed (%s)", path, report->end.seq,
                                      walk.head.seq - report->end.seq, head_path));
     if (report->good && known->seq > report->end.seq)
-        set_fault(report, mem_printf("%s: ends at line %" PRIu64 ", before the known line %" PRIu64, path, report->end.seq, known->seq));
+        set_fault(report,
+                  mem_printf("%s: ends at line %" PRIu64 ", before line %" PRIu64 " of --known", path, report->end.seq, known->seq));
     if (report->good && known->seq && known->seq < report->first_seq)
-        set_fault(report, mem_printf("%s: begins at line %" PRIu64 ", after the known line %" PRIu64, path, report->first_seq, known->seq));
+        set_fault(report,
+                  mem_printf("%s: begins at line %" PRIu64 ", after line %" PRIu64 " of --known", path, report->first_seq, known->seq));
     mem_free(head_path);
 }

@@ -222,7 +222,7 @@ test('a changed byte and removed lines are found, also by the next start', { ski
     writeFileSync(`${trail}.head`, '');
     const emptied = verify();
     assert.equal(emptied.code, 1, emptied.out);
-    assert.match(emptied.err, /audit\S*: has no lines; .* emptied/);
+    assert.match(emptied.err, /audit\S*: the file has no lines, .* emptied/);
     assert.equal(runProgram('plantcast', ['audit', 'verify']).code, 2);
 });
 
@@ -296,13 +296,13 @@ test('syslog by TLS: each line as RFC 5424, after an outage too, and only to who
     await syslog.close();
     await ask('/api/v1/tags', 'pc_wrong', { localAddress: '127.0.0.21' });
     await ask('/api/v1/tags', 'pc_wrong', { localAddress: '127.0.0.22' });
-    await plant.daemon.line(/audit: localhost:\d+ cannot be reached/);
+    await plant.daemon.line(/audit: syslog server localhost:\d+ cannot be reached/);
     syslog = new SyslogServer(key, cert);
     await syslog.listen(port);
     for (const address of ['127.0.0.21', '127.0.0.22'])
         assert.match(await syslog.until(address, (text) => text.includes(`"from":"${address}"`)), /^<108>1 /);
     await start('--audit-syslog', `localhost:${syslog.port}`);
-    await plant.daemon.line(/audit: localhost:\d+ cannot be reached: SSL/);
+    await plant.daemon.line(/audit: syslog server localhost:\d+ cannot be reached: SSL/);
     const wrong = runProgram('plantcastd', [plant.file, '--audit-syslog', 'localhost']);
     assert.equal(wrong.code, 1);
     assert.match(wrong.err, /needs --audit/);

@@ -175,7 +175,7 @@ test('on a full disk each kind is answered with "not kept", and why; once there 
     await until('that free space is measured', async () => Math.abs(
         Number(/^plantcast_history_free_bytes (\d+)$/m.exec(await (await ask('/metrics')).text())[1]) - bavail * bsize) < 1 << 18);
     free();
-    await until('that the journal is written again', () => /the journal can be written again/.test(plant.daemon.said));
+    await until('that the journal is written again', () => /the alarm journal can be written again/.test(plant.daemon.said));
     await killed();
     assert.notEqual((await alarm()).state, 'unacknowledged', 'what was in force, and could not be kept then, was once there was room');
 });

@@ -93,7 +93,7 @@ test('user and password from a file, and a topic that is not for this user', opt
         await plant.daemon.stop();
     }
     writeFileSync(path('login'), '\n');
-    await refused(`login: ${path('login')}`, /no readings \(.*login: expected a line with the user and one with the password\)/);
+    await refused(`login: ${path('login')}`, /no readings \(.*login: expected the user name in line 1 and the password in line 2\)/);
     rmSync(path('login'));
     await refused(`login: ${path('login')}`, /no readings \(.*login: No such file or directory\)/);
 });

@@ -130,7 +130,7 @@ TEST(test_lines_removed_and_moved)
     memcpy(copy, bytes, starts[2]);
     memcpy(copy + starts[2], bytes + starts[3], count - starts[3]);
     put(path, copy, count - (starts[3] - starts[2]));
-    expect_fault(path, NULL, ":3: lines before it are missing");
+    expect_fault(path, NULL, ":3: lines before this line are missing");
     /* the first line is gone: older lines may be in another file, so the report only mentions them */
     struct audit_chain known, none;
     struct audit_report report;
@@ -156,9 +156,9 @@ TEST(test_lines_removed_and_moved)
     assert_true(audit_chain_check(&third, bytes + starts[2], starts[3] - starts[2] - 1, true, &why));
     assert_true(audit_head_write(head_path, &third));
     expect_good(path, 1, 3);
-    expect_fault(path, &known, "before the known line 5");
+    expect_fault(path, &known, "before line 5 of --known");
     memset(third.hash, 'a', AUDIT_HASH_CHARS);
-    expect_fault(path, &third, "line 3 differs from the one in --known");
+    expect_fault(path, &third, "line 3 differs from the line recorded in --known");
     mem_free(copy);
     mem_free(bytes);
     mem_free(head_path);
@@ -180,7 +180,7 @@ TEST(test_next_start)
     finding = write_lines(path, 1, 1 << 20);
     assert_non_null(strstr(finding, "lines were removed"));
     mem_free(finding);
-    expect_fault(path, NULL, ":4: lines before it are missing");
+    expect_fault(path, NULL, ":4: lines before this line are missing");
     /* an incomplete last line at the end, as a crash leaves it */
     put(path, bytes, count - 10);
     char *head_path = mem_printf("%s.head", path);
@@ -222,7 +222,7 @@ TEST(test_rotation)
     assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
     assert_non_null(strstr(later, "another program changed the file"));
     mem_free(later);
-    expect_fault(path, NULL, "lines before it are missing");
+    expect_fault(path, NULL, "lines before this line are missing");
     /* removed by another program while it is open */
     unlink(path);
     assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
@@ -232,7 +232,7 @@ TEST(test_rotation)
     /* removes a full, rotated file */
     unlink(full);
     unlink(moved);
-    expect_fault(path, NULL, "lines before it are missing");
+    expect_fault(path, NULL, "lines before this line are missing");
     text_finish(&lines);
     mem_free(moved);
     mem_free(full);

@@ -190,11 +190,11 @@ TEST(test_each_abi_of_landlock_restricts_what_it_knows)
     } abis[] = {
         { 0, 0, 0, "no Landlock: programs that read uploaded files can read and write all files of this user (" },
         { 0x1fff, 0, 0,
-          "only ABI 1 of Landlock: commands under `convert` can read and write all files of this user, empty all files that this user may "
-          "write, signal other processes of this user (" },
+          "only ABI 1 of Landlock: commands under `convert` can read and write all files of this user, truncate all files that this user "
+          "may write, signal other processes of this user (" },
         { 0x3fff, 0, 0,
-          "only ABI 2 of Landlock: commands under `convert` can empty all files that this user may write, signal other processes of this "
-          "user (" },
+          "only ABI 2 of Landlock: commands under `convert` can truncate all files that this user may write, signal other processes of "
+          "this user (" },
         { 0x7fff, 0, 0, "only ABI 3 of Landlock: commands under `convert` can signal other processes of this user (" },
         { 0x7fff, 3, 0, "only ABI 4 of Landlock: commands under `convert` can signal other processes of this user (" },
         { 0xffff, 3, 0, "only ABI 5 of Landlock: commands under `convert` can signal other processes of this user (" },
@@ -212,7 +212,8 @@ TEST(test_each_abi_of_landlock_restricts_what_it_knows)
         assert_int_equal(confine_lacks_with(abi, true, lacks), abi < 6);
         assert_string_equal(lacks, expected);
         assert_true(confine_lacks_with(abi, false, lacks));
-        assert_non_null(strstr(lacks, "no seccomp: these programs can make any system call (needs CONFIG_SECCOMP_FILTER)"));
+        assert_non_null(
+            strstr(lacks, "no seccomp: programs that read uploaded files can make any system call (needs CONFIG_SECCOMP_FILTER)"));
     }
     assert_int_equal(confine_ruleset_of(-1).files, 0); /* -1 is the kernel's answer where Landlock is absent or switched off */
 }
@@ -310,7 +311,7 @@ TEST(test_each_abi_of_landlock_holds_or_the_log_names_what_it_leaves_open)
         confine_lacks_with(abi, true, lacks);
         assert_true(open & ALLOWED);
         assert_true(!(open & (READ_SECRET | ALTER)) == !strstr(lacks, "read and write all files"));
-        assert_true(!(open & EMPTY_SECRET) == !strstr(lacks, "empty all files"));
+        assert_true(!(open & EMPTY_SECRET) == !strstr(lacks, "truncate all files"));
         assert_true(!(open & SIGNAL) == !strstr(lacks, "signal other processes"));
         print_message("Landlock ABI %d: %s\n", abi, *lacks ? lacks : "nothing is left open");
     }

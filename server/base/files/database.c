@@ -151,8 +151,8 @@ static bool is_newer(struct database *database, int version)
 {
     int known = database->format->version;
     if (version > known)
-        log_err(database->log, "%s: version %d was written by a newer Plantcast; this program supports version %d", database->path, version,
-                known);
+        log_err(database->log, "%s: this file of version %d was written by a newer Plantcast; this program supports version %d",
+                database->path, version, known);
     return version > known;
 }
 
@@ -278,9 +278,9 @@ bool database_set_aside(struct database *database)
         if (i == 0) {
             moved = good;
             if (good)
-                log_err(database->log, "%s: is damaged; renamed to %s, starting a new one", database->path, to);
+                log_err(database->log, "%s: the database is damaged; renamed it to %s and started a new database", database->path, to);
             else
-                log_err(database->log, "%s: is damaged and cannot be renamed: %s", database->path, strerror(errno));
+                log_err(database->log, "%s: the database is damaged and cannot be renamed: %s", database->path, strerror(errno));
         }
         mem_free(from);
         mem_free(to);

@@ -25,7 +25,7 @@ bool login_file_read(const char *path, struct login_file *login, char why[200])
     login->password = rest ? strsep(&rest, "\r\n") : NULL;
     if (*login->user)
         return true;
-    snprintf(why, 200, "%.100s: expected a line with the user and one with the password", path);
+    snprintf(why, 200, "%.100s: expected the user name in line 1 and the password in line 2", path);
     login_file_forget(login);
     return false;
 }

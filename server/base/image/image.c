@@ -91,7 +91,7 @@ bool image_decode(struct image *image, const void *bytes, size_t size, uint32_t 
     bool cmyk = false;
     *image = (struct image){ 0 };
     if (format == OTHER) {
-        snprintf(why, IMAGE_WHY_BYTES, "%zu bytes are not PNG, JPEG or WebP", size);
+        snprintf(why, IMAGE_WHY_BYTES, "the picture of %zu bytes is not in the format PNG, JPEG or WebP", size);
         return false;
     }
     if (format == WEBP)

@@ -116,8 +116,8 @@ bool size_good(const OIIO::ImageSpec &spec, int max_channels, char *why)
         spec.nchannels <= max_channels && spec.depth <= 1 &&
         static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height) <= IMAGE_MAX_PIXELS)
         return true;
-    return refuse(why, "%d x %d pixels of %d channels: at most %llu of %d", spec.width, spec.height, spec.nchannels,
-                  static_cast<unsigned long long>(IMAGE_MAX_PIXELS), max_channels);
+    return refuse(why, "the picture has %d x %d pixels of %d channels; at most %llu pixels of %d channels are supported", spec.width,
+                  spec.height, spec.nchannels, static_cast<unsigned long long>(IMAGE_MAX_PIXELS), max_channels);
 }
 
 bool claim_good(const OIIO::ImageSpec &spec, const char *format, size_t size, char *why)
@@ -133,7 +133,7 @@ bool decode(struct image *image, const void *bytes, size_t size, uint32_t max_px
 {
     const char *format = format_of(static_cast<const unsigned char *>(bytes), size);
     if (!format)
-        return refuse(why, "%zu bytes are not JPEG or WebP", size);
+        return refuse(why, "the picture of %zu bytes is not in the format JPEG or WebP", size);
     OIIO::Filesystem::IOMemReader memory(const_cast<void *>(bytes), size);
     OIIO::ImageSpec hints, spec;
     hints.attribute("oiio:UnassociatedAlpha", 1);

@@ -73,6 +73,7 @@ void process_counters_set(struct counters *counters)
     }
     counter_set(counters_add(counters, "process_open_fds", "gauge", "Files and sockets that this process has open."), count_files());
     if (getrlimit(RLIMIT_NOFILE, &files) == 0)
-        counter_set(counters_add(counters, "process_max_fds", "gauge", "Most files and sockets that this process may have open."),
+        counter_set(counters_add(counters, "process_max_fds", "gauge",
+                                 "Maximum number of files and sockets that this process may have open."),
                     (int64_t)files.rlim_cur);
 }

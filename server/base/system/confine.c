@@ -220,7 +220,7 @@ bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES])
            with an older version. Programs that read models never have these accesses, because seccomp blocks the system calls. TCP and
            devices are missing in this table, because seccomp blocks them for commands, too. */
         { ABI_RENAME, "read and write all files of this user" },
-        { ABI_TRUNCATE, "empty all files that this user may write" },
+        { ABI_TRUNCATE, "truncate all files that this user may write" },
         { ABI_SCOPES, "signal other processes of this user" },
     };
     size_t used = 0;
@@ -238,7 +238,8 @@ bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES])
         used += (size_t)snprintf(out + used, CONFINE_LACKS_BYTES - used, " (needs Linux 6.12 with landlock in its list of LSMs)");
     if (!calls)
         snprintf(out + used, CONFINE_LACKS_BYTES - used,
-                 "%sno seccomp: these programs can make any system call (needs CONFIG_SECCOMP_FILTER)", used ? "; " : "");
+                 "%sno seccomp: programs that read uploaded files can make any system call (needs CONFIG_SECCOMP_FILTER)",
+                 used ? "; " : "");
     return *out != 0;
 }
 

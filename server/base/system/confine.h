@@ -35,7 +35,7 @@ struct confine_params {
    one thread, or between fork and exec: it allocates no memory. Returns 0 or -errno; after an error the process must end. */
 int confine(const struct confine_params *params);
 
-enum { CONFINE_LACKS_BYTES = 320 };
+enum { CONFINE_LACKS_BYTES = 400 };
 /* Describes in one line which restrictions this kernel cannot enforce, and from which version on kernels can. Returns false if nothing
    is missing. */
 bool confine_lacks(char out[CONFINE_LACKS_BYTES]);

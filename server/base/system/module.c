@@ -51,7 +51,9 @@ bool module_find(struct module *module, const char *name, void *function, char *
     void *library = module->library, *symbol = library ? dlsym(library, name) : NULL;
     pthread_mutex_unlock(&module->lock);
     if (library && !symbol)
-        snprintf(why, why_bytes, "%s has another version: it lacks %s", module->name, name);
+        snprintf(why, why_bytes,
+                 "%s is of another version than this program: the function %s is missing; install the same version of all packages",
+                 module->name, name);
     memcpy(function, &symbol, sizeof(symbol));
     return symbol != NULL;
 }

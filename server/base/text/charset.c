@@ -82,7 +82,8 @@ bool charset_resolve(const char *written, char name[CHARSET_NAME_BYTES])
 
 char *charset_describe(const struct charset_choice *choice)
 {
-    return *choice->other ? mem_printf("read as %s, but may be %s: set --encoding NAME", choice->name, choice->other)
+    return *choice->other ? mem_printf("the file was read as %s, but its encoding may be %s: if so, set it with --encoding NAME",
+                                       choice->name, choice->other)
                           : mem_printf("read as %s", choice->name);
 }
 
