@@ -55,7 +55,8 @@ static void limit(struct helper *helper)
 #endif
     bool divided = cgroup_create("reader", bytes, MAX_TASKS, &helper->cgroup);
     if (!divided || !cgroup_add(helper->cgroup, helper->child))
-        log_warn(helper->params->log, "%s: its limits hold for each process alone: the cgroup `reader` cannot be %s: %s",
+        log_warn(helper->params->log,
+                 "%s: memory limits hold for each process alone, not for all together: the cgroup `reader` cannot be %s: %s",
                  helper->params->arguments[0], divided ? "joined" : "made", strerror(errno));
 }
 
@@ -168,7 +169,7 @@ char *helper_run(const struct helper_params *params)
         why = mem_printf("%s cannot be run: %s%s%s", name, strerror(error), error == ENOENT ? ": install the package " : "",
                          error == ENOENT ? name : "");
     else if (helper.told)
-        why = mem_printf("%s was ended before it was done", name);
+        why = mem_printf("%s was ended before it had finished", name);
     else if (helper.timed_out)
         why = mem_printf("%s was ended after %d s (%s)", name, params->timeout_s, params->timeout_option);
     else if (params->remark && WIFEXITED(status) && WEXITSTATUS(status) == HELPER_PARTLY)

@@ -131,7 +131,7 @@ static const char *take_rows(struct alarm_service *service, const json_t *rows)
     {
         struct journal_entry row;
         if (!read_row(one, &row))
-            return "an invalid change of an alarm";
+            return "the core's message has an invalid alarm event";
         alarm_service_mirror_row(service, &row);
     }
     return NULL;

@@ -65,13 +65,13 @@ const char *core_instant_read(const void *bytes, size_t count, int64_t *first_us
 {
     const uint8_t *at = bytes;
     if (count < CORE_INSTANT_HEAD_BYTES || memcmp(at, MAGIC, sizeof(MAGIC)) != 0)
-        return "not a message of readings of an instant";
+        return "the core's answer does not hold the readings of an instant";
     size_t readings = get(at + 4, 4);
     *first_us = (int64_t)get(at + 8, 8);
     if (*first_us < 0 || count != CORE_INSTANT_HEAD_BYTES + readings * CORE_INSTANT_READING_BYTES)
-        return "its length differs from that of its readings";
+        return "the length of the core's answer does not match the number of readings in the answer";
     if (snapshot && readings != snapshot->count)
-        return "the number of readings differs from the number of tags";
+        return "the core's answer has another number of readings than this plant has tags";
     for (size_t i = 0; snapshot && i < readings; i++)
         if (!read_one(at + CORE_INSTANT_HEAD_BYTES + i * CORE_INSTANT_READING_BYTES, &snapshot->readings[i]))
             return "an invalid reading";

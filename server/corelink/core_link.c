@@ -204,7 +204,8 @@ static void stay_to_vote(struct core_link *link, const char *why)
     link->votes = true;
     counter_inc(link->refused, 1);
     if (strcmp(text, said) != 0)
-        log_err(link->params.log, "core: %s: no readings: %s; the other core leads, and this core only votes",
+        log_err(link->params.log,
+                "core: %s: no readings: %s; the other core leads; this core cannot take over and only confirms the leader's lease",
                 link->params.urls[link->turn.index], text);
     memcpy(said, text, sizeof(text));
 }
@@ -216,9 +217,9 @@ static void on_refused(struct core_link *link, const json_t *message)
     if (link->params.keeper && !json_is_true(json_object_get(message, "takes_over")))
         lease_keeper_set_refused(link->params.keeper, why ? why : "without a reason");
     if (link->params.keeper && json_is_true(json_object_get(message, "votes")))
-        stay_to_vote(link, why ? why : "the core refuses this node");
+        stay_to_vote(link, why ? why : "the core refuses this node without a reason");
     else
-        refuse(link, why ? why : "the core refuses this node");
+        refuse(link, why ? why : "the core refuses this node without a reason");
 }
 
 static struct core_identity own_identity(const struct core_link *link)
@@ -248,7 +249,7 @@ static void on_links(struct core_link *link, const json_t *message)
     const json_t *up = json_object_get(message, "up");
     int64_t now_ns = clock_mono_ns();
     if (json_array_size(up) != link->params.plant->source_count) {
-        refuse(link, "links: the number differs from the number of sources");
+        refuse(link, "the core has another number of sources than this plant");
         return;
     }
     for (size_t i = 0; i < json_array_size(up); i++)
@@ -312,7 +313,7 @@ static void on_text(struct core_link *link)
     json_t *message = json_loadb(link->in.at, link->in.length, JSON_REJECT_DUPLICATES, NULL);
     const char *type = json_string_value(json_object_get(message, "type")), *why = NULL;
     if (!type)
-        refuse(link, "the message is not JSON");
+        refuse(link, "the core's message is not JSON");
     else if (!strcmp(type, "refused"))
         on_refused(link, message);
     else if (!strcmp(type, "standby"))
@@ -322,7 +323,7 @@ static void on_text(struct core_link *link)
     else if (!strcmp(type, "lease") && (link->taken || link->votes))
         on_lease(link, message);
     else if (!link->taken)
-        refuse(link, "the first message is not an introduction (hello)");
+        refuse(link, "the core's first message is not an introduction (type core)");
     else if (!strcmp(type, "told"))
         on_told(link, message);
     else if (!strcmp(type, "links"))
@@ -384,7 +385,7 @@ static void on_bytes(struct core_link *link)
 {
     struct core_readings readings = { .at = link->readings, .least_ns = link->least_ns, .at_ns = link->readings_ns };
     int64_t now_ns = clock_mono_ns();
-    const char *why = !link->taken ? "the first message is not an introduction (hello)"
+    const char *why = !link->taken ? "the core's first message is not an introduction (type core)"
                                    : core_readings_read(&readings, link->params.plant->tag_count, link->in.at, link->in.length, now_ns);
     if (why) {
         refuse(link, why);
@@ -407,7 +408,7 @@ static void on_receive(struct core_link *link, const void *bytes, size_t count)
 {
     link->heard_ns = clock_mono_ns();
     if (link->in.length + count > MAX_MESSAGE_BYTES) {
-        refuse(link, "a message of more than 64 MiB");
+        refuse(link, "the core's message is larger than 64 MiB");
         return;
     }
     text_add_bytes(&link->in, bytes, count);
@@ -475,10 +476,12 @@ static void on_failure(struct core_link *link, const char *why)
 {
     char text[WHY_BYTES];
     bool answered = why && strstr(why, "HS:"), untrusted = why && (strstr(why, "SSL") || strstr(why, "cert") || strstr(why, "tls="));
-    snprintf(text, sizeof(text), "%s%s", why ? why : "no connection",
-             untrusted  ? ": is the core's certificate trusted (--core-ca) and valid for this name?"
-             : answered ? ": the core refuses this node: does it run with --role core, and is this node's token that of a renderer?"
-                        : "");
+    snprintf(
+        text, sizeof(text), "%s%s", why ? why : "no connection",
+        untrusted ? ": check that the core's certificate is trusted (--core-ca) and valid for this host name"
+        : answered
+            ? ": the core refuses this node: check that the core runs with --role core, and that this node's token has the role renderer"
+            : "");
     if (answered || untrusted)
         refuse(link, text);
     else
@@ -675,10 +678,12 @@ static void answer_waiting(struct core_link *link)
     for (size_t i = 0; i < CORE_ACTS; i++) {
         uint64_t client = take_waiting(link, link->waiting[i].id);
         if (client)
-            arrive(link, client,
-                   json_text(json_pack("{s:s,s:s,s:s}", "type", "error", "code", "core_lost", "text",
-                                       "the connection to the core was lost: check when it is back whether the action was done"),
-                             0));
+            arrive(
+                link, client,
+                json_text(
+                    json_pack("{s:s,s:s,s:s}", "type", "error", "code", "core_lost", "text",
+                              "the connection to the core was lost: after the connection is restored, check whether the action was done"),
+                    0));
     }
 }
 
@@ -743,7 +748,7 @@ static bool read_token(struct core_link *link)
     if (good)
         snprintf(link->authorization, sizeof(link->authorization), "Bearer %.*s", (int)n, text);
     else
-        log_err(link->params.log, "core: %s: %s", path, text ? "its first line is not a token" : strerror(errno));
+        log_err(link->params.log, "core: %s: %s", path, text ? "the first line of the file is not a token" : strerror(errno));
     mem_free(text);
     return good;
 }
@@ -767,7 +772,8 @@ struct core_link *core_link_start(const struct core_link_params *params)
     add_up_counters(link);
     link->connects = counters_add(c, "plantcast_core_connects_total", "counter", "Connections to a core that delivered readings.");
     link->refused =
-        counters_add(c, "plantcast_core_refused_total", "counter", "Connections refused: the core does not belong to this renderer.");
+        counters_add(c, "plantcast_core_refused_total", "counter",
+                     "Connections to a core given up: the core differs in version, plant or configuration, or refuses this node.");
     link->behind = counters_add_seconds(c, "plantcast_core_clock_ahead_seconds", "gauge",
                                         "Seconds by which the core's clock is ahead of this machine's.");
     lws_set_log_level(LLL_ERR | LLL_WARN, NULL); /* libwebsockets logs only errors and warnings, because the link's own loop logs its

@@ -65,7 +65,7 @@ static const char *read_one(struct mirrored *out, size_t tag_count, const uint8_
     uint64_t value = get64(at + 8);
     int64_t age_ns = (int64_t)get64(at + 16);
     if (tag >= tag_count)
-        return "a reading of an unknown tag";
+        return "the core's message has a reading of an unknown tag";
     *out = (struct mirrored){ .tag = (int)tag, .quality = get32(at + 4), .received_utc_ns = (int64_t)get64(at + 24) };
     memcpy(&out->value, &value, sizeof(value));
     out->has_value = age_ns != INT64_MAX;
@@ -84,7 +84,7 @@ const char *core_readings_read(struct core_readings *out, size_t tag_count, cons
     out->count = get32(at + 4);
     out->utc_ns = (int64_t)get64(at + 8);
     if (out->count > tag_count || count != CORE_READINGS_HEAD_BYTES + out->count * CORE_READING_BYTES)
-        return "its length differs from that of its readings";
+        return "the length of the core's message does not match the number of readings in the message";
     int64_t core_mono_ns = (int64_t)get64(at + 16);
     if (core_mono_ns < 0)
         return "an invalid clock";

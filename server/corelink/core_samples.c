@@ -113,7 +113,7 @@ const char *core_samples_read(struct sample_event **out, size_t *out_count, size
         return "not a message of samples";
     size_t told = get32(at + 4);
     if (told > CORE_SAMPLES_AT_ONCE || count != CORE_SAMPLES_HEAD_BYTES + told * CORE_SAMPLE_BYTES)
-        return "its length differs from that of its samples";
+        return "the length of the core's message does not match the number of samples in the message";
     struct sample_event *samples = mem_array(told + 1, sizeof(*samples));
     for (size_t i = 0; i < told; i++)
         if (!read_one(&samples[i], tag_count, at + CORE_SAMPLES_HEAD_BYTES + i * CORE_SAMPLE_BYTES, now_mono_ns)) {

@@ -158,7 +158,7 @@ static bool read_row(struct lease_keeper *keeper, struct lease_row *row)
     if (!rows)
         give_up(keeper, postgres_link_why(keeper->link));
     else if (!there)
-        give_up(keeper, "the row of this plant is gone");
+        give_up(keeper, "the row of this plant was deleted from the table of leases");
     if (there) {
         *row = (struct lease_row){ postgres_int64(rows, 0, 0), postgres_int64(rows, 0, 1), postgres_int64(rows, 0, 2), "", "" };
         copy_name(row->leader, rows, 3);
@@ -217,8 +217,9 @@ static void look_for_namesake(struct lease_keeper *keeper, const struct lease_ro
     if (!same || !keeper->namesake_beat) {
         keeper->namesake_beat = same ? row->beat : 0;
     } else if (keeper->namesake_beat > 0 && row->beat != keeper->namesake_beat) {
-        log_err(keeper->params.log, "lease: another core with the name %.*s leads: this one stays standby; give each core its own --node",
-                own, keeper->node);
+        log_err(keeper->params.log,
+                "lease: another core with the name %.*s leads: this core stays standby; give each core another name with --node", own,
+                keeper->node);
         keeper->namesake_beat = -1;
     }
 }
@@ -251,8 +252,8 @@ static void tell_barred(struct lease_keeper *keeper, bool barred, char *refusal)
 {
     if (barred && !keeper->told_barred)
         log_err(keeper->params.log,
-                "lease: nobody leads, and this core does not take over, because the last leader refused it (%s). To let it lead, copy the "
-                "leader's plant file and tag list here, and reload this core",
+                "lease: no core leads, and this core does not take over, because the last leader refused this core (%s). To let this core "
+                "lead, copy the leader's plant file and tag list here, and reload this core",
                 refusal);
     keeper->told_barred = barred;
     mem_free(refusal);
@@ -539,15 +540,16 @@ bool lease_keeper_promise(struct lease_keeper *keeper)
 static void add_counters(struct lease_keeper *keeper)
 {
     struct counters *c = keeper->params.counters;
-    keeper->counters.active = counters_add(c, "plantcast_core_active", "gauge", "1 while this core leads: polls devices, owns alarms.");
+    keeper->counters.active =
+        counters_add(c, "plantcast_core_active", "gauge", "1 while this core leads: it polls the devices and owns the alarms.");
     keeper->counters.here = counters_add(c, "plantcast_core_up{core=\"this\"}", "gauge", CORE_UP_HELP);
     keeper->counters.epoch =
         counters_add(c, "plantcast_core_epoch", "gauge", "Epoch of the lease: rises each time that another core takes the lead.");
-    keeper->counters.age =
-        counters_add_seconds(c, "plantcast_core_lease_age_seconds", "gauge", "Age of the last confirmed request for the lease.");
+    keeper->counters.age = counters_add_seconds(c, "plantcast_core_lease_age_seconds", "gauge",
+                                                "Seconds since the last renewal of the lease that was confirmed.");
     keeper->counters.database =
         counters_add(c, "plantcast_core_lease_database_up", "gauge", "1 while PostgreSQL answers requests for the lease.");
-    keeper->counters.standby = counters_add(c, "plantcast_core_standby", "gauge", "1 while a named standby follows this core.");
+    keeper->counters.standby = counters_add(c, "plantcast_core_standby", "gauge", "1 while a standby follows this core and may take over.");
     keeper->counters.differs = counters_add(c, "plantcast_core_standby_differs", "gauge",
                                             "1 while the other core differs in version or configuration and cannot be standby.");
     keeper->counters.maintenance = counters_add(c, "plantcast_core_standby_maintenance", "gauge",

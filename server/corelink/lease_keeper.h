@@ -9,7 +9,7 @@
 #include "plant/plant.h"
 
 /* help text of the metric plantcast_core_up, which a link and the keeper set */
-#define CORE_UP_HELP "1 while this core leads: it sends readings to this daemon, or (core=\"this\") it is this daemon."
+#define CORE_UP_HELP "1 while this core leads and sends readings to this daemon; core=\"this\": 1 while this daemon is the leading core."
 #define LEASE_MAINTENANCE_FILE "standby-maintenance" /* maintenance file in the folder of the history; `plantcast standby` creates it */
 
 struct lease_keeper_params {

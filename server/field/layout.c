@@ -13,7 +13,8 @@
 #include "plant/exact.h"
 #include "protocol/asset_distance.h"
 
-_Static_assert(KERNEL_BLOCK == ASSET_DISTANCE_BLOCK, "a block of the file is done at a time");
+_Static_assert(KERNEL_BLOCK == ASSET_DISTANCE_BLOCK,
+               "KERNEL_BLOCK must equal the block size of the file, because the kernels take one block at a time");
 
 static bool of_group(const struct scene *scene, const struct scene_sensor *sensor, int group)
 {

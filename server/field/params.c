@@ -191,16 +191,16 @@ bool field_params_placed(const struct plant *plant, const struct field_params *p
 static const char *sensors_wrong(const struct plant *plant, const struct field_params *params)
 {
     if (params->show == SHOW_DISTANCE && params->sensor < 0)
-        return "sensor: needed to show a distance";
+        return "sensor: expected a sensor, because show is distance";
     if (!field_params_placed(plant, params))
-        return "sensors: a sensor has no place in the shown group";
+        return "sensors: a listed sensor has no position in the shown group";
     if (params->show == SHOW_DIFFERENCE && params->baseline == 0)
-        return "baseline: needed to show a difference";
+        return "baseline: expected a baseline, because show is difference";
     for (size_t i = 0; i < params->override_count; i++) {
         const struct field_override *o = &params->overrides[i];
         if ((o->strength != FIELD_AS_CONFIGURED && !within((double)o->strength, 0, 100)) ||
             (o->decay != FIELD_AS_CONFIGURED && !within((double)o->decay, 0, 100)))
-            return "sensors: strength and decay of 0..100 expected";
+            return "sensors: expected a strength and a decay from 0 to 100";
     }
     return NULL;
 }
@@ -212,19 +212,19 @@ const char *field_params_wrong(const struct plant *plant, const struct field_par
     if ((unsigned)params->interpolation >= INTERPOLATIONS)
         return "interpolation: expected shepard, paper, harmonic, fin or gp";
     if (interpolation_is_prepared(params->interpolation) && !plant_prepares(&plant->groups[params->group], params->interpolation))
-        return "interpolation: not prepared for the shown group; name it in the group's 'prepare' in the plant file";
+        return "interpolation: not prepared for the shown group; add the interpolation to the group's 'prepare' in the plant file";
     if ((unsigned)params->distance >= DISTANCES)
         return "distance: expected geodesic, euclidean or heat";
     if (params->distance == DISTANCE_HEAT && !plant->groups[params->group].heat)
-        return "distance: not prepared for the shown group; say 'geodesic: heat' of it in the plant file";
+        return "distance: heat is not prepared for the shown group; set 'geodesic: heat' for the group in the plant file";
     if (params->fill != FILL_NONE && params->fill != FILL_NEIGHBOURS)
         return "fill: expected none or neighbours";
     if ((unsigned)params->show > SHOW_BLIND)
         return "show: expected value, distance, difference, operator, uncertainty or blind";
     if (params->show == SHOW_UNCERTAINTY && params->interpolation != INTERPOLATION_GP)
-        return "show: uncertainty needs the interpolation 'gp'; choose it, and name it in the group's 'prepare'";
+        return "show: uncertainty needs the interpolation 'gp'; choose 'gp', and add 'gp' to the group's 'prepare' in the plant file";
     if (params->show == SHOW_OPERATOR && params->interpolation == INTERPOLATION_FIN)
-        return "interpolation: fin cannot show places between limits (show: operator)";
+        return "interpolation: fin does not support show operator; choose another interpolation";
     const char *wrong = numbers_wrong(params);
     return wrong ? wrong : sensors_wrong(plant, params);
 }

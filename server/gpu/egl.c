@@ -169,7 +169,7 @@ static struct gl *egl_device_create(const struct gl_device *asked, bool software
             if (!load_client(impl->name, why))
                 return NULL;
         }
-    text_add(why, "; %s: none of %d devices is working hardware", impl->name, devices.count);
+    text_add(why, "; %s: none of %d EGL devices is a working GPU", impl->name, devices.count);
     return NULL;
 }
 
@@ -208,7 +208,7 @@ static struct gl *egl_surfaceless_create(const struct gl_device *device, bool so
     if (!load_client(impl->name, why))
         return NULL;
     if (!egl_client_has("EGL_MESA_platform_surfaceless") || !eglGetPlatformDisplayEXT) {
-        text_add(why, "; %s: this EGL has no surfaceless platform", impl->name);
+        text_add(why, "; %s: libEGL has no surfaceless platform (EGL_MESA_platform_surfaceless)", impl->name);
         return NULL;
     }
     return egl_from_display(impl, eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL), why);

@@ -46,7 +46,7 @@ bool egl_devices_read(struct egl_devices *devices, const char *name, struct text
     EGLint count = 0;
     devices->count = 0;
     if (!egl_client_has("EGL_EXT_platform_device") || !eglQueryDevicesEXT || !eglGetPlatformDisplayEXT) {
-        text_add(why, "; %s: this EGL cannot list devices", name);
+        text_add(why, "; %s: libEGL cannot list devices (EGL_EXT_platform_device)", name);
         return false;
     }
     if (!eglQueryDevicesEXT(EGL_MAX_DEVICES, devices->at, &count) || count < 1) {

@@ -57,12 +57,12 @@ static const char *fault_of(const char *path, const struct stat *st)
 {
     struct stat folder;
     if (!S_ISREG(st->st_mode))
-        return "it is not a file";
+        return "the path is not a regular file";
     if (!stat_folder(path, &folder))
         return strerror(errno);
     if (st->st_uid != folder.st_uid && st->st_uid != geteuid())
-        return "its owner differs from the owner of its folder";
-    return st->st_nlink > 1 && st->st_uid != folder.st_uid ? "it has another hard link" : NULL;
+        return "the file's owner differs from the owner of its folder";
+    return st->st_nlink > 1 && st->st_uid != folder.st_uid ? "the file has another hard link" : NULL;
 }
 
 /* Opens a file for reading. Returns -1 on failure (logged). */

@@ -431,7 +431,8 @@ static int write_spooled(struct historian *historian)
         error = write_rows(historian, &historian->spooled.held, true);
     if (error)
         return error;
-    log_event(historian->log, LOG_INFO, EVENT_HISTORY_WRITTEN, "history: the spool %s was recorded and deleted", historian->spool_path);
+    log_event(historian->log, LOG_INFO, EVENT_HISTORY_WRITTEN,
+              "history: the points in the spool file %s were recorded, and the file was deleted", historian->spool_path);
     unlink(historian->spool_path);
     mem_free(historian->spool_path);
     historian->spool_path = NULL;
@@ -582,8 +583,8 @@ static void spool(struct historian *historian)
                   strerror(-error));
     else
         log_event(historian->log, LOG_WARN, EVENT_HISTORY_UNWRITABLE,
-                  "history: %zu points could not be written; they wait in %s for the next start", rows->kept.count + rows->held.count,
-                  *place);
+                  "history: %zu points could not be written; these points wait in the spool file %s for the next start",
+                  rows->kept.count + rows->held.count, *place);
     if (!error && historian->spool_path && strcmp(historian->spool_path, *place) != 0)
         unlink(historian->spool_path); /* deletes the old spool file, because its rows have been saved in the new one, too */
     spool_places_free(places);
@@ -596,9 +597,10 @@ static void take_spool(struct historian *historian)
         size_t foreign = 0;
         int error = spool_read(*place, historian->plant, &historian->spooled, &foreign);
         if (error && error != -ENOENT && error != -ENOTDIR)
-            log_err(historian->log, "history: the spool %s is kept: %s", *place, strerror(-error));
+            log_err(historian->log, "history: the spool file %s cannot be read and is kept: %s", *place, strerror(-error));
         if (foreign)
-            log_warn(historian->log, "history: %s: %zu points dropped: their tags are no longer in the tag list", *place, foreign);
+            log_warn(historian->log, "history: spool file %s: %zu points dropped: their tags are no longer in the tag list", *place,
+                     foreign);
         if (!error)
             historian->spool_path = mem_strdup(*place);
     }
@@ -631,8 +633,10 @@ static void add_counters(struct historian *historian, struct counters *counters)
         counters_add(counters, "plantcast_history_lost_total", "counter", "Samples that could not be stored in history.");
     historian->counters.waiting = counters_add(counters, "plantcast_history_waiting_points", "gauge", "Points waiting to be written.");
     historian->counters.good = counters_add(counters, "plantcast_history_good", "gauge", "1 while history can be written.");
-    historian->counters.bytes = counters_add(counters, "plantcast_history_bytes", "gauge", "Disk space taken by all months of history.");
-    historian->counters.free = counters_add(counters, "plantcast_history_free_bytes", "gauge", "Free space on the disk of the history.");
+    historian->counters.bytes =
+        counters_add(counters, "plantcast_history_bytes", "gauge", "Disk space in bytes that all files of history take.");
+    historian->counters.free =
+        counters_add(counters, "plantcast_history_free_bytes", "gauge", "Free disk space in bytes in the folder of history.");
     historian->counters.backup = counters_add(counters, "plantcast_backup_timestamp_seconds", "gauge",
                                               "Time of the last backup, in seconds since 1970; 0: unknown.");
 }

@@ -129,7 +129,7 @@ static bool take_time(struct history_import *import, int64_t after_us, int64_t *
         *t_us = import->params->start_us + (int64_t)llround(count * (double)import->params->unit_us);
         return true;
     }
-    csv_error(&import->csv, import->time, "expected a number counted from --start, found '%.60s'", text);
+    csv_error(&import->csv, import->time, "expected a number (time since --start), found '%.60s'", text);
     return false;
 }
 
@@ -169,7 +169,8 @@ static bool take_unit(struct history_import *import, int tag, double *value)
     const char *unit = text_cell_read(csv_text(&import->csv, import->unit)), *to = of->unit ? of->unit : "";
     struct unit_change change = of->scale.change;
     if (*unit && units_compare(unit, to, &change) > UNITS_CONVERT) {
-        csv_error(&import->csv, import->unit, "'%.60s' cannot be converted to '%.60s', in which %s is recorded", unit, to, of->name);
+        csv_error(&import->csv, import->unit, "unit '%.60s' cannot be converted to '%.60s', the unit in which tag %s is recorded", unit, to,
+                  of->name);
         return false;
     }
     *value = unit_change_value(&change, *value);
@@ -254,7 +255,8 @@ static bool check_sample(struct history_import *import, void *arg, int tag, cons
     if (series->seen && point->t_us < series->last_us) {
         char text[TIMESTAMP_BYTES];
         timestamp_print(series->last_us, text);
-        csv_error(&import->csv, column, "%s: expected a time not before its last sample, %s", import->params->plant->tags[tag].name, text);
+        csv_error(&import->csv, column, "tag %s: expected a time not before the tag's last sample, %s",
+                  import->params->plant->tags[tag].name, text);
         return false;
     }
     if (!counts->samples || point->t_us < counts->from_us)

@@ -157,7 +157,7 @@ int month_file_write(struct month_file *file, const struct history_row *rows, si
 
 int month_file_use_outbox(struct month_file *file)
 {
-    int error = database_exec(&file->db, MONTH_OUTBOX_SCHEMA, "cannot be given an outbox");
+    int error = database_exec(&file->db, MONTH_OUTBOX_SCHEMA, "the outbox for PostgreSQL cannot be created");
     file->has_outbox = !error;
     return error;
 }

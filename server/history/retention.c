@@ -137,7 +137,7 @@ int64_t retention_apply(struct log *log, const char *folder, const struct retent
         if (newest)
             break;
         char *why = old ? mem_printf("older than %g days", limits->days)
-                        : mem_printf("history takes %.1f MB, more than %.1f MB", (double)used / 1e6, limits->bytes / 1e6);
+                        : mem_printf("history takes %.1f MB, more than the limit of %.1f MB", (double)used / 1e6, limits->bytes / 1e6);
         if (drop_month(log, folder, months[i], why, waiting, unsent))
             used -= of_month;
         mem_free(why);

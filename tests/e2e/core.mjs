@@ -152,11 +152,11 @@ test('another plant, another configuration, a wrong token and a daemon that is n
     };
     const wrong = [
         [start(other, '--core-token-file', nodes.rendererFile), /no readings: configuration: the renderer has \w{16}, this node \w{16}/],
-        [start(nodes.plant.file, '--core-token-file', nodes.viewerFile), /no readings: .*is this node's token that of a renderer/],
+        [start(nodes.plant.file, '--core-token-file', nodes.viewerFile), /no readings: .*this node's token has the role renderer/],
     ];
     const alone = await nodes.start(['--port', '0', '--role', 'all', '--history', join(nodes.plant.folder, 'h2')]);
     wrong.push([new Program('plantcastd', [nodes.plant.file, '--role', 'render', '--port', '0', '--core', alone.url]),
-        /no readings: .*does it run with --role core/]);
+        /no readings: .*check that the core runs with --role core/]);
     nodes.all.push({ program: wrong[2][0] });
     for (const [program, said] of wrong) {
         await program.line(said);
@@ -281,8 +281,8 @@ test('over TLS: a core whose certificate is not trusted is refused by name; one 
         nodes.all.push({ program });
         return program;
     };
-    const wrong = [[renderer('stranger.pem', 'localhost'), /error core: .*no readings: .*is the core's certificate trusted/],
-        [renderer('core.pem', '127.0.0.1'), /error core: .*no readings: .*is the core's certificate trusted/]];
+    const wrong = [[renderer('stranger.pem', 'localhost'), /error core: .*no readings: .*check that the core's certificate is trusted/],
+        [renderer('core.pem', '127.0.0.1'), /error core: .*no readings: .*check that the core's certificate is trusted/]];
     for (const [program, said] of wrong) {
         await program.line(said);
         assert.doesNotMatch(program.said, /receiving readings/);

@@ -185,7 +185,7 @@ test('a renderer\'s token takes no standby\'s seat, and a standby\'s is no rende
         assert.match(refused.why, why);
         assert.equal(refused.votes, false);
         client.close();
-        await until('its log', () => /(standby|renderer) evil: refused: its token/.test(core.program.said));
+        await until('its log', () => /(standby|renderer) evil: refused: the token/.test(core.program.said));
     }
     await until('the renderer alone', async () => await core.metric('plantcast_renderers') === 1);
 });

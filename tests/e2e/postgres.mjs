@@ -324,7 +324,7 @@ test('tables of another version are refused by name, and left alone', options, a
     server.ask(`CREATE SCHEMA plantcast AUTHORIZATION plantcast; SET ROLE plantcast; CREATE TABLE plantcast.version(version int);
         INSERT INTO plantcast.version VALUES (0)`);
     await plant.startDaemon();
-    await plant.daemon.line(/the tables in schema plantcast have version 0, older than version 1 of this program; they are not used/);
+    await plant.daemon.line(/the tables in schema plantcast have version 0, older than version 1 of this program; the tables are not used/);
     assert.equal(await metric('postgres_up'), 0);
     server.ask('UPDATE plantcast.version SET version = 2');
     await plant.daemon.line(/the tables in schema plantcast have version 2, newer than version 1 of this program/, 30000);

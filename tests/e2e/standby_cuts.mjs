@@ -93,7 +93,7 @@ test('a leader that was loaded anew goes on by the promise of a standby that was
     writeFileSync(two.file, text.replace('deadband_percent: 0', 'deadband_percent: 0.5'));
     core.program.child.kill('SIGHUP');
     await core.program.line(/reload: configuration/);
-    await other.program.line(/configuration: the renderer has .*only votes/);
+    await other.program.line(/configuration: the renderer has .*only confirms the leader's lease/);
     await two.goesOn(t, core, 5);
     assert.match(core.program.said, /standby .*: refused: configuration: .*; it is not a standby, but its promises count/);
     other.program.child.kill('SIGHUP');

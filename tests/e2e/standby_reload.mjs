@@ -9,7 +9,7 @@ import { long } from './support/promise.mjs';
 import { kill, missingTwoCores, sleep, TwoCores, until } from './support/two_cores.mjs';
 
 const skip = missingTwoCores(), options = { skip, timeout: 240000 }, CUT_S = 6, RETURNS = 5;
-const READ = /history: \d+ points of \d+ s when another core led are read from PostgreSQL/g;
+const READ = /history: read \d+ points from PostgreSQL, for \d+ s in which another core led/g;
 let server, two;
 
 before(async () => {
@@ -78,10 +78,10 @@ test('a core that the leader refused does not take over before it is loaded anew
     writeFileSync(two.file, readFileSync(two.file, 'utf8').replace('max: 101 }', 'max: 102 }'));
     core.program.child.kill('SIGHUP');
     await core.program.line(/reload: configuration/);
-    await other.program.line(/configuration: the renderer has .*only votes/);
+    await other.program.line(/configuration: the renderer has .*only confirms the leader's lease/);
     core.program.stopped = true;
     core.program.child.kill('SIGKILL');
-    await other.program.line(/lease: nobody leads, and this core does not take over, because the last leader refused it \(configuration: /);
+    await other.program.line(/lease: no core leads, .*because the last leader refused this core \(configuration: /);
     assert.ok(!await two.ready(other));
     other.program.said = '';
     other.program.child.kill('SIGHUP');

@@ -46,7 +46,8 @@ TEST(each_comes_to_the_bit)
     core_instant_write(&text, 0, NULL);
     assert_null(core_instant_read(text.at, text.length, &first_us, NULL));
     assert_int_equal(first_us, 0);
-    assert_string_equal(core_instant_read(text.at, text.length, &first_us, got), "the number of readings differs from the number of tags");
+    assert_string_equal(core_instant_read(text.at, text.length, &first_us, got),
+                        "the core's answer has another number of readings than this plant has tags");
     text_finish(&text);
     snapshot_destroy(&sent);
     snapshot_destroy(&got);

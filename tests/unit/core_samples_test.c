@@ -76,7 +76,8 @@ TEST(nonsense_is_refused)
     assert_null(read_text(&text, &got, &count));
     mem_free(got);
     memset(text.at + 4, 0xff, 4); /* states four thousand million samples */
-    assert_string_equal(read_text(&text, &got, &count), "its length differs from that of its samples");
+    assert_string_equal(read_text(&text, &got, &count),
+                        "the length of the core's message does not match the number of samples in the message");
     text_finish(&text);
 }
 

@@ -197,7 +197,8 @@ CASE(what_cannot_be_converted_is_an_error_at_its_cell)
                     "A,hr:0,temp,A,0,0,0,bar\nB,hr:0,temp,A,0,0,0,degX\nC,hr:0,taken,A,0,0,0,bar\nD,hr:0,temp,A,0,0,0,°F\n");
     assert_null(c->plant);
     FOUND(c, { "tags.csv", 2, 21, "'bar' (pressure (absolute or gauge not stated)) cannot be converted to '°C' (temperature)" },
-          { "tags.csv", 3, 21, "'degX' cannot be converted to '°C', the unit of its group, since it is not known; did you mean 'degC'?" });
+          { "tags.csv", 3, 21,
+            "'degX' cannot be converted to '°C', the unit of its group, since 'degX' is not known; did you mean 'degC'?" });
     plant_case_load(c, yaml, "Tag Name,Address,Group,Asset,X,Y,Z,Eng Units,H,HH\nA,hr:0,temp,A,0,0,0,°F,,190\n");
     FOUND(c, { "tags.csv", 2, 25, "H of the group is 90, but HH is 87.7777778, in °C; expected LL < L < H < HH" });
 }
@@ -268,7 +269,7 @@ CASE(files_say_their_unit_or_mean_the_row_s)
     }
     mem_free(temp_write_text(c->folder, "s.csv", "Tag,Time,Value,Unit\nF,2026-10-25T00:00:01Z,212,bar\n"));
     assert_false(history_import(&params, &diag, &counts));
-    assert_non_null(strstr(diag.items[0].text, "'bar' cannot be converted to '°C', in which F is recorded"));
+    assert_non_null(strstr(diag.items[0].text, "unit 'bar' cannot be converted to '°C', the unit in which tag F is recorded"));
     diag_finish(&diag);
     mem_free(folder);
     mem_free(again);

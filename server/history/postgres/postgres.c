@@ -205,7 +205,7 @@ static void fill(struct postgres *postgres)
     memmove(postgres->owed.spans, postgres->owed.spans + 1, --postgres->owed.span_count * sizeof(span));
     pthread_mutex_unlock(&postgres->lock);
     counter_inc(postgres->counters.restored, points);
-    log_info(log_of(postgres), "history: %lld points of %.0f s when another core led are read from PostgreSQL", (long long)points,
+    log_info(log_of(postgres), "history: read %lld points from PostgreSQL, for %.0f s in which another core led", (long long)points,
              (double)(span.to_us - span.from_us) / 1e6);
     postgres->params.restored(postgres->params.arg);
 }
