@@ -33,13 +33,14 @@ static void print_usage(FILE *out)
           "\n"
           "  --check          read all files, also those of --tokens, --openid, --notice, --tls-cert and\n"
           "                   --signing-key, print every error and exit; no server is started\n"
-          "  --dump-plan      print which requests field devices will get, with registers and load, and exit\n"
+          "  --dump-plan      print the requests that this daemon would send to field devices, with registers\n"
+          "                   and load, and exit\n"
           "  --list-gl-devices  print the GPUs that --gl-device accepts, and exit\n"
           "\n"
           "Network:\n"
           "  --listen ADDRESS  IP address of this machine to listen on (default: 127.0.0.1)\n"
           "  --port N         TCP port to listen on; 0: any free port (default: 8080)\n"
-          "  --web DIR        folder with the files of the web page (default: the one installed with this\n"
+          "  --web DIR        folder with the files of the web page (default: the folder installed with this\n"
           "                   program)\n"
           "  --host NAME      additional host name under which browsers may reach this server; may be given up\n"
           "                   to 16 times\n"
@@ -47,13 +48,14 @@ static void print_usage(FILE *out)
           "                   such as https://portal.example; may be given up to 16 times\n"
           "  --behind-proxy   take clients' addresses from X-Forwarded-For, which a reverse proxy on this\n"
           "                   machine sets; requires --host\n"
-          "  --trusted-proxy ADDRESS[/BITS]  the same for a proxy on another machine, such as 10.0.0.10 or\n"
-          "                   10.0.0.0/28; ignore X-Forwarded-For of all others; may be given up to 16 times\n"
-          "  --limit NAME=N   change one resource limit; the names are listed below; may be repeated\n"
+          "  --trusted-proxy ADDRESS[/BITS]  take clients' addresses from X-Forwarded-For of a proxy on another\n"
+          "                   machine, such as 10.0.0.10 or 10.0.0.0/28; ignore X-Forwarded-For from all other\n"
+          "                   machines; may be given up to 16 times\n"
+          "  --limit NAME=N   change one resource limit; the names of limits are listed below; may be repeated\n"
           "\n"
           "Drawing:\n"
           "  --gl CONTEXT     OpenGL context that draws: auto, egl-device, egl-surfaceless or osmesa (on the\n"
-          "                   CPU) (default: auto, the first one that works)\n"
+          "                   CPU) (default: auto, the first context that works)\n"
           "  --gl-device GPU  GPU that draws: its number in --list-gl-devices, or its PCI address such as\n"
           "                   0000:65:00.0\n"
           "  --threads N      number of threads that compute fields and encode pictures (default: one per CPU\n"
@@ -61,8 +63,8 @@ static void print_usage(FILE *out)
           "  --memory MB      memory limit of all caches together (default: a quarter of the machine's memory,\n"
           "                   at most 2048). The model and the picture being drawn are not included. /metrics\n"
           "                   shows how much each cache uses\n"
-          "  --field WHERE    where the field is computed: vertices (fast) or per-fragment (at each pixel;\n"
-          "                   slow, for comparison) (default: vertices)\n"
+          "  --field WHERE    where field values are computed: vertices (fast) or per-fragment (at each pixel,\n"
+          "                   which is slow, for comparison only) (default: vertices)\n"
           "  --h264 ENCODER   libavcodec encoder of H.264 video: libx264, h264_nvenc, h264_vaapi, libopenh264,\n"
           "                   ...; off: send JPEG only (default: libx264). If the encoder does not work on this\n"
           "                   machine, clients get JPEG\n"
@@ -70,13 +72,13 @@ static void print_usage(FILE *out)
           "Files:\n"
           "  --prepared DIR   output folder of plantcast-prep (default: NAME.prepared next to NAME.yaml;\n"
           "                   for /etc/plantcast/NAME/plant.yaml, also /var/lib/plantcast/NAME/prepared)\n"
-          "  --history DIR    folder in which readings are recorded (default: the one that the plant file\n"
-          "                   names, else next to the plant file)\n"
+          "  --history DIR    folder in which readings are recorded (default: the folder that the plant file\n"
+          "                   names, else a folder next to the plant file)\n"
           "  --import[=now]   let engineers upload models and tag lists on the page, as `plantcast import\n"
-          "                   --serve` does. =now: also import the files in the folder `exports` next to the\n"
-          "                   plant file at the start\n"
+          "                   --serve` does. --import=now: also import, at the start of the daemon, the files\n"
+          "                   in the folder `exports` next to the plant file\n"
           "  --signing-key FILE  sign the pictures of /snapshot.png with the Ed25519 private key in FILE (PEM);\n"
-          "                   `openssl genpkey -algorithm ed25519` makes one\n"
+          "                   `openssl genpkey -algorithm ed25519` creates such a key\n"
           "  --log-level LEVEL  least severe log lines that are written: error, warn, info or debug (default:\n"
           "                   info)\n"
           "  --log-format FORMAT  format of log lines: text, json (one object per line) or journal (default:\n"
@@ -88,7 +90,7 @@ static void print_usage(FILE *out)
           "                   with readings and alarms from a core (default: all)\n"
           "  --core URL       with --role render: address wss://HOST:PORT of the core; repeat the option for a\n"
           "                   second core. With --role core: address of the other core. One core is active, the\n"
-          "                   other takes over when the first fails; both need PostgreSQL\n"
+          "                   other core takes over when the active core fails; two cores need PostgreSQL\n"
           "  --core-token-file FILE  file with the token that this daemon presents to the core (`plantcast\n"
           "                   token add --role renderer`, or standby for a second core)\n"
           "  --core-ca FILE   certificates (PEM) by which the core's certificate is checked\n"
@@ -96,7 +98,7 @@ static void print_usage(FILE *out)
           "  --agent-port PORT  port on which HAProxy's agent check reads how much capacity this daemon has\n"
           "                   left. The signal SIGUSR1 moves all sessions to other daemons\n"
           "\n"
-          "Access: without --tokens, everybody on this machine has access and nobody else.\n"
+          "Access: without --tokens, everybody on this machine has access, and nobody on other machines.\n"
           "To listen on another address, give --tls-cert and --tokens, or --open-viewers.\n"
           "\n"
           "  --tls-cert FILE  TLS certificate of this server with its chain (PEM); reloaded when the file\n"
@@ -105,17 +107,17 @@ static void print_usage(FILE *out)
           "  --tokens FILE    users and programs that have access, with their roles, as `plantcast token`\n"
           "                   writes them. Users on this machine need a token too. Reloaded when the file\n"
           "                   changes\n"
-          "  --openid FILE    sign users in through an identity provider (OpenID Connect); FILE is its\n"
-          "                   configuration\n"
+          "  --openid FILE    sign users in through an identity provider (OpenID Connect); FILE holds the\n"
+          "                   settings of the provider\n"
           "  --notice FILE    text that the page shows before users sign in (UTF-8, at most 4 kB)\n"
-          "  --lock-after MINUTES  sign users out after this time without activity, except tokens made with\n"
-          "                   --unattended\n"
+          "  --lock-after MINUTES  sign users out after MINUTES without activity, except users of tokens made\n"
+          "                   with --unattended\n"
           "  --open-viewers   let everybody who reaches the address of --listen view pictures, and do nothing\n"
           "                   else\n"
           "  --trust-local    with --tokens: users on this machine need no token and have the role engineer\n"
           "  --audit FILE     record sign-ins, refused requests and changes in FILE; `plantcast audit verify\n"
           "                   FILE` detects whether FILE was altered\n"
-          "  --audit-size MB  size at which the audit file is kept and a new one is started (default: 64)\n"
+          "  --audit-size MB  size in MB at which a new audit file begins; the full file is kept (default: 64)\n"
           "  --audit-syslog HOST[:PORT]  also send the audit trail to this syslog server by TLS (default port:\n"
           "                   6514)\n"
           "  --audit-ca FILE  certificates (PEM) by which the syslog server's certificate is checked\n"
@@ -397,13 +399,13 @@ static const char *role_wrong(const struct server_params *params)
 {
     bool render = params->role == SERVER_RENDER;
     if (render && !params->core_count)
-        return "--role render and --core URL belong together";
+        return "--role render needs --core URL";
     if (params->role == SERVER_ALL && params->core_count)
-        return "--core URL is for --role render, and for --role core with another core";
+        return "--core URL needs --role render, or --role core if there is a second core";
     if (!params->core_count && (params->core_token || params->core_ca))
-        return "--core-token-file and --core-ca belong to --core URL";
+        return "--core-token-file and --core-ca need --core URL";
     if (render && params->imports)
-        return "--import is for the core: --role render does not import plants";
+        return "--import is not allowed with --role render: give --import to the core";
     return NULL;
 }
 
@@ -483,7 +485,7 @@ int main(int argc, char **argv)
     if (!params.node && gethostname(machine, sizeof(machine) - 1) == 0)
         params.node = machine;
     if ((params.audit.syslog && !params.audit.path) || !params.audit.syslog_cert != !params.audit.syslog_key) {
-        fputs("plantcastd: --audit-syslog needs --audit FILE; --audit-cert and --audit-key belong together.\n", stderr);
+        fputs("plantcastd: --audit-syslog needs --audit FILE; give both --audit-cert and --audit-key, or neither.\n", stderr);
         return FAILED;
     }
     if ((why = role_wrong(&params))) {

@@ -132,7 +132,7 @@ static bool take(const struct plant *plant, bool journal, const char *arg, int64
         return true;
     }
 #undef IS
-    message_fail(error, "unknown_field", "'%.60s': expected limit, tag, format (json or csv)%s", arg,
+    message_fail(error, "unknown_field", "unknown argument '%.60s': expected limit, tag, format (json or csv)%s", arg,
                  journal ? ", from, to, before" : " or offset");
     return false;
 }

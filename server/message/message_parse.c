@@ -22,7 +22,7 @@ static bool size_parse(const json_t *o, struct message *out, struct message_erro
     if (!need_number(o, "width", 16, VIEW_MAX_SIDE_PX, &w, error) || !need_number(o, "height", 16, VIEW_MAX_SIDE_PX, &h, error))
         return false;
     if (!view_size_valid(w, h)) {
-        message_fail(error, "bad_field", "width, height: expected whole numbers of pixels, at most %d in all", VIEW_MAX_PIXELS);
+        message_fail(error, "bad_field", "width, height: expected whole numbers, and at most %d pixels in the picture", VIEW_MAX_PIXELS);
         return false;
     }
     out->width_px = (int)w;
@@ -97,7 +97,7 @@ static bool parse_time(const struct plant *plant, const json_t *o, struct messag
     out->time.at_us = (int64_t)at_us;
     if (at || has_speed)
         return true;
-    message_fail(error, "bad_field", "at_us: expected microseconds of UTC since 1970, null for now, or a speed");
+    message_fail(error, "bad_field", "at_us, speed: expected at_us (microseconds since 1970 in UTC, or null for the present), or a speed");
     return false;
 }
 
@@ -139,7 +139,7 @@ static bool parse_hello(const struct plant *plant, const json_t *o, struct messa
     if (!tile_parse(plant, o, out, error) || !take_signed(o, "signed", out, &given, error))
         return false;
     if (out->hello.tile.display && !out->width_px) {
-        message_fail(error, "bad_field", "tile: expected width and height too");
+        message_fail(error, "bad_field", "tile: needs the fields width and height");
         return false;
     }
     out->hello.tokens = json_is_true(json_object_get(o, "tokens"));
@@ -282,7 +282,7 @@ static bool parse_object(const struct plant *plant, const json_t *o, struct mess
         return false;
     }
     if (!type) {
-        message_fail(error, "no_type", "the message has no 'type', or one that is not text");
+        message_fail(error, "no_type", "the message has no 'type', or its 'type' is not a text");
         return false;
     }
     for (size_t i = 0; i < sizeof(types) / sizeof(types[0]); i++) {
@@ -302,7 +302,7 @@ bool message_parse(const struct plant *plant, const char *text, size_t count, st
     *out = (struct message){ 0 };
     *error = (struct message_error){ 0 };
     if (count > WIRE_MAX_MESSAGE_BYTES) {
-        message_fail(error, "too_long", "%zu bytes; a message holds at most %u", count, WIRE_MAX_MESSAGE_BYTES);
+        message_fail(error, "too_long", "the message has %zu bytes; at most %u are allowed", count, WIRE_MAX_MESSAGE_BYTES);
         return false;
     }
     json_t *o = json_loadb(text, count, JSON_DECODE_ANY, &cause);

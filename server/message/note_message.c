@@ -38,7 +38,7 @@ bool note_parse(const struct plant *plant, const json_t *o, struct message *out,
     note->until_us = (int64_t)until_us;
     if ((note->tag >= 0) + (note->asset >= 0) + note->has_position + replaces <= 1)
         return true;
-    message_fail(error, "bad_field", "tag, asset, position, replaces: expected at most one of them");
+    message_fail(error, "bad_field", "tag, asset, position, replaces: expected at most one of these four fields");
     return false;
 }
 

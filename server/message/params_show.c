@@ -77,7 +77,7 @@ static bool parse_sensors(const struct plant *plant, const json_t *o, struct par
     out->given |= GIVEN_SENSORS;
     out->only_these_sensors = json_is_null(all);
     if (!json_is_object(all) && !json_is_null(all)) {
-        message_fail(error, "bad_field", "sensors: expected an object of tags, or null");
+        message_fail(error, "bad_field", "sensors: expected an object with one key for each tag, or null");
         return false;
     }
     json_object_foreach(all, tag, value) if (!parse_override(plant, tag, value, out, error)) return false;
@@ -156,7 +156,7 @@ static bool find_baseline(const struct params_context *context, const struct par
     if (change->baseline <= BASELINE_NONE)
         return true;
     if (!context->baselines || (change->baseline != BASELINE_NAMED && !context->snapshot)) {
-        message_fail(error, "bad_field", "baseline: none can be kept here");
+        message_fail(error, "bad_field", "baseline: this request cannot use baselines");
         return false;
     }
     if (change->baseline == BASELINE_SET && !baselines_may_set(context->baselines, change->baseline_name)) {

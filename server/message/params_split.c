@@ -23,7 +23,7 @@ bool split_parse(const struct plant *plant, const json_t *o, struct split_change
     }
     for (size_t i = 0; i < sizeof(common) / sizeof(*common); i++)
         if (json_object_get(value, common[i])) {
-            message_fail(error, "bad_field", "split: both halves have the same '%s'", common[i]);
+            message_fail(error, "bad_field", "split: '%s' is not allowed here, because this parameter applies to both halves", common[i]);
             return false;
         }
     if (params_parse(plant, value, &out->right, error))

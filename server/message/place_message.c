@@ -46,7 +46,7 @@ bool place_parse(const struct plant *plant, const json_t *o, struct message *out
     if (!need_seq(o, &out->seq, error))
         return false;
     if (!json_is_array(moves) || json_array_size(moves) > PLACING_MOVES) {
-        message_fail(error, "bad_field", "moves: expected a list of at most %d", PLACING_MOVES);
+        message_fail(error, "bad_field", "moves: expected a list of at most %d moves", PLACING_MOVES);
         return false;
     }
     for (out->place.count = 0; out->place.count < json_array_size(moves); out->place.count++)

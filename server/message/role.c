@@ -66,17 +66,18 @@ bool role_may_send(enum role role, const struct message *message, struct message
     bool saves = message->type == MESSAGE_SAVE_TAGS || message->type == MESSAGE_ACCEPT_PLACES || message->type == MESSAGE_RESTORE_TAGS;
     bool engineers = saves || message->type == MESSAGE_PLACE || message->type == MESSAGE_COVERAGE || message->type == MESSAGE_LOOP_CHECK;
     if (engineers && role < ROLE_ENGINEER) {
-        message_refuse(error, "not_allowed", "to place or prove sensors", REFUSAL_ROLE_ENGINEER);
+        message_refuse(error, "not_allowed", "to place sensors or check loops", REFUSAL_ROLE_ENGINEER);
         return false;
     }
     if ((message->type == MESSAGE_PAIR || message->type == MESSAGE_UNPAIR) && role < ROLE_ENGINEER) {
-        message_refuse(error, "not_allowed", "to let a display in", REFUSAL_ROLE_ENGINEER);
+        message_refuse(error, "not_allowed", "to pair or unpair a display", REFUSAL_ROLE_ENGINEER);
         return false;
     }
     const char *operators = message->type == MESSAGE_SAVE_VIEW || message->type == MESSAGE_REMOVE_VIEW ? "to save or remove views"
-                            : message->type == MESSAGE_NOTE || message->type == MESSAGE_REMOVE_NOTE    ? "to note something"
-                            : message->type == MESSAGE_SEND_TO_WALL || message->type == MESSAGE_POINT  ? "to send something to a wall"
-                                                                                                       : NULL;
+                            : message->type == MESSAGE_NOTE || message->type == MESSAGE_REMOVE_NOTE    ? "to write or remove notes"
+                            : message->type == MESSAGE_SEND_TO_WALL || message->type == MESSAGE_POINT
+                                ? "to send views or a pointer to a wall"
+                                : NULL;
     if (operators && role < ROLE_OPERATOR) {
         message_refuse(error, "not_allowed", operators, REFUSAL_ROLE_OPERATOR);
         return false;

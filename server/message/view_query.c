@@ -240,14 +240,14 @@ static bool add(json_t *o, const char *arg, struct message_error *error)
         static const char *const expected[] = { "a number",
                                                 "a number, or none",
                                                 "a text",
-                                                "numbers with commas",
-                                                "TAG=STRENGTH[:DECAY] with commas",
-                                                "numbers with commas, group, limits or none",
-                                                "numbers with commas, every:STEP or none",
-                                                "NAME=VALUE with semicolons",
-                                                "ids with commas",
-                                                "nx,ny,nz,d with semicolons",
-                                                "min and max: six numbers with commas" };
+                                                "numbers separated by commas",
+                                                "TAG=STRENGTH[:DECAY], separated by commas",
+                                                "numbers separated by commas, or group, limits or none",
+                                                "numbers separated by commas, or every:STEP, or none",
+                                                "NAME=VALUE, separated by semicolons",
+                                                "ids separated by commas",
+                                                "planes as nx,ny,nz,d, separated by semicolons",
+                                                "the corners min and max: six numbers separated by commas" };
         struct message_error inner = { .code = NULL };
         json_t *value = arg[n] == '=' ? value_of(known[i].kind, arg + n + 1, &inner) : NULL;
         if (value)
@@ -274,7 +274,7 @@ static bool apply_at(const struct params_context *context, const json_t *o, stru
         return false;
     }
     if (at_us > context->now_us - HISTORY_SETTLED_US) {
-        message_fail(error, "bad_field", "at: expected an instant at least 3 s ago; leave it out for a picture of now");
+        message_fail(error, "bad_field", "at: expected an instant at least 3 s ago; for a current picture, omit the argument at");
         return false;
     }
     view_set_instant(view, at_us, 0);
@@ -290,7 +290,7 @@ static bool apply(const struct params_context *context, enum role role, const js
     if (!may_number(o, "width", 16, VIEW_MAX_SIDE_PX, &w, NULL, error) || !may_number(o, "height", 16, VIEW_MAX_SIDE_PX, &h, NULL, error))
         return false;
     if (!view_size_valid(w, h)) {
-        message_fail(error, "bad_field", "width, height: expected whole numbers of pixels, at most %d in all", VIEW_MAX_PIXELS);
+        message_fail(error, "bad_field", "width, height: expected whole numbers, and at most %d pixels in the picture", VIEW_MAX_PIXELS);
         return false;
     }
     view_default(context->scene, (int)w, (int)h, view);

@@ -22,7 +22,9 @@ static bool parse_set(const struct plant *plant, const json_t *o, const char *na
             if (asset < 0)
                 message_refuse_with(error, "bad_field", name, REFUSAL_NO_ASSET, "name=%s", said);
             else
-                message_fail(error, "bad_field", "%s: '%s' is beyond the first %d assets", name, said, ASSET_SET_MAX);
+                message_fail(error, "bad_field",
+                             "%s: asset '%s' is not one of the first %d assets of the plant file, and only these assets are allowed", name,
+                             said, ASSET_SET_MAX);
             return false;
         }
         asset_set_add(out, asset);

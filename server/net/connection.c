@@ -17,7 +17,7 @@ static const char SIGNED_IN[] = " (signed in)"; /* suffix added to a signed-in u
 static const struct http_refusal NO_HOST = { 400, "HTTP/1.1 requires the header Host\n", REFUSAL_NONE };
 static const struct http_refusal WRONG_HOST = { 403, "the header Host has a name that this server does not accept; --host NAME allows it\n",
                                                 REFUSAL_NONE };
-static const struct http_refusal LOCAL_ONLY = { 403, "this server only accepts the hosts localhost, 127.0.0.1 and [::1]\n", REFUSAL_NONE };
+static const struct http_refusal LOCAL_ONLY = { 403, "this server accepts only the hosts localhost, 127.0.0.1 and [::1]\n", REFUSAL_NONE };
 static const struct http_refusal PROXY = { 403, "the request came through a proxy; start the server with --behind-proxy to allow this\n",
                                            REFUSAL_NONE };
 static const struct http_refusal IN_QUERY = { 400,
@@ -238,7 +238,7 @@ static void record_login(struct server_context *server, const struct connection 
                                      .from = connection->address,
                                      .how = way,
                                      .why = good                         ? NULL
-                                            : known                      ? "it has expired"
+                                            : known                      ? "the token has expired"
                                             : login == LOGIN_WRONG_SLOWS ? "unknown token; further tokens of this address are delayed"
                                                                          : "unknown token" });
 }
@@ -259,10 +259,11 @@ void connection_log_login(struct server_context *server, struct lws *wsi, const 
     if (login != LOGIN_WRONG && login != LOGIN_WRONG_SLOWS)
         return;
     counter_inc(server->counters.logins_wrong, 1);
-    log_event(log, LOG_WARN, EVENT_LOGIN_REFUSED, "login from %s by %s: token %s, role %s: refused, %s (%d within a minute)",
-              connection->address, way, known ? holder->name : "(unknown)", role, known ? "it has expired" : "nobody's", failures);
+    log_event(log, LOG_WARN, EVENT_LOGIN_REFUSED, "login from %s by %s: token %s, role %s: refused, %s (%d refused within a minute)",
+              connection->address, way, known ? holder->name : "(unknown)", role, known ? "the token has expired" : "the token is unknown",
+              failures);
     if (login == LOGIN_WRONG_SLOWS)
-        log_warn(log, "login from %s: limited to one token in %d s until a minute passes without a wrong one", connection->address,
+        log_warn(log, "login from %s: limited to one token in %d s until a minute passes without a wrong token", connection->address,
                  LOGIN_WAIT_S);
 }
 

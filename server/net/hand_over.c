@@ -39,7 +39,7 @@ static enum hand_over_step next_step(struct net *net, enum hand_over_step step)
         if (!standby && lease_keeper_leads(keeper) && now_ns < net->hand_over.until_ns)
             return step;
         if (!standby)
-            log_warn(server->params.log, "core: the standby has not received everything within %d s: it leads after %d s",
+            log_warn(server->params.log, "core: the standby has not received all data within %d s: the standby takes over after %d s",
                      (int)(SEND_NS / NS_PER_S), (int)(LEASE_NS / NS_PER_S));
         lease_keeper_give(keeper, standby ? standby : "");
         net->hand_over.until_ns = now_ns + TAKE_NS;

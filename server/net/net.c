@@ -176,7 +176,8 @@ static void tick(struct net *net, int64_t now_ns)
     if (net_check_links(&net->server))
         streams_on_readings(&net->server, false, true);
     if (core_loss_on_tick(&net->server.life.core_loss, has_core(&net->server), now_ns))
-        log_warn(net->server.params.log, "no core for %d s: moving sessions to other nodes, which the load balancer says it uses",
+        log_warn(net->server.params.log,
+                 "no connection to a core for %d s: moving sessions to the other nodes that the load balancer reports in use",
                  (int)((now_ns - net->server.life.core_loss.lost_ns) / NS_PER_S));
     streams_on_tick(&net->server);
     http_on_tick(&net->server, now_ns);
@@ -352,7 +353,7 @@ static void raise_file_limit(struct log *log, const struct quotas *quotas)
     }
     limit.rlim_cur = wanted;
     if (setrlimit(RLIMIT_NOFILE, &limit) != 0)
-        log_warn(log, "files: the limit cannot be raised: %s", strerror(errno));
+        log_warn(log, "files: the limit of open files cannot be raised: %s", strerror(errno));
 }
 
 /* Checks that the port can be bound, so that the reason is logged: libwebsockets does not report why it cannot listen. */
@@ -371,7 +372,7 @@ bool net_port_free(struct log *log, const char *address, int port)
                 listen(fd, 1) == 0;
     if (!good)
         log_err(log, "listen %s port %d: %s%s", address, port, strerror(errno),
-                errno == EADDRINUSE ? "; stop the program that uses it, or choose another port with --port" : "");
+                errno == EADDRINUSE ? "; stop the program that uses this port, or choose another port with --port" : "");
     if (fd >= 0)
         close(fd);
     return good;
@@ -389,9 +390,11 @@ static void add_counters(struct server_context *server)
         counters_add(c, "plantcast_drawing_busy_percent", "gauge", "Percentage of the render thread's time spent on live views.");
     server->counters.frames = counters_add(c, "plantcast_frames_sent_total", "counter", "Frames sent.");
     server->counters.frame_bytes = counters_add(c, "plantcast_frame_bytes_total", "counter", "Bytes of frames sent.");
-    server->counters.depth_bytes = counters_add(c, "plantcast_depth_bytes_total", "counter", "Bytes of depth grids sent.");
+    server->counters.depth_bytes =
+        counters_add(c, "plantcast_depth_bytes_total", "counter",
+                     "Bytes of depth data sent, with which pages move a picture before the next picture arrives.");
     server->counters.dropped =
-        counters_add(c, "plantcast_frames_dropped_total", "counter", "Frames replaced by a newer one before they were sent.");
+        counters_add(c, "plantcast_frames_dropped_total", "counter", "Frames replaced by a newer frame before they were sent.");
     server->counters.given_up = counters_add(c, "plantcast_frames_given_up_total", "counter", "Frames whose sending was abandoned.");
     server->counters.stalled =
         counters_add(c, "plantcast_sessions_stalled_total", "counter", "Sessions closed because the client stopped reading.");
@@ -403,11 +406,12 @@ static void add_counters(struct server_context *server)
     server->counters.clock_leap =
         counters_add(c, "plantcast_clock_leap_seconds", "gauge", "Leap second announced for the end of the month: 1, -1 or 0.");
     server->counters.logins_wrong = counters_add(c, "plantcast_logins_wrong_total", "counter", "Log-ins with an unknown or expired token.");
-    server->counters.logins_held =
-        counters_add(c, "plantcast_logins_held_total", "counter", "Log-ins refused unchecked: the address is slowed.");
+    server->counters.logins_held = counters_add(c, "plantcast_logins_held_total", "counter",
+                                                "Log-ins refused without a check, because their address was rate-limited.");
     server->counters.logins_slowed =
-        counters_add(c, "plantcast_logins_slowed_addresses", "gauge", "Addresses slowed after ten wrong tokens within a minute.");
-    server->counters.renderers = counters_add(c, "plantcast_renderers", "gauge", "Renderers connected to this core, without its standby.");
+        counters_add(c, "plantcast_logins_slowed_addresses", "gauge", "Addresses rate-limited after ten wrong tokens within a minute.");
+    server->counters.renderers =
+        counters_add(c, "plantcast_renderers", "gauge", "Renderers connected to this core; the standby is not counted.");
     server->counters.requests = counters_add(c, "plantcast_http_requests_total", "counter", "HTTP requests.");
 }
 

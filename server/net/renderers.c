@@ -83,7 +83,8 @@ const char *renderers_refusal(const struct server_context *server, struct lws *w
     const struct connection *connection = connection_of(wsi);
     if (!server->params.is_core)
         return "this daemon is not a core: start it with --role core\n";
-    return role_is_node(connection->role) || is_local(connection) ? NULL : "this needs a token of the role renderer or standby\n";
+    return role_is_node(connection->role) || is_local(connection) ? NULL
+                                                                  : "this connection needs a token of the role renderer or standby\n";
 }
 
 void renderers_make_key(struct server_context *server)
@@ -412,7 +413,8 @@ static bool send_samples(const struct server_context *server, struct renderer_pe
     int count = core_samples_write(renderer->samples, &renderer->out);
     renderer->samples_sent = count < CORE_SAMPLES_AT_ONCE;
     if (count < 0)
-        log_err(server->params.log, "standby %s: disconnected: it read samples too slowly; it will read them from PostgreSQL instead",
+        log_err(server->params.log,
+                "standby %s: disconnected: the standby read samples too slowly, and will read the missing samples from PostgreSQL",
                 renderer->name);
     return count < 0 ? false : count == 0 || send_out(renderer, LWS_WRITE_BINARY);
 }
@@ -518,9 +520,10 @@ static char *role_refusal(const struct renderer_peer *one)
     enum role role = one->stands_by ? ROLE_STANDBY : ROLE_RENDERER;
     if (connection->role == role || is_local(connection))
         return NULL;
-    return mem_printf("its token %s has the role %s, but a %s needs one of the role %s (plantcast token add FILE --role %s --name NAME)",
-                      connection->holder.name, name_of(names_role, (int)connection->role), name_of(names_role, (int)role),
-                      name_of(names_role, (int)role), name_of(names_role, (int)role));
+    return mem_printf(
+        "the token %s has the role %s, but a %s needs a token of the role %s (plantcast token add FILE --role %s --name NAME)",
+        connection->holder.name, name_of(names_role, (int)connection->role), name_of(names_role, (int)role), name_of(names_role, (int)role),
+        name_of(names_role, (int)role));
 }
 
 /* Returns the reason why peer `one` cannot be a standby, or NULL; the caller frees the text with mem_free. Only one standby with one name
@@ -531,12 +534,12 @@ static char *standby_refusal(const struct server_context *server, struct rendere
     if (!server->params.keeper)
         return mem_strdup("this core has no standby: it was started without --core");
     if (!strcmp(one->name, server->params.node_name))
-        return mem_printf("both cores have the name %.63s: give each its own with --node", one->name);
+        return mem_printf("both cores have the name %.63s: give each core another name with --node", one->name);
     for (const struct renderer_peer *other = server->core.renderers; other; other = other->next)
         if (other != one && (matches ? is_standby(other) : is_witness(other)))
             return mem_printf("%.63s is standby already", other->name);
     if (!id || !lease_name(one->lease, one->name, id))
-        return mem_printf("the standby %.63s has no id, or one that is too long", one->name);
+        return mem_printf("the standby %.63s sent no id, or an id that is too long", one->name);
     return NULL;
 }
 
@@ -546,8 +549,8 @@ static void say_refusal(struct server_context *server, const struct renderer_pee
     char said[sizeof(server->core.refused)];
     bool votes = renderer->state == RENDERER_VOTES;
     snprintf(said, sizeof(said), "%s %s: refused: %s%s", renderer->stands_by ? "standby" : "renderer", renderer->name, renderer->refusal,
-             votes                 ? "; it is not a standby, but its promises count"
-             : renderer->stands_by ? "; it is not a standby"
+             votes                 ? "; this core cannot take over, but still confirms the leader's lease"
+             : renderer->stands_by ? "; this core cannot take over"
                                    : "");
     if (strcmp(said, server->core.refused) != 0)
         log_err(server->params.log, "%s", said);
@@ -634,8 +637,8 @@ static const char *verify_person(const struct server_context *server, const stru
         out->role = ROLE_ENGINEER;
         return NULL;
     }
-    return id_token ? "the core cannot identify the signed-in user: it has no --openid"
-                    : "the core cannot verify the user: it needs a token or a sign-in";
+    return id_token ? "the core cannot identify the signed-in user, because the core runs without --openid"
+                    : "the core cannot verify the user: use a token, or sign in";
 }
 
 static void act(struct server_context *server, struct renderer_peer *renderer, const json_t *message)
@@ -671,13 +674,13 @@ static const char *on_message(struct server_context *server, struct renderer_pee
     json_t *message = json_loadb(renderer->in.at, renderer->in.length, JSON_REJECT_DUPLICATES, NULL);
     const char *type = json_string_value(json_object_get(message, "type")), *why = NULL;
     if (!type)
-        why = "the message is not JSON";
+        why = "the peer's message is not JSON";
     else if (!strcmp(type, "renderer") && renderer->state == RENDERER_NEW)
         introduce(server, renderer, message);
     else if (!strcmp(type, "promise") && is_witness(renderer) && server->params.keeper)
         on_promise(server, renderer, (uint64_t)json_integer_value(json_object_get(message, "number")));
     else if (renderer->state != RENDERER_TAKEN)
-        why = "the first message is not an introduction (hello)";
+        why = "the peer's first message is not an introduction (type renderer)";
     else if (server->life.hands_over)
         /* ignores the message, because this core hands over the lead: when the connection ends, the renderer tells the user that the
            connection was lost */
@@ -687,7 +690,7 @@ static const char *on_message(struct server_context *server, struct renderer_pee
     else if (!strcmp(type, "pairing") && server->logins.tokens)
         pairings_ask_for(server->params.plant.pairings, message, clock_mono_ns());
     json_decref(message);
-    return json_array_size(renderer->answers) > MAX_ANSWERS ? "it does not read answers" : why;
+    return json_array_size(renderer->answers) > MAX_ANSWERS ? "the peer does not read answers" : why;
 }
 
 /* Handles received bytes. Returns -1 if the connection must end. */
@@ -695,7 +698,7 @@ static int on_receive(struct server_context *server, struct renderer_peer *rende
 {
     const char *why = NULL;
     if (renderer->in.length + count_bytes > MAX_MESSAGE_BYTES)
-        why = "a message of more than 256 kB";
+        why = "the peer's message is larger than 256 kB";
     else
         text_add_bytes(&renderer->in, bytes, count_bytes);
     if (!why && lws_remaining_packet_payload(renderer->wsi) == 0 && lws_is_final_fragment(renderer->wsi)) {
@@ -728,7 +731,7 @@ static int on_beat(struct server_context *server, struct renderer_peer *renderer
     lws_set_timer_usecs(renderer->wsi, TICK_US);
     if (now_ns - renderer->since_ns < SEND_TIMEOUT_S * NS_PER_S)
         return 0;
-    log_warn(server->params.log, "renderer %s: disconnected: it read nothing for %d s", renderer->name, SEND_TIMEOUT_S);
+    log_warn(server->params.log, "renderer %s: disconnected: the renderer read nothing for %d s", renderer->name, SEND_TIMEOUT_S);
     return -1;
 }
 

@@ -81,7 +81,7 @@ struct server_context {
     struct {
         struct view_token_keys token_keys;      /* renderers only: keys that sign view tokens */
         char key[2 * VIEW_TOKEN_KEY_BYTES + 1]; /* cores only: view token key that is sent to renderers, hexadecimal; "": none */
-        char refused[300]; /* text of the last refusal of a renderer that was logged, so that a repetition is not logged */
+        char refused[400]; /* text of the last refusal of a renderer that was logged, so that a repetition is not logged */
         bool listed;       /* renderers only: true: the core has sent its lists (of views, notes and so on) since the plant was loaded */
         /* configuration named by the core's last refusal of this renderer, which then loaded its files again to match that configuration */
         char followed[64];

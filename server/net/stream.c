@@ -501,7 +501,7 @@ static void on_receive(struct server_context *server, struct stream *stream, con
         text_add_bytes(&stream->in, bytes, len);
     if (lws_remaining_packet_payload(stream->wsi) == 0 && lws_is_final_fragment(stream->wsi)) {
         if (is_whole && !lws_frame_is_binary(stream->wsi) && !is_utf8(&stream->in)) {
-            close_with(stream, LWS_CLOSE_STATUS_INVALID_PAYLOAD, "a text message that is not UTF-8");
+            close_with(stream, LWS_CLOSE_STATUS_INVALID_PAYLOAD, "a text message is not UTF-8");
             lws_rx_flow_control(stream->wsi, 0);
             return;
         }

@@ -38,7 +38,7 @@ struct delivery *delivery_create(struct log *log, const struct plant_notify *not
     delivery->notify = notify;
     delivery->transfers = mem_array(notify->recipient_count + 1, sizeof(*delivery->transfers));
     if (curl_global_init(CURL_GLOBAL_DEFAULT) != CURLE_OK || !(delivery->multi = curl_multi_init())) {
-        log_err(log, "notify: libcurl cannot be used");
+        log_err(log, "notify: no messages can be sent: libcurl cannot be initialised");
         delivery_destroy(&delivery);
     }
     return delivery;
@@ -198,7 +198,7 @@ char *delivery_start(struct delivery *delivery, int recipient, char *body, size_
     if (!why) {
         curl_easy_setopt(transfer->handle, CURLOPT_PRIVATE, (void *)transfer);
         if (curl_multi_add_handle(delivery->multi, transfer->handle) != CURLM_OK)
-            why = mem_strdup("libcurl does not accept it");
+            why = mem_strdup("libcurl does not accept the transfer");
     }
     if (why)
         end_transfer(delivery, transfer);

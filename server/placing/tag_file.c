@@ -118,6 +118,6 @@ bool tag_file_put_back(const struct tag_save *save, const char *kept, char **why
 {
     if (rename(kept, save->path) == 0)
         return true;
-    *why = mem_printf("%s cannot be put back from %s: %s", text_base_name(save->path), text_base_name(kept), strerror(errno));
+    *why = mem_printf("%s cannot be restored from %s: %s", text_base_name(save->path), text_base_name(kept), strerror(errno));
     return false;
 }

@@ -133,7 +133,7 @@ walls:
         for (const query of ['', 'group=pressure', 'width=320&height=200', 'view=', 'view=lef', 'view=left,flat', 'VIEW=left'])
             await said(query, lobby, 403, /this token is for the views/);
         for (const query of ['view=left&group=pressure', 'view=left&hidden=', 'view=left&view=rest&camera=1,1,1,0,0,0', 'view=left&at=-1h'])
-            await said(query, lobby, 400, /a query with view may also have width, height and language only/);
+            await said(query, lobby, 400, /is not allowed together with view; allowed are width, height and language/);
         await said('view=gone', lobby, 400, /this plant has no view “gone”/);
         await said('view=page', lobby, 400, /unknown: a picture cannot show this/);
         await said('view=left&view=rest&width=320&height=200', lobby, 200, /PNG/); // the first view= argument counts

@@ -150,7 +150,7 @@ test('a plant that is brought in: each file and each order, by whom, and what be
     }
     await post('/run', engineer, undefined, { Origin: 'http://elsewhere.example' });
     await found('the last', (line) => line.result === 'refused' && line.why === 'the request comes from a page of another site');
-    const want = ['access refused operator-1 /api/v1/import/run: this needs the role engineer',
+    const want = ['access refused operator-1 /api/v1/import/run: the request needs the role engineer',
         'import failed engineer-1 /api/v1/import/upload: this file name is not allowed.*',
         'import done engineer-1 /api/v1/import/upload x.glb',
         'import failed engineer-1 models were read, tags matched: plantcast import: .*/x.glb: JSON: .*',

@@ -164,8 +164,9 @@ test('another plant, another configuration, a wrong token and a daemon that is n
     }
     await alone.stop();
     assert.match(core.program.said, /renderer .*: refused: configuration: the renderer has/);
-    for (const [bad, said] of [[['--role', 'renderer'], /--role: expected all, core or render/], [['--role', 'render'], /belong together/],
-        [['--core', 'ws://x:1'], /--core URL is for --role render/], [['--role', 'render', '--core', 'ftp://x'], /--core: expected wss/]])
+    for (const [bad, said] of [[['--role', 'renderer'], /--role: expected all, core or render/],
+        [['--role', 'render'], /--role render needs --core URL/],
+        [['--core', 'ws://x:1'], /--core URL needs --role render/], [['--role', 'render', '--core', 'ftp://x'], /--core: expected wss/]])
         assert.match(runProgram('plantcastd', [nodes.plant.file, ...bad]).err, said);
 });
 

@@ -177,8 +177,8 @@ test('somebody who is signed in at the renderer acts with the rights that the pr
 
 test('a renderer\'s token takes no standby\'s seat, and a standby\'s is no renderer\'s', options, async () => {
     for (const [token, more, why] of [[nodes.tokens.renderer, { standby: true, id: '12345678', journal: 0 },
-        /its token r has the role renderer, but a standby needs one of the role standby \(plantcast token add FILE --role standby/],
-    [nodes.tokens.standby, {}, /its token s has the role standby, but a renderer needs one of the role renderer/]]) {
+        /the token r has the role renderer, but a standby needs a token of the role standby \(plantcast token add FILE --role standby/],
+    [nodes.tokens.standby, {}, /the token s has the role standby, but a renderer needs a token of the role renderer/]]) {
         const client = await open(token);
         client.say({ type: 'renderer', node: 'evil', ...identity, ...more });
         const refused = await client.text('refused');

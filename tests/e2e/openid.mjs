@@ -178,7 +178,7 @@ test('a code, a state or a whole answer once more, another browser, another issu
     const back = await browser.begin();
     const stranger = await new Browser().get(back);
     assert.equal(stranger.status, 403, 'another browser');
-    assert.match(await stranger.text(), /no sign-in of this browser waits/);
+    assert.match(await stranger.text(), /this browser has no sign-in in progress/);
     assert.equal((await browser.get(back)).status, 303);
     const replayed = await browser.get(back);
     assert.equal(replayed.status, 403, 'replayed state');

@@ -95,7 +95,7 @@ test('a leader that was loaded anew goes on by the promise of a standby that was
     await core.program.line(/reload: configuration/);
     await other.program.line(/configuration: the renderer has .*only confirms the leader's lease/);
     await two.goesOn(t, core, 5);
-    assert.match(core.program.said, /standby .*: refused: configuration: .*; it is not a standby, but its promises count/);
+    assert.match(core.program.said, /standby .*: refused: configuration: .*; this core cannot take over, but still confirms/);
     other.program.child.kill('SIGHUP');
     await other.program.line(/reload: configuration/);
     for (const one of [core, other])
@@ -171,8 +171,8 @@ test('a standby of another version is named, shows nothing, votes, and takes ove
     };
     await other.program.stop('SIGKILL');
     await begin(other);
-    await other.program.line(new RegExp(`version: the renderer has ${newer.other}, this node ${newer.version}.*only votes`));
-    const noStandby = `refused: version: the renderer has ${newer.other}, .*; it is not a standby, but its promises count`;
+    await other.program.line(new RegExp(`version: the renderer has ${newer.other}, this node ${newer.version}.*only confirms`));
+    const noStandby = `refused: version: the renderer has ${newer.other}, .*; this core cannot take over, but still confirms`;
     assert.match(core.program.said, new RegExp(noStandby));
     assert.ok(Object.values(await other.node.tags()).every(({ value }) => value === null));
     await until('its promise', async () => await core.node.metric('plantcast_core_standby_differs') === 1);

@@ -263,9 +263,9 @@ test('a viewer notes, sends and points at nothing; who may stands in the audit t
         setTimeout(done, 4000, heard);
     }), [asked, globals]);
     await post(wall.page, 'wall');
-    for (const what of ['to note something', 'to send something to a wall'])
+    for (const what of ['to write or remove notes', 'to send views or a pointer to a wall'])
         assert.match(audit(), new RegExp(`refused.*room\\.1\\.1.*${what}: this needs the role operator`));
-    assert.equal(audit().split('to send something to a wall: this needs').length - 1, 2); // one refusal for sending, one for pointing
+    assert.equal(audit().split('to send views or a pointer to a wall: this needs').length - 1, 2); // sending, pointing
     await desk.page.waitForFunction(() => globalThis.plantcast.session.connection.state === 'open');
     await post(desk.page, 'page');
     assert.match(audit(), /engineer-1.*at E-101: Manhole open/);

@@ -184,9 +184,9 @@ CASE(test_claims)
                   { "sub", "\"\"", "is missing or differs" },
                   { "sub", NULL, "is missing or differs" },
                   { "exp", "1794999941", NULL }, /* a minute's difference of clocks */
-                  { "exp", "1794999940", "it has expired" },
-                  { "exp", "\"1795000300\"", "it has expired" },
-                  { "exp", NULL, "it has expired" },
+                  { "exp", "1794999940", "the ID token has expired" },
+                  { "exp", "\"1795000300\"", "the ID token has expired" },
+                  { "exp", NULL, "the ID token has expired" },
                   { "iat", "1795000060", NULL },
                   { "iat", "1795000061", "time of issue" },
                   { "iat", "1794900000", "time of issue" },

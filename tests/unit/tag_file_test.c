@@ -82,7 +82,7 @@ CASE(test_what_was_put_is_put_back)
     expect_text(f->folder, "tags.csv", "one\n");
     assert_int_equal(access(kept, F_OK), -1);
     assert_false(tag_file_put_back(&(struct tag_save){ .path = f->path }, kept, &unkept));
-    assert_non_null(strstr(unkept, "tags.csv cannot be put back from tags.csv.1: No such file"));
+    assert_non_null(strstr(unkept, "tags.csv cannot be restored from tags.csv.1: No such file"));
     mem_free(unkept);
     mem_free(kept);
     gone = temp_path(f->folder, "none.csv");

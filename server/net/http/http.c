@@ -55,7 +55,7 @@ static int ready(struct server_context *server, struct http_exchange *request)
                                    !server->params.keeper           ? "ok\n"
                                    : renderers_have_standby(server) ? "ok; a standby follows\n"
                                                                     : "ok, but no standby follows: the log says why\n");
-    return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "the GL context was lost; a new one is being made\n");
+    return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "the OpenGL context was lost; a new context is being created\n");
 }
 
 #define NGINX_LINES "proxy_http_version 1.1; proxy_set_header Upgrade $http_upgrade; proxy_set_header Connection \"upgrade\";"
@@ -211,13 +211,13 @@ static int serve_route(struct server_context *server, struct http_exchange *requ
     unsigned scope = holder->views[0] ? VIEWS : holder->display ? DISPLAY : 0;
     if (scope && routes[i].least > ROLE_NOBODY) {
         if (!(routes[i].narrowed & scope)) {
-            connection_record(server, request->wsi, "access", "refused", routes[i].path, "its token does not allow this");
+            connection_record(server, request->wsi, "access", "refused", routes[i].path, "the token does not allow this request");
             return refuse(request, scope == VIEWS ? &NOT_IN_VIEWS : &NOT_ON_DISPLAY);
         }
     } else if (role < routes[i].least && !(role_is_node(role) && (routes[i].narrowed & NODE))) {
         bool engineer = routes[i].least == ROLE_ENGINEER;
         connection_record(server, request->wsi, "access", "refused", routes[i].path,
-                          engineer ? "this needs the role engineer" : "pictures only");
+                          engineer ? "the request needs the role engineer" : "pictures only");
         return engineer ? refuse_others(request, role) : refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : &NOT_FOR_YOU);
     }
     if (routes[i].least > ROLE_NOBODY && is_foreign_page(request->wsi))
@@ -230,7 +230,7 @@ static int serve_post(struct server_context *server, struct http_exchange *reque
     enum role role = connection_of(request->wsi)->role;
     request->close = true; /* close the connection after the answer, because the client may send a body that nobody will read */
     if (role < ROLE_ENGINEER) {
-        connection_record(server, request->wsi, "access", "refused", path, "this needs the role engineer");
+        connection_record(server, request->wsi, "access", "refused", path, "the request needs the role engineer");
         return refuse_others(request, role);
     }
     if (is_foreign_page(request->wsi))

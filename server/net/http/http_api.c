@@ -55,7 +55,7 @@ static int ask_recorded(struct server_context *server, struct http_exchange *req
                : history_query_parse(server->params.plant.scene->plant, args.list, args.count, now_us, &query, &error)))
         return request_answer_error(request, &error);
     if (!gaps && !may_read(server, request, &query))
-        return request_answer_text(request, HTTP_STATUS_FORBIDDEN, "this device's display shows no trend of these tags\n");
+        return request_answer_text(request, HTTP_STATUS_FORBIDDEN, "the display of this token shows no trend of these tags\n");
     return await_history(server, request, &query);
 }
 
@@ -95,7 +95,7 @@ int api_alarms(struct server_context *server, struct http_exchange *request)
     struct alarm_query query;
     struct message_error error = { 0 };
     if (!server->params.plant.alarm_service)
-        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "there are no alarms here\n");
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this server has no alarms (`alarms` in the plant file)\n");
     if (!read_alarm_query(server, request, false, &query, &error))
         return request_answer_error(request, &error);
     char *text = alarms_api_text(server->params.plant.alarm_service, server->params.plant.scene->plant, &query, clock_plant_ns());
@@ -199,7 +199,7 @@ int api_tags(struct server_context *server, struct http_exchange *request)
     struct args args;
     size_t first = 0, count = TAGS_PAGE;
     if (!request_args(request->wsi, &args, &error) || !read_page(&args, &first, &count))
-        return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected first=N and count=N, 1 to 5000\n");
+        return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected first=N and count=N, with a count from 1 to 5000\n");
     net_refresh_readings(server);
     return request_answer_json(request, reply_api_tags_text(&server->session_context, first, count));
 }
@@ -308,7 +308,7 @@ static int pair(struct server_context *server, struct http_exchange *request, co
         return request_answer_later(request, "too many displays wait for pairing; try again\n");
     if (now == PAIRING_OTHER)
         return request_answer_text(request, HTTP_STATUS_CONFLICT,
-                                   "this secret belongs to another display; make a new one for this display\n");
+                                   "this pairing secret belongs to another display; create a new secret for this display\n");
     if (now == PAIRING_DONE)
         return request_answer_json(request, mem_strdup("{\"paired\":true}"));
     return request_answer_json(request, mem_printf("{\"paired\":false,\"digits\":\"%s\",\"left_s\":%d}", digits, left_s));
@@ -334,7 +334,7 @@ int api_pair(struct server_context *server, struct http_exchange *request)
         else if (!strncmp(args.list[i], "display=", 8))
             place.display = atoi(args.list[i] + 8);
     if (wall_place_wrong(server->params.plant.scene->plant, &place))
-        return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected wall=WALL and display=N, of the plant file\n");
+        return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected wall=WALL and display=N of a wall in the plant file\n");
     if (!connection_header(request->wsi, WSI_TOKEN_HTTP_AUTHORIZATION, secret, sizeof(secret)) || strncasecmp(secret, "Pairing ", 8) != 0 ||
         !pairings_secret_valid(secret + 8))
         return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected Authorization: Pairing SECRET\n");

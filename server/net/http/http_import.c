@@ -105,7 +105,7 @@ void http_settle(struct server_context *server)
 int api_import(struct server_context *server, struct http_exchange *request)
 {
     if (!server->params.import)
-        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this server does not import plants\n");
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this server does not import plants (it runs without --import)\n");
     const struct import_source source = import_source_of_plant(server->params.plant.scene->plant);
     return request_answer_json(request, plant_import_text(server->params.import, &source));
 }

@@ -60,6 +60,6 @@ int ask_other_picture(struct server_context *server, struct http_exchange *reque
         return refuse_unknown(request);
     char *png = other_plants_picture(server->params.plant.other_plants, which, strtoll(number, NULL, 10), clock_mono_ns(), &bytes);
     if (!png)
-        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this picture is no longer shown\n");
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this picture was replaced by a newer picture\n");
     return request_answer(request, HTTP_STATUS_OK, "image/png", png, bytes, NULL, NULL);
 }

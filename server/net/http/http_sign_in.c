@@ -27,7 +27,7 @@ static void set_cookie(const struct openid_config *config, struct http_exchange 
                                      *ending ? "Lax" : "Strict", config->secure ? "; Secure" : "");
 }
 
-static const char NOT_HERE[] = "this server has no sign-in by OpenID Connect\n";
+static const char NOT_HERE[] = "this server has no sign-in by OpenID Connect (it runs without --openid)\n";
 
 int ask_login(struct server_context *server, struct http_exchange *request)
 {
@@ -58,7 +58,7 @@ static int refuse_unasked(struct server_context *server, struct http_exchange *r
     server->logins.unasked++;
     return why == OPENID_FULL ? request_answer_later(request, "too many sign-ins at once; sign in again from the page\n")
                               : request_answer_text(request, HTTP_STATUS_FORBIDDEN,
-                                                    "no sign-in of this browser waits for this answer; sign in again from the page\n");
+                                                    "this browser has no sign-in in progress; sign in again from the page\n");
 }
 
 static int refuse_held(struct server_context *server, struct http_exchange *request)
@@ -109,7 +109,7 @@ static void count_refused(struct server_context *server, const struct openid_ans
     counter_inc(server->counters.logins_wrong, 1);
     if (login_throttle_fail(server->logins.throttle, answer->address, clock_mono_ns()) == LOGIN_WRONG_SLOWS)
         log_warn(server->params.log,
-                 "login by OpenID Connect: address limited to one answer in %d s until a minute passes without a wrong one",
+                 "login by OpenID Connect: an address was limited to one answer in %d s until a minute passes without a wrong answer",
                  LOGIN_WAIT_S);
 }
 

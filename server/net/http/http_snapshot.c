@@ -52,7 +52,7 @@ static bool expand(const struct named_view *named, const struct args *args, stru
         for (size_t k = 0; k < sizeof(mine) / sizeof(mine[0]) && !good; k++)
             good = strlen(mine[k]) == length && !strncmp(args->list[i], mine[k], length);
         if (!good)
-            message_fail(error, "bad_field", "'%s': a query with view may also have width, height and language only",
+            message_fail(error, "bad_field", "argument '%s' is not allowed together with view; allowed are width, height and language",
                          quoted(args->list[i], name));
     }
     for (size_t k = 0; k < sizeof(mine) / sizeof(mine[0]) && good; k++) {

@@ -60,7 +60,7 @@ static void note(struct server_context *server, struct lws *wsi)
     if (!log_pace_take(&server->http.stuck_heads, clock_mono_ns(), more))
         return;
     lws_get_peer_simple(wsi, address, sizeof(address));
-    log_warn(server->params.log, "http: a request from %s was ended: its headers were incomplete after %d s (408)%s", address,
+    log_warn(server->params.log, "http: a request from %s was closed with status 408: its headers were incomplete after %d s%s", address,
              QUIET_MS / 1000, more);
 }
 
