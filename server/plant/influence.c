@@ -83,9 +83,10 @@ static void warn_of_fits(const struct plant *plant, int g, struct diag *diag)
     for (size_t a = 0; a < plant->asset_count; a++) {
         int count = count_sensors(plant, g, (int)a);
         if (count > 0 && count < PLANT_GP_FITTED)
-            diag_warning(diag, plant->files.path, group->line, 0,
-                         "group %s: gp cannot be fitted on asset %s, which has %d of at least %d sensors: it takes the default parameters",
-                         group->id, plant->assets[a].id, count, PLANT_GP_FITTED);
+            diag_warning(
+                diag, plant->files.path, group->line, 0,
+                "group %s: gp cannot be fitted on asset %s, which has %d of at least %d sensors: the asset takes the default parameters",
+                group->id, plant->assets[a].id, count, PLANT_GP_FITTED);
     }
 }
 
@@ -98,11 +99,12 @@ void plant_influence_check(const struct plant *plant, struct diag *diag)
             continue;
         if (isnan(group->ambient))
             diag_error(diag, plant->files.path, group->line, 0,
-                       "group %s: fin needs 'ambient', the value around the assets, in %s: far from sensors the wall cools to it",
+                       "group %s: fin needs 'ambient', the value around the assets, in %s: far from sensors, the wall takes this value",
                        group->id, *group->unit ? group->unit : "the group's unit");
         for (size_t a = 0; a < plant->asset_count; a++)
             if (plant->assets[a].thickness_m <= 0 && count_sensors(plant, (int)g, (int)a) > 0)
                 diag_error(diag, plant->files.path, plant->assets[a].line, 0,
-                           "asset %s: fin, which group %s asks for, needs 'thickness_m', that of its wall", plant->assets[a].id, group->id);
+                           "asset %s: the interpolation fin of group %s needs 'thickness_m', the thickness of the asset's wall",
+                           plant->assets[a].id, group->id);
     }
 }

@@ -226,8 +226,8 @@ static char *say_holder(int fd)
     if (comm)
         fclose(comm);
     mem_free(path);
-    return pid > 0 ? mem_printf("%s (process %d) is using it", *name ? name : "another program", pid)
-                   : mem_strdup("another program is using it");
+    return pid > 0 ? mem_printf("%s (process %d) is using the folder", *name ? name : "another program", pid)
+                   : mem_strdup("another program is using the folder");
 }
 
 /* Opens the folder, or duplicates the descriptor of the parent process, which must refer to the same folder and hold its lock. Returns the
@@ -264,7 +264,7 @@ static int finish_killed(const struct plant_folder_params *params)
     }
     if (status == 0 && has(params->folder, REVISION_UNDOING)) {
         status = revision_go_on_undoing(params->folder);
-        finished = "the undoing of an import";
+        finished = "the undo of an import";
     }
     if (params->finished && status == 0 && finished)
         *params->finished = finished;
@@ -319,7 +319,8 @@ bool plant_folder_settle(const struct plant_folder_params *params, char **why)
         return true;
     }
     if (lock >= 0 && plant_folder_unsettled(params->folder)) {
-        *why = mem_strdup("an import there was killed or still runs, and folders cannot be locked: run plantcast import or match again");
+        *why = mem_strdup(
+            "an import in this folder was killed or still runs, and the folder cannot be locked: run plantcast import or match again");
         return false;
     }
     return lock >= 0;

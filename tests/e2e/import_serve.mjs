@@ -287,7 +287,7 @@ test('an import that fails or is cancelled once the new models are in place: the
             assert.notEqual(files()['plant.glb'], before['plant.glb'], 'the new model is in place');
             // No other Plantcast program changes the folder meanwhile; a program that does so without locking loses nothing.
             const other = spawnSync(join(BIN, 'plantcast'), ['match', served.folder, join(served.folder, 'exports/tags.csv')]);
-            assert.match(String(other.stderr), /^plantcast match: .*: plantcastd \(process \d+\) is using it\n$/);
+            assert.match(String(other.stderr), /^plantcast match: .*: plantcastd \(process \d+\) is using the folder\n$/);
             if (saves)
                 writeFileSync(join(served.folder, 'matches.csv'), 'mine\n');
             rmSync(wait);

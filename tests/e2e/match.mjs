@@ -266,7 +266,7 @@ test('killed between two files, left over, at once, out of disk: a valid plant, 
         held.stdin.end();
         await ended;
         assert.equal(refused.status, 1);
-        assert.match(refused.stderr, /^plantcast match: [^\n]*first: (flock|sh) \(process \d+\) is using it\n$/);
+        assert.match(refused.stderr, /^plantcast match: [^\n]*first: (flock|sh) \(process \d+\) is using the folder\n$/);
         assert.deepEqual(filesOf(first), before);
         const elsewhere = join(folder, 'tags.csv');
         renameSync(join(first, 'tags.csv'), elsewhere);
@@ -336,7 +336,7 @@ for (const last of ['import', 'undo'])
             if (left && finished === 1) {
                 rmSync(served, { recursive: true });
                 cpSync(plant, served, { recursive: true });
-                await startsWhole(served, settled, filesOf, last === 'undo' ? 'the undoing of an import' : 'an import');
+                await startsWhole(served, settled, filesOf, last === 'undo' ? 'the undo of an import' : 'an import');
             }
             good(match(plant));
             const now = filesOf(plant);

@@ -258,13 +258,13 @@ test('what cannot be is said of the plant file', options, async () => {
     for (const [path, why] of refused)
         assert.match(said('payload: json, topic: a', [`TI-1,#${path},,,,,,,,,,,,,`]),
             new RegExp(`tags\\.csv:2:6: error: Address: .*${why}`), path);
-    assert.match(said('time: ts', TAGS.number), /time: has no meaning without payload: json/);
+    assert.match(said('time: ts', TAGS.number), /time: allowed only with payload: json/);
     assert.match(said('session: persistent', TAGS.number), /would look fresh[^]*needs client_id/);
     assert.match(said('topic: "plant/+/{tag}"', TAGS.number), /topic: 'plant\/\+\/\{tag\}': wildcards \(\+ and #\) match many topics/);
     assert.match(said('topic: "plant/{name}"', TAGS.number), /expected \{tag\}, \{asset\}, \{group\} or \{address\}/);
-    assert.match(said('qos: 1', TAGS.number), /tags\.csv:3:6: error: Address: '': expected a topic, or a key topic in the source/);
-    assert.match(said('topic: "a/{tag}"', [TAGS.json[0]]), /a path after # has no meaning for payload: number/);
-    assert.match(said('topic: "a/{tag}", rebirth: yes', TAGS.number), /rebirth: has no meaning without payload: sparkplug/);
+    assert.match(said('qos: 1', TAGS.number), /tags\.csv:3:6: error: Address: '': expected a topic here, or the key topic in the source/);
+    assert.match(said('topic: "a/{tag}"', [TAGS.json[0]]), /a path after # is not allowed with payload: number/);
+    assert.match(said('topic: "a/{tag}", rebirth: yes', TAGS.number), /rebirth: allowed only with payload: sparkplug/);
     assert.match(said('payload: sparkplug', ['TI-1,U100#TI-1,,,,,,,,,,,,,']), /expected GROUP\/NODE#METRIC or GROUP\/NODE\/DEVICE#METRIC/);
     assert.match(said('baud: 9600', TAGS.number), /baud: has no meaning for an mqtt source/);
 });

@@ -69,11 +69,11 @@ test('a part of them, a tree, JSON', { skip }, () => {
 });
 
 test('millimetres taken for metres are doubted', { skip }, () => {
-    assert.match(nodes(model([{ mesh: 0 }], 2500)).stdout, /are its units right\? If its numbers are in mm/);
-    assert.doesNotMatch(nodes(model([{ mesh: 0 }], 25)).stdout, /units right/);
+    assert.match(nodes(model([{ mesh: 0 }], 2500)).stdout, /check its units\. If the numbers of the model are in mm/);
+    assert.doesNotMatch(nodes(model([{ mesh: 0 }], 25)).stdout, /check its units/);
     const ours = model([{ mesh: 0 }], 2500);
     ours.asset.generator = 'plantcast-import';
-    assert.doesNotMatch(nodes(ours).stdout, /units right/, 'import knows');
+    assert.doesNotMatch(nodes(ours).stdout, /check its units/, 'import knows');
 });
 
 test('100,000 nodes take seconds', { skip }, (t) => {

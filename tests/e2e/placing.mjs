@@ -241,7 +241,7 @@ test('while another program is at work in the plant\'s folder, a list is not sav
     promise(t, 'until the loop, which does not wait, answers', performance.now() - began, 2000);
     const refused = await engineer.text('tags_saved', 60000);
     assert.equal(refused.saved, false);
-    assert.match(refused.errors.join(), /^the plant's folder .*: (flock|sh) \(process \d+\) is using it; try again/);
+    assert.match(refused.errors.join(), /^the plant's folder .*: (flock|sh) \(process \d+\) is using the folder; try again/);
     assert.equal(readFileSync(tagsFile, 'utf8'), good);
     assert.deepEqual(readdirSync(plant.folder).sort(), files);
     // Saving waits for a short match or import, and then locks the folder itself.

@@ -163,7 +163,7 @@ CASE(what_is_no_table_is_said_once)
         { "glTF\2\xFF\xFE\xFD\xFC\n\xFF\n\xFF\n\xFF\n", "is a model (GLB); expected a table (CSV)" },
         { "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\n", "is a STEP file; expected a table (CSV)" },
         { "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('IFC4'));\n", "is an IFC model" },
-        { "PK\x03\x04\x14", "is a ZIP archive, or a document that is one (XLSX, DOCX, 3MF); expected a table (CSV)" },
+        { "PK\x03\x04\x14", "is a ZIP archive, or a document in ZIP format (XLSX, DOCX, 3MF); expected a table (CSV)" },
         { "\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n", "is not a text file; expected a table (CSV)" },
     };
     for (size_t i = 0; i < sizeof(others) / sizeof(*others); i++) {

@@ -685,7 +685,7 @@ CASE(test_what_is_missing_is_said)
     write_plant(c, "", ", prepare: [harmonic, fin]", 2);
     prep_case_expect(c, "$PLANT", 1);
     prep_case_says(&c->err, "group temperature: fin needs 'ambient', the value around the assets, in K");
-    prep_case_says(&c->err, "asset S: fin, which group temperature asks for, needs 'thickness_m'");
+    prep_case_says(&c->err, "asset S: the interpolation fin of group temperature needs 'thickness_m'");
     write_plant(c, "", ", prepare: [kriging]", 2);
     prep_case_expect(c, "$PLANT", 1);
     prep_case_says(&c->err, "prepare: expected harmonic, fin or gp");

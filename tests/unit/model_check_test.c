@@ -55,8 +55,11 @@ CASE(sizes_are_printed_and_doubted)
           "[]", "Tag Name\n", &printed);
     assert_string_equal(printed, "asset A: 0.743 x 0.4 x 0.2 m\nasset B: 0.2 x 0.1 x 0.371 m\nasset C: 743 x 400 x 200 m\n"
                                  "asset D: 0.00743 x 0.004 x 0.002 m\n");
-    FOUND(c, { "plant.yaml", 5, 0, "743 x 400 x 200 m: are its units right? If its numbers are in mm (`units: mm`), it is 0.7" },
-          { "plant.yaml", 6, 0, "0.00743 x 0.004 x 0.002 m: are its units right? If its numbers are in mm (`units: mm`), it is 0.7" });
+    FOUND(c,
+          { "plant.yaml", 5, 0,
+            "743 x 400 x 200 m: check its units. If the numbers of the model are in mm (`units: mm`), its size is 0.7" },
+          { "plant.yaml", 6, 0,
+            "0.00743 x 0.004 x 0.002 m: check its units. If the numbers of the model are in mm (`units: mm`), its size is 0.7" });
     free(printed);
 }
 
@@ -150,10 +153,10 @@ CASE(sensors_tell_units_and_axes)
     } cases[] = {
         { "{ id: A, model: m.gltf, nodes: '#1', units: cm }", NULL },
         { "{ id: A, model: m.gltf, nodes: '#1', units: mm }",
-          "3 of the 3 sensors with X, Y, Z are away from it; with `units: cm` they would be on it" },
-        { "{ id: A, model: m.gltf, nodes: '#1', units: cm, up: z }", "with `up: y` they would be on it" },
+          "3 of the 3 sensors with X, Y, Z are away from the asset; with `units: cm`, these sensors would be on the asset" },
+        { "{ id: A, model: m.gltf, nodes: '#1', units: cm, up: z }", "with `up: y`, these sensors would be on the asset" },
         { "{ id: A, model: m.gltf, nodes: '#1', units: cm, placement: { translate: [99, 0, 0] } }",
-          "are units, up, placement and sensor_frame right?" },
+          "check units, up, placement and sensor_frame" },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         char *assets = mem_printf("  - %s\n", cases[i].asset);

@@ -68,8 +68,8 @@ TEST(paths_to_several_values_are_refused)
     static const struct {
         const char *path, *why;
     } wrong[] = {
-        { "a.", "behind the dot" },
-        { ".a.", "behind the dot" },
+        { "a.", "after the dot" },
+        { ".a.", "after the dot" },
         { "a..b", "descendants" },
         { "$..b", "descendants" },
         { "a[", "expected a path" },
@@ -78,7 +78,7 @@ TEST(paths_to_several_values_are_refused)
         { "a[1", "and ]" },
         { "[\"a]", "a string" },
         { "[\"\"]", "not empty" },
-        { "a.[0]", "behind the dot" },
+        { "a.[0]", "after the dot" },
         { "a[1234567]", "expected a path" },
         { "a[*]", "wildcards" },
         { "a.*", "wildcards" },

@@ -62,7 +62,7 @@ CASE(secrets_do_not_stand_in_the_file)
             "  - { id: b, webhook: \"http://h.example/\", token_file: t }\n  rules: [{ id: r, to: a }]");
     FOUND(c, { "plant.yaml", 6, 69, "unknown key 'password'" }, { "plant.yaml", 6, 19, "do not write a password in the plant file" },
           { "plant.yaml", 8, 23, "do not write a password in the plant file" },
-          { "plant.yaml", 9, 56, "a token is sent over https:// only" });
+          { "plant.yaml", 9, 56, "a token is sent only over https://" });
 }
 
 CASE(what_is_wrong_is_said_at_its_place)

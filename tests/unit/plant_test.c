@@ -445,7 +445,7 @@ CASE(assets_may_start_out_of_the_way)
         text_add(&yaml, "\n- { id: A%d, model: m.glb, start: %s }", i, i < PLANT_STARTS ? "shown" : "hidden");
     load_with(f, 2, yaml.at);
     text_finish(&yaml);
-    FOUND(f, { "plant.yaml", 4099, 37, "start: only the first 4096 assets can be hidden or ghosts" });
+    FOUND(f, { "plant.yaml", 4099, 37, "start: only the first 4096 assets of the plant file can be hidden or ghosts" });
 }
 
 CASE(sources_say_how_they_are_reached)
@@ -517,7 +517,7 @@ CASE(numbers_have_ranges)
           { "plant.yaml", 4, 72, "poll_ms: expected a whole number from 10 to 86400000" },
           { "plant.yaml", 4, 87, "timeout_ms: expected a whole number from 10 to 60000" });
     load_with(f, 1, "plant: { name: P, view: { eye: [1, 1, 1], target: [1, 1, 1], fov: 180 } }");
-    FOUND(f, { "plant.yaml", 1, 51, "target: expected another point than eye" },
+    FOUND(f, { "plant.yaml", 1, 51, "target: expected a point other than eye" },
           { "plant.yaml", 1, 67, "fov: expected a number from 1 to 120" });
     load_with(f, 2, "assets: [{ id: E, model: m.glb, placement: { translate: [0, 2e7, 0], scale: 0 } }]");
     FOUND(f, { "plant.yaml", 2, 61, "translate: expected a number from -10000000 to 10000000" },
@@ -596,7 +596,7 @@ CASE(syntax_errors_have_a_place)
     load_with(f, 1, "plant: { name: P\x01 }");
     FOUND(f, { "plant.yaml", 1, 17, "invalid YAML: control characters are not allowed" });
     load_with(f, 5, "tags: tags.csv\n---\nplant: 1");
-    FOUND(f, { "plant.yaml", 7, 1, "a second document begins here" });
+    FOUND(f, { "plant.yaml", 7, 1, "a second YAML document begins here" });
 }
 
 CASE(keys_that_come_twice_are_named)

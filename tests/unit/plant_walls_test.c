@@ -108,7 +108,7 @@ CASE(wrong_other_plants_are_said_at_their_place)
             "- { id: b, url: \"https://u:p@h/\" }\n- { id: c, url: \"https://h/?x\", every_s: 1, width: 100 }\n"
             "- { id: c d, url: \"https://h/\", view: a&b }\n- { url: \"https://h/\" }");
     FOUND(c, { "plant.yaml", 7, 17, "url: the address begins with another scheme" }, { "plant.yaml", 8, 42, "cannot be read" },
-          { "plant.yaml", 8, 42, "token_file: a token is sent over https" },
+          { "plant.yaml", 8, 42, "token_file: a token is sent only over https" },
           { "plant.yaml", 9, 17, "do not write a password in the plant file" }, { "plant.yaml", 9, 9, "'b'" },
           { "plant.yaml", 10, 17, "without '?' and '#'" }, { "plant.yaml", 10, 42, "every_s" }, { "plant.yaml", 10, 52, "width" },
           { "plant.yaml", 11, 9, "id: expected letters" }, { "plant.yaml", 11, 39, "view: expected the id" },
@@ -122,7 +122,7 @@ CASE(what_a_snapshot_names_is_checked)
     FOUND(c, { "plant.yaml", 13, 28, "snapshot: expected one, found 2" });
     load(c, "other_plants: [{ id: tanks, url: \"https://h/\" }]\nwalls:\n- id: r\n  displays:\n  - grid: [a]\n    panes:\n"
             "    - { area: a, snapshot: tank }");
-    FOUND(c, { "plant.yaml", 12, 28, "snapshot: `other_plants` has no 'tank'; did you mean 'tanks'?" });
+    FOUND(c, { "plant.yaml", 12, 28, "snapshot: `other_plants` has no plant 'tank'; did you mean 'tanks'?" });
 }
 
 CASE(wrong_tiles_are_said_at_their_place)
@@ -137,7 +137,7 @@ CASE(wrong_tiles_are_said_at_their_place)
           { "plant.yaml", 9, 18, "tile: expected 2 to 16 displays, found 5 columns and 4 rows" },
           { "plant.yaml", 10, 18, "tile: expected either views or a tour" }, { "plant.yaml", 11, 51, "bezel_mm" },
           { "plant.yaml", 12, 51, "bezel_mm: expected one number, or two" }, { "plant.yaml", 13, 3, "expected displays, or a tile" },
-          { "plant.yaml", 14, 18, "found 16 of the tile and 1 others" }, { "plant.yaml", 15, 47, "tour: expected one, found 2" },
+          { "plant.yaml", 14, 18, "found 16 in the tile and 1 in `displays`" }, { "plant.yaml", 15, 47, "tour: expected one, found 2" },
           { "plant.yaml", 16, 29, "columns" });
 }
 
@@ -154,13 +154,15 @@ CASE(what_is_wrong_is_said_at_its_place)
             "  displays:\n  - grid: [A b]\n    panes: [{ area: b }]\n"
             "  - grid: [b b]\n    panes: [{ area: b, clock: yes, text: x }, { area: b, views: v }, { area: z, clock: yes, every_s: 9 },"
             " { area: b, tiles: [] }]");
-    FOUND(c, { "plant.yaml", 7, 9, "id: expected letters, digits" }, { "plant.yaml", 8, 18, "a character that an address cannot have" },
-          { "plant.yaml", 9, 18, "it must not contain the # itself" }, { "plant.yaml", 9, 9, "view 'v' is listed twice (first at line 8)" },
-          { "plant.yaml", 10, 3, "view" }, { "plant.yaml", 12, 22, "displays: expected at least one" }, { "plant.yaml", 14, 11, "inches" },
+    FOUND(c, { "plant.yaml", 7, 9, "id: expected letters, digits" },
+          { "plant.yaml", 8, 18, "a character that is not allowed in addresses" },
+          { "plant.yaml", 9, 18, "the address must not begin with #" },
+          { "plant.yaml", 9, 9, "view 'v' is listed twice (first at line 8)" }, { "plant.yaml", 10, 3, "view" },
+          { "plant.yaml", 12, 22, "displays: expected at least one" }, { "plant.yaml", 14, 11, "inches" },
           { "plant.yaml", 15, 14, "a span such as" }, { "plant.yaml", 17, 12, "areas in lower case" },
-          { "plant.yaml", 18, 13, "expected one of views, trend, alarms" }, { "plant.yaml", 18, 21, "the grid has no 'b'" },
+          { "plant.yaml", 18, 13, "expected one of views, trend, alarms" }, { "plant.yaml", 18, 21, "the grid has no area 'b'" },
           { "plant.yaml", 20, 13, "expected one of views" }, { "plant.yaml", 20, 55, "'b' is used by two panes" },
-          { "plant.yaml", 20, 102, "allowed only in a pane of views" }, { "plant.yaml", 20, 78, "the grid has no 'z'" },
+          { "plant.yaml", 20, 102, "allowed only in a pane of views" }, { "plant.yaml", 20, 78, "the grid has no area 'z'" },
           { "plant.yaml", 20, 125, "tiles: expected 1 to 16, found 0" }, { "plant.yaml", 20, 115, "'b' is used by two panes" },
           { "plant.yaml", 13, 7, "wall 'r' is listed twice" });
 }
@@ -170,7 +172,8 @@ CASE(a_grid_is_made_of_rectangles)
     load(c, "walls:\n- id: r\n  displays:\n  - { grid: [a a b, a c], panes: [] }\n  - { grid: [a a, a b], panes: [] }\n"
             "  - { grid: [a b a], panes: [] }\n  - { grid: [\" \"], panes: [] }\n  - { grid: [. a a, b a a, b . .], panes: [] }");
     FOUND(c, { "plant.yaml", 9, 13, "grid: expected as many areas in each row, found 3 in the first and 2 in 'a c'" },
-          { "plant.yaml", 10, 13, "grid: 'a' is not one rectangle" }, { "plant.yaml", 11, 13, "grid: 'a' is not one rectangle" },
+          { "plant.yaml", 10, 13, "grid: the cells of area 'a' do not form one rectangle" },
+          { "plant.yaml", 11, 13, "grid: the cells of area 'a' do not form one rectangle" },
           { "plant.yaml", 12, 13, "grid: expected as many areas in each row, found 0" });
 }
 

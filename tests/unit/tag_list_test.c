@@ -88,10 +88,10 @@ CASE(byte_orders_are_resolved)
     assert_int_equal(c->plant->tags[1].signal.register_index, 1); /* address_base 0 */
     plant_case_load(c, yaml_no_order, "Tag Name,Address,Data Type,Byte Order\nA,hr:0,Float,\nB,ir:2,Double,\nC,400007,Word,\n");
     assert_null(c->plant);
-    FOUND(c, { "tags.csv", 2, 14, "Byte Order: float32 has 32 bits, so one is needed: ABCD, CDAB, BADC or DCBA" },
+    FOUND(c, { "tags.csv", 2, 14, "Byte Order: float32 has 32 bits, so a byte order is needed: ABCD, CDAB, BADC or DCBA" },
           { "tags.csv", 3, 15, "float64 has 64 bits" });
     plant_case_load(c, yaml_no_order, "Tag Name,Address,Data Type\nA,hr:0,Float\n");
-    FOUND(c, { "tags.csv", 2, 8, "float32 has 32 bits, so one is needed" });
+    FOUND(c, { "tags.csv", 2, 8, "float32 has 32 bits, so a byte order is needed" });
     plant_case_load(c, yaml, "Tag Name,Address,Data Type,Byte Order\nA,400001,Float,big\nB,400001#BB,Float,ABCD\n");
     FOUND(c, { "tags.csv", 2, 16, "Byte Order: expected ABCD, CDAB, BADC or DCBA, found 'big'" },
           { "tags.csv", 3, 19, "Byte Order: 'ABCD' contradicts the address '400001#BB'" });
@@ -153,7 +153,7 @@ CASE(tags_vouch_for_other_tags)
     plant_case_load(c, yaml,
                     "Tag Name,Address,Quality Tag\n"
                     "TI-1,40001,TI-1\nB,40002,TI-11\nC,40003,B&\nD,40004,B&0\nE,40005,B&2=1\nF,40006,!\nG,40007,B&1=1x\nH,40008,B\n");
-    FOUND(c, { "tags.csv", 2, 12, "Quality Tag: expected another tag than 'TI-1' itself" },
+    FOUND(c, { "tags.csv", 2, 12, "Quality Tag: expected a tag other than 'TI-1' itself" },
           { "tags.csv", 3, 9, "Quality Tag: unknown tag 'TI-11'; did you mean 'TI-1'?" },
           { "tags.csv", 4, 9, "expected TAG, !TAG, TAG&MASK" }, { "tags.csv", 5, 9, "found 'B&0'" }, { "tags.csv", 6, 9, "found 'B&2=1'" },
           { "tags.csv", 7, 9, "found '!'" }, { "tags.csv", 8, 9, "found 'B&1=1x'" },
@@ -177,11 +177,11 @@ CASE(directions_are_tags)
     plant_case_load(c, yaml, bad);
     mem_free(bad);
     FOUND(c,
-          { "tags.csv", 2, 27, "Direction: expected one tag, a bearing in degrees, or three, the components along X, Y and Z, found" },
-          { "tags.csv", 3, 27, "Direction: expected other tags than 'V' itself" },
+          { "tags.csv", 2, 27, "Direction: expected one tag (a bearing in degrees) or three tags (the components along X, Y and Z)" },
+          { "tags.csv", 3, 27, "Direction: expected tags other than 'V' itself" },
           { "tags.csv", 4, 27, "Direction: unknown tag 'AA'" },
-          { "tags.csv", 5, 15, "Direction: 'A' needs a group, an asset and its own place, where the direction starts" },
-          { "tags.csv", 6, 33, "Direction: 'B' needs a group, an asset and its own place" });
+          { "tags.csv", 5, 15, "Direction: 'A' needs a group, an asset and a position (X, Y, Z or Node)" },
+          { "tags.csv", 6, 33, "Direction: 'B' needs a group, an asset and a position" });
 }
 
 CASE(references_are_looked_up)

@@ -60,14 +60,14 @@ bool asset_size_doubtful(const struct plant_asset *asset, const double size_m[3]
         return false;
     size_t length = (size_t)snprintf(why, SIZE_WHY_BYTES, "its size is %s", asset_size_text(size_m, text));
     if (beside && longest_m <= LARGE_M)
-        length += (size_t)snprintf(why + length, SIZE_WHY_BYTES - length, ", %.0f times that of other assets", longest_m / median_m);
-    length += (size_t)snprintf(why + length, SIZE_WHY_BYTES - length, ": are its units right?");
+        length += (size_t)snprintf(why + length, SIZE_WHY_BYTES - length, ", %.0f times the size of other assets", longest_m / median_m);
+    length += (size_t)snprintf(why + length, SIZE_WHY_BYTES - length, ": check its units");
     for (size_t i = 0; i < sizeof(units) / sizeof(*units); i++) {
         double times = units[i].m / asset->unit_m, other_m[3] = { size_m[0] * times, size_m[1] * times, size_m[2] * times };
         if (fabs(times - 1) < 1e-9 || longest_m * times < USUAL_LOW_M || longest_m * times > USUAL_HIGH_M)
             continue;
-        snprintf(why + length, SIZE_WHY_BYTES - length, " If its numbers are in %s (`units: %s`), it is %s", units[i].name, units[i].name,
-                 asset_size_text(other_m, text));
+        snprintf(why + length, SIZE_WHY_BYTES - length, ". If the numbers of the model are in %s (`units: %s`), its size is %s",
+                 units[i].name, units[i].name, asset_size_text(other_m, text));
         break;
     }
     return true;

@@ -106,13 +106,15 @@ static void check_places(struct plant_models_check *check, size_t asset_index, c
     char better[60];
     if (!check->header.partial && placed - within > placed / 2) {
         if (find_better(asset, box, sensors, count, within, better, sizeof(better)))
-            diag_warning(check->diag, check->plant->files.path, asset->line, 0,
-                         "asset %s: %zu of the %zu sensors with X, Y, Z are away from it; with %s they would be on it", asset->id,
-                         placed - within, placed, better);
+            diag_warning(
+                check->diag, check->plant->files.path, asset->line, 0,
+                "asset %s: %zu of the %zu sensors with X, Y, Z are away from the asset; with %s, these sensors would be on the asset",
+                asset->id, placed - within, placed, better);
         else
-            diag_warning(check->diag, check->plant->files.path, asset->line, 0,
-                         "asset %s: %zu of the %zu sensors with X, Y, Z are away from it: are units, up, placement and sensor_frame right?",
-                         asset->id, placed - within, placed);
+            diag_warning(
+                check->diag, check->plant->files.path, asset->line, 0,
+                "asset %s: %zu of the %zu sensors with X, Y, Z are away from the asset: check units, up, placement and sensor_frame",
+                asset->id, placed - within, placed);
     }
     mem_free(sensors);
 }
@@ -164,7 +166,7 @@ static void check_node(struct plant_models_check *check, const struct plant_asse
         length += (size_t)snprintf(numbers + length, sizeof(numbers) - length, "%s#%u", i ? ", " : "",
                                    check->header.nodes[check->found[i]].number);
     diag_error(check->diag, check->plant->files.tags_path, tag->line, tag->column,
-               "tag %s: asset %s: the model has %zu nodes '%.120s', in different places (%s%s): name one of them by its number or its path",
+               "tag %s: asset %s: the model has %zu nodes '%.120s', in different places (%s%s): name one node by its number or its path",
                tag->name, asset->id, count, tag->place.node, numbers, count > SHOWN_NODES ? ", ..." : "");
 }
 

@@ -198,7 +198,8 @@ static bool walk_node(struct header_walk *walk, const json_t *reference, int par
     const json_t *node = json_array_get(walk->nodes, number), *mesh_number = json_object_get(node, "mesh");
     const json_t *children = json_object_get(node, "children");
     if (!json_is_integer(reference) || !node || walk->seen[number] || depth > MAX_DEPTH)
-        return wrong(walk->why, walk->why_bytes, "its nodes are not a tree: node %zu is missing, listed twice or nested too deep", number);
+        return wrong(walk->why, walk->why_bytes,
+                     "the nodes of the model are not a tree: node %zu is missing, listed twice or nested too deep", number);
     walk->seen[number] = true;
     const json_t *mesh = mesh_number ? json_array_get(walk->meshes, (size_t)json_integer_value(mesh_number)) : NULL;
     double local[16], world[16];

@@ -208,7 +208,7 @@ bool csv_next(struct csv *csv)
         const struct csv_cell *cell = &csv->row.cells[i];
         if (!cell->text[0])
             continue;
-        diag_error(csv->diag, csv->path, cell->line, cell->column, "cell %zu, but the header has only %zu columns", i + 1,
+        diag_error(csv->diag, csv->path, cell->line, cell->column, "the row has a cell %zu, but the header has only %zu columns", i + 1,
                    csv->header.count);
         break;
     }

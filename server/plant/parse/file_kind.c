@@ -22,7 +22,7 @@ static const struct {
     { BEGINS("HEAD\r"), "an RVM model" },
     { BEGINS("\0\0\0H\0\0\0E\0\0\0A\0\0\0D"), "an RVM model" },
     { BEGINS("\xD0\xCF\x11\xE0"), "a document of Office 97 to 2003, or a CAD file in the same container" },
-    { BEGINS("PK\x03\x04"), "a ZIP archive, or a document that is one (XLSX, DOCX, 3MF)" },
+    { BEGINS("PK\x03\x04"), "a ZIP archive, or a document in ZIP format (XLSX, DOCX, 3MF)" },
     { BEGINS("\x1F\x8B"), "a gzip archive" },
     { BEGINS("%PDF"), "a PDF document" },
     { BEGINS("\x89PNG"), "a PNG picture" },

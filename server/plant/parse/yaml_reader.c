@@ -69,7 +69,7 @@ static void report_second_document(struct yaml_reader *reader, yaml_parser_t *pa
     }
     yaml_node_t *root = yaml_document_get_root_node(&second);
     if (root)
-        yaml_error(reader, yaml_place(root), "a second document begins here; expected only one");
+        yaml_error(reader, yaml_place(root), "a second YAML document begins here; expected only one document");
     yaml_document_delete(&second);
 }
 

@@ -69,7 +69,7 @@ static void read_view(struct yaml_reader *reader, yaml_node_t *node, void *recor
     for (int i = 0; i < 3; i++)
         view->set |= fabs(view->eye_m[i] - view->target_m[i]) > 1e-3;
     if (!view->set)
-        yaml_error(reader, yaml_map_place(&map, "target"), "target: expected another point than eye");
+        yaml_error(reader, yaml_map_place(&map, "target"), "target: expected a point other than eye");
 }
 
 static void read_plant(struct yaml_reader *reader, yaml_node_t *node, void *record)
@@ -188,7 +188,8 @@ static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct pla
         return;
     check_nodes(reader, &map, asset, errors);
     if (asset->start != PLANT_START_SHOWN && plant->asset_count > PLANT_STARTS)
-        yaml_error(reader, yaml_map_place(&map, "start"), "start: only the first %d assets can be hidden or ghosts", PLANT_STARTS);
+        yaml_error(reader, yaml_map_place(&map, "start"), "start: only the first %d assets of the plant file can be hidden or ghosts",
+                   PLANT_STARTS);
     plant_resolve_path(plant, &asset->model);
     if (yaml_map_good(&map, "model") && !plant->files.without_models)
         check_model(reader, &map, plant, asset->model);

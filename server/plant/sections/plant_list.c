@@ -14,7 +14,7 @@ void *plant_list_make(struct yaml_reader *reader, yaml_node_t *node, const char 
 {
     *count = yaml_list_count(reader, node, name);
     if (*count >= 0 && *count < least)
-        yaml_error(reader, yaml_place(node), "%s: expected at least one, found an empty list", name);
+        yaml_error(reader, yaml_place(node), "%s: expected at least one item, found an empty list", name);
     void *things = *count < 0 ? NULL : mem_try_array((size_t)*count, bytes_each);
     if (*count >= 0 && !things)
         yaml_error(reader, yaml_place(node), "%s: out of memory for %d", name, *count);

@@ -25,7 +25,7 @@ void plant_nodes_read(struct yaml_reader *reader, yaml_node_t *node, struct plan
 {
     struct text patterns = { 0 };
     if (node->type == YAML_MAPPING_NODE) {
-        yaml_expected(reader, node, "nodes", "a name, a pattern or a list of them");
+        yaml_expected(reader, node, "nodes", "a name, a pattern, or a list of names and patterns");
     } else if (node->type != YAML_SEQUENCE_NODE) {
         add_pattern(reader, node, &patterns);
     } else {

@@ -42,7 +42,7 @@ static void read_texts(struct yaml_reader *reader, yaml_node_t *node, const char
     if (count > NOTIFY_LIST)
         yaml_error(reader, yaml_place(node), "%s: expected at most %d, found %d", name, NOTIFY_LIST, count);
     if (count == 0)
-        yaml_error(reader, yaml_place(node), "%s: expected at least one, found an empty list", name);
+        yaml_error(reader, yaml_place(node), "%s: expected at least one item, found an empty list", name);
     for (int i = 0; i < count && i < NOTIFY_LIST; i++) {
         yaml_node_t *item = one ? node : yaml_list_item(reader, node, i);
         const char *text = yaml_text(item);
@@ -105,7 +105,7 @@ struct recipient_record {
 static void check_token(struct yaml_reader *reader, const struct yaml_map *map, const struct notify_recipient *recipient)
 {
     if (recipient->token_file && recipient->kind == NOTIFY_EMAIL)
-        yaml_error(reader, yaml_map_place(map, "token_file"), "token_file: has no meaning for e-mail");
+        yaml_error(reader, yaml_map_place(map, "token_file"), "token_file: not allowed for a recipient of e-mail");
     else
         url_check_token(reader, map, recipient->url);
 }

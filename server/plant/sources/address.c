@@ -165,7 +165,7 @@ static bool read_unit(const char **p, struct modbus_address *out, char why[200])
         return true;
     int digits = read_digits(&end, &unit);
     if (digits == 0 || *end != '!' || unit > 255 || digits > 6) {
-        snprintf(why, 200, "expected a unit from 0 to 255 before the !");
+        snprintf(why, 200, "expected a unit from 0 to 255 before the character !");
         return false;
     }
     out->unit = (int)unit;

@@ -76,7 +76,7 @@ static bool read_string(const char **at, char out[JSON_PATH_TEXT_BYTES], char wh
             good = add_byte(out, &count, (unsigned char)*p++);
     }
     if (!good || !*p)
-        return wrong(why, "expected a string of at most 127 bytes, closed by its own kind of quote", begin);
+        return wrong(why, "expected a string of at most 127 bytes, closed by the same kind of quote", begin);
     out[count] = 0;
     *at = p + 1;
     return true;
@@ -156,7 +156,7 @@ static bool read_test(const char **at, struct json_path_test *out, char why[200]
     skip_blanks(at);
     if (literal_first)
         return read_operand(at, out, why);
-    return read_literal(at, out, why) || (!*why && wrong(why, "expected a string, a number, true, false or null behind ==", begin));
+    return read_literal(at, out, why) || (!*why && wrong(why, "expected a string, a number, true, false or null after ==", begin));
 }
 
 /* Reads comparisons joined by &&, optionally in parentheses. Returns false with the reason in `why` if that fails. */
@@ -201,9 +201,9 @@ static bool read_index(const char **at, long *out)
 static const char *refusal_in_bracket(const char *at)
 {
     switch (*at) {
-    case '*': return "wildcards select several values; expected one";
-    case ':': return "slices select several values; expected one";
-    case ',': return "several selectors in one bracket select several values; expected one";
+    case '*': return "wildcards select several values; expected a path to one value";
+    case ':': return "slices select several values; expected a path to one value";
+    case ',': return "several selectors in one bracket select several values; expected a path to one value";
     case '|': return "|| is not supported in filters";
     default: return "expected a path such as data.temperature, items[0].value or [\"odd name\"], and ]";
     }
@@ -247,7 +247,7 @@ static bool next(const char **at, struct json_path_step *out, const char *ends, 
     } else {
         size_t length = strcspn(p, ends);
         if (length == 0 && *p == '.')
-            return wrong(why, "descendants (..) select several values; expected one", p);
+            return wrong(why, "descendants (..) select several values; expected a path to one value", p);
         if (length == 1 && *p == '*')
             return wrong(why, refusal_in_bracket(p), p);
         if (length == 0 || length >= sizeof(out->name))
@@ -256,9 +256,9 @@ static bool next(const char **at, struct json_path_step *out, const char *ends, 
         p += length;
     }
     if (*p == '.' && p[1] == '.')
-        return wrong(why, "descendants (..) select several values; expected one", p);
+        return wrong(why, "descendants (..) select several values; expected a path to one value", p);
     if (*p == '.' && (!p[1] || p[1] == '['))
-        return wrong(why, "expected a name behind the dot in a path such as items[0].value", p);
+        return wrong(why, "expected a name after the dot in a path such as items[0].value", p);
     bool ended = !*p || *p == '[' || *p == '.' || strchr(ends, *p);
     if (!ended)
         return wrong(why, "expected . or [ in a path such as items[0].value", p);

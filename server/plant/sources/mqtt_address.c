@@ -57,7 +57,7 @@ static bool fill_template(const struct plant *plant, const struct plant_tag *tag
         }
         const char *text = field_text(plant, tag, address, field);
         if (!text) {
-            snprintf(why, 200, "the source's topic has %s, which this tag lacks", field_names[field]);
+            snprintf(why, 200, "the source's topic contains %s, which this tag does not have", field_names[field]);
             return false;
         }
         text_add(out, "%s", text);
@@ -81,7 +81,7 @@ static bool is_sparkplug(const char *topic)
 static bool check_topic(const char *topic, bool sparkplug, char why[200])
 {
     if (!*topic)
-        snprintf(why, 200, "expected a topic, or a key topic in the source");
+        snprintf(why, 200, "expected a topic here, or the key topic in the source");
     else if (strlen(topic) > MQTT_TOPIC_BYTES)
         snprintf(why, 200, "the topic has %zu bytes; expected at most %d", strlen(topic), MQTT_TOPIC_BYTES);
     else if (strpbrk(topic, "+#"))
@@ -105,7 +105,7 @@ bool mqtt_address_resolve(const struct plant *plant, struct plant_tag *tag, char
     tag->signal.path = mem_strdup(sharp && sharp[1] ? sharp + 1 : mqtt->payload == MQTT_SPARKPLUG ? tag->name : "");
     good = good && check_topic(tag->signal.topic, mqtt->payload == MQTT_SPARKPLUG, why);
     if (good && *tag->signal.path && mqtt->payload == MQTT_NUMBER) {
-        snprintf(why, 200, "a path after # has no meaning for payload: number");
+        snprintf(why, 200, "a path after # is not allowed with payload: number");
         good = false;
     }
     if (good && *tag->signal.path && mqtt->payload == MQTT_JSON)

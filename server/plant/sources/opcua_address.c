@@ -73,7 +73,7 @@ static char *read_namespace(const char **at, const char *of_source, char why[200
     }
     if (strncmp(*at, "nsu=", 4) != 0) {
         if (!of_source)
-            snprintf(why, 200, "%s, or a key namespace in the source", EXPECTED);
+            snprintf(why, 200, "%s, or the key namespace in the source", EXPECTED);
         return of_source ? mem_strdup(of_source) : NULL;
     }
     if (!end || end == *at + 4)

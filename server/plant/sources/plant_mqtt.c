@@ -54,7 +54,7 @@ static void check_paths(struct yaml_reader *reader, const struct yaml_map *map, 
     char why[200];
     for (size_t i = 0; i < sizeof(paths) / sizeof(*paths); i++)
         if (paths[i].path && mqtt->payload != MQTT_JSON)
-            yaml_error(reader, yaml_map_place(map, paths[i].key), "%s: has no meaning without payload: json", paths[i].key);
+            yaml_error(reader, yaml_map_place(map, paths[i].key), "%s: allowed only with payload: json", paths[i].key);
         else if (paths[i].path && !json_path_check(paths[i].path, i > 0, why))
             yaml_error(reader, yaml_map_place(map, paths[i].key), "%s: '%.60s': %s", paths[i].key, paths[i].path, why);
 }
@@ -65,7 +65,7 @@ static void check_session(struct yaml_reader *reader, const struct yaml_map *map
 {
     if (mqtt->persistent && !mqtt->time)
         yaml_error(reader, yaml_map_place(map, "session"),
-                   "session: persistent needs payload: json and time, otherwise messages stored by the broker would look fresh");
+                   "session: persistent needs payload: json and the key time, otherwise messages stored by the broker would look fresh");
     if (mqtt->persistent && !mqtt->client_id)
         yaml_error(reader, yaml_map_place(map, "session"),
                    "session: persistent needs client_id, which identifies the session to the broker");
@@ -84,7 +84,7 @@ void plant_mqtt_check(struct yaml_reader *reader, const struct yaml_map *map, co
     check_files(reader, map, plant, source);
     check_will(reader, map, mqtt);
     if (mqtt->rebirth && mqtt->payload != MQTT_SPARKPLUG)
-        yaml_error(reader, yaml_map_place(map, "rebirth"), "rebirth: has no meaning without payload: sparkplug");
+        yaml_error(reader, yaml_map_place(map, "rebirth"), "rebirth: allowed only with payload: sparkplug");
 }
 
 void plant_mqtt_finish(struct plant_mqtt *mqtt)

@@ -50,7 +50,8 @@ void plant_opcua_check(struct yaml_reader *reader, const struct yaml_map *map, c
     if (!opcua->has_security)
         yaml_error(reader, map->place, "an opcua source needs the key 'security': a mapping, or none");
     if (opcua->policy == OPCUA_NONE && source->login)
-        yaml_error(reader, yaml_map_place(map, "login"), "login: with security: none, everyone could read the password");
+        yaml_error(reader, yaml_map_place(map, "login"),
+                   "login: not allowed with security: none, because the password would be readable on the network");
     if (source->login && opcua->user_certificate)
         yaml_error(reader, yaml_map_place(map, "login"), "login: expected login or user_certificate, not both");
     if (opcua->deadband > 0 && opcua->deadband_percent > 0)

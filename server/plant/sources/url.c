@@ -51,5 +51,6 @@ void url_check(struct yaml_reader *reader, const struct yaml_map *map, const cha
 void url_check_token(struct yaml_reader *reader, const struct yaml_map *map, const char *url)
 {
     if (yaml_map_has(map, "token_file") && url && strncmp(url, "https://", 8) != 0 && !url_is_here(url))
-        yaml_error(reader, yaml_map_place(map, "token_file"), "token_file: a token is sent over https:// only, or to this machine");
+        yaml_error(reader, yaml_map_place(map, "token_file"),
+                   "token_file: a token is sent only over https://, or to a server on this machine");
 }

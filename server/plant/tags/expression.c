@@ -254,7 +254,7 @@ static bool parse_power(struct expression_parser *parser)
 static bool parse_signed(struct expression_parser *parser)
 {
     if (++parser->depth > MAX_DEPTH)
-        return fail(parser, "expected fewer brackets within brackets%s", "");
+        return fail(parser, "brackets are nested too deep%s", "");
     bool negative = peek(parser) == '-', good;
     if (negative)
         parser->p++;

@@ -45,7 +45,7 @@ static void check_units(const struct tag_link *link, const struct plant *plant, 
         if (units_compare(one->scale.own_unit, other->scale.own_unit, &change) != UNITS_CONVERT)
             continue;
         diag_warning(diag, plant->files.tags_path, link->line, link->column,
-                     "Address: '%.60s' combines %.60s in %.20s with %.60s in %.20s; convert one of them in the expression",
+                     "Address: '%.60s' combines %.60s in %.20s with %.60s in %.20s; convert one of the tags in the expression",
                      tag->signal.address, one->name, one->scale.own_unit, other->name, other->scale.own_unit);
         return;
     }

@@ -68,7 +68,7 @@ static void add_direction(struct tag_links *links, struct tag_columns *columns, 
     }
     if (count != 0 && count != 1 && count != 3)
         cell_error(columns, COL_DIRECTION,
-                   "Direction: expected one tag, a bearing in degrees, or three, the components along X, Y and Z, found '%.60s'",
+                   "Direction: expected one tag (a bearing in degrees) or three tags (the components along X, Y and Z), found '%.60s'",
                    cell_text(columns, COL_DIRECTION));
 }
 
@@ -112,10 +112,11 @@ static void resolve_quality(const struct tag_link *link, struct plant *plant, st
     if (tag->validity.quality.tag < 0)
         report_unknown(plant, diag, plant->files.tags_path, link->line, link->column, "Quality Tag", link->to);
     else if (tag->validity.quality.tag == (int)link->tag)
-        diag_error(diag, plant->files.tags_path, link->line, link->column, "Quality Tag: expected another tag than '%.60s' itself",
+        diag_error(diag, plant->files.tags_path, link->line, link->column, "Quality Tag: expected a tag other than '%.60s' itself",
                    link->to);
     else if (plant->tags[tag->validity.quality.tag].validity.quality.mask != 0)
-        diag_error(diag, plant->files.tags_path, link->line, link->column, "Quality Tag: '%.60s' has a quality tag of its own", link->to);
+        diag_error(diag, plant->files.tags_path, link->line, link->column,
+                   "Quality Tag: '%.60s' has a quality tag of its own, which is not allowed for a quality tag", link->to);
 }
 
 static void resolve_direction(const struct tag_link *link, struct plant *plant, struct diag *diag)
@@ -125,10 +126,10 @@ static void resolve_direction(const struct tag_link *link, struct plant *plant, 
     if (to < 0)
         report_unknown(plant, diag, plant->files.tags_path, link->line, link->column, "Direction", link->to);
     else if (to == (int)link->tag)
-        diag_error(diag, plant->files.tags_path, link->line, link->column, "Direction: expected other tags than '%.60s' itself", link->to);
+        diag_error(diag, plant->files.tags_path, link->line, link->column, "Direction: expected tags other than '%.60s' itself", link->to);
     else if (tag->group < 0 || tag->asset < 0 || tag->place.assumed)
         diag_error(diag, plant->files.tags_path, link->line, link->column,
-                   "Direction: '%.60s' needs a group, an asset and its own place, where the direction starts", tag->name);
+                   "Direction: '%.60s' needs a group, an asset and a position (X, Y, Z or Node), where the direction starts", tag->name);
     else if (tag->direction.count < 3)
         tag->direction.tags[tag->direction.count++] = to;
     if (tag->direction.count > 0)

@@ -109,7 +109,7 @@ static void read_place(struct tag_list *list)
 /* Reports the reason why the unit of a row cannot be converted to the unit of its group. */
 static void report_unit(struct tag_list *list, enum unit_match match, const char *text)
 {
-    static const char otherwise[] = "'units: as-written' in the group takes values as they stand";
+    static const char otherwise[] = "'units: as-written' in the group switches the conversion off";
     const char *of_group = list->group->unit, *kind = unit_kind(text);
     char near[UNIT_NAME_BYTES], hint[UNIT_NAME_BYTES + 40] = "";
     if (!kind && unit_suggest(text, near))
@@ -119,8 +119,8 @@ static void report_unit(struct tag_list *list, enum unit_match match, const char
                    text, kind, of_group, unit_kind(of_group), otherwise);
     else
         cell_error(&list->columns, COL_ENG_UNITS,
-                   "Eng Units: '%.60s' cannot be converted to '%.60s', the unit of its group, since %s is not known%s; %s", text, of_group,
-                   kind ? "that" : "it", hint, otherwise);
+                   "Eng Units: '%.60s' cannot be converted to '%.60s', the unit of its group, since '%.60s' is not known%s; %s", text,
+                   of_group, kind ? of_group : text, hint, otherwise);
 }
 
 static void read_unit(struct tag_list *list)
@@ -129,7 +129,7 @@ static void read_unit(struct tag_list *list)
     struct plant_tag *tag = list->tag;
     enum unit_match match = UNITS_SAME;
     if (*text && of_group && !*of_group)
-        cell_warning(&list->columns, COL_ENG_UNITS, "Eng Units: '%.60s', but its group has no unit", text);
+        cell_warning(&list->columns, COL_ENG_UNITS, "Eng Units: the tag has the unit '%.60s', but its group has no unit", text);
     else if (*text && of_group && !list->group->as_written)
         match = units_compare(text, of_group, &tag->scale.change);
     tag->scale.own_unit = mem_strdup(*text || !of_group ? text : of_group);

@@ -56,7 +56,7 @@ static void read_byte_order(struct tag_wire *wire, const struct modbus_address *
         return;
     enum tag_column column = wire->columns->at[COL_BYTE_ORDER] >= 0 ? COL_BYTE_ORDER : COL_DATA_TYPE;
     cell_error(wire->columns, column,
-               "Byte Order: %s has %d bits, so one is needed: ABCD, CDAB, BADC or DCBA here, or byte_order in the tag's source",
+               "Byte Order: %s has %d bits, so a byte order is needed: ABCD, CDAB, BADC or DCBA here, or byte_order in the tag's source",
                data_type_name(tag->signal.type), registers * 16);
 }
 

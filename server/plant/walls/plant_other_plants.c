@@ -18,7 +18,8 @@ static void check(struct yaml_reader *reader, const struct yaml_map *map, const 
     if (other->id && !named_view_id_valid(other->id))
         yaml_error(reader, yaml_map_place(map, "id"), "id: expected letters, digits, '_', '-' and '.', found '%.60s'", other->id);
     if (other->view && !named_view_id_valid(other->view))
-        yaml_error(reader, yaml_map_place(map, "view"), "view: expected the id of one of its server's `views`, found '%.60s'", other->view);
+        yaml_error(reader, yaml_map_place(map, "view"), "view: expected the id of one of the other server's `views`, found '%.60s'",
+                   other->view);
 }
 
 void plant_other_plants_read(struct yaml_reader *reader, yaml_node_t *node, void *record)

@@ -16,18 +16,18 @@ bool named_view_id_valid(const char *id)
 
 const char *named_view_title_wrong(const char *title)
 {
-    return strlen(title) >= NAMED_VIEW_TITLE_BYTES ? "it is too long" : NULL;
+    return strlen(title) >= NAMED_VIEW_TITLE_BYTES ? "the text is too long" : NULL;
 }
 
 const char *named_view_address_wrong(const char *address)
 {
     if (strlen(address) >= NAMED_VIEW_ADDRESS_BYTES)
-        return "it is too long";
+        return "the text is too long";
     if (address[0] == '#')
-        return "it must not contain the # itself";
+        return "the address must not begin with #";
     for (const char *at = address; *at; at++)
         if ((unsigned char)*at <= ' ' || (unsigned char)*at >= 127)
-            return "it contains a character that an address cannot have";
+            return "the address contains a character that is not allowed in addresses";
     return NULL;
 }
 

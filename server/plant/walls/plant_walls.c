@@ -138,7 +138,7 @@ static void check_grid(struct yaml_reader *reader, struct text_position place, c
             size_t length;
             const char *word = word_at(display->rows[row], column, &length);
             if (is_first(display, row, column, columns) && !is_rectangle(display, columns, word, length))
-                yaml_error(reader, place, "grid: '%.*s' is not one rectangle", (int)length, word);
+                yaml_error(reader, place, "grid: the cells of area '%.*s' do not form one rectangle", (int)length, word);
         }
 }
 
@@ -179,7 +179,7 @@ static void read_pane(struct yaml_reader *reader, yaml_node_t *node, struct wall
     if (!pane->area)
         return;
     if (!grid_has(display, pane->area))
-        yaml_error(reader, yaml_map_place(&map, "area"), "area: the grid has no '%.40s'", pane->area);
+        yaml_error(reader, yaml_map_place(&map, "area"), "area: the grid has no area '%.40s'", pane->area);
     size_t other = 0;
     while (&display->panes[other] < pane && (!display->panes[other].area || strcmp(display->panes[other].area, pane->area) != 0))
         other++;
@@ -269,7 +269,7 @@ static void read_tile(struct yaml_reader *reader, yaml_node_t *node, void *recor
     if (good && tile->pane.kind == PANE_TOUR && tile->pane.item_count > 1)
         yaml_error(reader, yaml_map_place(&map, "tour"), "tour: expected one, found %zu", tile->pane.item_count);
     if (good && tile->pane.kind == PANE_TOUR && yaml_map_has(&map, "every_s"))
-        yaml_error(reader, yaml_map_place(&map, "every_s"), "every_s: not allowed with a tour, which has its own times");
+        yaml_error(reader, yaml_map_place(&map, "every_s"), "every_s: not allowed with a tour, whose stops have their own times");
     if (!good)
         tile->columns = tile->rows = 0;
 }
@@ -313,7 +313,8 @@ static void add_tiles(struct yaml_reader *reader, const struct yaml_map *map, st
         return;
     if (tiles + others > WALL_DISPLAYS) {
         yaml_error(reader, yaml_map_place(map, "tile"),
-                   "tile: expected at most %d displays of a wall, found %zu of the tile and %zu others", WALL_DISPLAYS, tiles, others);
+                   "tile: expected at most %d displays of a wall, found %zu in the tile and %zu in `displays`", WALL_DISPLAYS, tiles,
+                   others);
         wall->tile.columns = wall->tile.rows = 0;
         return;
     }
@@ -386,13 +387,14 @@ static void check_items(const struct plant *plant, const struct wall_pane *pane,
                 continue;
             near = suggest_nearest(name, plant->screens.views, plant->screens.view_count, sizeof(*plant->screens.views));
             diag_warning(diag, plant->files.path, pane->item_lines[i], pane->item_columns[i],
-                         "views: `views` has no '%.60s' (a view saved in the page is also possible)%s%s%s", name,
+                         "views: `views` has no view '%.60s' (the id of a view saved in the page is also possible)%s%s%s", name,
                          near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
         } else if (pane->kind == PANE_SNAPSHOT && other_plant_find(plant, name) < 0) {
             near =
                 suggest_nearest(name, plant->screens.other_plants, plant->screens.other_plant_count, sizeof(*plant->screens.other_plants));
-            diag_error(diag, plant->files.path, pane->item_lines[i], pane->item_columns[i], "snapshot: `other_plants` has no '%.60s'%s%s%s",
-                       name, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+            diag_error(diag, plant->files.path, pane->item_lines[i], pane->item_columns[i],
+                       "snapshot: `other_plants` has no plant '%.60s'%s%s%s", name, near ? "; did you mean '" : "", near ? near : "",
+                       near ? "'?" : "");
         } else if (pane->kind == PANE_TOUR && !tour_find(plant, name)) {
             near = suggest_nearest(name, plant->screens.tours, plant->screens.tour_count, sizeof(*plant->screens.tours));
             diag_error(diag, plant->files.path, pane->item_lines[i], pane->item_columns[i], "tour: `tours` has no '%.60s'%s%s%s", name,

@@ -165,7 +165,7 @@ test('--undo takes only versions of that list which differ in Place alone, and n
         const locked = spawnSync('flock', [plant.folder, join(BIN, 'plantcast'), 'sensors', 'accept', plant.file, '--undo',
             `tags.csv.${last}`], { encoding: 'utf8' });
         assert.equal(locked.status, 1);
-        assert.match(locked.stderr, /flock \(process \d+\) is using it; try again/);
+        assert.match(locked.stderr, /flock \(process \d+\) is using the folder; try again/);
         assert.equal(accept('--undo', join(plant.folder, `tags.csv.${last}`)).code, 0);
         assert.equal(readFileSync(tagsFile, 'utf8'), original);
     } finally {

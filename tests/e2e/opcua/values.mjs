@@ -178,11 +178,11 @@ test('what cannot be is said of the plant file', options, () => {
     };
     assert.match(refused('queue: 5'), /needs the key 'security'/);
     assert.match(refused('security: open'), /security: expected none, or a mapping/);
-    assert.match(refused('security: none, login: x'), /with security: none, everyone could read the password/);
+    assert.match(refused('security: none, login: x'), /not allowed with security: none, because the password would be readable/);
     assert.match(refused('security: none, deadband: 1, deadband_percent: 1'), /expected deadband or deadband_percent/);
     assert.match(refused('security: none, topic: x'), /topic: has no meaning for an opcua source/);
     assert.match(refused('security: none', 'A,ns=2;s=X,,,,,,,,,,,,,'), /namespace numbers can change/);
-    assert.match(refused('security: none', 'A,s=X,,,,,,,,,,,,,'), /or a key namespace in the source/);
+    assert.match(refused('security: none', 'A,s=X,,,,,,,,,,,,,'), /or the key namespace in the source/);
     assert.match(refused('security: none, namespace: urn:x', 'A,q=X,,,,,,,,,,,,,'),
         /tags\.csv:2:3: error: Address: 'q=X': expected nsu=URI/);
     assert.match(refused('security: none', 'A,[x]nsu=urn:x;i=5,,,,,,,,,,,,,'), /expected an element/);
