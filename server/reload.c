@@ -203,7 +203,7 @@ static void say_difference(struct reload *reload, const struct plant_diff *diff,
         log_info(log, "reload: %s", diff->lines[i]);
         json_array_append_new(changes, json_string(diff->lines[i]));
     }
-    log_event(log, LOG_INFO, EVENT_RELOADED, "reload: configuration %s in place of %s, after %.1f s, by %s",
+    log_event(log, LOG_INFO, EVENT_RELOADED, "reload: configuration %s in place of %s, after %.1f s, requested by %s",
               (*reload->runtime)->plant->files.hash, before, took_s, reload->by);
     answer(reload, true,
            json_pack("{s:b,s:s,s:s,s:o}", "reloaded", true, "configuration", (*reload->runtime)->plant->files.hash, "before", before,
@@ -236,7 +236,8 @@ static void put_in_force(struct reload *reload, struct plant_runtime *after, con
     } else if (ended) {
         plant_runtime_destroy(&after);
     } else {
-        log_err(reload->context->log, "reload: the new plant cannot be activated; the daemon ends, and loads it at its next start");
+        log_err(reload->context->log,
+                "reload: the new plant cannot be activated; the daemon exits, and loads the new plant at its next start");
         net_stop(reload->net);
         plant_runtime_destroy(&after);
     }
@@ -252,7 +253,7 @@ static int lock_folder(const struct reload *reload, char **why)
     char *folder = plant_folder_of(reload->context->params->plant_path), *cause = NULL;
     int lock = plant_folder_lock(&(struct plant_folder_params){ .folder = folder, .wait_ms = WAIT_MS }, &cause);
     if (lock < 0)
-        *why = mem_printf("the plant's folder %s: %s; try again when that is done", folder, cause);
+        *why = mem_printf("the plant's folder %s: %s; try again later", folder, cause);
     mem_free(cause);
     mem_free(folder);
     return lock;
@@ -303,7 +304,7 @@ static bool reload_now(struct reload *reload)
     if (after && !why && !start_render_service(reload, after))
         why = "drawing the new plant failed; the log says why";
     if (after && !why && !wait_for_core(reload))
-        why = "the core has not switched to its files; its log says why";
+        why = "the core has not activated its changed files; the core's log says why";
     bool good = after && !why;
     if (good) {
         plant_diff(before->plant, after->plant, &diff);
@@ -325,7 +326,7 @@ static void reload_settled(struct reload *reload)
     if (plant_folder_settle(&(struct plant_folder_params){ .folder = folder, .wait_ms = WAIT_MS }, &why)) {
         reload_now(reload);
     } else {
-        char *line = mem_printf("the plant's folder %s: %s; try again when that is done", folder, why);
+        char *line = mem_printf("the plant's folder %s: %s; try again later", folder, why);
         refuse(reload, &none, line);
         mem_free(line);
     }
@@ -381,10 +382,10 @@ static void save_now(struct reload *reload, const struct tag_save *save)
         refuse(reload, &none, text);
     } else {
         reload->kept = kept;
-        log_info(log, "tag list: %s by %s; previous list: %s", save->path, save->who, kept);
+        log_info(log, "tag list: %s saved by %s; previous list kept as %s", save->path, save->who, kept);
         if (!prepare(reload)) {
             put_back(reload, save, kept);
-            refuse(reload, &none, "plantcast-prep could not prepare it; the log says why");
+            refuse(reload, &none, "plantcast-prep could not prepare the plant with this tag list; the log says why");
         } else if (!reload_now(reload)) {
             put_back(reload, save, kept);
         }
@@ -408,7 +409,7 @@ static bool is_cancelled(void *arg)
 /* Undoes a failed import. Takes ownership of the reason `why` and returns it, extended by errors of the undo. */
 static char *undo_import(struct reload *reload, struct import_job *job, char *why)
 {
-    char *worse = import_job_undo(job), *both = worse ? mem_printf("%s; and it cannot be undone: %s", why, worse) : NULL;
+    char *worse = import_job_undo(job), *both = worse ? mem_printf("%s; and the import cannot be undone: %s", why, worse) : NULL;
     if (!worse && import_job_prepares(job))
         prepare(reload); /* prepares again for the restored files; quick, because the earlier prepared files still exist */
     if (both)
@@ -496,9 +497,10 @@ static void lead_now(struct reload *reload, int64_t begun_ns)
     bool good = open && plant_runtime_lead(runtime) && net_call(reload->net, lead_in_loop, reload);
     pthread_mutex_unlock(&reload->put_lock);
     if (good) {
-        log_info(reload->context->log, "core: polls devices and owns the alarms, after %.1f s", (double)(clock_mono_ns() - begun_ns) / 1e9);
+        log_info(reload->context->log, "core: this core now polls devices and owns the alarms, after %.1f s",
+                 (double)(clock_mono_ns() - begun_ns) / 1e9);
     } else if (open) {
-        log_err(reload->context->log, "core: it cannot lead; the daemon ends");
+        log_err(reload->context->log, "core: this core cannot lead; the daemon exits");
         net_stop(reload->net);
     }
 }

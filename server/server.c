@@ -215,7 +215,7 @@ static bool start_net(struct server *server)
         .reload_arg = server,
     };
     if (!server->web)
-        log_warn(server->log, "no web client found next to the program; give its folder with --web");
+        log_warn(server->log, "the files of the web page were not found next to the program; give their folder with --web");
     struct net *net = net_create(&params);
     pthread_mutex_lock(&server->wake_lock);
     server->net = net;
@@ -235,7 +235,8 @@ static bool start_import(struct server *server)
                               "cgroup delegated by systemd (Delegate=memory pids)");
     server->import = plant_import_create(server->params.plant_path);
     if (!server->import)
-        log_err(server->log, "%s: the folder `exports` next to it cannot be created: %s", server->params.plant_path, strerror(errno));
+        log_err(server->log, "%s: the folder `exports` next to this plant file cannot be created: %s", server->params.plant_path,
+                strerror(errno));
     return server->import != NULL;
 }
 
@@ -286,7 +287,7 @@ static bool prepare(struct server *server)
         atomic_store(&preparing, false);
         good = !why && !atomic_load(&told_to_end);
         if (atomic_load(&told_to_end))
-            log_event(server->log, LOG_INFO, EVENT_STOPPING, "stopping; the next start continues preparing");
+            log_event(server->log, LOG_INFO, EVENT_STOPPING, "stopping; the next start continues to prepare the plant");
         else if (why)
             log_err(server->log, "%s: the plant cannot be prepared: %s", server->params.plant_path, why);
     }
@@ -413,7 +414,8 @@ static bool make_keeper(struct server *server)
     if (server->params.role != SERVER_CORE || !server->params.core_count)
         return true;
     if (!plant->history.postgres.url || plant->history.off) {
-        log_err(server->log, "%s: two cores require `postgres` in `history`, where the lease is kept", server->params.plant_path);
+        log_err(server->log, "%s: two cores require `postgres` in `history`, because PostgreSQL stores the lease",
+                server->params.plant_path);
         return false;
     }
     if (!take_seat(server, name))
@@ -607,7 +609,7 @@ static bool check_option_files(const struct server_params *params)
     struct access_params *access = &server.params.access;
     bool paired = !access->tls_cert_path == !access->tls_key_path;
     if (!paired) {
-        log_err(server.log, "--tls-cert and --tls-key belong together");
+        log_err(server.log, "give both --tls-cert and --tls-key, or neither");
         access->tls_cert_path = NULL;
     }
     bool access_good = net_access_good(server.log, access), key_good = load_signing_key(&server);
@@ -626,8 +628,9 @@ static int check_prepared(const struct server_params *params, const struct plant
     if (exists)
         print_left_out(log, plant, folder);
     else
-        printf("%s: not prepared yet (%s). Not checked before plantcast-prep has run: textures and extensions that are not drawn, sensors "
-               "far from their surface, and views\n", params->plant_path, folder);
+        printf("%s: the plant is not prepared yet (%s). Not checked before plantcast-prep has run: textures and extensions that are not "
+               "drawn, sensors far from their surface, and views\n",
+               params->plant_path, folder);
     mem_free(manifest);
     mem_free(folder);
     if (!exists) {
@@ -677,7 +680,7 @@ int server_check(const struct server_params *params)
         printf("%s: warning: --import: this kernel has %s\n", params->plant_path, lacks);
     if (plant_folder_unsettled(folder))
         diag_warning(&diag, params->plant_path, 0, 0,
-                     "a killed import replaced some of the files; the next start completes it");
+                     "a killed import replaced some of the files; the next start of the daemon completes the import");
     mem_free(folder);
     if (plant) {
         models_check(plant, 0, &diag, stdout);

@@ -133,7 +133,7 @@ static bool is_plain_header(const struct png_chunk *chunk, char why[PNG_PLAIN_WH
     static const uint8_t format[] = { 8, 2, 0, 0, 0 };
     bool is_header = memcmp(chunk->type, "IHDR", 4) == 0 && chunk->length == 13;
     if (!is_header)
-        return FAIL("its first chunk is not IHDR");
+        return FAIL("the first chunk of the PNG file is not IHDR");
     return memcmp(chunk->data + 8, format, sizeof(format)) == 0 ||
            FAIL("chunk IHDR has another format than 8 bits of red, green and blue");
 }
@@ -156,8 +156,8 @@ static bool takes_plain_chunk(const struct png_chunk *chunk, int *next, char why
 {
     int row = plain_row(chunk);
     if (row == PLAIN_CHUNKS)
-        return FAIL("unexpected chunk %c%c%c%c: Plantcast's pictures have none", printable(chunk->type[0]), printable(chunk->type[1]),
-                    printable(chunk->type[2]), printable(chunk->type[3]));
+        return FAIL("unexpected chunk %c%c%c%c: Plantcast's pictures have no such chunk", printable(chunk->type[0]),
+                    printable(chunk->type[1]), printable(chunk->type[2]), printable(chunk->type[3]));
     bool again = row + 1 == *next && plain[row].repeats;
     if (row < *next && !again)
         return FAIL("chunk %.4s occurs twice, or in another order than in Plantcast's pictures", plain[row].type);
@@ -165,7 +165,7 @@ static bool takes_plain_chunk(const struct png_chunk *chunk, int *next, char why
         if (plain[i].required)
             return FAIL("chunk %.4s is missing, or in another order than in Plantcast's pictures", plain[i].type);
     if (plain[row].bytes && (chunk->length != plain[row].length || memcmp(chunk->data, plain[row].bytes, chunk->length) != 0))
-        return FAIL("chunk %.4s differs from that of Plantcast's pictures", plain[row].type);
+        return FAIL("chunk %.4s differs from the same chunk of Plantcast's pictures", plain[row].type);
     *next = row + 1;
     return true;
 }
@@ -185,7 +185,7 @@ bool png_is_plain(const uint8_t *png, size_t count, const char *const *keywords,
             return FAIL("chunk zTXt occurs twice, or in another order than in Plantcast's pictures");
         texts += is_text;
         if (!is_text && texts < keyword_count)
-            return FAIL("it has no %s, or not right after its header", keywords[texts]);
+            return FAIL("the PNG file has no text chunk %s directly after its header", keywords[texts]);
         if (!is_text && !takes_plain_chunk(&chunk, &next, why))
             return false;
         if (next == PLAIN_CHUNKS)

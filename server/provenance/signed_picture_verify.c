@@ -23,7 +23,7 @@ static bool is_signed(const struct signing_key *key, const char *statement, size
         return FAIL("the signature cannot be read: expected 'ed25519 KEY SIGNATURE'");
     signing_key_id(key, own);
     if (strcmp(by, own) != 0)
-        return FAIL("it was signed with another key: %s; the given key is %s", by, own);
+        return FAIL("the picture was signed with another key: %s; the given key is %s", by, own);
     return signing_key_verify(key, statement, length, bytes) ||
            FAIL("the signature is wrong: the statement was changed after it was signed");
 }
@@ -35,9 +35,9 @@ bool signed_statement_has_pixels(const json_t *statement, const uint8_t *rgb, in
     const char *expected = json_string_value(json_object_get(statement, "pixels_sha256"));
     if (json_integer_value(json_object_get(statement, "width")) != width_px ||
         json_integer_value(json_object_get(statement, "height")) != height_px)
-        return FAIL("its size differs from the signed picture's");
+        return FAIL("the picture's size differs from the size in the statement");
     picture_hash(rgb, 3 * (size_t)width_px * (size_t)height_px, hash);
-    return (*hash && expected && !strcmp(hash, expected)) || FAIL("the pixels differ from the signed ones");
+    return (*hash && expected && !strcmp(hash, expected)) || FAIL("the pixels of the picture differ from the signed pixels");
 }
 
 static bool has_pixels(const json_t *statement, const uint8_t *png, size_t count, char why[SIGNED_PICTURE_WHY_BYTES])
@@ -65,7 +65,7 @@ static bool is_known(const json_t *statement, char why[SIGNED_PICTURE_WHY_BYTES]
 {
     const json_t *version = json_object_get(statement, "plantcast_statement");
     if (!json_is_integer(version))
-        return FAIL("the statement is not one of Plantcast's");
+        return FAIL("the statement was not written by Plantcast");
     json_int_t number = json_integer_value(version);
     return (number >= 1 && number <= PICTURE_STATEMENT_VERSION) ||
            FAIL("the statement has version %d; this program supports versions 1 to %d", (int)number, PICTURE_STATEMENT_VERSION);
@@ -105,7 +105,7 @@ json_t *signed_picture_verify(const struct signing_key *key, const uint8_t *png,
     json_t *statement = NULL;
     bool is_plain = png_is_plain(png, count, (const char *const[]){ PICTURE_STATEMENT_KEYWORD, PICTURE_SIGNATURE_KEYWORD }, 2, why);
     if (is_plain && (!text || !signature))
-        snprintf(why, SIGNED_PICTURE_WHY_BYTES, "it has no %s, or the file is damaged", text ? "signature" : "statement");
+        snprintf(why, SIGNED_PICTURE_WHY_BYTES, "the picture has no %s, or the file is damaged", text ? "signature" : "statement");
     else if (is_plain)
         statement = signed_statement_verify(key, text, length, signature, why);
     if (statement && !has_pixels(statement, png, count, why)) {
@@ -125,15 +125,15 @@ static bool read_readings(const json_t *told, const struct plant *plant, struct 
                           char why[SIGNED_PICTURE_WHY_BYTES])
 {
     if (json_array_size(told) != plant->tag_count)
-        return FAIL("it has readings of %zu tags; the plant has %zu tags", json_array_size(told), plant->tag_count);
+        return FAIL("the statement has readings of %zu tags; the plant has %zu tags", json_array_size(told), plant->tag_count);
     bool *seen = mem_array(plant->tag_count, sizeof(*seen)), good = true;
     for (size_t i = 0; i < plant->tag_count && good; i++) {
         const json_t *one = json_array_get(told, i), *age = json_array_get(one, 4);
         const char *name = json_string_value(json_array_get(one, 0));
         int tag = name ? plant_find_tag(plant, name) : -1;
         if (tag < 0 || seen[tag]) {
-            good =
-                FAIL("reading %zu is of '%.60s', which %s", i + 1, name ? name : "", tag < 0 ? "is not a tag of the plant" : "came before");
+            good = FAIL("reading %zu is of '%.60s', which %s", i + 1, name ? name : "",
+                        tag < 0 ? "is not a tag of the plant file" : "came before");
             break;
         }
         seen[tag] = true;
@@ -157,14 +157,14 @@ static bool read_baseline(const json_t *told, const struct plant *plant, struct 
     const char *name = json_string_value(json_object_get(told, "name"));
     int i = record->baseline_count;
     if (i == FRAME_RECORD_BASELINES || !name)
-        return FAIL("its baselines cannot be read");
+        return FAIL("the baselines in the statement cannot be read");
     record->baselines[i].readings = snapshot_create(plant->tag_count);
     record->baselines[i].readings->taken_utc_ns = json_integer_value(json_object_get(told, "taken_ns"));
     record->baseline_count++;
     if (!read_readings(json_object_get(told, "readings"), plant, record->baselines[i].readings, NULL, why))
         return false;
     uint32_t id = baselines_set(baselines, name, record->baselines[i].readings);
-    return baselines_describe(baselines, id, &record->baselines[i].what) || FAIL("its baselines cannot be used");
+    return baselines_describe(baselines, id, &record->baselines[i].what) || FAIL("the baselines in the statement cannot be used");
 }
 
 struct frame_record *signed_picture_record(const json_t *statement, const struct plant *plant, struct baselines *baselines,
@@ -172,7 +172,7 @@ struct frame_record *signed_picture_record(const json_t *statement, const struct
 {
     const json_t *told = json_object_get(statement, "readings"), *all = json_object_get(told, "baselines");
     if (!told) {
-        snprintf(why, SIGNED_PICTURE_WHY_BYTES, "it was made for a user who may not see readings, and has none");
+        snprintf(why, SIGNED_PICTURE_WHY_BYTES, "the picture was made for a user who may not see readings: the statement has no readings");
         return NULL;
     }
     struct frame_record *record = frame_record_empty(plant->tag_count);

@@ -196,11 +196,11 @@ bool strip_find(const struct strip_picture *picture, struct strip_found *found, 
 {
     memset(found, 0, sizeof(*found));
     if (!find_place(picture, found)) {
-        *why = "it has no legend strip; draw it with --strip legend, and do not crop its lower edge";
+        *why = "the picture has no legend strip; draw the picture with --strip legend, and do not crop its lower edge";
         return false;
     }
     if (!read_code(picture, found)) {
-        *why = "its legend strip is too damaged to be read";
+        *why = "the legend strip of the picture is too damaged to be read";
         return false;
     }
     read_ramp(picture, found);

@@ -40,7 +40,7 @@ static bool read_entry(struct log *log, struct manifest *manifest, size_t index,
     const char *id = json_string_value(json_object_get(item, "id")), *file = json_string_value(json_object_get(item, "file"));
     const char *recipe = json_string_value(json_object_get(item, "recipe"));
     if (!id || !file_name_good(file) || !recipe) {
-        log_err(log, "%s: asset %zu: expected an id, the name of a file and a recipe; run plantcast-prep", manifest->path, index);
+        log_err(log, "%s: asset %zu: expected the members id, file and recipe; run plantcast-prep", manifest->path, index);
         return false;
     }
     const char *surface = json_string_value(json_object_get(item, "surface"));
@@ -69,7 +69,8 @@ bool manifest_read(struct log *log, const char *folder, struct manifest *manifes
     json_t *root = load(log, manifest->path);
     bool good = root;
     if (good && json_integer_value(json_object_get(root, "format")) != MANIFEST_FORMAT) {
-        log_err(log, "%s: expected format %d; run plantcast-prep", manifest->path, MANIFEST_FORMAT);
+        log_err(log, "%s: the prepared files are of another version; this program needs format %d; run plantcast-prep", manifest->path,
+                MANIFEST_FORMAT);
         good = false;
     }
     const json_t *assets = json_object_get(root, "assets");

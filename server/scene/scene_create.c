@@ -41,15 +41,15 @@ static bool sensors_fit(struct log *log, const struct plant *plant, const struct
 {
     const struct asset_view *view = &asset->file->view;
     if (view->header->sensor_count != count) {
-        log_err(log, "asset %s: %s has %u sensors, the tag list has %zu; run plantcast-prep %s", asset->plant->id, asset->file->path,
-                view->header->sensor_count, count, plant->files.path);
+        log_err(log, "asset %s: the prepared file %s has %u sensors, the tag list has %zu; run plantcast-prep %s", asset->plant->id,
+                asset->file->path, view->header->sensor_count, count, plant->files.path);
         return false;
     }
     for (size_t i = 0; i < count; i++) {
         if (same_place(view->header, &view->sensors[i], &sensors[i]))
             continue;
-        log_err(log, "asset %s: the place of sensor %s in %s differs from the tag list; run plantcast-prep %s", asset->plant->id,
-                plant->tags[sensors[i].tag].name, asset->file->path, plant->files.path);
+        log_err(log, "asset %s: the position of sensor %s in the prepared file %s differs from the tag list; run plantcast-prep %s",
+                asset->plant->id, plant->tags[sensors[i].tag].name, asset->file->path, plant->files.path);
         return false;
     }
     return true;
@@ -87,7 +87,7 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
         /* no sensors: plantcast-prep then writes no influence file, so none is required */
         bool heat = placed > 0 && group->heat && !has_entry(log, asset, g, INFLUENCE_HEAT, placed);
         if (heat || (placed > 0 && group->directed && !has_entry(log, asset, g, INFLUENCE_TRANSPORT, placed))) {
-            log_err(log, "asset %s: has no usable %s for group %s; run plantcast-prep %s", asset->plant->id,
+            log_err(log, "asset %s: no usable prepared file with %s for group %s; run plantcast-prep %s", asset->plant->id,
                     heat ? "distances by heat" : "directions", group->id, plant->files.path);
             return false;
         }
@@ -95,7 +95,7 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
             if (!plant_prepares(group, (enum interpolation)i))
                 continue;
             if (!asset_open_influence(log, asset->file)) {
-                log_err(log, "asset %s: has no usable influence of its sensors; run plantcast-prep %s", asset->plant->id,
+                log_err(log, "asset %s: no usable prepared file with the influence of the sensors; run plantcast-prep %s", asset->plant->id,
                         plant->files.path);
                 return false;
             }
@@ -105,7 +105,9 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
             if (entry && entry->sensor_count == placed && entry->disc_m == group->disc_m && entry->decay_m == decay_m &&
                 (!gp || (entry->deviations && is_as_stated(gp, entry))))
                 continue;
-            log_err(log, "asset %s: the influence of group %s was prepared for another list, disc_m, gp or wall; run plantcast-prep %s",
+            log_err(log,
+                    "asset %s: the influence of the sensors of group %s was prepared with another tag list, disc_m, gp or wall; run "
+                    "plantcast-prep %s",
                     asset->plant->id, group->id, plant->files.path);
             return false;
         }
@@ -133,8 +135,8 @@ static bool recipe_fits(struct log *log, const struct plant *plant, uint64_t *ha
     }
     if (plant_recipe(asset, hashes[index]) == entry->recipe)
         return true;
-    log_err(log, "asset %s: %s, or its nodes, units, scale or up, changed since it was prepared; run plantcast-prep %s", asset->id,
-            asset->model, plant->files.path);
+    log_err(log, "asset %s: the model %s, or the asset's nodes, units, scale or up, changed since the preparation; run plantcast-prep %s",
+            asset->id, asset->model, plant->files.path);
     return false;
 }
 
@@ -205,7 +207,7 @@ static bool create_asset(struct log *log, struct scene *scene, int index)
     struct scene_asset *asset = &scene->assets[index];
     struct plant_sensor *sensors = NULL;
     if (!asset->file) {
-        log_err(log, "asset %s: has no usable file; run plantcast-prep %s", asset->plant->id, scene->plant->files.path);
+        log_err(log, "asset %s: no usable prepared file; run plantcast-prep %s", asset->plant->id, scene->plant->files.path);
         return false;
     }
     size_t count = plant_sensors(scene->plant, index, &sensors);

@@ -9,7 +9,7 @@
 #include "plant/plant.h"
 
 static const double SLACK_M = 1e-3;
-_Static_assert((int)PLANT_STARTS <= (int)ASSET_SET_MAX, "each can be in a set");
+_Static_assert((int)PLANT_STARTS <= (int)ASSET_SET_MAX, "an asset_set must have room for all assets that can start hidden or as ghosts");
 
 void asset_set_add(struct asset_set *set, int asset)
 {

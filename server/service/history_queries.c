@@ -314,7 +314,7 @@ struct history_queries *history_queries_create(struct log *log, const struct pla
         if (!error)
             continue;
         mem_free(worker);
-        log_err(log, "history: cannot start a thread to read it: %s", strerror(error));
+        log_err(log, "history: cannot start a thread that reads history: %s", strerror(error));
     }
     if (queries->thread_count < THREADS)
         history_queries_destroy(&queries);

@@ -20,7 +20,7 @@ static bool take_tags(const struct plant *plant, const char *list, struct histor
     for (const char *at = list; *at;) {
         size_t n = strcspn(at, ",");
         if (n >= sizeof(name) || query->tag_count == HISTORY_QUERY_TAGS) {
-            message_fail(error, "bad_field", "tags: at most %d names of at most %zu bytes", HISTORY_QUERY_TAGS, sizeof(name) - 1);
+            message_fail(error, "bad_field", "tags: expected at most %d names of at most %zu bytes", HISTORY_QUERY_TAGS, sizeof(name) - 1);
             return false;
         }
         memcpy(name, at, n);

@@ -162,7 +162,7 @@ void render_service_lose_context(struct render_service *service)
 static bool thread_start(struct render_service *service)
 {
     if (pthread_create(&service->thread, NULL, render_thread_main, service) != 0) {
-        log_err(service->params.log, "render service: no thread could be started");
+        log_err(service->params.log, "render service: the render thread could not be started");
         return false;
     }
     service->has_thread = true;
@@ -192,7 +192,7 @@ static void add_counters(struct render_service *service, struct counters *counte
     service->shared = counters_add(counters, "plantcast_renders_shared_total", "counter", "Pictures reused from another client's request.");
     service->failures = counters_add(counters, "plantcast_render_failures_total", "counter", "Pictures that could not be drawn.");
     service->steps =
-        counters_add(counters, "plantcast_render_steps_total", "counter", "Steps in which slow pictures were drawn.");
+        counters_add(counters, "plantcast_render_steps_total", "counter", "Drawing steps of pictures that take more than one step.");
     service->abandoned = counters_add(counters, "plantcast_renders_abandoned_total", "counter",
                                       "Pictures abandoned because no client needed them any more.");
     service->picked = counters_add(counters, "plantcast_picks_total", "counter", "Pixel queries answered.");

@@ -439,7 +439,7 @@ static bool gl_begin(struct render_thread *thread, enum gl_kind kind, bool hardw
     unsigned shortages = gl_out_of_memory_count();
     thread->gl = gl_create(params->log, kind, params->gl_device);
     if (thread->gl && hardware && thread->gl->software) {
-        log_warn(params->log, "gl: the GPU is still lost");
+        log_warn(params->log, "gl: the GPU is still unavailable; retrying");
         return false;
     }
     if (thread->gl)
@@ -529,7 +529,7 @@ static void rebuild(struct render_thread *thread)
     int64_t pause_ns = REBUILD_NS, lost_ns = clock_mono_ns();
     enum gl_kind kind = thread->gl->kind;
     bool hardware = !thread->gl->software;
-    log_err(service->params.log, "gl: the context is lost; making a new one");
+    log_err(service->params.log, "gl: the OpenGL context was lost; creating a new context");
     counter_inc(service->losses, 1);
     set_lost(service, true);
     for (int i = 0; i < thread->in_flight.count; i++)

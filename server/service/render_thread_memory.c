@@ -20,8 +20,8 @@ static const size_t FADES = 64;
 static counter *add(struct render_service *service, const char *of)
 {
     char *name = mem_printf("plantcast_memory_bytes{of=\"%s\"}", of);
-    counter *added =
-        counters_add(service->params.counters, name, "gauge", "Bytes of memory held for drawing, by purpose; all but the models is cache.");
+    counter *added = counters_add(service->params.counters, name, "gauge",
+                                  "Bytes of memory held for drawing, by purpose; all purposes but the models are caches.");
     mem_free(name);
     return added;
 }

@@ -394,7 +394,7 @@ static bool in_order(const struct session *session, const struct message *messag
         return false;
     }
     if (message->type != MESSAGE_HELLO && message->type != MESSAGE_PING && !session->hello) {
-        message_fail(error, "hello_first", "the first message is hello");
+        message_fail(error, "hello_first", "the first message must be hello");
         return false;
     }
     /* the message hello is not checked here: session_hello() checks its token, which decides what the client may do */
@@ -421,7 +421,8 @@ void session_too_fast(struct session *session, int64_t count, const char *whose)
     struct message_error error = { 0 };
     if (session->rate.exceeded)
         return;
-    message_fail(&error, "too_fast", "%lld messages %swithin a second: the next are read a second later", (long long)count, whose);
+    message_fail(&error, "too_fast", "%lld messages %swithin a second are too many: further messages are read a second later",
+                 (long long)count, whose);
     session->rate.exceeded = true;
     session_reply_error(session, &error);
 }
@@ -487,7 +488,7 @@ void session_on_oversize(struct session *session, size_t count, int64_t now_ns)
 {
     struct message_error error = { 0 };
     count_message(session, now_ns);
-    message_fail(&error, "too_long", "%zu bytes; a message holds at most %lld", count,
+    message_fail(&error, "too_long", "the message has %zu bytes; at most %lld are allowed", count,
                  (long long)session->context->quotas->at[QUOTA_MESSAGE_BYTES]);
     session_reply_error(session, &error);
 }

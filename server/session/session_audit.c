@@ -119,7 +119,8 @@ static char *accepted_what(const struct session *session, const struct message *
     char filter[400];
     assumed_filter_text(scene->plant, &message->accept, filter, sizeof(filter));
     mem_free(outcome);
-    return mem_printf("tag list: %zu assumed place%s accepted (%s); the list is being activated", count, count == 1 ? "" : "s", filter);
+    return mem_printf("tag list: %zu assumed sensor place%s accepted (%s); the list is being activated", count, count == 1 ? "" : "s",
+                      filter);
 }
 
 void session_record_save(const struct session *session, const struct message *message, size_t moved)

@@ -34,7 +34,7 @@ static void on_failure(struct session *session, const struct frame_request *requ
 {
     struct message_error error = { 0 };
     if (session->delivery.newest_number == 0) {
-        session_close(session, 1013, "out of memory for another picture: try later, or a smaller one");
+        session_close(session, 1013, "out of memory for another picture: try again later, or request a smaller picture");
         return;
     }
     session->demand.refined = REFINED_NOT;

@@ -94,7 +94,7 @@ static bool begin_view(struct session *session, const struct message *message, c
                        struct message_error *error)
 {
     if (!resumed && (message->width_px == 0 || message->codecs.count == 0)) {
-        message_fail(error, "bad_field", "resume: unknown view, or no longer kept: send width, height and codecs");
+        message_fail(error, "bad_field", "resume: the view is unknown or no longer kept: send width, height and codecs");
         return false;
     }
     if (resumed) {

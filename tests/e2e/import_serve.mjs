@@ -308,7 +308,7 @@ test('an import that fails or is cancelled once the new models are in place: the
         await bring([...NAMES, 'X-3']);
         const { failed } = await served.idle();
         held.stdin.end();
-        assert.match(failed, /^the plant's folder .*: (flock|sh) \(process \d+\) is using it; try again when that is done$/);
+        assert.match(failed, /^the plant's folder .*: (flock|sh) \(process \d+\) is using the folder; try again later$/);
         assert.deepEqual(files(), now);
         assert.equal(readdirSync(served.folder).filter((name) => /^\.(import|revision\.)/.test(name)).length, 0);
     } finally {

@@ -100,7 +100,7 @@ test('a start that prepares the plant asks for time as long as it does, and ends
         // and the journal has a line, for people
         await service.logged(/^plantcastd: preparing the plant, for \d+ s so far$/m);
         assert.equal(await service.stop(), 0, service.err);
-        assert.match(service.err, /stopping; the next start continues preparing/);
+        assert.match(service.err, /stopping; the next start continues to prepare the plant/);
     } finally {
         plant = was;
         await tiny.destroy();
@@ -122,7 +122,7 @@ test('as the first process of a container, it ends when it is told to while it p
         const [first] = readFileSync(`/proc/${child.pid}/task/${child.pid}/children`, 'utf8').split(' ');
         process.kill(Number(first), 'SIGTERM');
         assert.equal(await ended, 0, said);
-        assert.match(said, /stopping; the next start continues preparing/);
+        assert.match(said, /stopping; the next start continues to prepare the plant/);
     } finally {
         await tiny.destroy();
     }

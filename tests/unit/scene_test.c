@@ -210,9 +210,9 @@ CASE(other_sensors_are_refused)
     assert_non_null(scene);
     scene_destroy(&scene);
     write_asset(f, "1.asset", 1.0003, "TI-2", 2);
-    assert_refused(f, "asset A: the place of sensor a1 in");
+    assert_refused(f, "asset A: the position of sensor a1 in");
     write_asset(f, "1.asset", 1, "TI-3", 2);
-    assert_refused(f, "asset B: the place of sensor b2 in");
+    assert_refused(f, "asset B: the position of sensor b2 in");
     write_asset(f, "1.asset", 1, "TI-2", 1);
     assert_refused(f, "1.asset has 1 sensors, the tag list has 2");
 }
@@ -227,7 +227,7 @@ CASE(broken_files_are_refused)
     mem_free(temp_write_text(f->prepared, "1.asset", "glTF and so on"));
     assert_refused(f, "1.asset: not an asset file");
     unlink(path);
-    assert_refused(f, "asset C: has no usable file");
+    assert_refused(f, "asset C: no usable prepared file");
     mem_free(path);
 }
 
@@ -235,12 +235,12 @@ CASE(broken_manifests_are_refused)
 {
     static const char *const cases[][2] = {
         { "{\"format\": 2, \"assets\": [{\"id\": \"A\", \"file\": \"1.asset\", \"recipe\": \"1\"}]}", "asset B is not in" },
-        { "{\"format\": 1, \"assets\": []}", "expected format 2" },
+        { "{\"format\": 1, \"assets\": []}", "this program needs format 2" },
         { "{\"format\": 2}", "expected a list of assets" },
-        { "{\"format\": 2, \"assets\": [{\"id\": \"A\", \"file\": \"../1.asset\"}]}", "expected an id, the name of a file" },
-        { "{\"format\": 2, \"assets\": [{\"file\": \"1.asset\"}]}", "expected an id, the name of a file" },
+        { "{\"format\": 2, \"assets\": [{\"id\": \"A\", \"file\": \"../1.asset\"}]}", "expected the members id, file and recipe" },
+        { "{\"format\": 2, \"assets\": [{\"file\": \"1.asset\"}]}", "expected the members id, file and recipe" },
         { "{\"format\": 2,\n \"assets\": [}", "manifest.json:2:" },
-        { "[]", "expected format 2" },
+        { "[]", "this program needs format 2" },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         write_manifest(f, cases[i][0]);
@@ -260,7 +260,7 @@ CASE(what_was_not_prepared_is_refused)
     assert_refused(f, "asset B: ");
     asset->up = asset->up == AXIS_Y ? AXIS_Z : AXIS_Y;
     asset->unit_m = 0.001;
-    assert_refused(f, "units, scale or up, changed since it was prepared; run plantcast-prep");
+    assert_refused(f, "units, scale or up, changed since the preparation; run plantcast-prep");
     asset->unit_m = 1;
     asset->nodes = mem_strdup("E-*");
     assert_refused(f, "asset B: ");
@@ -270,7 +270,7 @@ CASE(what_was_not_prepared_is_refused)
     assert_non_null(scene);
     scene_destroy(&scene);
     mem_free(temp_write_text(f->folder, "m.glb", "glTG"));
-    assert_refused(f, "m.glb, or its nodes");
+    assert_refused(f, "m.glb, or the asset's nodes");
 }
 
 /* If the manifest states why one asset is missing, the other assets are loaded. */

@@ -6,12 +6,13 @@
 
 static const char *const names[LANGUAGES] = { "en", "ko", "de" };
 
-_Static_assert(LANGUAGE_EN == 0 && LANGUAGE_KO == 1 && LANGUAGE_DE == 2, "the order of languages in the Makefile");
+_Static_assert(LANGUAGE_EN == 0 && LANGUAGE_KO == 1 && LANGUAGE_DE == 2, "enum language must have the order of languages in the Makefile");
 #define OVERLAY_ROW(name, key, ...) { __VA_ARGS__ },
 static const char *const words[OVERLAY_WORDS][LANGUAGES] = { OVERLAY_WORDS(OVERLAY_ROW) };
-_Static_assert(WORD_LOOKS + LOOK_MATERIALS == WORD_LOOK_MATERIALS, "words of looks in the order of enum look");
-_Static_assert(WORD_INTERPOLATIONS + INTERPOLATION_GP == WORD_INTERPOLATION_GP, "words in the order of enum interpolation");
-_Static_assert(WORD_DISTANCES + DISTANCE_HEAT == WORD_DISTANCE_HEAT, "words in the order of enum distance_mode");
+_Static_assert(WORD_LOOKS + LOOK_MATERIALS == WORD_LOOK_MATERIALS, "words of looks must be in the order of enum look");
+_Static_assert(WORD_INTERPOLATIONS + INTERPOLATION_GP == WORD_INTERPOLATION_GP,
+               "words of interpolations must be in the order of enum interpolation");
+_Static_assert(WORD_DISTANCES + DISTANCE_HEAT == WORD_DISTANCE_HEAT, "words of distances must be in the order of enum distance_mode");
 
 bool overlay_language_find(const char *name, enum language *out)
 {

@@ -22,7 +22,7 @@ static bool can_place(const struct session *session, struct message_error *error
 {
     if (session->context->services->placing)
         return true;
-    message_fail(error, "not_allowed", "sensors cannot be placed here");
+    message_fail(error, "not_allowed", "this server cannot place sensors");
     return false;
 }
 
@@ -110,7 +110,7 @@ bool session_check_loop(struct session *session, const struct message *message, 
 {
     const struct session_context *context = session->context;
     if (!context->services->loop_checks) {
-        message_refuse(error, "no_history", "proofs are kept in the history folder", REFUSAL_UNRECORDED);
+        message_refuse(error, "no_history", "loop checks are stored in the folder of history", REFUSAL_UNRECORDED);
         return false;
     }
     const struct kept_action action = session_kept_begin(session);

@@ -69,7 +69,7 @@ struct heat *heat_create(struct log *log, const struct intrinsic *in, const uint
     return heat;
 error:
     log_err(log, "heat method: %zu points, %zu triangles: %s", in->point_count, in->tri_count,
-            heat->common.status == CHOLMOD_NOT_POSDEF ? "system is not positive definite" : "out of memory");
+            heat->common.status == CHOLMOD_NOT_POSDEF ? "the system of equations is not positive definite" : "out of memory");
     heat_destroy(&heat);
     return NULL;
 }

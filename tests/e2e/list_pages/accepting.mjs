@@ -91,7 +91,7 @@ test('accepted: one list, one line in the audit trail, the others as they were',
     before.forEach((row, n) => assert.equal(now[n],
         row.startsWith('TA-') && !/equipment/.test(now[n]) ? row.replace('equipment', '') : row));
     assert.ok(!existsSync(`${tagsFile}.2`), 'the list is written once');
-    const lines = readFileSync(join(plant.folder, 'audit.log'), 'utf8').split('\n').filter((line) => /assumed place/.test(line));
+    const lines = readFileSync(join(plant.folder, 'audit.log'), 'utf8').split('\n').filter((line) => /assumed sensor place/.test(line));
     assert.equal(lines.length, 1, lines.join('\n'));
     assert.match(lines[0], new RegExp(`${sure} assumed sensor places accepted \\(within 0.1 m of the surface, confidence at least 0.9\\)`));
     await page.waitForFunction((n) => globalThis.plantcast.session.model.tags.filter(({ place }) => place === 'equipment').length === n,
