@@ -76,7 +76,7 @@ static struct h264_codec *codec_create(const char *library, char why[H264_WHY_BY
     av_log_set_level(AV_LOG_ERROR);
     if (h264->out && h264->codec && h264->codec->id == AV_CODEC_ID_H264)
         return h264;
-    snprintf(why, H264_WHY_BYTES, "libavcodec has no encoder for it named '%s'", library);
+    snprintf(why, H264_WHY_BYTES, "libavcodec has no H.264 encoder named '%s'", library);
     codec_destroy(&h264);
     return NULL;
 }

@@ -87,8 +87,8 @@ static void learn_start(struct modbus_source *modbus)
     long long sent_ms = (sent_ns / NS_PER_MS + 99) / 100 * 100, answered_ms = answered_ns / NS_PER_MS;
     if (repeated)
         snprintf(found, sizeof(found),
-                 "answers no request that comes sooner than %lld ms after connecting: repeating the first one; "
-                 "`connect_delay_ms: %lld` says so from the start",
+                 "answers no request that comes sooner than %lld ms after connecting: repeating the first request; set `connect_delay_ms: "
+                 "%lld` to wait from the start",
                  sent_ms, sent_ms);
     else
         snprintf(found, sizeof(found), "takes %lld ms for the first answer after connecting: waiting for it", answered_ms);
@@ -147,8 +147,8 @@ static void learn_end(struct modbus_source *modbus, int answers)
     manners->short_connections = answers == 1 ? manners->short_connections + 1 : 0;
     if (manners->short_connections == SHORT_CONNECTIONS && !manners->one_per_connection) {
         manners->one_per_connection = true;
-        log_found(modbus, "closes the connection after each answer: reading one block per connection; "
-                          "`close_between_polls: yes` says so from the start");
+        log_found(modbus, "closes the connection after each answer: reading one block per connection; set `close_between_polls: yes` to do "
+                          "so from the start");
     } else if (answers > 1 && !manners->ends_said) {
         manners->ends_said = true;
         log_info(modbus->base.log, "source %s: device %s closes connections after some answers: reconnecting each time",

@@ -130,15 +130,15 @@ static void lose_gateway(struct modbus_source *modbus)
 
 void modbus_unit_is_down(struct modbus_source *modbus, struct modbus_unit *unit, const char *why)
 {
-    char more[LOG_PACE_BYTES], gateway[160];
+    char more[LOG_PACE_BYTES], gateway[200];
     modbus->fallen += unit->state == UNIT_UP;
     unit->state = UNIT_DOWN;
     unit->doubted = false;
     unit->retry_ns = clock_mono_ns() + backoff_next_ns(&unit->backoff, (uint64_t)clock_mono_ns());
     if (modbus->fallen >= GATEWAY_UNITS && any_unit_up(modbus)) {
         lose_gateway(modbus);
-        snprintf(gateway, sizeof(gateway), "the gateway counts as lost: %d units stopped answering one after the other: %s", modbus->fallen,
-                 why);
+        snprintf(gateway, sizeof(gateway), "the gateway is treated as lost: %d units stopped answering one after the other: %s",
+                 modbus->fallen, why);
         why = gateway;
     }
     if (!any_unit_up(modbus)) {
@@ -197,7 +197,7 @@ static void blame(struct modbus_source *modbus, size_t index)
         read_plan_split(&modbus->plan, modbus->base.plant, index);
         return;
     }
-    modbus_note_refused(modbus, block, true, "not answered, while other addresses are");
+    modbus_note_refused(modbus, block, true, "the device does not answer, although it answers for other addresses");
     block->due_ns = now_ns + modbus_refused_pause_ns(block->silent_count++);
 }
 

@@ -50,7 +50,7 @@ static void read_lane(struct replay *replay, struct replay_lane *lane)
         const char *unit = lane->series.unit;
         if (!unit || !*unit || units_compare(unit, tag->unit, &lane->change) <= UNITS_CONVERT)
             return;
-        snprintf(why, sizeof(why), "'%.60s', as the file says, cannot be converted to '%.60s'", unit, tag->unit);
+        snprintf(why, sizeof(why), "the unit '%.60s' in the file cannot be converted to '%.60s'", unit, tag->unit);
         series_finish(&lane->series);
     }
     log_err(replay->base.log, "source %s: %s: %s", replay->base.config->id, tag->name, why);
@@ -122,7 +122,7 @@ static void replay_run(struct source *source)
         return;
     }
     set_up(replay, true);
-    log_info(replay->base.log, "source %s: replaying %s at %g times its speed", replay->base.config->id, replay->base.config->file,
+    log_info(replay->base.log, "source %s: replaying the file %s at %g times its speed", replay->base.config->id, replay->base.config->file,
              replay->base.config->speed);
     replay->start_mono_ns = clock_mono_ns();
     do {

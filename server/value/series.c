@@ -196,7 +196,8 @@ static bool read_long(struct series *series, struct series_lines *lines, struct 
     size_t entity = slash ? (size_t)(slash - series->name) : 0;
     do {
         if (lines->count < LONG_CELLS || !tick(clock, &lines->cells[0], &time_s)) {
-            snprintf(why, 200, "%s:%d: expected time in ms,type,entity,property,value, in order of time", lines->path, lines->number);
+            snprintf(why, 200, "%s:%d: expected the cells time in ms, type, entity, property and value, with lines in order of time",
+                     lines->path, lines->number);
             return false;
         }
         if (!slash || !is(&lines->cells[2], series->name, entity) || !is(&lines->cells[3], slash + 1, strlen(slash + 1)))

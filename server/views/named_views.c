@@ -46,7 +46,7 @@ static bool good_list(const json_t *list)
     return true;
 }
 
-static const struct kept_list_kind VIEWS = { NAMED_VIEWS_FILE, "views", "id, title, view, by, time_us and before", good_list };
+static const struct kept_list_kind VIEWS = { NAMED_VIEWS_FILE, "views", "the keys id, title, view, by, time_us and before", good_list };
 
 struct named_views *named_views_open(struct log *log, const struct plant *plant, const char *folder, struct file_writer *writer)
 {

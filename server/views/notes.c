@@ -59,7 +59,7 @@ static bool good_list(const json_t *list)
     return true;
 }
 
-static const struct kept_list_kind KIND = { NOTES_FILE, "notes", "id, text, by, time_us, until_us and ended_us", good_list };
+static const struct kept_list_kind KIND = { NOTES_FILE, "notes", "the keys id, text, by, time_us, until_us and ended_us", good_list };
 
 struct notes *notes_open(struct log *log, const char *folder, struct file_writer *writer)
 {

@@ -39,7 +39,7 @@ static bool good_list(const json_t *list)
     return true;
 }
 
-static const struct kept_list_kind LINKS = { SHORT_LINKS_FILE, "links", "id, view and time_us", good_list };
+static const struct kept_list_kind LINKS = { SHORT_LINKS_FILE, "links", "the keys id, view and time_us", good_list };
 
 struct short_links *short_links_open(struct log *log, const char *folder, struct file_writer *writer)
 {

@@ -54,8 +54,8 @@ static bool good_list(const json_t *list)
     return true;
 }
 
-static const struct kept_list_kind KIND = { WALL_REMOTE_FILE, "walls", "id, wall, display, area, view, title, held, desk, by and time_us",
-                                            good_list };
+static const struct kept_list_kind KIND = { WALL_REMOTE_FILE, "walls",
+                                            "the keys id, wall, display, area, view, title, held, desk, by and time_us", good_list };
 
 struct wall_remote *wall_remote_open(struct log *log, const struct plant *plant, const char *folder, struct file_writer *writer)
 {

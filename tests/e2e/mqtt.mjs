@@ -118,7 +118,7 @@ test('JSON: by path, with the time and the quality that it states', options, asy
     await publisher.tell('line/temps', { left: { v: [1, 5] }, right: 21 }); // without a timestamp
     await until('TI-1', { quality_name: 'Bad_ConfigurationError' });
     await publisher.tell('line/temps', { left: { v: [1, 5] }, right: 21, meta: at(3600000) });
-    await plant.daemon.line(/line\/temps: its timestamps are \d+\.\d s ahead of this machine's clock/);
+    await plant.daemon.line(/line\/temps: the timestamps of the messages are \d+\.\d s ahead of this machine's clock/);
     assert.ok((await until('TI-2', { ...good, value: 21 })).age_ms < 9000);
 });
 
@@ -150,7 +150,7 @@ test('a gateway that publishes what has changed: no tag gets the value of anothe
     await tell(['G.A1', 51]);
     await until('F1', { ...good, value: 51 });
     await plant.daemon.line(/is named G\.A2; select it by name/);
-    await plant.daemon.line(/gateway: no message had the value of /);
+    await plant.daemon.line(/gateway: no message has had a value of tag /);
     const { out } = runProgram('plantcast', ['tags', `http://127.0.0.1:${plant.plant.port}/`]);
     assert.match(out, /F9.*NoMatch/i);
 });

@@ -36,7 +36,7 @@ void mqtt_log_left_out(struct mqtt_source *mqtt, int64_t now_ns)
     if (log_pace_flush(&mqtt->refusals, now_ns, more))
         log_warn(mqtt->base.log, "source %s: %s%s", mqtt->base.config->id, mqtt->last_refused, more);
     if (log_pace_flush(&mqtt->absences, now_ns, more))
-        log_warn(mqtt->base.log, "source %s: messages without a value of any tag%s", mqtt->base.config->id, more);
+        log_warn(mqtt->base.log, "source %s: received messages without a value of any tag%s", mqtt->base.config->id, more);
 }
 
 static void report_skew(struct mqtt_source *mqtt, const char *topic)
@@ -49,8 +49,8 @@ static void report_skew(struct mqtt_source *mqtt, const char *topic)
     if ((skew_ns < SKEW_NS && skew_ns > -SKEW_NS) || (*said_ns && now_ns - *said_ns < SKEW_SAID_NS))
         return;
     *said_ns = now_ns;
-    log_warn(mqtt->base.log, "source %s: %s: its timestamps are %.1f s %s this machine's clock", mqtt->base.config->id, shown(topic, name),
-             (double)(skew_ns > 0 ? skew_ns : -skew_ns) / 1e9, skew_ns > 0 ? "ahead of" : "behind");
+    log_warn(mqtt->base.log, "source %s: %s: the timestamps of the messages are %.1f s %s this machine's clock", mqtt->base.config->id,
+             shown(topic, name), (double)(skew_ns > 0 ? skew_ns : -skew_ns) / 1e9, skew_ns > 0 ? "ahead of" : "behind");
 }
 
 static void all_bad(struct mqtt_source *mqtt, const struct mqtt_topic *topic)
@@ -78,7 +78,7 @@ static void note_absent(struct mqtt_source *mqtt, const struct mqtt_topic *topic
         return;
     stamped_writer_add_bad(&mqtt->writer, tag, QUALITY_BAD_NO_MATCH);
     if (log_pace_take(&mqtt->absences, clock_mono_ns(), more))
-        log_warn(mqtt->base.log, "source %s: %s: no message had the value of %s yet (at %.80s)%s", mqtt->base.config->id,
+        log_warn(mqtt->base.log, "source %s: %s: no message has had a value of tag %s yet (at the path %.80s)%s", mqtt->base.config->id,
                  shown(topic->name, name), reader->tag, *reader->path ? reader->path : "value", more);
 }
 

@@ -313,8 +313,8 @@ static bool take_birth(struct sparkplug *sparkplug, struct sparkplug_node *node,
         stamped_writer_add_bad(sparkplug->params.writer, tag, QUALITY_BAD_CONFIGURATION);
     }
     if (missing > 0)
-        log_warn(sparkplug->params.log, "source %s: %s: its birth certificate has no metric '%.60s'%s", sparkplug->params.source, of->name,
-                 sparkplug->params.plant->tags[first].signal.path, missing > 1 ? ", and not some others" : "");
+        log_warn(sparkplug->params.log, "source %s: %s: the birth certificate has no metric '%.60s'%s", sparkplug->params.source, of->name,
+                 sparkplug->params.plant->tags[first].signal.path, missing > 1 ? ", nor the metrics of some other tags" : "");
     return good;
 }
 
@@ -398,7 +398,7 @@ static bool refuse_unborn(struct sparkplug *sparkplug, struct sparkplug_node *no
         log_warn(sparkplug->params.log, "source %s: %s/%s: values ignored: no birth certificate yet%s", sparkplug->params.source,
                  node->group, node->name, sparkplug->params.rebirth ? "" : "; `rebirth: yes` requests it");
     node->told = true;
-    snprintf(why, 200, "before its birth certificate");
+    snprintf(why, 200, "the message came before the node's birth certificate");
     return false;
 }
 
@@ -422,7 +422,8 @@ static bool take_node_death(struct sparkplug *sparkplug, struct sparkplug_node *
     if (!node->is_born)
         return true;
     if (bd_seq >= 0 && node->bd_seq >= 0 && bd_seq != node->bd_seq) {
-        log_info(sparkplug->params.log, "source %s: %s/%s: an old death certificate (%lld, its birth has %lld) is ignored",
+        log_info(sparkplug->params.log,
+                 "source %s: %s/%s: an old death certificate (bdSeq %lld; the birth certificate has %lld) is ignored",
                  sparkplug->params.source, node->group, node->name, (long long)bd_seq, (long long)node->bd_seq);
         return true;
     }
@@ -461,7 +462,7 @@ bool sparkplug_take(struct sparkplug *sparkplug, const struct mqtt_message *mess
         return false;
     if (said.verb == OTHER) /* commands sent by other hosts */
         return true;
-    snprintf(why, 200, "a retained message may be old");
+    snprintf(why, 200, "retained messages are ignored, because they may be old");
     if (message->is_retained)
         return false;
     snprintf(why, 200, "too long");

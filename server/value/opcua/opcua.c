@@ -44,7 +44,7 @@ static void report_skew(struct opcua_source *opcua, const UA_DataValue *value)
     if ((skew_ns < SKEW_NS && skew_ns > -SKEW_NS) || (opcua->skew_said_ns && now_ns - opcua->skew_said_ns < SKEW_SAID_NS))
         return;
     opcua->skew_said_ns = now_ns;
-    log_warn(opcua->base.log, "source %s: its timestamps are %.1f s %s this machine's clock", opcua->base.config->id,
+    log_warn(opcua->base.log, "source %s: the server's timestamps are %.1f s %s this machine's clock", opcua->base.config->id,
              (double)(skew_ns > 0 ? skew_ns : -skew_ns) / 1e9, skew_ns > 0 ? "ahead of" : "behind");
 }
 

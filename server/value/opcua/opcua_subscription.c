@@ -179,7 +179,7 @@ static int create_items(struct opcua_client *client, const size_t *batch, UA_Mon
                                                                           opcua_on_answer, client, NULL);
     int status = opcua_call_end(client, sent, stop_fd, deadline_mono_ns, why);
     if (status == 0 && response.resultsSize != count) {
-        snprintf(why, 200, "the server answers for %zu of %zu nodes", response.resultsSize, count);
+        snprintf(why, 200, "the server answered for only %zu of %zu nodes", response.resultsSize, count);
         status = -EPROTO;
     }
     for (size_t i = 0; status == 0 && i < count; i++)

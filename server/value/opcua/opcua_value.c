@@ -42,12 +42,14 @@ static bool read_number(const UA_Variant *variant, int element, struct stamped_v
     if (!variant->type)
         snprintf(why, 200, "the value is null");
     else if (is_scalar != (element < 0))
-        snprintf(why, 200, is_scalar ? "it is not an array" : "it is an array; add an element to the address, such as [0] in front");
+        snprintf(why, 200,
+                 is_scalar ? "the value is not an array; remove the element in brackets from the address"
+                           : "the value is an array; add an element to the address, such as [0] in front");
     else if (!is_scalar && (size_t)element >= variant->arrayLength)
         snprintf(why, 200, "the array has %zu elements", variant->arrayLength);
     else if (!number_of(variant->type, (const char *)variant->data + (is_scalar ? 0 : (size_t)element) * variant->type->memSize,
                         &out->value))
-        snprintf(why, 200, "its type is not a number");
+        snprintf(why, 200, "the type of the value is not a number");
     else
         return true;
     bool is_short = variant->type && !is_scalar && element >= 0 && (size_t)element >= variant->arrayLength;

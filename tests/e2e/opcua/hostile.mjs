@@ -133,8 +133,8 @@ for (const [off_s, word] of [[3600, 'ahead of'], [-3600, 'behind']])
         const past_s = off_s < 0 ? -off_s : 0;
         assert.ok(age_ms >= past_s * 1000 && age_ms < (past_s + 9) * 1000, `${age_ms} ms`);
         await plant.until('OLD', off_s < 0 ? { quality_name: 'Bad_CommunicationError', value: null } : good, 20);
-        await plant.said(new RegExp(`source plc: its timestamps are 3[56]\\d\\d\\.\\d s ${word} this machine's clock`));
-        assert.equal(plant.daemon.said.match(/its timestamps are/g).length, 1, 'it is said once');
+        await plant.said(new RegExp(`source plc: the server's timestamps are 3[56]\\d\\d\\.\\d s ${word} this machine's clock`));
+        assert.equal(plant.daemon.said.match(/timestamps are/g).length, 1, 'it is said once');
     });
 
 // With a server clock that is off, certificates that were just made are not valid yet: the server's and the client's.
@@ -153,5 +153,5 @@ test('a server whose clock is before its certificate is read, and said; a certif
     await server.set('TI-1', 35);
     const { age_ms } = await plant.until('TI-1', { ...good, value: 35 });
     assert.ok(age_ms >= 3600e3 && age_ms < 3609e3, `${age_ms} ms`);
-    await plant.said(/source plc: its timestamps are 3[56]\d\d\.\d s behind this machine's clock/);
+    await plant.said(/source plc: the server's timestamps are 3[56]\d\d\.\d s behind this machine's clock/);
 });

@@ -45,7 +45,7 @@ test('values, status codes and times come as they are, and nothing is ever writt
     await until('TEXT', { quality_name: 'Bad_ConfigurationError' });
     await until('GONE', { quality_name: 'Bad' });
     await said(/nsu=urn:test:plant;1;s=Gone was refused: BadNodeIdUnknown/);
-    await said(/s=Text: its type is not a number/);
+    await said(/s=Text: the type of the value is not a number/);
     for (const [status, name] of [[0x40930000, 'Uncertain_SensorNotAccurate'], [0x00960000, 'Good'], [0x808c0000, 'Bad_SensorFailure'],
         [0x408f0000, 'Uncertain_NoCommunicationLastUsableValue'], [0x80310000, 'Bad_NoCommunication']]) {
         await server.set('TI-1', 42, { status });
