@@ -73,19 +73,26 @@ json_t *refusal_json(const struct refusal *refusal)
     return json_pack("{s:s,s:o}", "code", rows[refusal->code].code, "args", args);
 }
 
-static void add(json_t *answer, const char *text, const char *member, enum refusal_code code)
+static void add(json_t *answer, const char *text, const char *member, const struct refusal *refusal)
 {
-    json_object_set_new(answer, text, json_string(refusal_words(code)));
-    if (code != REFUSAL_NONE)
-        json_object_set_new(answer, member, refusal_json(&(struct refusal){ .code = code }));
+    char words[REFUSAL_TEXT_BYTES];
+    refusal_text(refusal, words);
+    json_object_set_new(answer, text, json_string(words));
+    if (refusal->code != REFUSAL_NONE)
+        json_object_set_new(answer, member, refusal_json(refusal));
 }
 
 void refusal_add(json_t *answer, enum refusal_code code)
 {
-    add(answer, "why", "refusal", code);
+    add(answer, "why", "refusal", &(struct refusal){ .code = code });
+}
+
+void refusal_add_with(json_t *answer, const struct refusal *refusal)
+{
+    add(answer, "why", "refusal", refusal);
 }
 
 void refusal_add_unaudited(json_t *answer, enum refusal_code code)
 {
-    add(answer, "unaudited", "unaudited_refusal", code);
+    add(answer, "unaudited", "unaudited_refusal", &(struct refusal){ .code = code });
 }

@@ -54,7 +54,19 @@ bool remove_note_parse(const struct plant *plant, const json_t *o, struct messag
     return given;
 }
 
-char *note_do(struct notes *notes, const struct plant *plant, const struct message *message, const char *who, int64_t now_us)
+/* Adds the result to an answer. A refusal that concerns a note of another user names the note's author. */
+static void add_result(json_t *answer, enum refusal_code code, const char *author)
+{
+    struct refusal why = { .code = code };
+    if (code == REFUSAL_NOTE_OTHERS)
+        refusal_set(&why, REFUSAL_NOTE_OTHERS, "author=%s", author);
+    else if (code == REFUSAL_NOTE_NOT_OWN)
+        refusal_set(&why, REFUSAL_NOTE_NOT_OWN, "author=%s", author);
+    refusal_add_with(answer, &why);
+}
+
+char *note_do(struct notes *notes, const struct plant *plant, const struct message *message, const char *who, bool may_end_others,
+              int64_t now_us)
 {
     const struct note_request *request = &message->note;
     char *person = request->name[0] ? mem_printf("%.40s (%s)", request->name, who) : mem_strdup(who), id[NOTE_ID_BYTES] = "";
@@ -65,10 +77,11 @@ char *note_do(struct notes *notes, const struct plant *plant, const struct messa
                                .replaces = request->id[0] ? request->id : NULL,
                                .until_us = request->until_us };
     bool adds = message->type == MESSAGE_NOTE;
-    enum refusal_code why = adds ? notes_add(notes, &note, person, now_us, id) : notes_end(notes, request->id, person, now_us);
+    enum refusal_code why =
+        adds ? notes_add(notes, &note, person, now_us, id) : notes_end(notes, request->id, person, may_end_others, now_us);
     mem_free(person);
     json_t *answer =
         json_pack("{s:s,s:I,s:s,s:b}", "type", "noted", "seq", (json_int_t)message->seq, "id", adds ? id : request->id, "kept", !why);
-    refusal_add(answer, why);
+    add_result(answer, why, notes_author(notes, request->id));
     return json_text(answer, 0);
 }

@@ -283,8 +283,10 @@ static void on_note(struct session *session, const struct message *message, int6
 {
     const struct session_context *context = session->context;
     const struct kept_action action = session_kept_begin(session);
-    char *answer = note_do(context->services->notes, context->plant, message, session_who(session), now_utc_ns / 1000);
-    session_kept_reply(session, &action, "note", session_note_what(session, message), answer);
+    char *what = session_note_what(session, message); /* before the note ends and its author may be forgotten */
+    char *answer = note_do(context->services->notes, context->plant, message, session_who(session),
+                           session->identity.role >= ROLE_ENGINEER, now_utc_ns / 1000);
+    session_kept_reply(session, &action, "note", what, answer);
 }
 
 static void on_send_to_wall(struct session *session, const struct message *message, int64_t now_utc_ns)

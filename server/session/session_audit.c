@@ -82,15 +82,15 @@ char *session_note_what(const struct session *session, const struct message *mes
 {
     const struct note_request *note = &message->note;
     const struct plant *plant = session->context->plant;
-    bool adds = message->type == MESSAGE_NOTE;
-    const char *at = !adds                ? note->id
-                     : note->tag >= 0     ? plant->tags[note->tag].name
+    const char *as = note->name[0] ? " as " : "", *author = notes_author(session->context->services->notes, note->id);
+    if (message->type == MESSAGE_REMOVE_NOTE)
+        return mem_printf("remove %s%s%s%s%s", note->id, author ? ", written by " : "", author ? author : "", as, note->name);
+    const char *at = note->tag >= 0       ? plant->tags[note->tag].name
                      : note->asset >= 0   ? plant->assets[note->asset].id
                      : note->id[0]        ? note->id
                      : note->has_position ? "a place"
                                           : "the plant";
-    return mem_printf("%s %s%s%s%s%s", adds ? "at" : "remove", at, note->name[0] ? " as " : "", note->name, adds ? ": " : "",
-                      adds ? note->text : "");
+    return mem_printf("at %s%s%s: %s", at, as, note->name, note->text);
 }
 
 char *session_wall_what(const struct message *message)

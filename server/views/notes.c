@@ -113,6 +113,11 @@ static enum refusal_code find_in_force(const json_t *list, const char *id, int64
     return *at == json_array_size(list) || has_ended(json_array_get(list, *at), now_us) ? REFUSAL_NOTELESS : REFUSAL_NONE;
 }
 
+static const char *author_of(const json_t *note)
+{
+    return json_string_value(json_object_get(note, "by"));
+}
+
 /* Replaces the note at an index by a copy that ends now. */
 static void end_at(json_t *list, size_t at, const char *who, int64_t now_us)
 {
@@ -146,7 +151,7 @@ enum refusal_code notes_add(struct notes *notes, const struct note *note, const 
         return why;
     if (note->replaces)
         replaced = json_array_get(newest, at);
-    if (replaced && strcmp(json_string_value(json_object_get(replaced, "by")), who) != 0)
+    if (replaced && strcmp(author_of(replaced), who) != 0)
         return REFUSAL_NOTE_OTHERS;
     if (!replaced && count(newest, now_us, false) >= NOTES)
         return REFUSAL_NOTES;
@@ -166,7 +171,7 @@ enum refusal_code notes_add(struct notes *notes, const struct note *note, const 
     return kept_list_put(&notes->kept, list);
 }
 
-enum refusal_code notes_end(struct notes *notes, const char *id, const char *who, int64_t now_us)
+enum refusal_code notes_end(struct notes *notes, const char *id, const char *who, bool may_end_others, int64_t now_us)
 {
     enum refusal_code why = kept_list_refusal(&notes->kept);
     json_t *newest = kept_list_newest(&notes->kept);
@@ -175,10 +180,18 @@ enum refusal_code notes_end(struct notes *notes, const char *id, const char *who
         why = find_in_force(newest, id, now_us, &at);
     if (why)
         return why;
+    if (!may_end_others && strcmp(author_of(json_array_get(newest, at)), who) != 0)
+        return REFUSAL_NOTE_NOT_OWN;
     json_t *list = json_copy(newest);
     end_at(list, at, who, now_us);
     forget_oldest(list, now_us);
     return kept_list_put(&notes->kept, list);
+}
+
+const char *notes_author(const struct notes *notes, const char *id)
+{
+    const json_t *newest = kept_list_newest(&notes->kept);
+    return author_of(json_array_get(newest, kept_list_find(newest, id)));
 }
 
 uint64_t notes_number(const struct notes *notes)

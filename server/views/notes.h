@@ -31,8 +31,11 @@ struct notes *notes_open(struct log *log, const char *folder, struct file_writer
 void notes_close(struct notes **notes); /* Frees the notes and sets *notes to NULL. *notes may be NULL. */
 /* Adds a user's note and queues the file (kept_list_put()). Returns REFUSAL_NONE with the note's id, or why it failed. */
 enum refusal_code notes_add(struct notes *notes, const struct note *note, const char *who, int64_t now_us, char id[NOTE_ID_BYTES]);
-/* Ends a note and queues the file (kept_list_put()). Returns REFUSAL_NONE, or why it failed. */
-enum refusal_code notes_end(struct notes *notes, const char *id, const char *who, int64_t now_us);
+/* Ends a note and queues the file (kept_list_put()). may_end_others: the user may also end notes that other users wrote. Returns
+   REFUSAL_NONE, or why it failed. */
+enum refusal_code notes_end(struct notes *notes, const char *id, const char *who, bool may_end_others, int64_t now_us);
+/* Returns the author of a note in force or ended; NULL if no such note is stored. The name is valid until the notes change. */
+const char *notes_author(const struct notes *notes, const char *id);
 /* Returns a counter that increases with each change of the notes; 0: there has been no note. */
 uint64_t notes_number(const struct notes *notes);
 /* Return the message `notes`: notes_text() with the notes valid at an instant; notes_text_between() with all notes valid at some time

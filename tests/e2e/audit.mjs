@@ -123,6 +123,37 @@ test('what is done stands in it: who, from where, what, with what result', { ski
     assert.ok(!Object.values(tokens).some((token) => readFileSync(trail, 'utf8').includes(token)));
 });
 
+test('a note is changed by its author, and ended by the author or an engineer; the trail names both', { skip }, async () => {
+    const [kim, lee] = ['kim', 'lee'].map((name) =>
+        runProgram('plantcast', ['token', 'add', path('tokens'), '--role', 'operator', '--name', name]).out.trim());
+    await start();
+    const people = {};
+    for (const [name, token] of Object.entries({ kim, lee, engineer: tokens.engineer })) {
+        people[name] = await PlainClient.open(plant.port);
+        await people[name].hello({ token });
+    }
+    const does = async (who, message) => {
+        people[who].say({ seq: 1, ...message });
+        return await people[who].text('noted');
+    };
+    const why = ({ kept, refusal, why: words }) => [kept, refusal?.code, refusal?.args.author, /kim/.test(words)];
+    const { id } = await does('kim', { type: 'note', text: 'drips', tag: 'TI-1' });
+    assert.deepEqual(why(await does('lee', { type: 'note', text: 'dry', replaces: id })), [false, 'note_others', 'kim', true]);
+    assert.deepEqual(why(await does('engineer', { type: 'note', text: 'dry', replaces: id })), [false, 'note_others', 'kim', true]);
+    assert.deepEqual(why(await does('lee', { type: 'remove_note', id })), [false, 'note_not_own', 'kim', true]);
+    const failed = await found('the refused end', (line) => line.event === 'note' && line.what.startsWith('remove'));
+    assert.deepEqual([failed.result, failed.who, failed.what, /kim/.test(failed.why)],
+        ['failed', 'lee', `remove ${id}, written by kim`, true]);
+    assert.deepEqual(why(await does('engineer', { type: 'remove_note', id })), [true, undefined, undefined, false]);
+    const ended = await found('the end', (line) => line.event === 'note' && line.who === 'engineer-1' && line.result === 'done');
+    assert.equal(ended.what, `remove ${id}, written by kim`);
+    const own = await does('kim', { type: 'note', text: 'drips again', tag: 'TI-1' });
+    const changed = await does('kim', { type: 'note', text: 'drips more', replaces: own.id });
+    assert.deepEqual(why(await does('kim', { type: 'remove_note', id: changed.id })), [true, undefined, undefined, false]);
+    for (const client of Object.values(people))
+        client.close();
+});
+
 test('a plant that is brought in: each file and each order, by whom, and what became of it', { skip, timeout: 120000 }, async () => {
     await start('--import');
     const post = (what, token, body, headers = {}) => fetch(`http://127.0.0.1:${plant.port}/api/v1/import${what}`,

@@ -80,15 +80,30 @@ CASE(they_end_by_their_time_or_by_hand)
     assert_true(notes_differ(f->notes, NOON - S, NOON + S) && notes_differ(f->notes, NOON + 3600 * S, NOON + S));
     assert_false(notes_differ(f->notes, NOON + S, NOON + 2 * S));
     assert_notes(notes_text(f->notes, NOON + 3600 * S), "stays");
-    assert_int_not_equal(notes_end(f->notes, f->id, "lee", NOON + 3601 * S), REFUSAL_NONE); /* the note has ended */
-    assert_int_not_equal(notes_end(f->notes, "n1", "lee", NOON), REFUSAL_NONE);
+    assert_int_equal(notes_end(f->notes, f->id, "kim", true, NOON + 3601 * S), REFUSAL_NOTELESS); /* the note has ended */
+    assert_int_equal(notes_end(f->notes, "n1", "kim", true, NOON), REFUSAL_NOTELESS);
     open_again(f);
-    assert_int_equal(notes_end(f->notes, first, "lee", NOON + 7200 * S), REFUSAL_NONE);
+    assert_int_equal(notes_end(f->notes, first, "kim", false, NOON + 7200 * S), REFUSAL_NONE);
     open_again(f);
     assert_notes(notes_text(f->notes, NOON + 7200 * S), "");
     assert_notes(notes_text_between(f->notes, NOON + 1800 * S, NOON + 9000 * S), "stays hour");
     assert_notes(notes_text_between(f->notes, NOON + 4000 * S, NOON + 9000 * S), "stays");
     assert_notes(notes_text_between(f->notes, NOON - 4000 * S, NOON - S), "");
+}
+
+CASE(another_user_ends_a_note_only_with_the_right_to)
+{
+    assert_int_equal(add(f, "stays", NOON, 0), REFUSAL_NONE);
+    assert_int_equal(notes_end(f->notes, f->id, "lee", false, NOON + S), REFUSAL_NOTE_NOT_OWN);
+    assert_notes(notes_text(f->notes, NOON + 2 * S), "stays");
+    assert_string_equal(notes_author(f->notes, f->id), "kim");
+    assert_null(notes_author(f->notes, "n1"));
+    assert_int_equal(notes_end(f->notes, f->id, "lee", true, NOON + 3 * S), REFUSAL_NONE);
+    assert_string_equal(notes_author(f->notes, f->id), "kim"); /* also of a note that has ended */
+    assert_notes(notes_text(f->notes, NOON + 4 * S), "");
+    char *text = notes_text_between(f->notes, NOON, NOON + S);
+    assert_non_null(strstr(text, "\"ended_by\":\"lee\""));
+    mem_free(text);
 }
 
 CASE(there_is_a_limit)
@@ -193,13 +208,13 @@ CASE(a_note_is_shown_once_it_is_on_disk)
     char *spoiled = mem_printf("rm -r '%s' && : > '%s'", f->history, f->history), *mended = mem_printf("rm '%s'", f->history);
     assert_int_equal(system(spoiled), 0);
     struct settling_ticket ticket = file_writer_begin(writer);
-    assert_int_equal(notes_end(notes, f->id, "kim", NOON + S), REFUSAL_NONE);
+    assert_int_equal(notes_end(notes, f->id, "kim", false, NOON + S), REFUSAL_NONE);
     file_writer_end(writer, &ticket);
     collect(writer);
     assert_int_equal(file_writer_settled(writer, &ticket), -ENOTDIR);
     assert_notes(notes_text(notes, NOON + 2 * S), "one two"); /* the note's end could not be written, so the note has not ended */
     assert_int_equal(system(mended), 0);
-    assert_int_equal(notes_end(notes, f->id, "kim", NOON + S), REFUSAL_NONE);
+    assert_int_equal(notes_end(notes, f->id, "kim", false, NOON + S), REFUSAL_NONE);
     assert_int_equal(notes_add(notes, &three, "kim", NOON + S, f->id), REFUSAL_NONE);
     notes_close(&notes); /* a reload: the file gets the change all the same */
     file_writer_stop(writer);

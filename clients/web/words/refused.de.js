@@ -40,7 +40,8 @@ views: die Höchstzahl an Ansichten ist erreicht: erst eine entfernen
 notes: die Höchstzahl an Notizen ist erreicht: erst eine entfernen
 note_ended: das Ende der Notiz ist schon vorbei
 noteless: diese Notiz wurde von jemand anderem entfernt oder ist abgelaufen
-note_others: nur wer diese Notiz geschrieben hat, kann sie ändern
+note_others: nur wer diese Notiz geschrieben hat, {author}, kann sie ändern
+note_not_own: nur wer diese Notiz geschrieben hat, {author}, oder jemand mit der Rolle Engineer kann sie beenden
 computed: {tag} wird aus anderen Messstellen berechnet: diese prüfen
 far: {tag}: dieser Ort ist zu weit von {asset} entfernt
 groupless: {tag} gehört zu keiner Gruppe; nennen Sie eine in der Messstellenliste

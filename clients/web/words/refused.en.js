@@ -39,7 +39,8 @@ views: the limit of views is reached: remove one first
 notes: the limit of notes is reached: remove one first
 note_ended: the end of the note is already past
 noteless: this note was removed by someone else, or has expired
-note_others: only its author can change this note
+note_others: only its author, {author}, can change this note
+note_not_own: only its author, {author}, or an engineer can end this note
 computed: {tag} is computed from other tags: loop-check those
 far: {tag}: this location is too far from {asset}
 groupless: {tag} belongs to no group; name one in the tag list

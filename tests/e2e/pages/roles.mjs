@@ -128,6 +128,13 @@ test('operators change and end the notes of their own account, engineers end all
         }
     });
     const { operator, engineer } = pages;
+    const refused = await operator.evaluate(() => new Promise((done) => { // the page offers no button for this
+        const { session } = globalThis.plantcast;
+        session.on('noted', ({ refusal }) => done(refusal));
+        session.post({ type: 'remove_note', seq: 2, id: session.notes.find(({ text }) => text === 'of the engineer').id });
+    }));
+    assert.deepEqual(refused, { code: 'note_not_own', args: { author: 'engineer-1' } });
+    await operator.locator('#toast').getByText('engineer-1').waitFor();
     await operator.locator('#notes-list .edit').tap();
     await operator.locator('#note-text').fill('of the operator, changed');
     await operator.locator('#note-form button[type="submit"]').tap();
