@@ -172,6 +172,23 @@ test('desktop: two sets of parameters side by side, each with legend and markers
     await shoot(page, 'operator');
 }));
 
+test('a method of the right half that is not the left one\'s is shown on every screen', options, () => withPage(LARGE, async (page) => {
+    const method = page.locator('#right-interpolation'), paper = { group: 'temperature', interpolation: 'paper' };
+    for (const [width, height] of [[1280, 800], [1024, 768], [844, 390], [390, 844]]) {
+        const name = `${width}x${height}`;
+        await page.setViewportSize({ width, height });
+        for (const split of [{ group: 'pressure' }, paper]) {
+            await page.evaluate((half) => globalThis.plantcast.session.setParams({ split: half }), split);
+            await method.waitFor({ state: split === paper ? 'visible' : 'hidden' });
+            const [bar, box] = await Promise.all(['#split-bar', '#viewport'].map((one) => page.locator(one).boundingBox()));
+            assert.ok(bar.x >= box.x + box.width / 2 && bar.y >= box.y && bar.x + bar.width <= box.x + box.width &&
+                bar.y + bar.height <= box.y + box.height, `${name}: ${JSON.stringify([bar, box])}`);
+            await page.evaluate(() => globalThis.plantcast.session.setParams({ split: null }));
+            await page.locator('#split-bar').waitFor({ state: 'hidden' });
+        }
+    }
+}));
+
 test('tablet upright', options, () => withPage({ ...TABLET, viewport: { width: 768, height: 1024 } }, async (page) => {
     assert.equal(await page.locator('#assets').isVisible(), false, 'the list is folded away');
     assert.deepEqual(await sticksOut(page), []);

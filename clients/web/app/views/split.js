@@ -65,7 +65,13 @@ export class Split {
         };
         for (const [name, select] of Object.entries(this.selects)) {
             fillSelect(select, choices[name], right[name]);
-            select.parentElement.hidden = ENGINEERS.includes(name) && role !== 'engineer';
+            if (!ENGINEERS.includes(name))
+                continue;
+            // a choice that is neither the left half's nor the group's own is shown to everybody, also where there is little room
+            const differs = right[name] !== (right.group === params.group ? params : group)[name];
+            select.disabled = role !== 'engineer';
+            select.parentElement.hidden = select.disabled && !differs;
+            select.parentElement.classList.toggle('differs', differs);
         }
     }
 }
