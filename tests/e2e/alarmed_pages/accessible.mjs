@@ -58,6 +58,33 @@ for (const [theme, rules, other] of WALKS) {
     });
 }
 
+// Roles that a screen reader announces with a name.
+const NAMED = new Set(['button', 'link', 'checkbox', 'radio', 'switch', 'slider', 'spinbutton', 'textbox', 'searchbox', 'combobox',
+    'listbox', 'option', 'tab', 'tablist', 'tabpanel', 'tree', 'treeitem', 'menuitem', 'dialog', 'alertdialog', 'region', 'navigation',
+    'complementary', 'main', 'image', 'columnheader', 'Date', 'DateTime', 'InputTime', 'progressbar', 'meter']);
+
+// Returns what a screen reader could not announce, by the browser's accessibility tree: controls, dialogs and regions without a name,
+// tables without column or row titles, and open dialogs without the focus.
+async function unspoken(on) {
+    const client = await on.context().newCDPSession(on);
+    const { nodes } = await client.send('Accessibility.getFullAXTree');
+    const byId = new Map(nodes.map((node) => [node.nodeId, node])), role = (node) => node?.role?.value;
+    const below = (node) => (node.childIds ?? []).map((id) => byId.get(id)).filter(Boolean).flatMap((child) => [child, ...below(child)]);
+    const said = nodes.filter(({ ignored }) => !ignored);
+    const nameless = said.filter((node) => NAMED.has(role(node)) && !node.name?.value?.trim());
+    const untitled = said.filter((node) => ['table', 'grid'].includes(role(node)) &&
+        !below(node).some((one) => ['columnheader', 'rowheader'].includes(role(one))));
+    const where = async ({ backendDOMNodeId: backendNodeId, ...node }) => {
+        const { node: { nodeName, attributes = [] } } = await client.send('DOM.describeNode', { backendNodeId });
+        return `${role(node)}: ${nodeName} ${attributes.join(' ')}`;
+    };
+    const found = await Promise.all([...nameless, ...untitled].map(where));
+    await client.detach();
+    const unfocused = await on.evaluate(() => [...document.querySelectorAll('dialog[open]')]
+        .filter((dialog) => !dialog.contains(document.activeElement)).map(({ id }) => `dialog ${id} has not the focus`));
+    return [...found, ...unfocused];
+}
+
 const wear = (theme) => page.evaluate((name) => { document.documentElement.dataset.theme = name; }, theme);
 
 async function lookAtEverything(theme, rules, other) {
@@ -68,6 +95,7 @@ async function lookAtEverything(theme, rules, other) {
         seen.push(name);
         await shoot(page, `axe-${theme}-${name}`);
         assert.deepEqual(await cutOff(page), [], name);
+        assert.deepEqual(await unspoken(page), [], name);
         const part = sweep(null, PARTS[name] ?? null);
         assert.deepEqual(await findings(page, rules, part), [], name);
         if (!other)
@@ -143,6 +171,38 @@ for (const [row, theme] of Object.keys(THEMES).entries()) {
         }
     });
 }
+
+// Parts of the page that keys open: [key, part, further button to press in it].
+const OPENED = [['e', '#alarms'], ['e', '#alarms', '#journal-tab'], ['v', '#views'], ['p', '#picture-panel'], ['y', '#timeline'],
+    ['b', '#assets'], ['k', '#share'], ['?', '#help']];
+test('on a phone every control, table and dialog is announced by its name; alarms are in a live region', options, async () => {
+    const other = await openPage(`${url}?lang=ko`, PHONE), { page: on } = other;
+    try {
+        await waitForPicture(on);
+        await on.waitForFunction(() => globalThis.plantcast.session.recorded && document.querySelector('#alarm-counts .priority'));
+        assert.deepEqual(await unspoken(on), [], 'as it opens');
+        for (const [key, part, button] of OPENED) {
+            await on.locator('#viewport').focus();
+            await on.keyboard.press(key);
+            await on.locator(part).waitFor();
+            if (button)
+                await on.locator(button).click();
+            assert.deepEqual(await unspoken(on), [], `${part} ${button ?? ''}`);
+            await on.keyboard.press('Escape');
+            if (await on.locator(part).isVisible())
+                await on.keyboard.press(key);
+            await on.locator(part).waitFor({ state: 'hidden' });
+        }
+        const client = await on.context().newCDPSession(on), { root } = await client.send('DOM.getDocument');
+        const { nodeId } = await client.send('DOM.querySelector', { nodeId: root.nodeId, selector: '#alarm-said' });
+        const { nodes: [region] } = await client.send('Accessibility.getPartialAXTree', { nodeId, fetchRelatives: false });
+        assert.deepEqual([region.ignored, region.role.value, region.properties.find(({ name }) => name === 'live').value.value],
+            [false, 'status', 'polite']);
+        assert.deepEqual(other.errors, []);
+    } finally {
+        await other.close();
+    }
+});
 
 // Returns the focused element: its name, whether the focus is visible, and its position.
 const focused = () => page.evaluate(() => {
