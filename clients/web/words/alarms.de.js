@@ -15,7 +15,9 @@ fly: Zu {tag} fliegen
 stale: Nicht aktuell: Stand {time}, als die Verbindung abbrach.
 which: Welche Alarme
 search: Filtern
-filtered: Keine Treffer unter {count} Alarmen.
+unfilter: Filter aufheben: {count} von {all}, {what}
+filtered(one): Der einzige Alarm passt nicht.
+filtered(other): Keine Treffer unter {count} Alarmen.
 choose: {tag} auswählen
 chooseall: Alle auswählen
 acknowledge: {count} quittieren

@@ -15,7 +15,9 @@ fly: Fly to {tag}
 stale: Out of date: as of {time}, when the connection was lost.
 which: Which alarms
 search: Filter
-filtered: No match among {count} alarms.
+unfilter: Clear the filter: {count} of {all} shown, {what}
+filtered(one): The only alarm does not match.
+filtered(other): No match among {count} alarms.
 choose: Select {tag}
 chooseall: Select all
 acknowledge: Acknowledge {count}

@@ -15,7 +15,8 @@ fly: {tag}(으)로 이동
 stale: 현재가 아님: 연결이 끊긴 {time} 기준입니다.
 which: 알람 종류
 search: 필터
-filtered: {count}건 중 필터에 맞는 것이 없습니다.
+unfilter: 필터 해제: {all}건 중 {count}건, {what}
+filtered(other): {count}건 중 필터에 맞는 것이 없습니다.
 choose: {tag} 선택
 chooseall: 모두 선택
 acknowledge: {count}건 확인

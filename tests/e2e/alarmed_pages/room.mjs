@@ -332,3 +332,71 @@ for (const [zoom, viewport] of Object.entries(ZOOMED))
             await close();
         }
     });
+
+// Sizes of phones, tablets, desks and zoomed desks in CSS pixels.
+const SIZES = [[1280, 800], [1024, 768], [768, 1024], [640, 400], [390, 844], [844, 390], [667, 375], [360, 640], [320, 256]];
+const setField = (page, fields) => page.evaluate((all) => {
+    for (const [id, value] of Object.entries(all)) {
+        document.getElementById(id).value = value;
+        document.getElementById(id).dispatchEvent(new Event('input', { bubbles: true }));
+    }
+}, fields);
+// Returns the text of a part that is whole on the screen and covered by nothing; '': it is not.
+const readable = (page, selector) => page.evaluate((one) => {
+    const element = document.querySelector(one), { left, top, right, bottom, width } = element.getBoundingClientRect();
+    const inside = width > 0 && left >= 0 && top >= 0 && right <= innerWidth && bottom <= innerHeight;
+    const isTop = (x) => element.contains(document.elementFromPoint(x, (top + bottom) / 2));
+    return inside && isTop(left + 3) && isTop(right - 3) ? element.value || element.textContent : '';
+}, selector);
+
+test('what a filter leaves out is named by a button that ends the filter, on every screen', options, async () => {
+    for (const kind of [{ viewport: SCREENS.desk.viewport }, sweep(PHONE, null)].filter(Boolean)) {
+        const { page, errors, close } = await openPage(`${url}?lang=de`, kind), button = page.locator('#alarms-applied');
+        const press = async (key) => {
+            await page.locator('#viewport').focus();
+            await page.keyboard.press(key);
+        };
+        try {
+            await waitForPicture(page);
+            await page.waitForFunction(() => globalThis.plantcast.session.recorded);
+            for (const [i, [width, height]] of SIZES.entries()) {
+                await page.setViewportSize({ width, height });
+                await press('e');
+                await page.locator('#alarms').waitFor();
+                for (const time of [false, true]) {
+                    const name = `${width}x${height}${time ? ' with the time bar' : ''}`;
+                    if (time) {
+                        await press('y');
+                        await page.locator('#time-slider').waitFor();
+                    }
+                    await page.locator('#alarms-tab').click();
+                    await button.waitFor({ state: 'hidden' });
+                    await setField(page, { 'alarms-words': 'TI', 'alarms-which': 'gone', 'alarms-priority': '1' });
+                    await button.getByText('0/1 · “TI” · Gegangen · Priorität 1').waitFor();
+                    if (height > 300) // at 400 % zoom, the page scrolls
+                        assert.notEqual(await readable(page, '#alarms-applied'), '', name);
+                    await shoot(page, `filtered-${width}${time ? '-time' : ''}`);
+                    await button.click();
+                    await page.locator('#alarms-list tr').waitFor();
+                    await page.locator('#journal-tab').click();
+                    await page.locator('#journal-list tr').first().waitFor();
+                    await setField(page, { 'journal-which': 'shelved' });
+                    await button.getByText(/^0\/\d+ · .* · Zurückgestellt/).waitFor();
+                    if (height > 300)
+                        assert.notEqual(await readable(page, '#alarms-applied'), '', `${name}, journal`);
+                    await button.click();
+                    await page.locator('#journal-list tr').first().waitFor();
+                    if (height > 300)
+                        assert.match(`${await readable(page, '#journal-span')}${await readable(page, '#alarms-applied')}`,
+                            /^(day|Letzte 24 Stunden)$/, `${name}: the time range`);
+                }
+                await press('y');
+                await press('e');
+                await page.locator('#alarms').waitFor({ state: 'hidden' });
+                assert.deepEqual(errors, [], i);
+            }
+        } finally {
+            await close();
+        }
+    }
+});

@@ -18,6 +18,7 @@ const SHOWN = 200; // maximum number of rows of the alarm list in the document
 const WIDE = window.matchMedia('(min-width: 1200px)');
 const WHICH = ['all', 'waiting', 'active', 'gone'];
 const FILTERS = { words: 'alarms-words', which: 'alarms-which', priority: 'alarms-priority', area: 'alarms-area' };
+const NO_FILTER = { words: '', which: 'all', priority: '', area: '' };
 
 export class AlarmList {
     // showTag(tag) selects a tag, flyToTag(tag) moves the camera to it. The list reads only overlay.fresh (true: messages arrive from the
@@ -26,7 +27,7 @@ export class AlarmList {
         Object.assign(this, { session, modules, overlay, showTag, flyToTag });
         // selected rows: tag -> signature of the tag's alarms at the time of selection (see signatureOf)
         this.chosen = new Map();
-        this.filter = { which: 'all', words: '', priority: '', area: '' };
+        this.filter = { ...NO_FILTER };
         this.pickAll = make('input', { type: 'checkbox', id: 'alarms-all', 'aria-label': say('alarms.chooseall'),
             title: say('alarms.chooseall'), onchange: () => this.chooseAll(this.pickAll.checked) });
         this.table = new AlarmTable(byId('alarms-table'), byId('alarms-order'), this.pickAll, () => this.show());
@@ -39,7 +40,8 @@ export class AlarmList {
             });
         this.small = window.matchMedia('(max-width: 719px), (max-height: 480px)');
         const press = { 'alarms-acknowledge': () => this.actOnChosen('acknowledge'), 'alarms-shelve': () => this.actOnChosen('shelve'),
-            'alarms-unchoose': () => this.chooseAll(false), 'alarms-close': () => this.setOpen(false), 'alarms-csv': () => this.save(),
+            'alarms-unchoose': () => this.chooseAll(false), 'alarms-applied': () => this.unfilter(),
+            'alarms-close': () => this.setOpen(false), 'alarms-csv': () => this.save(),
             'shelve-cancel': () => byId('shelve').close(), 'alarms-tab': () => this.turnTo(false), 'journal-tab': () => this.turnTo(true) };
         for (const [id, f] of Object.entries(press))
             byId(id).addEventListener('click', f);
@@ -167,10 +169,42 @@ export class AlarmList {
         this.drawn = [...this.fill('alarms-list', this.rows), ...this.fill('alarms-aside', asides.slice(0, SHOWN))];
         const none = all.length > 0 ? say('alarms.filtered', { count: all.length }) : say('alarms.quiet');
         setText(byId('alarms-none'), list.length > 0 ? '' : none);
+        if (!this.journalOpen)
+            this.showApplied(list.length + asides.length, all.length + aside.length, this.applied);
         this.showAsideHead(asides.length);
         const more = Math.max(0, list.length - SHOWN) + Math.max(0, asides.length - SHOWN);
         setText(byId('alarms-more'), more > 0 ? say('alarms.more', { count: more }) : '');
         this.showChosen();
+    }
+
+    // Returns what the filter chooses, as texts. The journal has a filter of changes instead of that of states.
+    get applied() {
+        const { words, which, priority, area } = this.filter;
+        return [words.trim() && `“${words.trim()}”`, !this.journalOpen && which !== 'all' && say(`which.${which}`),
+            priority && say('alarms.priority', { priority }), area].filter(Boolean);
+    }
+
+    // Says what the filter chooses, in a button that ends the filter: on small screens the filter's fields may be out of sight. range: the
+    // journal's time range, which the button does not end; it is shown where the field of the range is hidden (common/sheet.css).
+    showApplied(count, all, applied, range = '') {
+        const button = byId('alarms-applied'), some = applied.length > 0;
+        button.hidden = !some && !range;
+        button.disabled = !some;
+        const what = [...(range ? [range] : []), ...applied].join(' · ');
+        setText(button.firstChild, some ? `${count}/${all} · ${what}` : what);
+        button.title = some ? say('alarms.unfilter', { count, all, what }) : what;
+        button.setAttribute('aria-label', button.title);
+    }
+
+    // Ends the filter that the button `alarms-applied` names.
+    unfilter() {
+        for (const [name, id] of Object.entries(FILTERS))
+            if (name !== 'which' || !this.journalOpen)
+                byId(id).value = this.filter[name] = NO_FILTER[name];
+        if (this.journalOpen)
+            this.modules.there('journal')?.unfilter();
+        byId(this.journalOpen ? 'journal-tab' : 'alarms-tab').focus(); // the button is about to be hidden
+        this.show();
     }
 
     // Fills the filter's lists: areas, and states with the number of alarms in each state.

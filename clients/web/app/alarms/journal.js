@@ -76,6 +76,16 @@ export class Journal {
             : journalSpan(this.span.value, nowUs, this.zone);
     }
 
+    get rangeText() {
+        return this.span.value === 'chosen' ? [this.from, this.to].map(({ value }) => value.replace('T', ' ')).join(' – ')
+            : this.span.selectedOptions[0].text;
+    }
+
+    // Shows all changes of the time range.
+    unfilter() {
+        byId('journal-which').value = '';
+    }
+
     choose() {
         const isChosen = this.span.value === 'chosen';
         if (isChosen && !this.from.value) {
@@ -131,6 +141,9 @@ export class Journal {
             return;
         const passing = this.table.sorted(this.passing), all = this.rows.length;
         this.drawn = this.table.fill(byId('journal-list'), passing.slice(0, this.shown), ({ id }) => id, (row) => this.draw(row));
+        const changes = byId('journal-which');
+        this.list.showApplied(passing.length, all, [...changes.value ? [changes.selectedOptions[0].text] : [], ...this.list.applied],
+            this.rangeText);
         this.more.hidden = passing.length <= this.shown;
         setText(this.more, say('alarms.more', { count: passing.length - this.shown }));
         const oldest = this.rows.at(-1), clock = zoneClock(this.zone);
