@@ -112,14 +112,14 @@ video_cflags := $(if $(video),$(patsubst -I%,-isystem %,$(shell pkg-config --cfl
 
 .PHONY: all programs web run demo test check test-long bench gpu-bench style layers headers deps test-deps golden-update install clean help
 all: $(programs) $(or $(video),no-video) $(scripts) $(modules) $(readers) \
-    $(if $(PACKED),,$(bin)/plantcast-import-ifc/ifc.mjs) web
+    $(bin)/plantcast-import-ifc/ifc.mjs web
 # The page's chart library. The build fails without it.
 clients/web/vendor/uPlot.js: clients/web/package-lock.json
 	@echo "  NPM  $(@D)"; deploy/vendor $(build)/npm && touch $@
-# The IFC importer, downloaded from npm. Without a network the build continues, and `plantcast import` refuses IFC files.
+# The IFC importer, with its library from npm. Without a network the build continues, and `plantcast import` refuses IFC files.
 ifc := preprocess/import/readers/package-lock.json $(wildcard preprocess/import/readers/*.mjs)
 $(bin)/plantcast-import-ifc/ifc.mjs: $(ifc)
-	@echo "  NPM  $(@D)"; deploy/vendor_ifc $(build)/npm-ifc $(@D); [ ! -f $@ ] || touch $@
+	@echo "  IFC  $(@D)"; deploy/vendor_ifc $(build)/npm-ifc $(@D); [ ! -f $@ ] || touch $@
 # Generated modules of the page: its icons, the constants that it shares with the shaders, and its version.
 page := $(filter-out clients/web/made/%,$(wildcard clients/web/*.* clients/web/*/*.* clients/web/*/*/*.*))
 clients/web/made/version.js: deploy/stamp deploy/join $(page) clients/web/vendor/uPlot.js shaders/constants.glsl

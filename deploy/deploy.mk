@@ -32,7 +32,7 @@ install: all
 	install -m 755 $(modules) deploy/systemd/certbot-hook deploy/systemd/renew-certificate deploy/systemd/kiosk $(root)/lib/plantcast
 	install -m 755 deploy/prometheus/add $(root)/lib/plantcast/prometheus-add
 	$(if $(readers),install -m 755 $(readers) $(root)/libexec/plantcast)
-	[ ! -d $(bin)/plantcast-import-ifc ] || cp -r $(bin)/plantcast-import-ifc $(root)/libexec/plantcast/
+	[ ! -f $(bin)/plantcast-import-ifc/ifc.mjs ] || cp -r $(bin)/plantcast-import-ifc $(root)/libexec/plantcast/
 	install -m 644 deploy/LICENSE $(root)/share/doc/plantcast
 	cp -r $(bin)/web $(root)/share/plantcast/
 	cp -r deploy/prometheus deploy/grafana deploy/proxy deploy/ansible $(root)/share/doc/plantcast
@@ -51,7 +51,7 @@ install-demo: all
 	install -m 755 $(bin)/plantcast-sim $(root)/bin
 	install -m 644 $(demo_files) $(root)/share/plantcast/demo
 # Debian packages of the committed files.
-deb: clients/web/vendor/uPlot.js
+deb: clients/web/vendor/uPlot.js $(bin)/plantcast-import-ifc/ifc.mjs
 	@deploy/deb $(build)/deb "$(COMMIT)"
 # An archive that installs the packages without a network (SIGN=KEY.pem signs it), and a container image. Both need root and a mirror.
 suite := $(shell . /etc/os-release && echo $$VERSION_CODENAME)

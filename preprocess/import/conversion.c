@@ -372,7 +372,7 @@ static bool run_program(const struct model_reading *reading, struct child_paths 
     struct reader_program reader = { import_format_program(format), import_format_runtime(format), "-" };
     bool good;
     if (!reader.program) {
-        good = fail(why, "%s is not read: %s", format->name, format->missing);
+        good = fail(why, "%s is not read: %s", format->name, import_format_missing(format));
     } else if (!strcmp(format->name, "IFC")) {
         good = read_ifc(reading, &reader, said, why);
     } else {

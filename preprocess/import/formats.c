@@ -13,7 +13,7 @@
 
 #define BY_OCCT "plantcast-import-occt", NULL, "this Plantcast was built without OCCT: install libocct-data-exchange-dev and build again"
 #define BY_ASSIMP "plantcast-import-assimp", NULL, "this Plantcast was built without Assimp: install libassimp-dev and build again"
-#define BY_WEB_IFC "plantcast-import-ifc/ifc.mjs", "node", "IFC needs Node.js with web-ifc: install nodejs and npm, and build again"
+#define BY_WEB_IFC "plantcast-import-ifc/ifc.mjs", "node", "this Plantcast was built without web-ifc: install npm and build again"
 
 /* file endings of buffers and images that a glTF model may refer to */
 #define OF_GLTF ".bin .buffer .dat .png .jpg .jpeg .webp .ktx .ktx2 .basis .dds .gif .bmp .tga .tif .tiff .exr .hdr"
@@ -91,12 +91,21 @@ char *import_format_program(const struct import_format *format)
     return NULL;
 }
 
+const char *import_format_missing(const struct import_format *format)
+{
+    char *runtime = import_format_runtime(format);
+    bool runs = !format->runtime || runtime;
+    mem_free(runtime);
+    return runs ? format->missing : "its reader needs Node.js: install the package nodejs";
+}
+
 void import_formats_print(FILE *out)
 {
     for (int i = 0; i < FORMATS; i++) {
         char *program = formats[i].reader == FORMAT_PROGRAM ? import_format_program(&formats[i]) : NULL;
         bool there = formats[i].reader != FORMAT_PROGRAM || program;
-        fprintf(out, "%-8s %-16s %s%s\n", formats[i].name, formats[i].endings, there ? "yes" : "no: ", there ? "" : formats[i].missing);
+        fprintf(out, "%-8s %-16s %s%s\n", formats[i].name, formats[i].endings, there ? "yes" : "no: ",
+                there ? "" : import_format_missing(&formats[i]));
         mem_free(program);
     }
     fputs("All but glTF may be compressed with gzip, such as .stp.gz.\n", out);

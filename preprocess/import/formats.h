@@ -14,7 +14,7 @@ struct import_format {
     /* file name of the reader program, only for FORMAT_PROGRAM; searched in the folder of this program and in ../libexec/plantcast/ */
     const char *program;
     const char *runtime; /* interpreter that runs the reader, such as "node"; NULL: the reader is an executable */
-    const char *missing; /* advice printed if the reader is not installed */
+    const char *missing; /* advice printed if the build has no such reader */
     const char *beside;  /* file endings of further files that a model may refer to, such as ".mtl", lower case; NULL: none */
     bool unitless;       /* true: the format states no units, so --units applies */
     bool upless;         /* true: the format does not state which axis is up, so --up applies */
@@ -31,6 +31,8 @@ char *import_format_program(const struct import_format *format);
 /* Finds the interpreter of a format's reader in PATH. Returns its path, which the caller frees with mem_free. NULL: the format needs none,
  * or it is not installed. */
 char *import_format_runtime(const struct import_format *format);
+/* Returns the advice to print if import_format_program() found no reader (static text). */
+const char *import_format_missing(const struct import_format *format);
 /* Prints the name of each format and whether this installation can read it. */
 void import_formats_print(FILE *out);
 

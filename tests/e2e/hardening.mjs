@@ -2,9 +2,11 @@
 // Hardening of all programs by compiler and linker, and the restrictions of the systemd unit for a daemon that an attacker controls.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, readFileSync } from 'node:fs';
+import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { inFolder } from './support/folders.mjs';
+import { ifc } from './support/ifc_sample.mjs';
 import { get, PlainClient } from './support/plain_client.mjs';
 import { BIN, notBuilt, PROGRAMS, TinyPlant } from './support/tiny_plant.mjs';
 
@@ -51,9 +53,23 @@ test('each clause of IEC 62443-4-2 that is met names tests, which are there', ()
     }
 });
 
+const unfiltered = has('systemd-analyze') && spawnSync('/usr/bin/python3', ['-c', 'import seccomp']).status === 0 ? false
+    : 'python3-seccomp or systemd-analyze is not installed';
+const noIfc = existsSync(join(BIN, 'plantcast-import-ifc/ifc.mjs')) ? false : 'built without web-ifc';
+
+test('with the system calls that the unit leaves it, an import reads IFC, for which Node.js compiles code', {
+    skip: skip || unfiltered || noIfc,
+}, () => inFolder((folder) => {
+    const file = join(folder, 'house.ifc');
+    writeFileSync(file, ifc());
+    const { status, stdout, stderr } = spawnSync('tests/support/confined.py',
+        [UNIT, join(BIN, 'plantcast'), 'import', file, '-o', join(folder, 'plant')], { encoding: 'utf8', timeout: 120000 });
+    assert.equal(status, 0, stderr);
+    assert.match(stdout, /3 elements with a shape, 0 lost/);
+}));
+
 test('with the system calls that the unit leaves it, the daemon draws on llvmpipe, streams and records', {
-    skip: skip || (has('systemd-analyze') && spawnSync('/usr/bin/python3', ['-c', 'import seccomp']).status === 0 ? false
-        : 'python3-seccomp or systemd-analyze is not installed'),
+    skip: skip || unfiltered,
 }, async () => {
     const plant = await TinyPlant.create();
     try {
