@@ -323,17 +323,17 @@ static int take_access_option(int option, struct access_params *access)
     case OPTION_OPENID: access->openid_path = optarg; return -1;
     case OPTION_NOTICE: access->notice_path = optarg; return -1;
     case OPTION_LOCK:
-        return parse_minutes(optarg, &access->lock_min) ? -1 : usage_error("--lock-after: expected minutes, at most 1440, not", optarg);
+        return parse_minutes(optarg, &access->lock_min) ? -1 : usage_error("--lock-after: expected minutes, at most 1440, found", optarg);
     case OPTION_PROXY: access->behind_proxy = true; return -1;
     case OPTION_TRUSTED_PROXY:
         return access_add_proxy(access, optarg)
                    ? -1
-                   : usage_error("--trusted-proxy: expected ADDRESS or ADDRESS/BITS with at least 1 bit (at most 16), not", optarg);
+                   : usage_error("--trusted-proxy: expected ADDRESS or ADDRESS/BITS with at least 1 bit (at most 16), found", optarg);
     case OPTION_TRUST: access->trust_local = true; return -1;
     case OPTION_HOST:
-        return add_host(access, optarg) ? -1 : usage_error("--host: expected a name without port (at most 16 names), not", optarg);
+        return add_host(access, optarg) ? -1 : usage_error("--host: expected a name without port (at most 16 names), found", optarg);
     case OPTION_ORIGIN:
-        return add_origin(access, optarg) ? -1 : usage_error("--origin: expected SCHEME://HOST[:PORT] (at most 16), not", optarg);
+        return add_origin(access, optarg) ? -1 : usage_error("--origin: expected SCHEME://HOST[:PORT] (at most 16), found", optarg);
     case OPTION_LIMIT:
         return quotas_parse(&access->quotas, optarg) ? -1 : usage_error("--limit: unknown limit, or value out of range:", optarg);
     default: /* getopt has printed the error */ print_usage(stderr); return USAGE;
@@ -353,7 +353,7 @@ static int take_audit_option(int option, struct server_params *params)
     case OPTION_AUDIT_KEY: audit->syslog_key = optarg; return -1;
     case OPTION_AUDIT_SIZE:
         if (!parse_int(optarg, 1, 1024, &megabytes))
-            return usage_error("--audit-size: expected megabytes from 1 to 1024, not", optarg);
+            return usage_error("--audit-size: expected megabytes from 1 to 1024, found", optarg);
         audit->most_bytes = (size_t)megabytes << 20;
         return -1;
     default: return take_access_option(option, &params->access);
@@ -383,10 +383,10 @@ static bool add_core(struct server_params *params, const char *url)
 static int take_role_option(int option, struct server_params *params)
 {
     switch (option) {
-    case OPTION_ROLE: return parse_role(optarg, &params->role) ? -1 : usage_error("--role: expected all, core or render, not", optarg);
-    case OPTION_CORE: return add_core(params, optarg) ? -1 : usage_error("--core: expected wss://HOST:PORT (at most 4), not", optarg);
+    case OPTION_ROLE: return parse_role(optarg, &params->role) ? -1 : usage_error("--role: expected all, core or render, found", optarg);
+    case OPTION_CORE: return add_core(params, optarg) ? -1 : usage_error("--core: expected wss://HOST:PORT (at most 4), found", optarg);
     case OPTION_AGENT:
-        return parse_int(optarg, 1, 65535, &params->agent_port) ? -1 : usage_error("--agent-port: expected a port, not", optarg);
+        return parse_int(optarg, 1, 65535, &params->agent_port) ? -1 : usage_error("--agent-port: expected a port, found", optarg);
     case OPTION_CORE_TOKEN: params->core_token = optarg; return -1;
     case OPTION_CORE_CA: params->core_ca = optarg; return -1;
     case OPTION_NODE: params->node = optarg; return tokens_name_valid(optarg) ? -1 : usage_error("--node: invalid name:", optarg);
@@ -417,15 +417,15 @@ static int take_option(int option, struct server_params *params, int (**task)(co
     switch (option) {
     case OPTION_LISTEN:
         params->address = strcmp(optarg, "localhost") == 0 ? "127.0.0.1" : optarg;
-        return is_address(params->address) ? -1 : usage_error("--listen: expected an IP address, not", optarg);
-    case OPTION_PORT: return parse_int(optarg, 0, 65535, &params->port) ? -1 : usage_error("--port: expected a port, not", optarg);
+        return is_address(params->address) ? -1 : usage_error("--listen: expected an IP address, found", optarg);
+    case OPTION_PORT: return parse_int(optarg, 0, 65535, &params->port) ? -1 : usage_error("--port: expected a port, found", optarg);
     case OPTION_FIELD:
-        return parse_field(optarg, &params->per_fragment) ? -1 : usage_error("--field: expected vertices or per-fragment, not", optarg);
+        return parse_field(optarg, &params->per_fragment) ? -1 : usage_error("--field: expected vertices or per-fragment, found", optarg);
     case OPTION_GL: return gl_kind_parse(optarg, &params->gl) ? -1 : usage_error("--gl: unknown", optarg);
     case OPTION_GL_DEVICE:
         params->has_gl_device = true;
         return gl_device_parse(optarg, &params->gl_device) ? -1
-                                                           : usage_error("--gl-device: expected an index or a PCI address, not", optarg);
+                                                           : usage_error("--gl-device: expected an index or a PCI address, found", optarg);
     case OPTION_LIST_GL: return gl_list_devices(stdout) > 0 ? GOOD : FAILED;
     case OPTION_H264: params->h264 = optarg; return -1;
     case OPTION_HISTORY: params->history = optarg; return -1;
@@ -436,15 +436,15 @@ static int take_option(int option, struct server_params *params, int (**task)(co
     case OPTION_FORMAT: return parse_format(optarg, &params->log_format) ? -1 : usage_error("--log-format: unknown format", optarg);
     case OPTION_MEMORY:
         if (!parse_int(optarg, MIN_MEMORY_MB, MAX_MEMORY_MB, &megabytes))
-            return usage_error("--memory: expected megabytes from 128 on, not", optarg);
+            return usage_error("--memory: expected megabytes from 128 on, found", optarg);
         params->memory_bytes = (size_t)megabytes << 20;
         return -1;
     case OPTION_THREADS:
-        return parse_int(optarg, 0, 1024, &params->threads) ? -1 : usage_error("--threads: expected a number of threads, not", optarg);
+        return parse_int(optarg, 0, 1024, &params->threads) ? -1 : usage_error("--threads: expected a number of threads, found", optarg);
     case OPTION_IMPORT:
         params->imports = true;
         params->imports_now = optarg && !strcmp(optarg, "now");
-        return !optarg || params->imports_now ? -1 : usage_error("--import: expected --import or --import=now, not", optarg);
+        return !optarg || params->imports_now ? -1 : usage_error("--import: expected --import or --import=now, found", optarg);
     case OPTION_CHECK: *task = server_check; return -1;
     case OPTION_PLAN: *task = server_dump_plan; return -1;
     case OPTION_VERSION: puts("plantcastd " PLANTCAST_VERSION LACKS); return GOOD;
@@ -468,7 +468,7 @@ int main(int argc, char **argv)
             return code;
     }
     if (optind + 1 != argc)
-        return usage_error("expected one plant file, not", optind == argc ? "none" : argv[optind + 1]);
+        return usage_error("expected one plant file, found", optind == argc ? "none" : argv[optind + 1]);
     params.plant_path = argv[optind];
     if (task != server_run)
         return task(&params);

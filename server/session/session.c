@@ -530,7 +530,7 @@ void session_on_tick(struct session *session, int64_t now_ns)
         session->settled_ns = session->heard_ns;
     tell_token(session, now_ns);
     if (!session->hello && now_ns - session->opened_ns >= session->context->quotas->at[QUOTA_PATIENCE_S] * NS_PER_S)
-        session_close(session, 1008, "no hello within the time limit");
+        session_close(session, 1008, "the client sent no hello within the time limit");
     if (session->rate.exceeded && may_be_read_again(session, now_ns))
         session->rate.exceeded = false;
     if (pacer_state(&session->delivery.pacer, now_ns) != PACER_FLOWS)

@@ -46,7 +46,7 @@ test('the command line: exit codes and reasons', { skip }, async () => {
         [[join(plant.folder, 'none.yaml')], 1, null, /none\.yaml/],
         [['--check', plant.file], 0, /2 assets, 2 groups, 1 source, 3 tags/, null],
         [[plant.file, '--listen', '0.0.0.0'], 1, null, /--open-viewers/],
-        [[plant.file, '--listen', 'elsewhere'], 2, null, /expected an IP address, not 'elsewhere'/],
+        [[plant.file, '--listen', 'elsewhere'], 2, null, /expected an IP address, found 'elsewhere'/],
         [[plant.file, '--prepared', join(plant.folder, 'nothing')], 1, null, /plantcast-prep/],
         [[plant.file, '--port', String(busy.address().port)], 1, null, /in use/],
     ];
