@@ -42,21 +42,21 @@ static const struct cli_command {
     { "import", "convert CAD exports into the folder of a plant: models, names, attributes and plant file", cmd_import },
     { "nodes", "list the nodes (parts) of a CAD model with their sizes and properties", cmd_import },
     { "match", "match a control system's tag list to the equipment of an imported plant", cmd_match },
-    { "probe", "load a daemon with many sessions and print frame rates and latencies", cmd_probe },
+    { "probe", "open many sessions on a daemon and print frame rates and latencies", cmd_probe },
     { "tags", "print the tags that a daemon serves, with their present values", cmd_tags },
     { "init", "set up the systemd service plantcastd@NAME with a certificate and first tokens", cmd_init },
-    { "ready", "check whether a daemon serves pictures; the exit status is the answer", cmd_ready },
+    { "ready", "check whether a daemon serves pictures (exit status 0: yes)", cmd_ready },
     { "drain", "move all user sessions of a daemon on this machine to other daemons", cmd_drain },
-    { "standby", "let a leading core lead alone while its standby is down for maintenance", cmd_standby },
-    { "reload", "let a daemon on this machine reload its plant file and tag list, and print the result", cmd_reload },
-    { "history", "add readings to the recorded history of a plant, or export them as CSV", cmd_history },
-    { "backup", "back up a plant or all files of a service plantcastd@NAME; the daemon may run", cmd_backup },
+    { "standby", "begin or end maintenance of a standby core, during which the other core leads alone", cmd_standby },
+    { "reload", "make a daemon on this machine reload its plant file and tag list", cmd_reload },
+    { "history", "import readings into the recorded history of a plant, or export recorded readings as CSV", cmd_history },
+    { "backup", "back up a plant, or all files of a service plantcastd@NAME, also while the daemon runs", cmd_backup },
     { "restore", "restore a backup that `plantcast backup` made", cmd_restore },
     { "fleet", "serve one overview page and one /metrics for the daemons of many plants", cmd_fleet },
     { "token", "create, list and revoke the tokens with which users and programs sign in", cmd_token },
-    { "sensors", "suggest where more sensors help, detect sensors that drift, accept assumed positions", cmd_sensors },
-    { "verify", "check the signature of a picture or film, and compare the picture with a new drawing", cmd_verify },
-    { "read", "read the value at a pixel of a picture with a legend strip, also of a screenshot", cmd_read },
+    { "sensors", "suggest positions for more sensors, detect sensors that drift, accept assumed positions", cmd_sensors },
+    { "verify", "check the signature of a picture or film; redraw the picture and compare", cmd_verify },
+    { "read", "print the value at a pixel of a picture or screenshot that has a legend strip", cmd_read },
     { "audit", "check whether an audit trail was altered", cmd_audit },
 };
 enum { COMMANDS = sizeof(commands) / sizeof(commands[0]) };
@@ -68,7 +68,7 @@ static void print_usage(FILE *out)
         fprintf(out, "  %-10s %s\n", commands[i].name, commands[i].help);
     fputs("\nOptions of every command that connects to a daemon (http:// or https://):\n"
           "  --token-file FILE   file whose first line is the token with which to sign in (see `plantcast token`)\n"
-          "  --ca FILE           certificates (PEM) to trust in addition to those of the system\n",
+          "  --ca FILE           file of certificates (PEM) to trust in addition to those of the system\n",
           out);
 }
 

@@ -60,14 +60,14 @@ test('what was recorded comes back elsewhere, point by point', { skip }, async (
     assert.ok(Math.abs(Date.now() - stamp) < 60000);
     const drill = runProgram('plantcast', ['backup', '--verify', folder('one')]);
     assert.equal(drill.code, 0, drill.err);
-    assert.match(drill.out, /one: readings from \S+Z to \S+Z\n.*one: verified: a trial restore of \d+ files as of /);
+    assert.match(drill.out, /one: readings from \S+Z to \S+Z\n.*one: verified: a trial restore of all \d+ files succeeded \(backup of /);
     assert.deepEqual(readdirSync(join(folder('one'), '..')).filter((name) => name.includes('verify')), [], 'nothing of it stays');
     mkdirSync(folder('elsewhere'));
     const other = join(folder('elsewhere'), 'other.yaml');
     const restored = runProgram('plantcast', ['restore', folder('three'), other]);
     assert.equal(restored.code, 0, restored.err);
     assert.equal(readFileSync(other, 'utf8'), readFileSync(plant.file, 'utf8'));
-    const proofs = join(restored.out.trim().replace(/^.* its history is in /, ''), 'proofs.csv');
+    const proofs = join(restored.out.trim().replace(/^.* the history is in /, ''), 'proofs.csv');
     assert.equal(readFileSync(proofs, 'utf8'), readFileSync(join(folder('three'), 'proofs.csv'), 'utf8'));
     assert.match(readFileSync(proofs, 'utf8'), /TI-1/);
     assert.match(readFileSync(proofs.replace('proofs.csv', 'notes.json'), 'utf8'), /permit 4711/);
@@ -76,7 +76,7 @@ test('what was recorded comes back elsewhere, point by point', { skip }, async (
     assert.ok(was.length > 3000, `${was.length} points`);
     assert.deepEqual(is.slice(0, was.length - 20), was.slice(0, was.length - 20));
     const again = runProgram('plantcast', ['restore', folder('three'), other]);
-    assert.deepEqual([again.code, /exists already; nothing was restored/.test(again.err)], [1, true], again.err);
+    assert.deepEqual([again.code, /exists already, so nothing was restored/.test(again.err)], [1, true], again.err);
 });
 
 test('the daemon never notices', { skip }, async () => {
@@ -100,7 +100,7 @@ test('what is damaged, missing or in the way is refused by name', { skip }, () =
     writeFileSync(list, readFileSync(list, 'utf8').replace('tags.csv', '../tags.csv'));
     assert.equal(runProgram('plantcast', ['restore', folder('two'), target]).code, 1);
     const there = runProgram('plantcast', ['backup', plant.file, '-o', folder('three')]);
-    assert.deepEqual([there.code, /is there already/.test(there.err)], [1, true]);
+    assert.deepEqual([there.code, /exists already: choose another folder/.test(there.err)], [1, true]);
     for (const args of [['backup', plant.file], ['backup'], ['backup', '--verify', 'a', '-o', 'b'], ['restore', '--verify', 'a', 'b'],
         ['restore'], ['restore', 'a', 'b', 'c']])
         assert.equal(runProgram('plantcast', args).code, 2, args.join(' '));

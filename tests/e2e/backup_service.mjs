@@ -133,7 +133,7 @@ test('one command on a bare host gives the same server', options, async () => {
     ok(second.run(`plantcast audit verify ${STATE}/audit.log`));
     assert.match(readFileSync(second.path(`${STATE}/audit.log`), 'utf8'), /"event":"stop"|"event":"start"[^]*"event":"start"/);
     const again = second.run('plantcast restore /root/backup --identity /root/key');
-    assert.deepEqual([again.code, /p1 exists already; nothing was restored/.test(again.err)], [1, true], again.err);
+    assert.deepEqual([again.code, /p1 exists already, so nothing was restored/.test(again.err)], [1, true], again.err);
 });
 
 test('a wrong key, a damaged file and a newer version are refused by name, and nothing stays', options, () => {
@@ -157,9 +157,9 @@ test('a wrong key, a damaged file and a newer version are refused by name, and n
     copy('newer');
     const list = third.path('root/newer/backup.json'), text = readFileSync(list, 'utf8');
     writeFileSync(list, text.replace(/"plantcast": ".*"/, '"plantcast": "9.0.0"'));
-    refused('newer', /Plantcast 9\.0\.0 made this backup, and this is .*: install 9\.0\.0/, '--identity /root/key');
+    refused('newer', /Plantcast 9\.0\.0 made this backup; this older version .*: install 9\.0\.0/, '--identity /root/key');
     writeFileSync(list, text.replace('"version": 1', '"version": 2'));
-    refused('newer', /of a version that this program cannot read/);
+    refused('newer', /has a version that this program cannot read/);
     refused('nothing', /has no backup\.json/);
     third.write('/etc/plantcast/mail.password', 'of another plant');
     const taken = third.run('plantcast restore /root/a --identity /root/key');

@@ -65,9 +65,9 @@ test('a fleet file is checked, and each mistake has its line', options, () => {
     assert.equal(bad.code, 1);
     for (const line of [/fleet\.yaml:3:\d+: error: url: the plant at https:\/\/a\.example\/ is listed twice \(first at line 2\)/,
         /fleet\.yaml:4:\d+: error: id: plant 'a' is listed twice \(first at line 2\)/, /fleet\.yaml:5:\d+: error: id: expected/,
-        /fleet\.yaml:5:\d+: error: url: expected an address that begins/, /fleet\.yaml:6:\d+: error: url: do not write a password here/,
+        /fleet\.yaml:5:\d+: error: url: expected an address that begins/, /fleet\.yaml:6:\d+: error: url: expected an address without a password/,
         /fleet\.yaml:7:\d+: error: .*needs the key 'id'/, /fleet\.yaml:7:\d+: error: poll_s: expected/,
-        /fleet\.yaml:8:\d+: error: url: tokens are sent only over https/])
+        /fleet\.yaml:8:\d+: error: url: a plant with token_file needs .*https/])
         assert.match(bad.err, line);
     assert.ok(!bad.err.includes('me:pw') && !bad.err.includes('fleet.yaml:9'));
     assert.equal(runProgram('plantcast', ['fleet', join(folder, 'fleet.yaml'), '--serve', '--address', '0.0.0.0']).code, 2);

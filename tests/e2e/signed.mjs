@@ -71,7 +71,7 @@ test('a picture is good, and every pixel is drawn again', { skip }, async () => 
     const { code, out, err } = redraw(picture);
     assert.equal(code, 0, out + err);
     assert.match(out, /signature is good/);
-    assert.match(out, / {2}256000 of 256000 pixels of a picture drawn again agree within 1\/255/);
+    assert.match(out, / {2}256000 of 256000 pixels agree with the redrawn picture within 1\/255/);
     const statement = JSON.parse(textOf(picture, STATEMENT));
     assert.deepEqual(statement.readings.now.map(([tag, value]) => [tag, value]), [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]]);
     assert.doesNotMatch(JSON.stringify(statement), /127\.0\.0\.1|modbus|plantcast-tiny/, 'no addresses, no paths');
@@ -136,8 +136,8 @@ test('a statement of version 1 is verified, and its picture drawn again', { skip
     const { code, out, err } = redraw(first);
     assert.equal(code, 0, out + err);
     assert.match(out, /signature is good/);
-    assert.doesNotMatch(out, /a frame of a session/);
-    assert.match(out, / {2}256000 of 256000 pixels of a picture drawn again agree within 1\/255/);
+    assert.doesNotMatch(out, /frame of a live session/);
+    assert.match(out, / {2}256000 of 256000 pixels agree with the redrawn picture within 1\/255/);
     refused(withRows(first, (rows) => { rows[2000] ^= 1; }), /the pixels of the picture differ from the signed pixels/);
     refused(withText(first, STATEMENT, (text) => text.replace('"TI-1",80.0', '"TI-1",79.0')), /the signature is wrong/);
 });
@@ -209,8 +209,8 @@ test('refined frames of a session come signed where it asks for that, and are dr
     frame = readFileSync(join(path('refined'), names[0]));
     const again = redraw(frame);
     assert.equal(again.code, 0, again.out + again.err);
-    assert.match(again.out, /a frame of a session: refined, without legend, markers and clock/);
-    assert.match(again.out, / {2}64000 of 64000 pixels of a picture drawn again agree within 1\/255/);
+    assert.match(again.out, /frame of a live session, tier refined, without legend, markers and clock/);
+    assert.match(again.out, / {2}64000 of 64000 pixels agree with the redrawn picture within 1\/255/);
 });
 
 test('every frame of a moving session does, if it asks for all', { skip }, () => {
@@ -221,7 +221,7 @@ test('every frame of a moving session does, if it asks for all', { skip }, () =>
     assert.ok(frames > 1 && frames === count && frames === names.length, `${count} of ${frames}, ${names.length} files`);
     const again = redraw(readFileSync(join(path('all'), names[names.length >> 1])));
     assert.equal(again.code, 0, again.out + again.err);
-    assert.match(again.out, /a frame of a session: (preview|refined)/);
+    assert.match(again.out, /frame of a live session, tier (preview|refined)/);
 });
 
 test('a changed pixel, reading, time or camera of a frame is found', { skip }, () => {
@@ -302,7 +302,7 @@ test('the page saves what is on its screen, signed, and a picture with legend an
         };
         const shown = await save('shown'), again = redraw(shown), statement = JSON.parse(textOf(shown, STATEMENT));
         assert.equal(again.code, 0, again.out + again.err);
-        assert.match(again.out, /a frame of a session: refined, without legend, markers and clock/);
+        assert.match(again.out, /frame of a live session, tier refined, without legend, markers and clock/);
         assert.match(again.out, new RegExp(`  ${statement.width * statement.height} of ${statement.width * statement.height} pixels`));
         assert.equal(await page.evaluate(() => globalThis.signedPixels), statement.pixels_sha256, 'the pixels that were on the screen');
         await plant.tell('set TI-1 70');
@@ -362,7 +362,7 @@ test('a film is good picture by picture; one that was changed, cut or made anew 
     const { code, out, err } = check(film, '--plant', plant.file, '--history', path('plant.history'));
     assert.equal(code, 0, out + err);
     assert.match(out, /the signatures of all 4 pictures are good, and none is missing/);
-    assert.equal(out.match(/64200 of 64200 pixels of a picture drawn again agree within 1\/255/g).length, 4);
+    assert.equal(out.match(/64200 of 64200 pixels agree with the redrawn picture within 1\/255/g).length, 4);
     assert.equal(out.match(/3 of 3 readings agree with the recorded history/g).length, 4);
     const bad = (file, why) => {
         const told = check(file);
@@ -427,7 +427,7 @@ test('a tour is filmed signed, with its texts beside it; its views are printed',
     const { code, out, err } = check('--tour', '--plant', plant.file);
     assert.equal(code, 0, out + err);
     assert.match(out, /all 4 pictures are good[^]*view from \S+: .*camera=2,-4,3,0,0,0\b.*\n {2}view from \S+: .*group=pressure/);
-    assert.equal(out.match(/64000 of 64000 pixels of a picture drawn again agree within 1\/255/g).length, 4);
+    assert.equal(out.match(/64000 of 64000 pixels agree with the redrawn picture within 1\/255/g).length, 4);
     const strict = check();
     assert.equal(strict.code, 1, strict.out);
     assert.match(strict.err, /picture 3: its view differs/);

@@ -14,13 +14,13 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcast audit verify FILE [--known LINE:HASH]\n"
           "\n"
-          "Checks that nobody altered the audit trail that plantcastd --audit FILE writes, and its older files.\n"
-          "Each line has a hash of itself and the line before: changed, removed and added lines are detected.\n"
-          "FILE.head holds the hash of the last line: removed last lines are detected.\n"
-          "An intruder who rewrites all these files is detected by a hash that is kept elsewhere:\n"
+          "Checks that nobody altered the audit trail that plantcastd --audit FILE writes, including its older files.\n"
+          "Each audit line contains a hash of itself and the line before: reveals changed, removed and added lines.\n"
+          "FILE.head contains the hash of the last audit line: reveals lines removed from the end.\n"
+          "If an intruder rewrote FILE and FILE.head together, only a hash kept elsewhere reveals the change:\n"
           "\n"
-          "  --known LINE:HASH   line number and hash noted earlier (the journal and the syslog server have\n"
-          "                      them); proves that nothing up to that line was replaced\n",
+          "  --known LINE:HASH   line number and hash of an audit line that the journal or the syslog server\n"
+          "                      recorded; proves that the audit trail is unchanged up to that line\n",
           out);
 }
 
@@ -30,9 +30,9 @@ static int verify(const char *path, const struct audit_chain *known)
     audit_file_verify(path, known, &report);
     if (report.good)
         printf("%s: good: lines %" PRIu64 " to %" PRIu64 " in %zu file%s%s\n"
-               "the last is %" PRIu64 ":%s\n",
+               "last line and its hash: %" PRIu64 ":%s\n",
                path, report.first_seq, report.end.seq, report.files, report.files == 1 ? "" : "s",
-               report.first_seq > 1 ? "; earlier entries are not in these files" : "", report.end.seq, report.end.hash);
+               report.first_seq > 1 ? "; earlier audit lines are not in these files" : "", report.end.seq, report.end.hash);
     else
         fprintf(stderr, "plantcast: %s\n", report.text);
     mem_free(report.text);
@@ -51,7 +51,7 @@ int cmd_audit(int argc, char **argv)
         }
         if (option != 'k' || !audit_head_parse(optarg, &known)) {
             if (option == 'k')
-                fprintf(stderr, "plantcast: --known: LINE:HASH is expected\n");
+                fprintf(stderr, "plantcast: --known: expected LINE:HASH, found '%s'\n", optarg);
             print_usage(stderr);
             return 2;
         }

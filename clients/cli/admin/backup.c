@@ -51,36 +51,38 @@ static void print_usage(FILE *out)
           "       plantcast backup --verify FOLDER\n"
           "       plantcast restore FOLDER PLANT.yaml [--history DIR]\n"
           "\n"
-          "backup NAME backs up all files of the service plantcastd@NAME, also while it runs, and verifies the\n"
-          "backup: plant file, models, options, keys, tokens, sign-in, tag list, history, alarm journal, audit\n"
-          "trail, views, notes, and files elsewhere that options or plant file name. Not: prepared files.\n"
-          "restore FOLDER makes the service again, on a machine that has only the packages.\n"
+          "backup NAME backs up all files of the service plantcastd@NAME and verifies the backup. The service may run.\n"
+          "Included: plant file, models, options, keys, tokens, sign-in, tag list, history, alarm journal, audit trail,\n"
+          "views, notes, and all other files that the options or the plant file name. Not included: prepared files.\n"
+          "restore FOLDER sets up the service from the backup, on a machine that has only the packages installed.\n"
           "\n"
-          "  -o, --out FOLDER        folder to create (default: /var/backups/plantcast/NAME/TIME)\n"
-          "  --recipient KEY         encrypt keys and tokens with age to this public key (age1..., ssh-ed25519 ...);\n"
-          "                          may be given several times; --recipients-file FILE reads one from each line\n"
-          "  --passphrase            encrypt them to a passphrase, for which age asks\n"
-          "  --without-secrets       leave keys, tokens and sign-in out; with restore: do not decrypt them\n"
-          "  --to sftp://[USER@]HOST[:PORT]/FOLDER    also copy the backup to another host, with an SSH key\n"
-          "  --hook PROGRAM          run PROGRAM with the backup's folder as its argument\n"
-          "  --keep N                afterwards remove all but the newest N in /var/backups/plantcast/NAME, and\n"
-          "                          of the copies of this plant and host at --to\n"
-          "  --identity FILE         private key with which to decrypt (without: age asks for the passphrase)\n"
-          "  --root DIR              use the files below DIR instead of /, for tests and images\n"
+          "  -o, --out FOLDER        folder to create for the backup (default: /var/backups/plantcast/NAME/TIME)\n"
+          "  --recipient KEY         public key (age1..., ssh-ed25519 ...) for which age encrypts keys and tokens;\n"
+          "                          may be repeated to encrypt for several recipients\n"
+          "  --recipients-file FILE  file of public keys for which age encrypts keys and tokens, one per line\n"
+          "  --passphrase            encrypt keys and tokens with a passphrase, for which age asks\n"
+          "  --without-secrets       leave keys, tokens and sign-in out of the backup; with restore: do not restore\n"
+          "                          the encrypted keys, tokens and sign-in of the backup\n"
+          "  --to sftp://[USER@]HOST[:PORT]/FOLDER    also copy the backup to HOST by SFTP, with an SSH key\n"
+          "  --hook PROGRAM          run PROGRAM after the backup, with the backup's folder as its argument\n"
+          "  --keep N                after the backup, delete all but the newest N backups of this plant in\n"
+          "                          /var/backups/plantcast/NAME, and all but the newest N copies at --to\n"
+          "  --identity FILE         private key with which age decrypts (default: age asks for the passphrase)\n"
+          "  --root DIR              use the files below DIR instead of /, for tests and system images\n"
           "\n"
           "backup PLANT.yaml copies history, alarm journal, loop checks, plant file and tag list to FOLDER.\n"
-          "Only the owner can read FOLDER. The daemon may run: the copy of each database is consistent.\n"
-          "Models are not copied. Symbolic links are not followed.\n"
-          "A file is skipped if its owner is not the owner of its folder, also when root runs the command.\n"
+          "Only the owner can read FOLDER. The daemon may run meanwhile: the copy of each database is consistent.\n"
+          "backup PLANT.yaml copies no models and follows no symbolic links.\n"
+          "A file whose owner differs from the owner of its folder is skipped, even if root runs the command.\n"
           "\n"
           "--verify restores a backup into a temporary folder, compares all files and checks each database.\n"
           "\n"
-          "restore FOLDER PLANT.yaml checks a backup, then writes the plant file to PLANT.yaml, and tag list and\n"
-          "history to the places that the plant file names. If root runs it, each file gets the owner of its\n"
-          "folder. If one of these files exists already, nothing is restored.\n"
+          "restore FOLDER PLANT.yaml checks the backup in FOLDER and writes the plant file to PLANT.yaml.\n"
+          "The tag list and the history are written to the paths that the plant file names.\n"
+          "If root runs restore, each restored file gets the owner of its folder.\n"
+          "If one of the files to restore exists already, restore writes nothing and fails.\n"
           "\n"
-          "  --history DIR           folder of recorded readings (default: the one that the plant file names,\n"
-          "                          else next to the plant file)\n",
+          "  --history DIR           folder of recorded readings (default: from the plant file, else PLANT.history)\n",
           out);
 }
 
@@ -234,9 +236,9 @@ static bool back_up(struct backup_job *job, const struct plant *plant, const cha
     bool good = false;
     job->folder = part;
     if (is_ours(tags) || !strcmp(tags, PLANT_FILE) || !strcmp(tags, MANIFEST))
-        say(plant->files.tags_path, "the backup needs this name for another file");
+        say(plant->files.tags_path, "a backup uses the name of this tag list for another file: rename the tag list");
     else if (access(out, F_OK) == 0)
-        say(out, "is there already");
+        say(out, "exists already: choose another folder for the backup with -o");
     else if (mkdir(part, 0700) != 0)
         say(part, strerror(errno));
     else {
@@ -263,7 +265,8 @@ static bool is_known_version(const char *path, const char *version)
 {
     if (!version || strverscmp(version, PLANTCAST_VERSION) <= 0)
         return true;
-    fprintf(stderr, "plantcast: %s: Plantcast %s made this backup, and this is " PLANTCAST_VERSION ": install %s or a later version\n",
+    fprintf(stderr,
+            "plantcast: %s: Plantcast %s made this backup; this older version " PLANTCAST_VERSION " cannot read it: install %s or later\n",
             path, version, version);
     return false;
 }
@@ -277,7 +280,7 @@ static json_t *read_manifest(const char *folder)
     bool good =
         json_integer_value(json_object_get(manifest, "version")) == MANIFEST_VERSION && json_is_array(json_object_get(manifest, "files"));
     if (!good)
-        say(path, text ? "is not a backup's file list, or of a version that this program cannot read" : strerror(errno));
+        say(path, text ? "is not the file list of a backup, or has a version that this program cannot read" : strerror(errno));
     good = good && is_known_version(path, json_string_value(json_object_get(manifest, "plantcast")));
     if (!good && manifest) {
         json_decref(manifest);
@@ -305,10 +308,10 @@ static bool is_whole(struct backup_job *job)
         char hash[COPY_HASH_BYTES];
         long long bytes;
         if (!is_plain(name) || !expected)
-            return say(job->folder, "its list of files is damaged");
+            return say(job->folder, "the file list " MANIFEST " of this backup is damaged: use another backup");
         char *path = mem_printf("%s/%s", job->folder, name);
         if (!copy_hash(job->log, path, hash, &bytes) || strcmp(hash, expected) != 0)
-            good = say(path, "was changed or damaged after the backup was made");
+            good = say(path, "this file was changed or damaged after the backup was made: use another backup");
         mem_free(path);
     }
     return good;
@@ -317,7 +320,7 @@ static bool is_whole(struct backup_job *job)
 static bool is_free(const char *path)
 {
     struct stat st;
-    return lstat(path, &st) != 0 || say(path, "exists already; nothing was restored: move it away or name another folder");
+    return lstat(path, &st) != 0 || say(path, "exists already, so nothing was restored: move this file away or restore to another folder");
 }
 
 /* Returns the path to which a file of the backup is restored (mem_free). tags: path of the tag list as the plant file writes it; NULL:
@@ -342,7 +345,7 @@ static bool make_folder(const char *path)
     if (good && made && geteuid() == 0)
         good = stat(parent, &around) == 0 && lchown(path, around.st_uid, around.st_gid) == 0;
     mem_free(parent);
-    return good || say(path, "is not a folder and cannot be created");
+    return good || say(path, "this folder cannot be created, or a file or symbolic link with its name exists");
 }
 
 static bool each_file(struct backup_job *job, const char *plant_path, const char *history, const char *tags, bool put)
@@ -393,7 +396,8 @@ static bool restore(struct backup_job *job, const char *plant_path)
     bool good = history && each_file(job, plant_path, history, tags, false);
     good = good && make_folder(history) && each_file(job, plant_path, history, tags, true);
     if (good)
-        printf("%s: restored, as of %s; its history is in %s\n", plant_path, json_string_value(json_object_get(manifest, "made")), history);
+        printf("%s: plant file restored from the backup of %s; the history is in %s\n", plant_path,
+               json_string_value(json_object_get(manifest, "made")), history);
     mem_free(history);
     json_decref(manifest);
     return good;
@@ -422,7 +426,7 @@ static bool each_restored(struct backup_job *job, const char *plant_path, const 
         long long bytes;
         bool same = copy_hash(job->log, path, hash, &bytes) && !strcmp(hash, expected);
         if (!same)
-            say(path, "differs from the backup after it was copied");
+            say(path, "this restored copy differs from the file in the backup");
         good = same && (!is_database(name) || copy_database(job->log, path, copy)) && good;
         unlink(copy);
         mem_free(copy);
@@ -464,7 +468,7 @@ static bool verify(struct backup_job *job)
     char *aside = mem_printf("%s.verify-XXXXXX", job->folder);
     bool good = manifest && is_whole(job) && (mkdtemp(aside) || say(aside, strerror(errno))) && verify_in(job, aside);
     if (good)
-        printf("%s: verified: a trial restore of %zu files as of %s succeeded\n", job->folder, json_array_size(job->files),
+        printf("%s: verified: a trial restore of all %zu files succeeded (backup of %s)\n", job->folder, json_array_size(job->files),
                json_string_value(json_object_get(manifest, "made")));
     mem_free(aside);
     json_decref(manifest);

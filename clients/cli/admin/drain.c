@@ -20,11 +20,11 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcast drain PID [--wait SECONDS]\n"
           "\n"
-          "Tells the daemon with process ID PID (by SIGUSR1) to move its sessions to other daemons, in 12 s.\n"
+          "Sends SIGUSR1 to the daemon with process ID PID, which moves its sessions to other daemons within 12 s.\n"
           "Returns when all sessions are moved or the daemon has ended.\n"
-          "Made for preStop of a container and ExecStop= of a systemd unit.\n"
+          "Intended for the preStop hook of a container and for ExecStop= of a systemd unit.\n"
           "\n"
-          "  --wait SECONDS  longest time to wait until all sessions are moved; 0: do not wait (default: 13)\n",
+          "  --wait SECONDS  maximum time to wait until all sessions are moved; 0: do not wait (default: 13)\n",
           out);
 }
 

@@ -20,13 +20,13 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcast reload PID [--runtime DIR] [--timeout SECONDS]\n"
           "\n"
-          "Tells the daemon with process ID PID (by SIGHUP) to reload plant file and tag list, and waits.\n"
-          "If the daemon rejects the files, prints the reasons; the daemon continues with the old ones.\n"
-          "Made for ExecReload= of a systemd unit. From another machine, use POST /api/v1/reload.\n"
+          "Sends SIGHUP to the daemon with process ID PID, which reloads its plant file and tag list.\n"
+          "Waits for the result. If the daemon rejects the files, prints the reasons; the old ones stay in use.\n"
+          "Intended for ExecReload= of a systemd unit. From another machine, use POST /api/v1/reload.\n"
           "\n"
-          "  --runtime DIR      folder in which the daemon reports the result: its RUNTIME_DIRECTORY (default:\n"
-          "                     this command's RUNTIME_DIRECTORY)\n"
-          "  --timeout SECONDS  longest time to wait for the result (default: 600)\n"
+          "  --runtime DIR      folder to which the daemon writes the result, which is RUNTIME_DIRECTORY in its\n"
+          "                     environment (default: RUNTIME_DIRECTORY in the environment of this command)\n"
+          "  --timeout SECONDS  maximum time to wait for the result (default: 600)\n"
           "Exit status: 0 reloaded, 1 rejected.\n",
           out);
 }
@@ -76,8 +76,9 @@ static int reload(const char *daemon, pid_t pid, const char *runtime, int timeou
     else {
         while (!(result = read_result(path, since_ns)) && kill(pid, 0) == 0 && clock_mono_ns() < end_ns)
             usleep(50000);
-        status =
-            result ? say(result) : fail(daemon, clock_mono_ns() >= end_ns ? "no result before --timeout" : "it exited during the reload");
+        status = result ? say(result)
+                        : fail(daemon, clock_mono_ns() >= end_ns ? "the reload had no result before --timeout"
+                                                                 : "the daemon exited during the reload");
     }
     json_decref(result);
     mem_free(path);

@@ -14,13 +14,13 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcast standby maintenance|normal NAME|FOLDER\n"
           "\n"
-          "Run it on the machine of the core that leads. NAME: of the service plantcastd@NAME; FOLDER: of the\n"
-          "core's history.\n"
+          "Run this command on the machine of the core that leads. NAME: name of the service plantcastd@NAME.\n"
+          "FOLDER: history folder of the core.\n"
           "\n"
-          "  maintenance  the core leads alone, also while PostgreSQL is away. No other core takes over, even if\n"
-          "               this core ends, until this core is back. PostgreSQL must answer when maintenance begins:\n"
-          "               /metrics then has plantcast_core_standby_maintenance 1\n"
-          "  normal       a standby that follows may take over again\n",
+          "  maintenance  begin maintenance: the core leads alone, even while PostgreSQL is down. No other core\n"
+          "               takes over, even if this core stops, until this core runs again. PostgreSQL must answer\n"
+          "               when maintenance begins; /metrics then has plantcast_core_standby_maintenance 1\n"
+          "  normal       end maintenance: a standby that follows the core may take over again\n",
           out);
 }
 
@@ -48,7 +48,7 @@ int cmd_standby(int argc, char **argv)
     int error = access(folder, W_OK) != 0 ? errno : begins ? -atomic_file_put(path, text, strlen(text)) : unlink(path) != 0 ? errno : 0;
     int code = error && !(ends && error == ENOENT && access(folder, W_OK) == 0) ? fail(error == ENOENT ? folder : path, error) : 0;
     if (!code)
-        printf("standby: %s: the core takes this over within a second, and its log says so\n", argv[1]);
+        printf("standby: %s: the core applies this mode within 1 s and logs the change\n", argv[1]);
     mem_free(path);
     mem_free(folder);
     return code;

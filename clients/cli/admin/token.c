@@ -27,23 +27,23 @@ static void print_usage(FILE *out)
           "       plantcast token list FILE\n"
           "       plantcast token revoke FILE NAME\n"
           "\n"
-          "add creates a token and prints it once: FILE, which is created if missing, holds only its SHA-256.\n"
-          "A daemon with --tokens FILE applies changes within 3 s, and closes sessions of revoked tokens.\n"
+          "add creates a token and prints the token once. FILE stores only the SHA-256 hash of the token.\n"
+          "A missing FILE is created.\n"
+          "A daemon with --tokens FILE applies changes of FILE within 3 s, and closes sessions of revoked tokens.\n"
           "\n"
           "  --role ROLE      what the token permits: viewer, operator or engineer for users and programs;\n"
           "                   renderer or standby for a daemon that connects to a core\n"
           "  --name NAME      name of the user or program that will use the token\n"
-          "  --until DATE     last day on which the token is valid, as YYYY-MM-DD\n"
-          "  --plant PLANT    the token is valid only for the plant with this name (for a FILE that several\n"
-          "                   plants share)\n"
-          "  --views ID,...   a viewer's token that permits only pictures (/snapshot.png?view=ID) of these\n"
-          "                   views of the plant file\n"
-          "  --display WALL:NUMBER  a viewer's token that permits only this display of a video wall of the\n"
-          "                   plant file; implies --unattended\n"
-          "  --unattended     plantcastd --lock-after never signs this token out: for video walls and programs\n"
+          "  --until DATE     last day on which the token is valid, as YYYY-MM-DD (default: no expiry)\n"
+          "  --plant PLANT    name of the only plant for which the token is valid (default: all plants with FILE)\n"
+          "  --views ID,...   restrict a viewer's token to pictures (/snapshot.png?view=ID) of these views of the\n"
+          "                   plant file\n"
+          "  --display WALL:NUMBER  restrict a viewer's token to this display of a video wall of the plant file;\n"
+          "                   implies --unattended\n"
+          "  --unattended     exempt the token from sign-out by plantcastd --lock-after: for video walls, programs\n"
           "\n"
           "FILE must be in a folder that root or you own, and must not be a symbolic link.\n"
-          "Let the daemon read it: chown root:plantcast FILE; chmod 640 FILE\n",
+          "To let the daemon read FILE: chown root:plantcast FILE; chmod 640 FILE\n",
           out);
 }
 
@@ -68,9 +68,10 @@ static const char *folder_fault(const char *path)
     if (stat(folder, &st) != 0)
         fault = strerror(errno);
     else if (is_foreign(&st))
-        fault = "its folder belongs to another user, who could replace the file; keep it in a folder that root owns";
+        fault =
+            "the folder of this token file belongs to another user, who could replace the file: move the file to a folder that root owns";
     else if ((st.st_mode & S_IWOTH) && !(st.st_mode & S_ISVTX))
-        fault = "its folder is writable by group or others: chmod go-w";
+        fault = "every user can write to the folder of this token file: run chmod go-w on the folder";
     mem_free(folder);
     return fault;
 }
@@ -79,10 +80,10 @@ static const char *folder_fault(const char *path)
 static const char *file_fault(const struct stat *st)
 {
     if (!S_ISREG(st->st_mode))
-        return "it is not a file";
+        return "the token file is not a regular file";
     if (is_foreign(st))
-        return "its owner is neither root nor you: chown root";
-    return st->st_size > MAX_FILE_BYTES ? "it is too large" : NULL;
+        return "the owner of the token file is neither root nor you: run chown root on the file";
+    return st->st_size > MAX_FILE_BYTES ? "the token file is larger than 1 MiB" : NULL;
 }
 
 static char *read_all(int fd, size_t size)
@@ -152,7 +153,7 @@ static int add(const char *path, struct token_holder *holder)
     if (!old)
         return 1;
     if (has_name(old, holder->name)) {
-        fail_at(path, "a token with this name exists; revoke it, or choose another name");
+        fail_at(path, "a token with this name exists: revoke that token, or choose another name");
     } else if (!tokens_make(token)) {
         fail_at(path, "this machine's random number generator failed");
     } else {
@@ -218,7 +219,7 @@ static int take_back(const char *path, const char *name)
         line += n;
     }
     if (old && !found)
-        fail_at(path, "no token has this name");
+        fail_at(path, "this token file has no token of that name: see plantcast token list");
     else if (old)
         result = write_file(path, &text);
     text_finish(&text);
@@ -259,7 +260,7 @@ int cmd_token(int argc, char **argv)
         }
         if (!take_option(option, &holder)) {
             if (option != '?')
-                fprintf(stderr, "plantcast: token: '%s' is not a valid value here; see plantcast token --help\n", optarg);
+                fprintf(stderr, "plantcast: token: '%s' is not a valid option value: see plantcast token --help\n", optarg);
             print_usage(stderr);
             return 2;
         }
@@ -267,7 +268,7 @@ int cmd_token(int argc, char **argv)
     const char *what = argv[optind], *path = what ? argv[optind + 1] : NULL;
     int count = argc - optind;
     if ((holder.views[0] || holder.display) && (holder.role != ROLE_VIEWER || (holder.views[0] && holder.display))) {
-        fprintf(stderr, "plantcast: token: --views and --display need the role viewer, and exclude each other\n");
+        fprintf(stderr, "plantcast: token: --views and --display need --role viewer, and cannot be combined\n");
         return 2;
     }
     if (count == 2 && !strcmp(what, "add") && holder.role != ROLE_NOBODY && holder.name[0])

@@ -38,17 +38,17 @@ static void print_usage(FILE *out)
           "       plantcast fleet FLEET.yaml --serve [--address ADDRESS] [--port PORT] [--host NAME]\n"
           "\n"
           "Serves one overview page and one /metrics for the daemons of many plants.\n"
-          "The page shows for each plant a small picture, alarms by priority and lost field devices,\n"
-          "and of each daemon the version, certificate, disk space and last backup.\n"
-          "If a plant does not answer, the page shows since when.\n"
-          "The page has no sign-in: put a reverse proxy in front that decides who may see it.\n"
+          "The page shows a small picture, the alarms by priority and the lost field devices of each plant,\n"
+          "and the version, certificate, disk space and last backup of each daemon.\n"
+          "If the daemon of a plant does not answer, the page shows since when.\n"
+          "The page has no sign-in: put a reverse proxy in front of the page that decides which users may see it.\n"
           "MONITORING.md describes FLEET.yaml.\n"
           "\n"
-          "  --check            check FLEET.yaml, and start nothing\n"
+          "  --check            check FLEET.yaml for errors, and serve nothing\n"
           "  --address ADDRESS  address of this machine to listen on: 127.0.0.1 or ::1 (default: 127.0.0.1)\n"
           "  --port PORT        TCP port to listen on; 0: any free port (default: 8090)\n"
-          "  --host NAME        host name under which browsers reach the reverse proxy. Requests for other\n"
-          "                     names are refused, because a foreign page may have sent them\n",
+          "  --host NAME        host name under which browsers reach the reverse proxy; requests for other host\n"
+          "                     names are refused, as protection against DNS rebinding\n",
           out);
 }
 
@@ -136,7 +136,7 @@ static int on_request(struct lws *wsi, struct fleet_answer *answer, const char *
     int status = body ? HTTP_STATUS_OK : may ? HTTP_STATUS_NOT_FOUND : HTTP_STATUS_FORBIDDEN;
     if (!body) {
         type = "text/plain; charset=utf-8";
-        body = mem_strdup(may ? "Not found.\n" : "This name is not served here; see --host.\n");
+        body = mem_strdup(may ? "Not found.\n" : "This server does not serve this host name: see plantcast fleet --host.\n");
         answer->bytes = strlen(body);
     }
     answer->body = mem_array(LWS_PRE + answer->bytes + 1, 1);
@@ -220,7 +220,7 @@ static int serve(const struct fleet_file *file, const char *address, int port, c
         while (!atomic_load(&ending) && lws_service(context, 0) >= 0)
             continue;
     } else if (site.poll) {
-        fprintf(stderr, "plantcast: cannot listen on %s port %d\n", address, port);
+        fprintf(stderr, "plantcast: cannot listen on %s port %d: another program may use the port\n", address, port);
     }
     atomic_store(&serving, NULL);
     if (context)

@@ -34,11 +34,11 @@ static const char *wrong_with(const char *url)
         return "expected an address that begins with https:// or http://";
     size_t length = strcspn(host + 3, "/?#");
     if (length == 0)
-        return "the address names no server";
+        return "the address contains no host name";
     if (memchr(host + 3, '@', length))
-        return "do not write a password here; let token_file name a file with a token";
+        return "expected an address without a password: write a token to a file and name the file in token_file";
     if (strpbrk(url, "?# \t\"<>"))
-        return "expected the page's address without ?, # and white space";
+        return "expected the address of the plant's page, without ?, # and white space";
     return NULL;
 }
 
@@ -108,7 +108,8 @@ static void read_one(struct yaml_reader *reader, yaml_node_t *node, struct fleet
         mem_free(plant->url);
         plant->url = plain;
         if (plant->token_file && is_in_clear(plain))
-            yaml_error(reader, yaml_map_place(&map, "url"), "url: tokens are sent only over https://, or to this machine");
+            yaml_error(reader, yaml_map_place(&map, "url"),
+                       "url: a plant with token_file needs an address that begins with https:// or is on this machine");
     }
     if (!plant->name && plant->id)
         plant->name = mem_strdup(plant->id);

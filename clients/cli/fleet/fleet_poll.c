@@ -84,7 +84,7 @@ static const char *note_answer(struct fleet_poll *poll, struct fleet_request *re
     struct picture *picture = &poll->pictures[request->plant];
     if (request->kind == PICTURE) {
         if (request->http.answer.length <= 8 || memcmp(request->http.answer.at, "\x89PNG\r\n\x1a\n", 8) != 0)
-            return "its picture is not a PNG file";
+            return "the server's picture is not a PNG file";
         mem_free(picture->at);
         *picture = (struct picture){ request->http.answer.at, request->http.answer.length, picture->number + 1 };
         request->http.answer = (struct text){ 0 };
@@ -93,7 +93,7 @@ static const char *note_answer(struct fleet_poll *poll, struct fleet_request *re
     }
     struct fleet_state state;
     if (!fleet_state_read(request->http.answer.at ? request->http.answer.at : "", &state))
-        return "it is not a Plantcast server";
+        return "the server at this address is not a Plantcast server";
     known->state = state;
     known->answers = true;
     known->answered_us = clock_utc_ns() / 1000;

@@ -158,7 +158,7 @@ bool offline_renderer_open_history(struct offline_renderer *offline, const struc
     offline->tags = history_tags(offline->plant);
     bool good = history_span(offline->reader, &offline->first_us, &offline->last_us);
     if (!good)
-        fprintf(stderr, "plantcast: %s: no recorded readings here; name the history folder with --history\n", folder);
+        fprintf(stderr, "plantcast: %s: this folder has no recorded readings: name the history folder with --history\n", folder);
     return good;
 }
 
@@ -169,7 +169,7 @@ bool offline_renderer_seek(struct offline_renderer *offline, int64_t at_us, stru
         timestamp_print(at_us, at);
         timestamp_print(offline->first_us, first);
         timestamp_print(offline->last_us, last);
-        fprintf(stderr, "plantcast: no readings recorded at %s: history begins at %s and ends at %s\n", at, first, last);
+        fprintf(stderr, "plantcast: no readings recorded at %s: the history begins at %s and ends at %s\n", at, first, last);
         return false;
     }
     view_set_instant(view, at_us, 0);

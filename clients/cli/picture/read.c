@@ -22,8 +22,8 @@ static void print_usage(FILE *out)
           "\n"
           "Prints the value that a pixel shows, and the range of values that have the same colour.\n"
           "PICTURE is a PNG or JPEG drawn with --strip legend (/snapshot.png: strip=legend).\n"
-          "It may be scaled, compressed, or part of a screenshot.\n"
-          "Range and unit are read from the strip itself, not from metadata of the file.\n"
+          "PICTURE may be scaled, compressed, or part of a screenshot.\n"
+          "The strip contains the range and the unit of the values; metadata of the file are not needed.\n"
           "X and Y are the column and row of a pixel, counted from 0 at the upper left corner.\n"
           "Exit status: 0 success, 1 no strip in the picture or no value at a pixel, 2 unreadable picture.\n",
           out);
@@ -73,7 +73,7 @@ static bool read_picture(const char *path, struct strip_picture *picture)
     bool is_jpeg = count > 2 && !memcmp(bytes, "\xff\xd8", 2);
     bool good = (is_jpeg ? read_jpeg : read_png)((const uint8_t *)bytes, count, picture);
     if (!good)
-        fprintf(stderr, "plantcast: %s: neither a PNG nor a JPEG that can be read\n", path);
+        fprintf(stderr, "plantcast: %s: expected a valid PNG or JPEG file\n", path);
     mem_free(bytes);
     return good;
 }
@@ -84,7 +84,7 @@ static bool print_value(const struct strip_picture *picture, const struct strip_
     const char *gap = *strip->unit ? " " : "";
     struct strip_value value;
     if (!strip_read(picture, found, x, y, &value)) {
-        printf("%d,%d: outside the picture, or on its legend strip\n", x, y);
+        printf("%d,%d: this pixel is outside the picture, or on the legend strip\n", x, y);
         return false;
     }
     switch (value.state) {

@@ -47,11 +47,11 @@ static bool same_assets(const json_t *statement, const struct scene *scene)
         const char *then = json_string_value(json_object_get(assets, scene->plant->assets[i].id));
         picture_asset_checksum(&scene->assets[i], checksum);
         if (strcmp(then ? then : "", checksum) != 0 && others++ == 0)
-            printf("  DIFFERS: the prepared file of asset %s was %s, now %s\n", scene->plant->assets[i].id, then ? then : "not there",
-                   *checksum ? checksum : "not there");
+            printf("  DIFFERS: checksum of the prepared file of asset %s: %s when the picture was drawn, now %s\n",
+                   scene->plant->assets[i].id, then ? then : "missing", *checksum ? checksum : "missing");
     }
     if (others > 1)
-        printf("  DIFFERS: prepared files of %zu more assets\n", others - 1);
+        printf("  DIFFERS: checksums of the prepared files of %zu more assets\n", others - 1);
     return others == 0;
 }
 
@@ -74,7 +74,7 @@ static bool same_as_recorded(struct offline_renderer *offline, const struct redr
     if (!offline_renderer_open_history(offline, &where))
         return false;
     if (us < offline->first_us || us > offline->last_us) {
-        printf("  DIFFERS: %s has no readings of that time\n", options->history);
+        printf("  DIFFERS: history folder %s has no readings of the picture's time\n", options->history);
         return false;
     }
     struct snapshot *then = snapshot_create(offline->plant->tag_count);
@@ -88,7 +88,7 @@ static bool same_as_recorded(struct offline_renderer *offline, const struct redr
     snapshot_destroy(&then);
     printf("  %s%zu of %zu readings agree with the recorded history\n", same == count ? "" : "DIFFERS: ", same, count);
     if (first)
-        printf("  the first that differs: %s\n", offline->plant->tags[first - 1].name);
+        printf("  the first reading that differs: tag %s\n", offline->plant->tags[first - 1].name);
     return same == count;
 }
 
@@ -112,7 +112,7 @@ static bool same_pixels(const struct frame *frame, const json_t *statement, cons
     bool fits = json_integer_value(json_object_get(statement, "width")) == frame->width_px &&
                 json_integer_value(json_object_get(statement, "height")) == frame->height_px;
     size_t agreeing = fits ? count_agreeing(frame, rgb) : 0;
-    printf("  %s%zu of %zu pixels of a picture drawn again agree within 1/255\n", agreeing == all ? "" : "DIFFERS: ", agreeing, all);
+    printf("  %s%zu of %zu pixels agree with the redrawn picture within 1/255\n", agreeing == all ? "" : "DIFFERS: ", agreeing, all);
     return agreeing == all;
 }
 

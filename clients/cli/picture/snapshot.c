@@ -18,7 +18,7 @@ static void add_encoded(struct text *path, const char *arg)
 bool snapshot_query(struct snapshot_options *options, struct text *query)
 {
     if (options->offline_only) {
-        fputs("plantcast: --values, --history, --prepared, --tier, --no-overlay, --field and --gl only go with a plant file\n", stderr);
+        fputs("plantcast: --values, --history, --prepared, --tier, --no-overlay, --field and --gl need a plant file, not a URL\n", stderr);
         return false;
     }
     if (options->baseline && !snapshot_add_arg(options, "baseline", options->baseline))

@@ -11,8 +11,8 @@ static bool draw(struct offline_renderer *offline, const struct snapshot_options
     struct frame *frame = offline_renderer_draw(offline, options, view);
     if (!frame)
         return false;
-    log_info(offline->log, "%s: %dx%d, %d triangles, field %.1f ms, render %.1f ms", options->out, frame->width_px, frame->height_px,
-             frame->triangles, frame->field_ns / 1e6, frame->render_ns / 1e6);
+    log_info(offline->log, "%s: %dx%d pixels, %d triangles; computed the field in %.1f ms, rendered in %.1f ms", options->out,
+             frame->width_px, frame->height_px, frame->triangles, frame->field_ns / 1e6, frame->render_ns / 1e6);
     bool good = offline_renderer_save(offline, frame, options->out);
     frame_unref(&frame);
     return good;

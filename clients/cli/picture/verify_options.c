@@ -10,19 +10,17 @@ static void print_usage(FILE *out)
     fputs("usage: plantcast verify (PICTURE.png | CLIP.mp4) --key FILE [--tour]\n"
           "                        [--plant PLANT.yaml [--prepared FOLDER] [--history FOLDER]]\n"
           "\n"
-          "Checks that a server with --signing-key drew PICTURE.png or every picture of CLIP.mp4, and that\n"
-          "nobody changed pixels, readings, time, view or configuration since.\n"
+          "Checks the signature that a server with --signing-key wrote into PICTURE.png or CLIP.mp4.\n"
+          "A good signature proves that nobody changed pixels, readings, time, view or configuration since.\n"
           "CLIP.mp4 is a film of `plantcast clip --signed`. A film with a missing picture is rejected.\n"
           "\n"
-          "  --key FILE          public key of the server, made by openssl pkey -in signing.key -pubout -out\n"
-          "                      FILE\n"
-          "  --tour              the film is a tour: allow its view to change, and print each change\n"
-          "  --plant PLANT.yaml  draw the picture again from its readings, and count the pixels that agree\n"
+          "  --key FILE          public key of the server (openssl pkey -in signing.key -pubout -out FILE)\n"
+          "  --tour              accept a film of a tour, whose view changes, and print each change\n"
+          "  --plant PLANT.yaml  redraw the picture from its readings, and count the pixels that agree within 1/255\n"
           "                      within 1/255\n"
           "  --prepared FOLDER   output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml)\n"
-          "  --history FOLDER    folder of recorded readings with which the readings of the picture are\n"
-          "                      compared\n"
-          "Exit status: 0 everything agrees, 1 something differs, 2 the check was not possible.\n",
+          "  --history FOLDER    compare the readings of the picture with the recorded readings in FOLDER\n"
+          "Exit status: 0 all checks passed, 1 a check failed, 2 a check was not possible.\n",
           out);
 }
 

@@ -26,34 +26,32 @@ static void print_usage(FILE *out)
           "                                [--longest-gap TIME] [--encoding NAME]\n"
           "       plantcast history export PLANT.yaml --tags A,B [--from INSTANT] [--to INSTANT] [--points N] [--folder DIR]\n"
           "\n"
-          "import adds readings to the recorded history of a plant, for example older ones. The daemon may run.\n"
+          "import adds readings, such as older ones, to the recorded history of a plant. The daemon may run meanwhile.\n"
           "FILE.csv has the columns Tag, Time, Value and optionally Quality and Unit,\n"
-          "or a column Time and one column for each tag.\n"
-          "The time column has the name Time, Timestamp, UTC, DateTime or Date, or is the first column.\n"
-          "Times are written as 2026-11-20T10:00:00Z (without a zone: in the zone of the plant).\n"
-          "With --start, times are numbers that count from there.\n"
+          "or FILE.csv has a column Time and one column for each tag.\n"
+          "The time column is the one named Time, Timestamp, UTC, DateTime or Date, else the first column.\n"
+          "Times look like 2026-11-20T10:00:00Z; times without a zone are in the time zone of the plant.\n"
+          "With --start, times are numbers that count from INSTANT in the unit of --unit.\n"
           "Values are in the tag's Eng Units, unless the column Unit names another unit.\n"
           "Blank cells, NaN and words such as Bad, No Data or I/O Timeout become readings of quality Bad.\n"
           "If several rows of a tag have the same time, the last row counts.\n"
           "If a row has an error, nothing is imported, and all errors are printed with line and column.\n"
           "\n"
-          "export prints recorded readings as CSV that import can read (default: those of the last hour).\n"
+          "export prints recorded readings as CSV that import can read (default: of the last hour).\n"
           "\n"
-          "  --folder DIR     folder of recorded readings (default: the one that the plant file names, else\n"
-          "                   next to the plant file)\n"
-          "  --start INSTANT  time at which numbers in the time column are 0\n"
+          "  --folder DIR     folder of recorded readings (default: from the plant file, else PLANT.history)\n"
+          "  --start INSTANT  instant that the number 0 in the time column represents\n"
           "  --unit UNIT      unit of numbers in the time column: ms, s, min or h\n"
-          "  --longest-gap TIME  longest time between two readings of a tag that counts as data, such as 90s,\n"
-          "                   15min, 8h or 2d; a longer time is a gap without data. Default: the tag's column\n"
-          "                   `Stale s`, if it is set and not shorter than the usual spacing of the readings.\n"
-          "                   Otherwise ten times the median spacing (of the other tags, if the tag has only\n"
-          "                   two readings)\n"
-          "  --encoding NAME  character encoding of FILE.csv, such as GB18030 or Windows-1251 (default:\n"
-          "                   detected)\n"
-          "  --from, --to INSTANT  start and end of the period to export\n"
-          "  --points N       at most N readings of each tag (default: 20000). From more readings, export\n"
+          "  --longest-gap TIME  longest time between two readings of a tag, such as 90s, 15min, 8h or 2d\n"
+          "                   Between readings that are farther apart, the history has a gap without data.\n"
+          "                   Default: the tag's column `Stale s`, unless shorter than the usual spacing of readings;\n"
+          "                   else ten times the median spacing of the tag's readings (of all other tags' readings,\n"
+          "                   if the tag has only two)\n"
+          "  --encoding NAME  character encoding of FILE.csv, such as GB18030 or Windows-1251 (default: detected)\n"
+          "  --from, --to INSTANT  start and end of the period to export (default: the last hour)\n"
+          "  --points N       maximum number of rows for each tag (default: 20000). From more readings, export\n"
           "                   prints the lowest, highest and mean value of short intervals\n"
-          "  INSTANT          a time: 2026-11-20T10:00:00Z (or offset +01:00), seconds since 1970, or -8h (8 hours ago)\n",
+          "  INSTANT          a time such as 2026-11-20T10:00:00Z (or offset +01:00), seconds since 1970, or -8h (8 hours ago)\n",
           out);
 }
 
@@ -119,14 +117,15 @@ static void print_counts(const char *path, const struct import_counts *counts)
     timestamp_print(counts->to_us, to);
     print_span(counts->longest_us[0], least);
     print_span(counts->longest_us[1], most);
-    printf("%s: %lld samples of %d tag%s from %s to %s: %lld points recorded\n", path, counts->samples, counts->tags,
+    printf("%s: %lld samples of %d tag%s from %s to %s imported, recorded as %lld points\n", path, counts->samples, counts->tags,
            counts->tags == 1 ? "" : "s", from, to, counts->points);
     if (!counts->encoding.ascii && strcmp(counts->encoding.name, "UTF-8") != 0) {
         char *read_as = charset_describe(&counts->encoding);
         printf("Encoding: %s\n", read_as);
         mem_free(read_as);
     }
-    printf("Bad samples: %lld\nDuplicate times: %lld (the last row of each counts)\n", counts->bad, counts->duplicates);
+    printf("Bad samples: %lld\nDuplicate times: %lld (of the rows with equal tag and time, the last is used)\n", counts->bad,
+           counts->duplicates);
     if (counts->samples)
         printf("Gaps without data: %lld (longer than %s%s%s)\n", counts->gaps, least, strcmp(least, most) ? " to " : "",
                strcmp(least, most) ? most : "");
@@ -145,11 +144,11 @@ static int run_import(const struct history_options *options, const struct plant 
         !timestamp_parse_local(options->start, INT64_MIN, &params.start_us))
         return wrong("--start: expected " TIMESTAMP_FORMS ", found", options->start);
     if (options->unit && (!options->start || !parse_unit(options->unit, &params.unit_us)))
-        return wrong("--unit: expected ms, s, min or h, and --start, found", options->unit);
+        return wrong("--unit: expected ms, s, min or h together with --start, found", options->unit);
     if (options->longest_gap && !parse_span(options->longest_gap, &params.longest_gap_us))
         return wrong("--longest-gap: expected a duration such as 90s, 15min, 8h or 2d, found", options->longest_gap);
     if (options->encoding && !charset_resolve(options->encoding, encoding))
-        return wrong("--encoding: expected a name that iconv --list shows, found", options->encoding);
+        return wrong("--encoding: expected the name of an encoding, as printed by iconv --list, found", options->encoding);
     params.encoding = options->encoding ? encoding : NULL;
     bool good = history_import(&params, &diag, &counts);
     diag_print(&diag, stderr);
@@ -186,14 +185,14 @@ static int run_export(const struct history_options *options, const struct plant 
 {
     int64_t now_us = clock_utc_ns() / 1000, to_us = now_us, from_us;
     if (!options->tags)
-        return wrong("--tags: expected names, with commas between them, found", "none");
+        return wrong("--tags: expected tag names separated by commas, found", "none");
     if (options->to && !timestamp_parse(options->to, now_us, &to_us))
         return wrong("--to: expected " TIMESTAMP_FORMS ", found", options->to);
     from_us = to_us - 3600 * US_PER_S;
     if (options->from && !timestamp_parse(options->from, now_us, &from_us))
         return wrong("--from: expected " TIMESTAMP_FORMS ", found", options->from);
     if (from_us >= to_us)
-        return wrong("--from: expected an earlier instant than --to, found", options->from ? options->from : "");
+        return wrong("--from: expected an instant before --to, found", options->from ? options->from : "");
     struct history_reader *reader = history_reader_create(log, folder);
     history_reader_show_by(reader, plant);
     char *names = mem_strdup(options->tags), *rest = names;
@@ -236,7 +235,7 @@ static int parse(int argc, char **argv, struct history_options *out)
         case 'p':
             out->points = atoi(optarg);
             if (out->points < 2)
-                return wrong("--points: expected a number from 2, found", optarg);
+                return wrong("--points: expected a number of at least 2, found", optarg);
             break;
         case 'h': print_usage(stdout); return 0;
         default: print_usage(stderr); return 2;

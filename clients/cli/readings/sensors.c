@@ -22,21 +22,20 @@ struct suggest_options {
 
 static void print_usage(FILE *out)
 {
-    fputs(
-        "usage: plantcast sensors suggest PLANT.yaml --add N [--group ID] [--asset ID] [--prepared FOLDER] [--csv]\n"
-        "       plantcast sensors drift PLANT.yaml [--to INSTANT] [--group ID] [--prepared FOLDER] [--folder DIR]\n"
-        "       plantcast sensors accept PLANT.yaml ...      (details: plantcast sensors accept --help)\n"
-        "\n"
-        "suggest proposes positions for N more sensors, where they detect most hot spots that are missed now.\n"
-        "A hot spot (of size hot_spot_m of the group) is missed if no sensor reads 5 % of the group's range\n"
-        "more than without it (PLANT.md, show: blind).\n"
-        "\n"
-        "  --add N            number of sensors to propose\n"
-        "  --group ID         sensor group of the new sensors (default: the first one of the plant file)\n"
-        "  --asset ID         propose positions only on this asset (default: all assets with sensors of the group)\n"
-        "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml)\n"
-        "  --csv              print the proposed positions as CSV instead of text\n",
-        out);
+    fputs("usage: plantcast sensors suggest PLANT.yaml --add N [--group ID] [--asset ID] [--prepared FOLDER] [--csv]\n"
+          "       plantcast sensors drift PLANT.yaml [--to INSTANT] [--group ID] [--prepared FOLDER] [--folder DIR]\n"
+          "       plantcast sensors accept PLANT.yaml ...      (details: plantcast sensors accept --help)\n"
+          "\n"
+          "suggest proposes positions for N more sensors that detect as many missed hot spots as possible.\n"
+          "A hot spot is missed if it raises the reading of no sensor by 5 % of the group's range.\n"
+          "The size of a hot spot is hot_spot_m of the sensor group (PLANT.md, show: blind).\n"
+          "\n"
+          "  --add N            number of sensors to propose\n"
+          "  --group ID         sensor group of the new sensors (default: first group of the plant file)\n"
+          "  --asset ID         propose positions only on this asset (default: all assets with sensors of the group)\n"
+          "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml)\n"
+          "  --csv              print the proposed positions as CSV instead of text\n",
+          out);
 }
 
 static void print_suggestions(const struct suggest_options *options, const struct scene *scene, const struct plant_group *group,
@@ -50,16 +49,17 @@ static void print_suggestions(const struct suggest_options *options, const struc
             printf("%s,%.4f,%.4f,%.4f,%.5f,%.5f,%.5f,%.5f\n", asset, s->at_m[0], s->at_m[1], s->at_m[2], s->before, s->after,
                    s->unseen_before, s->unseen_after);
         else
-            printf(
-                "%2zu. %s at %.3f, %.3f, %.3f m: blindness %.1f to %.1f %%, %.1f less; nothing seen on %.1f -> %.1f %% of the surface\n",
-                i + 1, asset, s->at_m[0], s->at_m[1], s->at_m[2], 100 * s->before, 100 * s->after, 100 * (s->before - s->after),
-                100 * s->unseen_before, 100 * s->unseen_after);
+            printf("%2zu. %s at %.3f, %.3f, %.3f m: blindness falls from %.1f to %.1f %% (by %.1f); surface without any detection from "
+                   "%.1f to %.1f %%\n",
+                   i + 1, asset, s->at_m[0], s->at_m[1], s->at_m[2], 100 * s->before, 100 * s->after, 100 * (s->before - s->after),
+                   100 * s->unseen_before, 100 * s->unseen_after);
     }
     if (!options->csv && count < options->count)
-        printf("%zu of %zu: further sensors would gain nothing in '%s'\n", count, options->count, group->id);
+        printf("%zu of %zu sensors proposed: more sensors would not detect more hot spots of group '%s'\n", count, options->count,
+               group->id);
     if (!options->csv)
-        printf("Blindness: 0 %% with a sensor everywhere; 100 %% where sensors would miss even a hot spot of %g m across that spans the "
-               "whole range (%g %s).\n",
+        printf("Blindness: 0 %% if sensors are everywhere; 100 %% where the sensors miss even a hot spot %g m wide that is as hot as the "
+               "whole range of the group (%g %s).\n",
                group->hot_spot_m, group->max - group->min, group->unit);
 }
 
@@ -82,7 +82,8 @@ static int suggest_in(const struct suggest_options *options, const struct plant 
         print_suggestions(options, scene, &plant->groups[group], list, count);
     else if (scene)
         fprintf(stderr,
-                "plantcast: %s: nothing to suggest: '%s' has no sensor with a known place there, or its sensors cover all of the asset\n",
+                "plantcast: %s: nothing to suggest: group '%s' has no sensor with a known position on the asset, or its sensors already "
+                "cover the asset\n",
                 options->plant, plant->groups[group].id);
     workers_destroy(&workers);
     scene_destroy(&scene);

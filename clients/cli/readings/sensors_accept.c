@@ -32,16 +32,16 @@ static void print_usage(FILE *out)
           "\n"
           "Confirms positions of sensors that the import only assumed (PLANT.md, Assumed places):\n"
           "clears the column `Place` of the tag list for all sensors that match every option.\n"
-          "The previous tag list LIST is kept next to it as LIST.1, LIST.2, ...\n"
-          "Run `plantcast reload` to make the daemon use the new list.\n"
+          "The previous tag list LIST is kept in the same folder as LIST.1, LIST.2, ...\n"
+          "Run `plantcast reload` to make the daemon use the new tag list.\n"
           "\n"
           "  --asset ID         only sensors on this asset\n"
           "  --group ID         only sensors of this group\n"
-          "  --tags PATTERN     only tags whose name matches PATTERN, with the wildcards * and ?. Without\n"
-          "                     wildcards: tags whose name or description contains PATTERN\n"
+          "  --tags PATTERN     only tags whose name matches PATTERN with the wildcards * and ?; if PATTERN has no\n"
+          "                     wildcard, only tags whose name or description contains PATTERN\n"
           "  --within M         only sensors at most M metres from the surface of their asset\n"
-          "  --confidence C     only sensors that were matched to their asset with at least this confidence, 0\n"
-          "                     to 1 (column of matches.csv next to the tag list)\n"
+          "  --confidence C     only sensors whose match to their asset has at least this confidence, 0 to 1\n"
+          "                     (confidences of matches are in matches.csv next to the tag list)\n"
           "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml)\n"
           "  --dry-run          print the names of the sensors that would be accepted, and change nothing\n"
           "  --undo LIST.N      restore the kept tag list LIST.N, if only the column `Place` has changed since\n"
@@ -60,7 +60,7 @@ static int save(const char *path, char *before, char *after, const struct refusa
     char text[REFUSAL_TEXT_BYTES];
     refusal_text(&why, text);
     if (good)
-        printf("%s: written; the previous list is %s\n", path, text_base_name(kept));
+        printf("%s: new tag list written; the previous tag list is kept as %s\n", path, text_base_name(kept));
     else
         fprintf(stderr, "plantcast: %s: %s\n", path, text);
     mem_free(kept);
@@ -89,12 +89,12 @@ static char *wrong_version(const struct plant *plant, const char *before, const 
     char *now = without_places(plant, before), *then = without_places(plant, after), *why = NULL;
     struct tag_lines lines = { 0 };
     if (!strcmp(before, after)) {
-        why = mem_strdup("it is the same as the present list");
+        why = mem_strdup("this version equals the present tag list");
     } else if (!now || !then) {
-        why = mem_strdup("it does not have the tags of the present list");
+        why = mem_strdup("this version does not contain the same tags as the present tag list");
     } else if (strcmp(now, then) != 0) {
         tag_lines(now, then, &lines);
-        why = mem_printf("it differs from the present list in more than `Place` (line %d); restore older versions on the page",
+        why = mem_printf("this version differs from the present tag list in more than `Place` (line %d): restore it on the web page",
                          lines.count ? lines.at[0].line : 1);
         tag_lines_finish(&lines);
     }
@@ -123,8 +123,8 @@ static int undo(const struct accept_options *options, const struct plant *plant,
     struct refusal failed = { .code = REFUSAL_NONE };
     char *version = version_path(path, options->undo), *before = NULL, *after = NULL, *why = NULL;
     if (!version)
-        why = mem_printf("it is no earlier version of %s: these are next to it, as %s.1, %s.2, ...", path, text_base_name(path),
-                         text_base_name(path));
+        why = mem_printf("not an earlier version of the tag list %s: earlier versions are in the same folder as %s.1, %s.2, ...", path,
+                         text_base_name(path), text_base_name(path));
     else if ((before = tag_file_read(path, &failed)) && (after = tag_file_read(version, &failed)))
         why = wrong_version(plant, before, after);
     mem_free(version);
@@ -140,10 +140,11 @@ static int undo(const struct accept_options *options, const struct plant *plant,
 static void print_outcome(const struct plant *plant, const uint8_t *outcome, bool names)
 {
     static const char *const words[ASSUMED_OUTCOMES] = { [ASSUMED_ACCEPTED] = "accepted",
-                                                         [ASSUMED_NOWHERE] = "without a place: neither a node nor X, Y, Z",
+                                                         [ASSUMED_NOWHERE] =
+                                                             "without a position: the tag list has neither Node nor X, Y, Z",
                                                          [ASSUMED_MISSING] = "on an asset without a model",
-                                                         [ASSUMED_FAR] = "farther from the surface",
-                                                         [ASSUMED_UNSURE] = "of less or unknown confidence" };
+                                                         [ASSUMED_FAR] = "farther from the surface than --within",
+                                                         [ASSUMED_UNSURE] = "with a confidence below --confidence, or unknown" };
     size_t counts[ASSUMED_OUTCOMES] = { 0 };
     for (size_t i = 0; i < plant->tag_count; i++) {
         counts[outcome[i]]++;
@@ -228,7 +229,7 @@ static int run(const struct accept_options *options)
     char *folder = plant_folder_of(options->plant), *why = NULL;
     int lock = plant_folder_lock(&(struct plant_folder_params){ .folder = folder, .wait_ms = WAIT_MS }, &why), code = 1;
     if (lock < 0)
-        fprintf(stderr, "plantcast: the plant's folder %s: %s; try again when that is done\n", folder, why);
+        fprintf(stderr, "plantcast: the plant's folder %s is locked: %s: try again later\n", folder, why);
     else
         code = run_locked(options);
     if (lock >= 0)

@@ -20,18 +20,17 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcast sensors drift PLANT.yaml [--to INSTANT] [--group ID] [--prepared FOLDER] [--folder DIR]\n"
           "\n"
-          "Prints for each sensor how far it has drifted within one week.\n"
-          "Hourly means of its readings are compared with the values that the other sensors of its group\n"
+          "Prints how far the readings of each sensor have drifted within one week.\n"
+          "Hourly means of the readings are compared with the values that the other sensors of the group\n"
           "on the same asset predict (PLANT.md, Sensors that drift).\n"
           "An asset needs at least three sensors of the group, and half a week of recorded readings.\n"
           "\n"
-          "  --to INSTANT       end of the week: 2026-11-20T10:00:00Z, or -1d: a day ago (default: now)\n"
-          "  --group ID         sensor group to check (default: all)\n"
+          "  --to INSTANT       end of the week, such as 2026-11-20T10:00:00Z or -1d for a day ago (default: now)\n"
+          "  --group ID         sensor group to check (default: all groups)\n"
           "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml)\n"
-          "  --folder DIR       folder of recorded readings (default: the one that the plant file names, else\n"
-          "                     next to the plant file)\n"
-          "Output: CSV of tag,verdict (found, none, unknown),change,error,scatter,unit,hours,cause.\n"
-          "With the verdict unknown, cause says what is missing; a number that cannot be computed is empty.\n"
+          "  --folder DIR       folder of recorded readings (default: from the plant file, else PLANT.history)\n"
+          "Output: CSV with columns tag, verdict (found, none or unknown), change, error, scatter, unit, hours, cause.\n"
+          "cause says what is missing for a verdict. A number that cannot be computed is empty.\n"
           "Exit status: 0 no sensor drifts, 1 a sensor drifts.\n",
           out);
 }

@@ -17,12 +17,12 @@ static void print_usage(FILE *out)
           "Prints the tags that the daemon at URL serves, with value, quality and age.\n"
           "URL is http://HOST:PORT/, or https://HOST:PORT/ with --token-file FILE.\n"
           "\n"
-          "  --browse   print the numeric variables of an OPC UA server as a tag list; see plantcast tags\n"
-          "             --browse --help\n"
-          "  --probe    read one address of a Modbus device, and print the value in every type and byte order.\n"
-          "             DEVICE is HOST, HOST:PORT or a serial line /dev/LINE (19200 baud, even parity). ADDRESS\n"
-          "             is such as hr:0, or 2!400001 for unit 2. Nothing is written to the device\n"
-          "  --rtu      use RTU frames over TCP, for devices behind a serial gateway that expects them\n",
+          "  --browse   print the numeric variables of an OPC UA server as a tag list\n"
+          "             (see plantcast tags --browse --help)\n"
+          "  --probe    read one address of a Modbus device, and print the value in every type and byte order\n"
+          "             DEVICE is HOST, HOST:PORT or a serial line /dev/LINE (19200 baud, even parity).\n"
+          "             ADDRESS is such as hr:0, or 2!400001 for unit 2. The device is never written to\n"
+          "  --rtu      use RTU framing over TCP, for devices behind a serial gateway that expects RTU frames\n",
           out);
 }
 

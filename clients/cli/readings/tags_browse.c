@@ -24,7 +24,7 @@ static void print_usage(FILE *out)
           "                      [--certificate FILE --key FILE --trusted FOLDER [--server-name NAME]]\n"
           "\n"
           "Prints the numeric variables of an OPC UA server as a tag list (CSV); each array element is a row.\n"
-          "The options have the meaning of the keys of a source of type opcua in the plant file (PLANT.md).\n"
+          "The options mean the same as the keys of a source of type opcua in the plant file (PLANT.md).\n"
           "Without --certificate the connection is not encrypted. Nothing is written to the server.\n",
           out);
 }
@@ -137,7 +137,7 @@ int tags_browse(int argc, char **argv)
 {
     (void)argc;
     (void)argv;
-    fputs("plantcast: built without OPC UA\n", stderr);
+    fputs("plantcast: this program was built without OPC UA\n", stderr);
     return 1;
 }
 #endif

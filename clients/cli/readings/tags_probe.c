@@ -129,7 +129,8 @@ int tags_probe(const char *device, const char *address, int address_base, bool r
     }
     const char *bang = strchr(address, '!'), *place = bang ? bang + 1 : address;
     if (address_base < 0 && *place >= '0' && *place <= '9') {
-        fprintf(stderr, "plantcast: %s: is the first register called 0 or 1? Say --address-base, or %s:%d, which it is on the wire if 1\n",
+        fprintf(stderr,
+                "plantcast: %s: ambiguous: add --address-base 0 or 1, the number of the first register (with 1, it is %s:%d on the wire)\n",
                 address, prefixes[at.table], at.index);
         return 2;
     }

@@ -58,7 +58,7 @@ static bool take_unit(const struct csv *csv, const struct csv_row *row, const st
     struct unit_change change = tag->scale.change;
     if (*unit && units_compare(unit, tag->unit, &change) > UNITS_CONVERT) {
         diag_error(csv->diag, csv->path, row->cells[columns->unit].line, row->cells[columns->unit].column,
-                   "unit '%s' cannot be converted to '%s', in which %s is shown", unit, tag->unit, tag->name);
+                   "unit '%s' cannot be converted to '%s', the unit in which tag %s is shown", unit, tag->unit, tag->name);
         return false;
     }
     *value = unit_change_value(&change, *value);
@@ -75,7 +75,7 @@ static void row_read(const struct plant *plant, const struct csv *csv, const str
     if (tag < 0)
         diag_error(csv->diag, csv->path, line, row->cells[0].column, "tag '%s' is not in %s", name, plant->files.tags_path);
     if (!quality_parse(quality, &reading.quality))
-        diag_error(csv->diag, csv->path, line, row->cells[columns->quality].column, "quality '%s': good, uncertain or bad expected",
+        diag_error(csv->diag, csv->path, line, row->cells[columns->quality].column, "quality: expected good, uncertain or bad, found '%s'",
                    quality);
     reading.value = strtod(value, &end);
     if (*end != 0)

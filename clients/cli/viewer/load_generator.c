@@ -52,7 +52,7 @@ static void speak(struct viewer *viewer)
 {
     while (viewer->raw && raw_websocket_is_open(viewer->raw) && !viewer->done && viewer_has_output(viewer))
         if (viewer_send(viewer) < 0)
-            viewer_fail(viewer, "a message could not be sent");
+            viewer_fail(viewer, "a message could not be sent to the daemon");
 }
 
 static void on_messages(const struct load_generator *load, struct viewer *viewer)

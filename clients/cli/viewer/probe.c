@@ -23,26 +23,25 @@ static void print_usage(FILE *out)
           "\n"
           "Opens N sessions on the daemon at URL, decodes every frame, and prints frame rates and latencies:\n"
           "\n"
-          "  input to frame    time from sending a camera until a frame with it, or a newer one, is decoded\n"
-          "                    (each session sends 60 cameras a second, or as many as --hz says)\n"
-          "  sensor to frame   time from a changed reading at the daemon until a frame with it is decoded\n"
-          "  behind leader     with --follow: time from the leader's camera until a follower has decoded it,\n"
-          "                    without the first 3 s\n"
-          "  steady            bytes received per second, without the first 3 s and the answers to pings\n"
+          "  input to frame    time from sending a camera position until a frame of that or a newer position is decoded\n"
+          "                    (each session sends 60 camera positions a second, or as many as --hz says)\n"
+          "  sensor to frame   time from a changed reading at the daemon until a frame with that reading is decoded\n"
+          "  behind leader     with --follow: time from a camera position of the leader until a follower has decoded\n"
+          "                    a frame of that position, not counting the first 3 s\n"
+          "  steady            bytes received per second after the first 3 s, not counting answers to pings\n"
           "\n"
           "Options:\n"
-          "  --motion random   the cameras move in drags of up to 2 s with pauses\n"
-          "  --follow          the first session moves its camera, and all others follow its view\n"
-          "  --spread          the cameras stand still and look from different sides\n"
-          "  --signed WHICH    request signed PNG frames (from a server with --signing-key): refined (only\n"
-          "                    still frames) or all\n"
+          "  --motion random   move the cameras like a user: drags of up to 2 s with pauses\n"
+          "  --follow          move the camera of the first session; all other sessions follow its view\n"
+          "  --spread          keep the cameras still, each looking from a different side\n"
+          "  --signed WHICH    request signed PNG frames: refined (only still frames) or all\n"
+          "                    (needs a server with --signing-key)\n"
           "  --save-signed FOLDER  write signed frames to FOLDER/SESSION-FRAME.png, for `plantcast verify`;\n"
           "                    implies --signed refined\n"
-          "  --stall N         the last N sessions stop reading after their first frame, as stuck clients do;\n"
-          "                    the printed figures leave them out\n"
-          "  --blind           acknowledge frames without decoding them, to run many sessions on a small\n"
-          "                    machine. Over https:// one thread serves all sessions and reads only the headers\n"
-          "                    of frames\n"
+          "  --stall N         make the last N sessions stop reading after their first frame, like hung clients;\n"
+          "                    the printed figures leave these sessions out\n"
+          "  --blind           acknowledge frames without decoding, to run many sessions on a small machine\n"
+          "                    Over https://, one thread serves all sessions and reads only the headers of frames\n"
           "  --json            print the figures as JSON\n",
           out);
 }
@@ -162,7 +161,7 @@ int cmd_probe(int argc, char **argv)
         }
         if (!take_option(option, &probe)) {
             if (option != '?')
-                fprintf(stderr, "plantcast: probe: '%s' is not a valid value here; see plantcast probe --help\n", optarg);
+                fprintf(stderr, "plantcast: probe: '%s' is not a valid option value: see plantcast probe --help\n", optarg);
             print_usage(stderr);
             return 2;
         }

@@ -21,9 +21,11 @@ static int ask_why(const struct daemon_url *url, struct text *body, bool *reache
 static void print_blocked(int status, const char *text)
 {
     if (status == 426)
-        fprintf(stderr, "plantcast: the server answers over HTTP, but does not accept a WebSocket. Its answer: %s", text);
+        fprintf(stderr, "plantcast: the server answers over HTTP, but does not accept a WebSocket. Answer of the server: %s", text);
     else
-        fprintf(stderr, "plantcast: a proxy in front of the server answered /stream with %d; it must forward WebSockets\n", status);
+        fprintf(stderr,
+                "plantcast: a proxy in front of the server answered /stream with HTTP status %d: make the proxy forward WebSockets\n",
+                status);
 }
 
 bool stream_is_blocked(const struct daemon_url *url)
@@ -85,7 +87,7 @@ bool stream_passes(const struct daemon_url *url)
     bool reached;
     int status = ask_why(url, &body, &reached);
     if (status >= 500)
-        fprintf(stderr, "plantcast: not ready: /stream answers %d\n", status);
+        fprintf(stderr, "plantcast: not ready: the server answers /stream with HTTP status %d\n", status);
     else if (status > 0 && !reached)
         print_blocked(status, body.at ? body.at : "");
     text_finish(&body);

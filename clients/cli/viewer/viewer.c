@@ -86,7 +86,7 @@ static void on_text(struct viewer *viewer)
         viewer->result.errors++;
         const char *text = json_string_value(json_object_get(o, "text"));
         if (!viewer->welcomed)
-            viewer_fail(viewer, text ? text : "an error message without text");
+            viewer_fail(viewer, text ? text : "the daemon sent an error message without text");
     }
     json_decref(o);
 }
@@ -159,7 +159,7 @@ static void save_signed(struct viewer *viewer, const struct wire_frame *frame, c
     bool good = file && fwrite(png, 1, frame->payload_bytes, file) == frame->payload_bytes;
     good = file && fclose(file) == 0 && good;
     if (!good)
-        viewer_fail(viewer, "a signed frame cannot be written (--save-signed)");
+        viewer_fail(viewer, "a signed frame cannot be written to the folder of --save-signed");
     mem_free(path);
 }
 
@@ -174,11 +174,11 @@ static void on_frame(struct viewer *viewer)
         return;
     }
     if (viewer->in.length < WIRE_FRAME_HEADER_BYTES || !wire_get_frame(bytes, viewer->in_count, &frame)) {
-        viewer_fail(viewer, "a binary message is not a frame of " WIRE_SUBPROTOCOL);
+        viewer_fail(viewer, "the daemon sent a binary message that is not a frame of protocol " WIRE_SUBPROTOCOL);
         return;
     }
     if (!viewer->params.blind && !decoder_decode(viewer->decoder, &frame, bytes + WIRE_FRAME_HEADER_BYTES)) {
-        viewer_fail(viewer, "a frame cannot be decoded");
+        viewer_fail(viewer, "a frame of the daemon cannot be decoded");
         return;
     }
     int64_t now_ns = clock_mono_ns();
@@ -223,7 +223,7 @@ void viewer_on_message(struct viewer *viewer, bool binary)
 static int on_receive(struct viewer *viewer, struct lws *wsi, const void *bytes, size_t count)
 {
     if (viewer->in.length + count > MAX_MESSAGE_BYTES) {
-        viewer_fail(viewer, "a message longer than the limit");
+        viewer_fail(viewer, "the daemon sent a message longer than the limit");
         return -1;
     }
     text_add_bytes(&viewer->in, bytes, count);

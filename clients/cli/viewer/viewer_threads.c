@@ -101,6 +101,6 @@ bool viewer_threads_run(struct viewer **viewers, int count)
     for (int i = 0; i < started; i++)
         pthread_join(workers[i].thread, NULL);
     if (started < threads)
-        fprintf(stderr, "plantcast: only %d of %d threads could be started\n", started, threads);
+        fprintf(stderr, "plantcast: only %d of %d threads for sessions could be started\n", started, threads);
     return started == threads;
 }

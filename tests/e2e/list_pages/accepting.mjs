@@ -121,7 +121,7 @@ test('on the command line: the same places, with a trial before and undo', optio
     const accept = (...args) => runProgram('plantcast', ['sensors', 'accept', plant.file, ...args]);
     const trial = accept('--within', '0.1', '--confidence', '0.9', '--dry-run');
     assert.equal(trial.code, 0, trial.err);
-    assert.match(trial.out, new RegExp(`^${sure} accepted\n20 without a place`, 'm'));
+    assert.match(trial.out, new RegExp(`^${sure} accepted\n20 without a position`, 'm'));
     assert.equal(trial.out.match(/^TA-/gm).length, sure);
     assert.equal(readFileSync(tagsFile, 'utf8'), original);
     const done = accept('--within', '0.1', '--confidence', '0.9');
@@ -152,10 +152,10 @@ test('--undo takes only versions of that list which differ in Place alone, and n
         write('tags.csv.93', 'anything at all\n');
         write('other.csv.1', original);
         writeFileSync(join(other, 'tags.csv.1'), original);
-        for (const [version, why] of [['tags.csv.90', /in more than `Place` \(line \d+\)/], ['tags.csv.91', /does not have the tags/],
-            ['tags.csv.92', /the same as the present list/], ['tags.csv.93', /does not have the tags/],
-            ['other.csv.1', /no earlier version of/], ['tags.csv', /no earlier version of/], [plant.file, /no earlier version of/],
-            [join(other, 'tags.csv.1'), /no earlier version of/]]) {
+        for (const [version, why] of [['tags.csv.90', /in more than `Place` \(line \d+\)/], ['tags.csv.91', /does not contain the same tags/],
+            ['tags.csv.92', /equals the present tag list/], ['tags.csv.93', /does not contain the same tags/],
+            ['other.csv.1', /not an earlier version of/], ['tags.csv', /not an earlier version of/], [plant.file, /not an earlier version of/],
+            [join(other, 'tags.csv.1'), /not an earlier version of/]]) {
             const refused = accept('--undo', version);
             assert.equal(refused.code, 1, version);
             assert.match(refused.err, why, version);
@@ -165,7 +165,7 @@ test('--undo takes only versions of that list which differ in Place alone, and n
         const locked = spawnSync('flock', [plant.folder, join(BIN, 'plantcast'), 'sensors', 'accept', plant.file, '--undo',
             `tags.csv.${last}`], { encoding: 'utf8' });
         assert.equal(locked.status, 1);
-        assert.match(locked.stderr, /flock \(process \d+\) is using the folder; try again/);
+        assert.match(locked.stderr, /flock \(process \d+\) is using the folder: try again later/);
         assert.equal(accept('--undo', join(plant.folder, `tags.csv.${last}`)).code, 0);
         assert.equal(readFileSync(tagsFile, 'utf8'), original);
     } finally {
