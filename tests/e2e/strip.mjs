@@ -87,7 +87,8 @@ test('a screenshot: scaled, on a desktop, JPEG again', { skip }, () => {
 
 test('what has no strip, half of one, or is no picture', { skip }, () => {
     assert.equal(snapshot('bare.png').code, 0);
-    const refusals = [['bare.png', /has no legend strip/], ['plant.yaml', /expected a valid PNG or JPEG file/], ['gone.png', /No such file/]];
+    const refusals = [['bare.png', /has no legend strip/], ['plant.yaml', /expected a valid PNG or JPEG file/],
+        ['gone.png', /No such file/]];
     for (const [name, words] of refusals) {
         const { code, err } = read(name, [1, 1]);
         assert.notEqual(code, 0);

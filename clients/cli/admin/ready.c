@@ -7,11 +7,12 @@
 #include "clients/cli/viewer/stream_reach.h"
 #include "clients/link/daemon.h"
 
-static const char usage[] = "usage: plantcast ready URL\n"
-                            "\n"
-                            "Checks that the daemon at URL (http://HOST:PORT/ or https://HOST:PORT/) serves pictures.\n"
-                            "Also checks that a WebSocket to the daemon can be opened, which a reverse proxy may block.\n"
-                            "If the daemon is not ready, prints the reason. Exit status: 0 ready, 1 not ready.\n";
+static const char usage[] =
+    "usage: plantcast ready URL\n"
+    "\n"
+    "Checks that the daemon at URL (http://HOST:PORT/ or https://HOST:PORT/) serves pictures.\n"
+    "Also checks that a WebSocket to the daemon can be opened, which a reverse proxy may block.\n"
+    "If the daemon is not ready, prints the reason. Exit status: 0 ready, 1 not ready.\n";
 
 int cmd_ready(int argc, char **argv)
 {

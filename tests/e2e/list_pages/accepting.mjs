@@ -152,9 +152,11 @@ test('--undo takes only versions of that list which differ in Place alone, and n
         write('tags.csv.93', 'anything at all\n');
         write('other.csv.1', original);
         writeFileSync(join(other, 'tags.csv.1'), original);
-        for (const [version, why] of [['tags.csv.90', /in more than `Place` \(line \d+\)/], ['tags.csv.91', /does not contain the same tags/],
+        for (const [version, why] of [['tags.csv.90', /in more than `Place` \(line \d+\)/],
+            ['tags.csv.91', /does not contain the same tags/],
             ['tags.csv.92', /equals the present tag list/], ['tags.csv.93', /does not contain the same tags/],
-            ['other.csv.1', /not an earlier version of/], ['tags.csv', /not an earlier version of/], [plant.file, /not an earlier version of/],
+            ['other.csv.1', /not an earlier version of/], ['tags.csv', /not an earlier version of/],
+            [plant.file, /not an earlier version of/],
             [join(other, 'tags.csv.1'), /not an earlier version of/]]) {
             const refused = accept('--undo', version);
             assert.equal(refused.code, 1, version);

@@ -155,7 +155,8 @@ test('ready fails where /stream does, over http:// and https://, and names the p
         return { code, err: program.said };
     };
     for (const tls of [null, secure]) {
-        for (const [answer, words] of [[{ line: '502 Bad Gateway', code: 502 }, /not ready: the server answers \/stream with HTTP status 502/],
+        for (const [answer, words] of [
+            [{ line: '502 Bad Gateway', code: 502 }, /not ready: the server answers \/stream with HTTP status 502/],
             [{ line: '200 OK', code: 200 }, /a proxy in front of the server answered \/stream with HTTP status 200/],
             [{ line: '400 Bad Request' }, /does not accept a WebSocket/]]) {
             const proxy = await startOther(answer, {}, tls), { code, err } = await ready(proxy);
