@@ -49,13 +49,13 @@ static bool header_good(struct format_check *c, bool fresh)
 {
     const struct asset_header *h = (const struct asset_header *)c->bytes;
     if ((uintptr_t)c->bytes % ASSET_ALIGN != 0)
-        return wrong(c, "bytes are not aligned to %u", ASSET_ALIGN);
+        return wrong(c, "the bytes of the file are not aligned to %u bytes", ASSET_ALIGN);
     if (c->size < sizeof(h->magic) || memcmp(h->magic, ASSET_MAGIC, sizeof(h->magic)) != 0)
         return wrong(c, "not an asset file (magic is not %s)", ASSET_MAGIC);
     if (c->size < sizeof(*h))
-        return wrong(c, "truncated: %zu bytes, the header alone has %zu", c->size, sizeof(*h));
+        return wrong(c, "the file is truncated: %zu bytes, but the header alone has %zu", c->size, sizeof(*h));
     if (h->version != ASSET_VERSION)
-        return wrong(c, "version %u, this program reads version %u", h->version, ASSET_VERSION);
+        return wrong(c, "the file has version %u, but this program reads version %u", h->version, ASSET_VERSION);
     if (h->header_bytes != sizeof(*h))
         return wrong(c, "header of %u bytes, expected %zu", h->header_bytes, sizeof(*h));
     if (h->file_bytes != c->size)
@@ -75,7 +75,7 @@ static bool counts_good(struct format_check *c)
         return wrong(c, "nothing to draw: %u vertices, %u indices, %u primitives, %u levels, %u materials", h->vertex_count, h->index_count,
                      h->primitive_count, h->level_count, h->material_count);
     if (h->index_count % 3 != 0)
-        return wrong(c, "%u indices are not a multiple of 3", h->index_count);
+        return wrong(c, "the number of indices, %u, is not a multiple of 3", h->index_count);
     for (int axis = 0; axis < 3; axis++)
         if (!isfinite(h->origin_m[axis]))
             return wrong(c, "origin is not finite");
@@ -112,7 +112,7 @@ static bool sections_good(struct format_check *c)
         bool optional;
         uint64_t need = asset_section_bytes(h, i, &optional);
         if (s->offset % ASSET_ALIGN != 0 || s->offset < end || s->offset > c->size || s->bytes > c->size - s->offset)
-            return wrong(c, "section %s: bytes %llu..%llu+%llu lie outside the file or over another section", section_names[i],
+            return wrong(c, "section %s: bytes %llu..%llu+%llu lie outside the file or overlap another section", section_names[i],
                          (unsigned long long)s->offset, (unsigned long long)s->offset, (unsigned long long)s->bytes);
         if (i == ASSET_GEODESIC && s->bytes != need && packed_good(c, s))
             need = s->bytes;
@@ -156,7 +156,7 @@ static bool names_good(struct format_check *c)
 {
     uint64_t bytes = c->view.header->sections[ASSET_NAMES].bytes;
     if (bytes == 0 || c->view.names[bytes - 1] != 0)
-        return wrong(c, "section names: the last name has no end");
+        return wrong(c, "section names: the last name is not terminated");
     return true;
 }
 
@@ -199,10 +199,11 @@ static bool primitive_good(struct format_check *c, uint32_t number, uint32_t ver
     if (p->material >= v->header->material_count)
         return wrong(c, "primitive %u: material %u of %u", number, p->material, v->header->material_count);
     if (!name_good(c, p->name))
-        return wrong(c, "primitive %u: name at %u lies outside the names", number, p->name);
+        return wrong(c, "primitive %u: name at byte %u lies outside the section of names", number, p->name);
     for (uint32_t i = p->first_index; i < p->first_index + p->index_count; i++)
         if (v->indices[i] >= vertex_limit)
-            return wrong(c, "primitive %u: index %u names vertex %u of %u", number, i, v->indices[i], vertex_limit);
+            return wrong(c, "primitive %u: index %u refers to vertex %u, but there are only %u vertices", number, i, v->indices[i],
+                         vertex_limit);
     return true;
 }
 
@@ -215,13 +216,13 @@ static bool levels_good(struct format_check *c)
     for (uint32_t i = 0; i < h->level_count; i++) {
         const struct asset_level *l = &v->levels[i];
         if (l->first_primitive != next || l->primitive_count == 0 || l->primitive_count > h->primitive_count - next)
-            return wrong(c, "level %u: primitives %u+%u, expected a start at %u of %u", i, l->first_primitive, l->primitive_count,
+            return wrong(c, "level %u: primitives %u+%u, expected a start at primitive %u of %u", i, l->first_primitive, l->primitive_count,
                          next, h->primitive_count);
         if (l->vertex_count > vertices || (i == 0 && l->vertex_count != vertices))
-            return wrong(c, "level %u: the first %u vertices, expected %s%u", i, l->vertex_count, i ? "at most " : "", vertices);
+            return wrong(c, "level %u uses the first %u vertices, expected %s%u", i, l->vertex_count, i ? "at most " : "", vertices);
         uint32_t coarser = i + 1 < h->level_count ? v->levels[i + 1].vertex_count : 0;
         if (coarser <= l->vertex_count && l->added_count > l->vertex_count - coarser)
-            return wrong(c, "level %u: %u of its %u vertices are added", i, l->added_count, l->vertex_count - coarser);
+            return wrong(c, "level %u adds %u vertices, but has only %u of its own", i, l->added_count, l->vertex_count - coarser);
         if (!isfinite(l->error_m) || l->error_m < error_m || (i == 0 && l->error_m != 0))
             return wrong(c, "level %u: error of %g m after %g m", i, (double)l->error_m, (double)error_m);
         for (uint32_t p = 0; p < l->primitive_count; p++)
@@ -232,7 +233,7 @@ static bool levels_good(struct format_check *c)
         error_m = l->error_m;
     }
     if (next != h->primitive_count)
-        return wrong(c, "the levels hold %u primitives of %u", next, h->primitive_count);
+        return wrong(c, "the levels contain %u of %u primitives", next, h->primitive_count);
     return true;
 }
 
@@ -248,16 +249,16 @@ static bool cluster_good(struct format_check *c, uint32_t number)
         for (int a = 0; a < 3; a++) {
             float x = v->positions_m[v->indices[i]][a];
             if (x < cluster->low_m[a] || x > cluster->high_m[a])
-                return wrong(c, "cluster %u: index %u at %g m lies outside its box %g..%g m", number, i, (double)x,
+                return wrong(c, "cluster %u: index %u at %g m lies outside the cluster's box %g..%g m", number, i, (double)x,
                              (double)cluster->low_m[a], (double)cluster->high_m[a]);
         }
     if (cutoff == 1)
         return true;
     if (fabs(asset_length(axis) - 1) > 1e-3)
-        return wrong(c, "cluster %u: cone axis of length %g", number, asset_length(axis));
+        return wrong(c, "cluster %u: the cone axis has length %g, expected 1", number, asset_length(axis));
     double least = asset_cluster_least_dot(cluster, v->positions_m, v->indices, axis);
     if (least < sqrt(1 - (double)cutoff * (double)cutoff) - 1e-3)
-        return wrong(c, "cluster %u: a normal lies outside its cone (%g)", number, least);
+        return wrong(c, "cluster %u: a normal lies outside the cluster's cone (%g)", number, least);
     return true;
 }
 
@@ -271,7 +272,7 @@ static bool clusters_good(struct format_check *c)
             const struct asset_cluster *cluster = next < count ? &v->clusters[next] : NULL;
             if (!cluster || cluster->first_index != at || cluster->index_count == 0 || cluster->index_count % 3 != 0 ||
                 cluster->index_count > end - at)
-                return wrong(c, "cluster %u of %u: indices %u+%u, expected some of %u..%u (primitive %u)", next, count,
+                return wrong(c, "cluster %u of %u: indices %u+%u lie outside the expected %u..%u (primitive %u)", next, count,
                              cluster ? cluster->first_index : 0, cluster ? cluster->index_count : 0, at, end, p);
             if (!cluster_good(c, next))
                 return false;
@@ -279,7 +280,7 @@ static bool clusters_good(struct format_check *c)
         }
     }
     if (next != count)
-        return wrong(c, "the primitives hold %u clusters of %u", next, count);
+        return wrong(c, "the primitives contain %u of %u clusters", next, count);
     return true;
 }
 
@@ -307,14 +308,15 @@ static bool material_good(struct format_check *c, uint32_t number)
             return wrong(c, "material %u: texture %u of %u%s", number, textures[i], c->view.header->texture_count,
                          textures[i] < c->view.header->texture_count ? ", without coordinates" : "");
     if (m->second & ~ASSET_SECOND_MASK)
-        return wrong(c, "material %u: second 0x%x has bits outside 0x%x", number, m->second, ASSET_SECOND_MASK);
+        return wrong(c, "material %u: flags of second texture coordinates 0x%x have bits outside 0x%x", number, m->second,
+                     ASSET_SECOND_MASK);
     if (!unit_range(m->base_color, 4) || !unit_range(&m->metallic, 1) || !unit_range(&m->roughness, 1) ||
         !unit_range(&m->occlusion_strength, 1))
         return wrong(c, "material %u: a factor lies outside 0..1", number);
     if (!isfinite(m->normal_scale) || !finite_all(m->emissive, 3) || !isfinite(m->alpha_cutoff))
         return wrong(c, "material %u: a factor is not finite", number);
     if (m->alpha > ASSET_ALPHA_BLEND || m->double_sided > 1 || !name_good(c, m->name))
-        return wrong(c, "material %u: alpha mode %u, double_sided %u or name at %u out of range", number, m->alpha, m->double_sided,
+        return wrong(c, "material %u: alpha mode %u, double_sided %u or name at byte %u is out of range", number, m->alpha, m->double_sided,
                      m->name);
     return true;
 }
@@ -348,7 +350,7 @@ static bool sensors_good(struct format_check *c)
     for (uint32_t i = 0; i < h->sensor_count; i++) {
         const struct asset_sensor *s = &v->sensors[i];
         if (!finite_all(s->position_m, 3) || !finite_all(s->surface_m, 3) || !isfinite(s->surface_distance_m) || s->surface_distance_m < 0)
-            return wrong(c, "sensor %u: place is not finite", i);
+            return wrong(c, "sensor %u: the position is not finite", i);
         if (s->nearest_vertex >= h->vertex_count)
             return wrong(c, "sensor %u: nearest vertex %u of %u", i, s->nearest_vertex, h->vertex_count);
     }

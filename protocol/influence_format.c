@@ -44,12 +44,12 @@ bool influence_view_init(struct influence_view *view, const void *bytes, size_t 
         return false;
     }
     if (header->vertex_count != vertex_count) {
-        snprintf(why, 200, "made for %u vertices, the asset has %u", header->vertex_count, vertex_count);
+        snprintf(why, 200, "the influence file was made for %u vertices, but the asset has %u", header->vertex_count, vertex_count);
         return false;
     }
     for (uint32_t i = 0; i < header->entry_count; i++)
         if (!entry_good(view, &view->entries[i], size)) {
-            snprintf(why, 200, "entry %u of %u: %u sensors, outside the file or not finite", i, header->entry_count,
+            snprintf(why, 200, "entry %u of %u: the weights of %u sensors are outside the file or not finite", i, header->entry_count,
                      view->entries[i].sensor_count);
             return false;
         }

@@ -215,7 +215,7 @@ TEST(truncated_or_foreign_files_are_refused)
     refused_sealed(&f, "magic");
     f = build(&good);
     f.header->version = 5;
-    refused_sealed(&f, "version 5, this program reads version 6");
+    refused_sealed(&f, "version 5, but this program reads version 6");
     f = build(&good);
     f.header->header_bytes = 320;
     refused_sealed(&f, "header of 320 bytes");
@@ -255,7 +255,7 @@ TEST(sections_out_of_bounds_are_refused)
         refused_sealed(&f, "outside the file");
         f = build(&good);
         f.header->sections[i].offset = 0;
-        refused_sealed(&f, "over another section");
+        refused_sealed(&f, "overlap another section");
         f = build(&good);
         f.header->sections[i].offset += 4;
         refused_sealed(&f, "section");
@@ -268,13 +268,13 @@ TEST(sections_out_of_bounds_are_refused)
     refused_sealed(&f, "section sensors");
     f = build(&good);
     f.header->index_count = 8;
-    refused_sealed(&f, "8 indices are not a multiple of 3");
+    refused_sealed(&f, "the number of indices, 8, is not a multiple of 3");
     f = build(&good);
     f.header->vertex_count = 0;
     refused_sealed(&f, "nothing to draw");
     f = build(&good);
     ((char *)part(&f, ASSET_NAMES))[5] = 'x';
-    refused_sealed(&f, "the last name has no end");
+    refused_sealed(&f, "the last name is not terminated");
 }
 
 TEST(wrong_vertices_are_refused)
@@ -309,11 +309,11 @@ TEST(wrong_primitives_and_levels_are_refused)
 {
     struct asset_bytes f = build(&good);
     ((uint32_t *)part(&f, ASSET_INDICES))[4] = 4;
-    refused_sealed(&f, "primitive 0: index 4 names vertex 4 of 4");
+    refused_sealed(&f, "primitive 0: index 4 refers to vertex 4, but there are only 4 vertices");
     f = build(&good);
     ((uint32_t *)part(&f, ASSET_INDICES))[7] = 3;
-    refused_sealed(&f, "primitive 1: index 7 names vertex 3 of 3"); /* the index is within the file but not within the level's prefix of
-                                                                       vertices */
+    /* the index is within the file but not within the level's prefix of vertices */
+    refused_sealed(&f, "primitive 1: index 7 refers to vertex 3, but there are only 3 vertices");
     f = build(&good);
     ((struct asset_primitive *)part(&f, ASSET_PRIMITIVES))[1].first_index = UINT32_MAX - 2;
     refused_sealed(&f, "primitive 1: indices");
@@ -325,16 +325,16 @@ TEST(wrong_primitives_and_levels_are_refused)
     refused_sealed(&f, "primitive 0: material 1 of 1");
     f = build(&good);
     ((struct asset_primitive *)part(&f, ASSET_PRIMITIVES))[0].name = 6;
-    refused_sealed(&f, "primitive 0: name at 6");
+    refused_sealed(&f, "primitive 0: name at byte 6");
     f = build(&good);
     ((struct asset_level *)part(&f, ASSET_LEVELS))[1].vertex_count = 5;
-    refused_sealed(&f, "level 1: the first 5 vertices, expected at most 4");
+    refused_sealed(&f, "level 1 uses the first 5 vertices, expected at most 4");
     f = build(&good);
     ((struct asset_level *)part(&f, ASSET_LEVELS))[0].vertex_count = 3;
-    refused_sealed(&f, "level 0: the first 3 vertices, expected 4");
+    refused_sealed(&f, "level 0 uses the first 3 vertices, expected 4");
     f = build(&good);
     ((struct asset_level *)part(&f, ASSET_LEVELS))[1].first_primitive = 0;
-    refused_sealed(&f, "level 1: primitives 0+1, expected a start at 1 of 2");
+    refused_sealed(&f, "level 1: primitives 0+1, expected a start at primitive 1 of 2");
     f = build(&good);
     ((struct asset_level *)part(&f, ASSET_LEVELS))[1].primitive_count = UINT32_MAX;
     refused_sealed(&f, "level 1: primitives");
@@ -343,21 +343,21 @@ TEST(wrong_primitives_and_levels_are_refused)
     refused_sealed(&f, "level 1: error of -1 m after 0 m");
     f = build(&good);
     ((struct asset_level *)part(&f, ASSET_LEVELS))[0].added_count = 2;
-    refused_sealed(&f, "level 0: 2 of its 1 vertices are added");
+    refused_sealed(&f, "level 0 adds 2 vertices, but has only 1 of its own");
     f = build(&good);
     f.header->level_count = 1;
     f.header->sections[ASSET_LEVELS].bytes = sizeof(struct asset_level);
-    refused_sealed(&f, "the levels hold 1 primitives of 2");
+    refused_sealed(&f, "the levels contain 1 of 2 primitives");
 }
 
 TEST(wrong_clusters_are_refused)
 {
     struct asset_bytes f = build(&good);
     ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[1].first_index = 0;
-    refused_sealed(&f, "cluster 1 of 3: indices 0+3, expected some of 3..6 (primitive 0)");
+    refused_sealed(&f, "cluster 1 of 3: indices 0+3 lie outside the expected 3..6 (primitive 0)");
     f = build(&good);
     ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[1].index_count = 6;
-    refused_sealed(&f, "cluster 1 of 3: indices 3+6, expected some of 3..6");
+    refused_sealed(&f, "cluster 1 of 3: indices 3+6 lie outside the expected 3..6");
     f = build(&good);
     ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[0].index_count = 0;
     refused_sealed(&f, "cluster 0 of 3: indices 0+0");
@@ -366,7 +366,7 @@ TEST(wrong_clusters_are_refused)
     refused_sealed(&f, "cluster 2 of 3: indices 6+2");
     f = build(&good);
     ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[1].high_m[2] = 0.4f;
-    refused_sealed(&f, "cluster 1: index 4 at 0.5 m lies outside its box 0..0.4 m");
+    refused_sealed(&f, "cluster 1: index 4 at 0.5 m lies outside the cluster's box 0..0.4 m");
     f = build(&good);
     ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[2].low_m[0] = NAN;
     refused_sealed(&f, "cluster 2: box or cone is not finite");
@@ -375,10 +375,10 @@ TEST(wrong_clusters_are_refused)
     refused_sealed(&f, "cutoff 1.5 lies outside 0..1");
     f = build(&good);
     ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[2].cone_cutoff = 0.5f;
-    refused_sealed(&f, "cluster 2: a normal lies outside its cone (0.8)");
+    refused_sealed(&f, "cluster 2: a normal lies outside the cluster's cone (0.8)");
     f = build(&good);
     ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[0].cone_axis[2] = 2;
-    refused_sealed(&f, "cluster 0: cone axis of length 2");
+    refused_sealed(&f, "cluster 0: the cone axis has length 2");
     struct asset_parts parts = good;
     parts.cluster_count = 2;
     f = build(&parts);
@@ -387,7 +387,7 @@ TEST(wrong_clusters_are_refused)
     parts.clusters = more;
     parts.cluster_count = 4;
     f = build(&parts);
-    refused_sealed(&f, "the primitives hold 3 clusters of 4");
+    refused_sealed(&f, "the primitives contain 3 of 4 clusters");
 }
 
 static float unit(uint32_t *seed)
@@ -463,10 +463,10 @@ TEST(wrong_materials_and_textures_are_refused)
     refused_sealed(&f, "section second texcoords: 24 bytes, expected 32");
     f = build(&good);
     ((struct asset_material *)part(&f, ASSET_MATERIALS))->second |= 1;
-    refused_sealed(&f, "material 0: second 0x9 has bits outside 0x1e");
+    refused_sealed(&f, "material 0: flags of second texture coordinates 0x9 have bits outside 0x1e");
     f = build(&good);
     ((struct asset_material *)part(&f, ASSET_MATERIALS))->second |= 1 << 5;
-    refused_sealed(&f, "material 0: second 0x28 has bits outside 0x1e");
+    refused_sealed(&f, "material 0: flags of second texture coordinates 0x28 have bits outside 0x1e");
     f = build(&good);
     ((struct asset_material *)part(&f, ASSET_MATERIALS))->base_color[1] = NAN;
     refused_sealed(&f, "material 0: a factor");
@@ -497,10 +497,10 @@ TEST(wrong_sensors_are_refused)
 {
     struct asset_bytes f = build(&good);
     ((struct asset_sensor *)part(&f, ASSET_SENSORS))[1].surface_m[0] = NAN;
-    refused_sealed(&f, "sensor 1: place is not finite");
+    refused_sealed(&f, "sensor 1: the position is not finite");
     f = build(&good);
     ((struct asset_sensor *)part(&f, ASSET_SENSORS))[1].surface_distance_m = -1;
-    refused_sealed(&f, "sensor 1: place");
+    refused_sealed(&f, "sensor 1: the position");
     f = build(&good);
     ((struct asset_sensor *)part(&f, ASSET_SENSORS))[1].nearest_vertex = 4;
     refused_sealed(&f, "sensor 1: nearest vertex 4 of 4");
