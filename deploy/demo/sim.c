@@ -29,28 +29,27 @@ static const char usage_text[] =
     "  --port N         TCP port of the first simulated device; further devices get the next ports\n"
     "                   (default: the port of the first source in the plant file)\n"
     "  --bind ADDRESS   IPv4 address of this machine to listen on (default: 127.0.0.1)\n"
-    "  --values FILE    CSV file of recorded values (series) that tags replay; may be repeated. Three forms:\n"
-    "                   wide: a header line, and one column for each series. Times are in a column whose name\n"
-    "                   ends in _ms, _s, _min or _h, or are written as 2026-11-20T10:00:00Z (without a zone:\n"
-    "                   in the zone of the plant).\n"
+    "  --values FILE    CSV file of recorded series that tags replay; may be repeated. FILE has one of three forms:\n"
+    "                   wide: a header line, and one column for each series. The name of the time column ends\n"
+    "                   in _ms, _s, _min or _h, or the times look like 2026-11-20T10:00:00Z (without a zone:\n"
+    "                   in the time zone of the plant).\n"
     "                   one value a line: a header line Tag,Time,Value.\n"
     "                   long: no header line; each line is time in ms,type,entity,property,value\n"
     "  --map TAG=SERIES[*SCALE[+OFFSET]]\n"
-    "                   let this tag replay a series: the name of a column, or entity/property of a long file;\n"
+    "                   let TAG replay SERIES: the name of a column, or entity/property of a long file;\n"
     "                   may be repeated\n"
-    "  --speed X        run X times as fast as real time (default: 1)\n"
-    "  --loop           repeat recorded series from their start when they end (default: keep the last\n"
-    "                   value)\n"
-    "  --mqtt HOST:PORT publish the tags of MQTT sources to this broker, as numbers or JSON. Use a broker\n"
-    "                   of your own: subscribers cannot tell these values from measured ones\n"
+    "  --speed X        run the simulation X times as fast as real time (default: 1)\n"
+    "  --loop           repeat each recorded series from its start (default: keep the last value of the series)\n"
+    "  --mqtt HOST:PORT publish the tags of MQTT sources to this broker, as numbers or JSON\n"
+    "                   Use a separate broker: subscribers cannot tell simulated values from measured ones\n"
     "  --control PORT   accept the commands below on this TCP port of 127.0.0.1\n"
     "  --help           print this text\n"
     "\n"
     "A tag without a recorded series varies around the value in column `Sim Value` of the tag list\n"
-    "(default: 40 % of its range). The column `Sim Loop` names the part of the process of a tag.\n"
-    "PLANT.map next to PLANT.yaml may hold options, one a line: TAG=SERIES as for --map,\n"
+    "(default: 40 % of the range of the tag). Column `Sim Loop` names the part of the process of a tag.\n"
+    "PLANT.map next to PLANT.yaml may contain options, one per line: TAG=SERIES (as for --map),\n"
     "`values FILE`, `speed X`, `loop`; # begins a comment.\n"
-    "Simulated faults (upsets), one after another, and the tags that they change:\n";
+    "Simulated faults (upsets), which occur one after another, and the tags that each fault changes:\n";
 
 struct sim_options {
     const char *plant, *bind, *broker;
@@ -157,7 +156,7 @@ static bool open_port(struct sim_port *port, const char *address, int number, si
     int status = sim_port_open(port, address, number, take, arg);
     if (status)
         fprintf(stderr, "plantcast-sim: cannot listen on %s:%d: %s%s\n", address, number, strerror(-status),
-                status == -EADDRINUSE ? "; if another plantcast-sim runs, stop it, or give the source another port" : "");
+                status == -EADDRINUSE ? "; stop the other plantcast-sim if one runs, or give the source another port" : "");
     return status == 0;
 }
 

@@ -9,7 +9,7 @@
 #include <sys/socket.h>
 
 const char sim_control_help[] =
-    "  set TAG VALUE   hold the tag at VALUE, in its Eng Units; nan and inf if its data type can hold them\n"
+    "  set TAG VALUE   hold the tag at VALUE, in the Eng Units of the tag; nan, inf: for floating-point types\n"
     "  get TAG         print the present value of the tag\n"
     "  fail TAG        answer requests for the registers of the tag with Modbus exception 2 (illegal address)\n"
     "  release TAG     undo `set` and `fail` for the tag\n"
@@ -33,7 +33,7 @@ static void set_tag(struct sim *sim, size_t tag, const char *text, char *reply, 
     if (end == text || *end)
         snprintf(reply, bytes, "error: %s is not a number", text);
     else if (!sim_image_set(&device->modbus.image, unit, config, value))
-        snprintf(reply, bytes, "error: the data type of %s cannot hold %s", config->name, text);
+        snprintf(reply, bytes, "error: the data type of tag %s cannot hold %s", config->name, text);
     else
         sim_values_force(sim->values, tag, value);
 }
@@ -48,7 +48,7 @@ static void do_with_published(struct sim *sim, const struct sim_command *command
     else if (!strcmp(command->name, "release"))
         sim_values_release(sim->values, tag);
     else if (!strcmp(command->name, "fail"))
-        snprintf(reply, bytes, "error: %s is not on Modbus", command->tag);
+        snprintf(reply, bytes, "error: tag %s has no Modbus register", command->tag);
     else if (end == command->value || *end)
         snprintf(reply, bytes, "error: %s is not a number", command->value);
     else

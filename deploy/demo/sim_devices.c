@@ -51,7 +51,7 @@ bool sim_init(struct sim *sim, const struct plant *plant, struct sim_values *val
 {
     *sim = (struct sim){ .plant = plant, .values = values };
     if (!add_devices(sim, port) || (sim->device_count == 0 && !broker)) {
-        fprintf(stderr, "plantcast-sim: %s: no Modbus TCP source to simulate\n", plant->files.path);
+        fprintf(stderr, "plantcast-sim: %s: the plant file has no Modbus TCP source to simulate\n", plant->files.path);
         return false;
     }
     if (broker && !(sim->mqtt = sim_mqtt_create(plant, broker)))

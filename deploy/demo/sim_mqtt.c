@@ -66,7 +66,7 @@ struct sim_mqtt *sim_mqtt_create(const struct plant *plant, const char *where)
             mqtt->tag_count += mqtt->topics[i].tag_count;
         }
     if (mqtt->tag_count == 0)
-        fprintf(stderr, "plantcast-sim: %s: no tag of an MQTT source with numbers or JSON to simulate\n", plant->files.path);
+        fprintf(stderr, "plantcast-sim: %s: the plant file has no MQTT tag with number or JSON payload to simulate\n", plant->files.path);
     if (mqtt->tag_count == 0 || !connect_to(mqtt, where))
         sim_mqtt_destroy(&mqtt);
     return mqtt;

@@ -101,7 +101,7 @@ static struct process *make_process(const struct plant *plant, struct diag *diag
 static const struct series *find_series(struct sim_values *values, const struct sim_map *map, const struct sim_map_entry *entry,
                                             struct diag *diag)
 {
-    char why[200] = "no file of values given";
+    char why[200] = "no file of recorded values: add --values FILE";
     bool found = false;
     for (size_t i = 0; i < values->series_count; i++)
         if (!strcmp(values->series[i].name, entry->series))
@@ -119,8 +119,8 @@ static void take_unit(struct sim_values *values, const struct sim_map_entry *ent
 {
     const char *unit = values->tags[tag].series ? values->tags[tag].series->unit : NULL, *own = values->plant->tags[tag].scale.own_unit;
     if (unit && *unit && units_compare(unit, own, &values->tags[tag].change) > UNITS_CONVERT)
-        diag_error(diag, entry->file, entry->line, 0, "%s: %s is in '%.60s', which cannot be converted to '%.60s'", entry->tag,
-                   entry->series, unit, own);
+        diag_error(diag, entry->file, entry->line, 0, "tag %s: series %s has the unit '%.60s', which cannot be converted to '%.60s'",
+                   entry->tag, entry->series, unit, own);
 }
 
 static void apply_map(struct sim_values *values, const struct sim_map *map, struct diag *diag)
@@ -130,7 +130,7 @@ static void apply_map(struct sim_values *values, const struct sim_map *map, stru
         const struct sim_map_entry *entry = &map->entries[i];
         int tag = plant_find_tag(values->plant, entry->tag);
         if (tag < 0) {
-            diag_error(diag, entry->file, entry->line, 0, "%s: the plant has no such tag", entry->tag);
+            diag_error(diag, entry->file, entry->line, 0, "the plant has no tag %s", entry->tag);
             continue;
         }
         values->tags[tag].series = find_series(values, map, entry, diag);

@@ -240,7 +240,7 @@ test('plantcast-sim publishes what the tags of MQTT sources find', options, asyn
             assert.equal(await plant.plant.tell(`set ${name} ${value}`), 'ok');
             await until(name, { ...good, value });
         }
-        assert.match(await plant.plant.tell('fail PI-1'), /^error: PI-1 is not on Modbus/);
+        assert.match(await plant.plant.tell('fail PI-1'), /^error: tag PI-1 has no Modbus register/);
         await plant.plant.sim.stop();
         await plant.daemon.stop();
     }
