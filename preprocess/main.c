@@ -32,31 +32,30 @@ static const char usage[] =
     "\n"
     "Prepares the models of a plant file for the daemon: extracts the triangles of each asset,\n"
     "projects sensors onto them, and computes distances along the surface from sensors to vertices.\n"
-    "Results of an earlier run are kept if their inputs have not changed.\n"
+    "Results of an earlier run are reused if their inputs have not changed.\n"
     "Only one run at a time works in an output folder; a second run waits.\n"
     "\n"
-    "  --output DIR    folder of the prepared files (default: NAME.prepared next to NAME.yaml)\n"
-    "  --report FORMAT text: print the results of all assets; json: the same for programs (default: text,\n"
-    "                  but only assets that were computed now, at most 40 rows). Progress goes to\n"
-    "                  standard error. preprocess/REPORT.md explains each number\n"
-    "  --debug-view[=DIR]  also write ASSET.glb for each asset, to look at the prepared surface in any\n"
-    "                  glTF viewer: sample points, bridges across gaps, open edges, interior patches, and\n"
-    "                  as colour the distance from a sensor (default: NAME.debug next to NAME.yaml)\n"
+    "  --output DIR    output folder for the prepared files (default: NAME.prepared next to NAME.yaml)\n"
+    "  --report FORMAT text: print the results of all assets; json: print the same results as JSON\n"
+    "                  (default: text of the assets that were computed in this run, at most 40 rows)\n"
+    "                  preprocess/REPORT.md explains each number. Progress goes to standard error\n"
+    "  --debug-view[=DIR]  also write ASSET.glb for each asset to DIR (default: NAME.debug next to NAME.yaml)\n"
+    "                  ASSET.glb shows the prepared surface in any glTF viewer: sample points, bridges across\n"
+    "                  gaps, open edges, interior patches, and as colour the distance from a sensor\n"
     "  --asset ID      prepare or print only this asset\n"
-    "  --sensor TAG    sensor whose distances --debug-view and `distances` show (default: the first one\n"
-    "                  of each asset)\n"
-    "  --memory MB     memory of the machine that will run the daemon (default: that of this machine).\n"
+    "  --sensor TAG    sensor whose distances --debug-view and `distances` show (default: first of each asset)\n"
+    "  --memory MB     memory in MB of the machine that will run the daemon (default: of this machine)\n"
     "                  A plant that does not fit is refused, with the number of triangles that would fit\n"
-    "  --diff OLD NEW  compare two revisions of a plant, each a plant file or a folder of prepared files:\n"
-    "                  assets that were added, removed, moved or changed, sensors whose surface moved,\n"
+    "  --diff OLD NEW  compare two revisions of a plant; OLD and NEW: plant file or folder of prepared files\n"
+    "                  Prints assets that were added, removed, moved or changed, sensors whose surface moved,\n"
     "                  and tags that lost their position (exit status 1 if a tag lost its position)\n"
-    "  --tolerance M   with --diff: ignore changes smaller than this, in metres (default: 0.01, or 1 % of\n"
-    "                  the asset's diagonal if that is less)\n"
+    "  --tolerance M   with --diff: ignore changes smaller than M metres (default: 0.01, or 1 % of the asset's\n"
+    "                  diagonal if 1 % of the diagonal is less)\n"
     "  --help          print this text\n"
     "\n"
-    "`distances` prints, for each vertex of the asset, its position and its distance from the sensor,\n"
-    "along the surface and straight, as CSV: x,y,z,geodesic_m,euclidean_m (metres, plant coordinates).\n"
-    "SIGINT and SIGTERM end a run within 5 s. Finished assets are kept; the next run does the others.\n"
+    "`distances` prints for each vertex of the asset the position of the vertex and its distances from the\n"
+    "sensor, along the surface and straight, as CSV: x,y,z,geodesic_m,euclidean_m (metres, plant coordinates).\n"
+    "SIGINT and SIGTERM end a run within 5 s. Finished assets are kept; the next run prepares all others.\n"
     "Exit status: 0 success, 1 input or disk error, 2 wrong usage.\n";
 
 struct prep_options {
@@ -80,7 +79,7 @@ static void on_signal(int signal)
 static void give_up(int signal)
 {
     static const char words[] =
-        "\nplantcast-prep: interrupted; unfinished assets were discarded, finished ones are kept; run it again to continue\n";
+        "\nplantcast-prep: interrupted: finished assets are kept, unfinished assets were discarded; run plantcast-prep again to continue\n";
     (void)signal;
     if (write(STDERR_FILENO, words, sizeof(words) - 1) < 0)
         _exit(1);
@@ -158,17 +157,17 @@ static int read_options(int argc, char **argv, struct prep_options *options)
         return wrong_use("", "expected a plant file");
     options->plant = argv[optind++];
     if (options->diff && optind >= argc)
-        return wrong_use("", "--diff needs two plants: the old one and the new one");
+        return wrong_use("", "--diff needs two arguments: the old plant and the new plant");
     if (options->diff)
         options->revision = argv[optind++];
     if (optind < argc)
         return wrong_use("too many arguments: ", argv[optind]);
     if (options->distances && (!options->asset || !options->sensor))
-        return wrong_use("", "distances needs --asset and --sensor");
+        return wrong_use("", "the command distances needs --asset and --sensor");
     if (options->tolerance_m > 0 && !options->diff)
-        return wrong_use("", "--tolerance belongs to --diff");
+        return wrong_use("", "--tolerance needs --diff");
     if (!options->distances && !options->debug_view && options->sensor)
-        return wrong_use("", "--sensor belongs to distances and --debug-view");
+        return wrong_use("", "--sensor needs the command distances or --debug-view");
     return 0;
 }
 
@@ -200,7 +199,7 @@ static bool say_early(const struct plant *plant, size_t memory_bytes)
             diag_copy(&errors, &diag.items[i]);
     diag_print(&errors, stderr);
     if (errors.count && fits)
-        fprintf(stderr, "plantcast-prep: preparing the remaining assets\n");
+        fprintf(stderr, "plantcast-prep: preparing the assets without errors\n");
     fflush(stderr);
     diag_finish(&errors);
     diag_finish(&diag);
@@ -274,7 +273,7 @@ static bool confine_self(const struct plant *plant, const char *folder, char **a
     int status = child_self_confine(&paths, notifies, argv);
     child_paths_finish(&paths);
     if (status != 0)
-        diag_error(diag, plant->files.path, 0, 0, "plantcast-prep cannot be confined: %s", strerror(-status));
+        diag_error(diag, plant->files.path, 0, 0, "plantcast-prep cannot restrict its own file access (sandbox): %s", strerror(-status));
     return status == 0;
 }
 

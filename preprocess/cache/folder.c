@@ -63,7 +63,7 @@ int folder_lock(const char *folder, struct log *log, const atomic_bool *stop)
     char *path = mem_printf("%s/" LOCK, folder), own[32];
     int fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666), status = fd < 0 ? -1 : flock(fd, LOCK_EX | LOCK_NB);
     if (fd >= 0 && status != 0 && errno == EWOULDBLOCK)
-        log_warn(log, "%s: process %ld is preparing this folder; waiting for it", folder, holder_of(fd));
+        log_warn(log, "%s: process %ld is preparing this folder: waiting until that process ends", folder, holder_of(fd));
     while (fd >= 0 && status != 0 && errno == EWOULDBLOCK && !(stop && atomic_load(stop))) {
         usleep(LOCK_RETRY_DELAY_US);
         status = flock(fd, LOCK_EX | LOCK_NB);
@@ -256,7 +256,7 @@ static char *manifest_text(struct log *log, const char *folder, const struct fol
                                   "placement", placement, "tags", tags);
         json_t *missing = entries[i].missing ? json_string(entries[i].missing) : NULL;
         if (entries[i].missing)
-            json_object_set_new(asset, "missing", missing ? missing : json_string("the folder cannot be used for preparing"));
+            json_object_set_new(asset, "missing", missing ? missing : json_string("the output folder of plantcast-prep cannot be used"));
         add_surface(asset, folder, entries[i].geometry_key);
         add_resolved(asset, log, folder, entries[i].key);
         add_left_out(asset, &entries[i], json_object_get(old_root, "assets"));

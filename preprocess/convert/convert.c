@@ -107,7 +107,7 @@ static bool convert_one(const struct plant *plant, const struct plant_conversion
         if (good)
             json_object_set_new(made, how->model, json_pack("{s:s,s:s}", "from", from.at, "model", to.at));
         else
-            diag_error(diag, plant->files.path, how->line, 0, "convert: '%s' could not be created: %s", how->model, why);
+            diag_error(diag, plant->files.path, how->line, 0, "convert: the model '%s' could not be created: %s", how->model, why);
     }
     text_finish(&from);
     text_finish(&to);

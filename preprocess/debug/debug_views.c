@@ -75,7 +75,7 @@ static bool find_distances(struct subject *subject, char *why)
 {
     const double(*chosen)[3] = (const double(*)[3])subject->places_m + subject->chosen;
     if (!surface_field_init(&subject->field, subject->surface, chosen, 1, NULL))
-        return wrong(why, "the asset's distances cannot be computed");
+        return wrong(why, "the distances along the surface of the asset cannot be computed");
     return true;
 }
 
@@ -87,7 +87,7 @@ static bool look_at(struct views *views, struct subject *subject, char *why)
     subject->surface = surface_create(views->log, views->workers, (const float(*)[3])g->positions_m, g->vertex_count, g->indices,
                                       g->index_count / 3, &(struct surface_params){ .tolerance_m = subject->params.tolerance_m });
     if (!subject->surface)
-        return wrong(why, "the asset's surface cannot be built");
+        return wrong(why, "the surface of the asset cannot be built from its triangles");
     return subject->sensor_count == 0 || find_distances(subject, why);
 }
 
@@ -161,7 +161,7 @@ bool debug_views_write(struct log *log, struct workers *workers, const struct pl
     struct model_files models = { 0 };
     int tag = params->sensor ? plant_find_tag(plant, params->sensor) : 0;
     if (params->sensor && (tag < 0 || plant->tags[tag].asset < 0 || plant->tags[tag].group < 0)) {
-        diag_error(diag, plant->files.tags_path, tag < 0 ? 0 : plant->tags[tag].line, 0, "tag %s is not a sensor of an asset",
+        diag_error(diag, plant->files.tags_path, tag < 0 ? 0 : plant->tags[tag].line, 0, "tag %s is not a sensor of any asset",
                    params->sensor);
         return false;
     }

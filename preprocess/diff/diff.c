@@ -170,7 +170,7 @@ static void compare_sensor(struct diff *diff, struct asset_pair *pair, const str
     double place_m[2][3], surface_m[2][3];
     if (tag->column >= shape->sensor_count || isnan(shape->places_m[tag->column][0])) {
         const char *why = tag->column < shape->sensor_count ? shape->whys[tag->column] : NULL;
-        orphan(diff, tag->name, tag->asset, mem_strdup(why ? why : "the asset's prepared file does not have this sensor"));
+        orphan(diff, tag->name, tag->asset, mem_strdup(why ? why : "the prepared file of the asset does not contain this sensor"));
         return;
     }
     struct diff_sensor found = { .tag = tag->name, .asset = tag->asset, .limit_m = pair->limit_m, .tolerance_m = pair->tolerance_m };
@@ -187,8 +187,8 @@ static void compare_sensor(struct diff *diff, struct asset_pair *pair, const str
     }
     if (found.distance_m[1] > found.limit_m && (!was || found.distance_m[0] <= found.limit_m))
         orphan(diff, tag->name, tag->asset,
-               mem_printf("it is %.3f m from the surface (more than %.3f m)%s", found.distance_m[1], found.limit_m,
-                          was ? "; it was on it" : ""));
+               mem_printf("the sensor is %.3f m from the surface of its asset (more than %.3f m)%s", found.distance_m[1], found.limit_m,
+                          was ? "; before, the sensor was on the surface" : ""));
 }
 
 static void compare_sensors(struct diff *diff, struct asset_pair *pair)
@@ -232,7 +232,7 @@ static void find_renamed(struct diff *diff, const struct asset_pair *pair, const
         if (guess)
             *guess = 0;
         size_t length = strlen(why);
-        snprintf(why + length, MODEL_WHY_BYTES - length, ": %s has the same shape at the same place", name);
+        snprintf(why + length, MODEL_WHY_BYTES - length, ": node %s has the same shape at the same place", name);
         return;
     }
 }

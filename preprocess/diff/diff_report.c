@@ -109,12 +109,13 @@ void diff_text(const struct diff *diff, FILE *out)
     assets_text(diff, out);
     sensors_text(diff, out);
     names_text("Tags that are new", diff->tags_added, diff->added_count, out);
-    names_text("Tags that are no longer in the list", diff->tags_removed, diff->removed_count, out);
+    names_text("Tags that are no longer in the tag list", diff->tags_removed, diff->removed_count, out);
     fprintf(out, "\n");
     for (size_t i = 0; i < diff->orphan_count; i++)
-        fprintf(out, "! %s: orphaned: %s\n", diff->orphans[i].tag, diff->orphans[i].why);
+        fprintf(out, "! %s: position lost: %s\n", diff->orphans[i].tag, diff->orphans[i].why);
     fprintf(out,
-            "%s > %s: %zu assets added, %zu removed, %zu moved, %zu changed, %zu the same; %zu sensors' surface moved; %zu tags orphaned\n",
+            "%s > %s: %zu assets added, %zu removed, %zu moved, %zu changed, %zu unchanged; surface of %zu sensors moved; %zu tags lost "
+            "their position\n",
             diff->old_side.path, diff->new_side.path, counts[DIFF_ADDED], counts[DIFF_REMOVED], counts[DIFF_MOVED], counts[DIFF_CHANGED],
             counts[DIFF_SAME], sensors, diff->orphan_count);
 }

@@ -85,7 +85,7 @@ static void add_parts(struct node_primitives *parts, struct geometry *geometry, 
 
 static bool no_triangles(const struct geometry *geometry, const char *pattern, char *why)
 {
-    return wrong(why, "%s%.120s%s has no triangles (%u primitives of lines and %u of points)", pattern ? "'" : "the model",
+    return wrong(why, "%s%.120s%s has no triangles (%u line primitives, %u point primitives)", pattern ? "'" : "the model",
                  pattern ? pattern : "", pattern ? "'" : "", geometry->skipped_lines, geometry->skipped_points);
 }
 
@@ -120,9 +120,9 @@ bool node_primitives_find(struct node_primitives *parts, struct geometry *geomet
     }
     mem_free(taken);
     if (triangles > MAX_TRIANGLES)
-        return wrong(why, "%llu triangles are more than %llu", (unsigned long long)triangles, MAX_TRIANGLES);
+        return wrong(why, "the asset has %llu triangles, more than the limit of %llu", (unsigned long long)triangles, MAX_TRIANGLES);
     if (geometry->node_count == 0)
-        return wrong(why, model->node_count ? "no node is left to show" : "the scene has no node");
+        return wrong(why, model->node_count ? "the asset has no node that can be shown" : "the scene of the model has no node");
     if (triangles == 0)
         return no_triangles(geometry, params->nodes, why);
     qsort(parts->at, parts->count, sizeof(*parts->at), by_material);
@@ -189,11 +189,12 @@ static bool find_origin(struct geometry *geometry, const struct node_primitives 
         geometry->origin_m[axis] = (box.low[axis] + box.high[axis]) / 2;
         size_m = fmax(size_m, side_m);
         if (!isfinite(geometry->origin_m[axis]) || side_m > MAX_SIZE_M)
-            return wrong(why, "its size is %g m along axis %d, more than %g m", side_m, axis, MAX_SIZE_M);
+            return wrong(why, "the size of the asset is %g m along axis %d, more than %g m", side_m, axis, MAX_SIZE_M);
     }
     if (size_m > COARSE_SIZE_M)
         median_of(parts, params, geometry->origin_m);
-    return size_m >= MIN_SIZE_M || wrong(why, "its size is %g m, less than %g m: is the model's unit right?", size_m, MIN_SIZE_M);
+    return size_m >= MIN_SIZE_M ||
+           wrong(why, "the size of the asset is %g m, less than %g m: is the model's unit right?", size_m, MIN_SIZE_M);
 }
 
 double (*geometry_node_boxes(const struct gltf_model *model, const struct geometry_params *params))[2][3]
@@ -236,7 +237,7 @@ static bool several_places(const struct gltf_model *model, const char *pattern, 
     char numbers[120] = "";
     for (size_t i = 0, length = 0; i < count && i < SHOWN_NODES; i++)
         length += (size_t)snprintf(numbers + length, sizeof(numbers) - length, "%s#%u", i ? ", " : "", model->nodes[found[i]].number);
-    return wrong(why, "the model has %zu nodes named '%.200s' at different places (%s%s): select one by its number or path", count,
+    return wrong(why, "the model has %zu nodes named '%.200s' at different places (%s%s): select one node by its number or path", count,
                  pattern, numbers, count > SHOWN_NODES ? ", ..." : "");
 }
 
@@ -406,7 +407,7 @@ static bool join_parts(struct geometry *geometry, const struct node_primitives *
     if (!good)
         wrong(why, "out of memory");
     else if (geometry->index_count == 0)
-        good = wrong(why, "none of its %u triangles has an area", geometry->degenerate_triangles);
+        good = wrong(why, "none of the asset's %u triangles has an area", geometry->degenerate_triangles);
     geometry->texcoords = kept_if(room.any_texcoords, room.all_texcoords);
     geometry->second_texcoords = kept_if(room.any_second_texcoords, room.all_second_texcoords);
     geometry->colors = kept_if(room.any_colors, room.all_colors);

@@ -137,7 +137,7 @@ static bool read_lines(struct cad_model *model, char *text, size_t length, struc
         }
     }
     if (good && depth > 0) {
-        snprintf(why, why_bytes, "line %zu: the file ends within %d element%s", number, depth, depth > 1 ? "s" : "");
+        snprintf(why, why_bytes, "line %zu: the file ends before the END of %d element%s", number, depth, depth > 1 ? "s" : "");
         good = false;
     }
     mem_free(index.below);

@@ -42,35 +42,33 @@ enum { EXIT_PARTLY = 3 };
 
 static void print_usage(FILE *out)
 {
-    fputs(
-        "usage: plantcast import MODEL... -o FOLDER [--name NAME] [--dry-run] [--anew]\n"
-        "       plantcast import --undo [--force] -o FOLDER\n"
-        "       plantcast import --serve [--port N] [MODEL... TAGS] -o FOLDER\n"
-        "\n"
-        "Converts CAD exports to GLB with names, hierarchy and attributes, and writes a plant.yaml for them.\n"
-        "If FOLDER holds a plant already, the exports are a new revision of the plant:\n"
-        "the import finds assets and sensors again in the new geometry.\n"
-        "It writes a review: what was added, removed, moved or renamed, which tags lost their position.\n"
-        "\n"
-        "  MODEL             file of a CAD export: .glb .gltf; .rvm (AVEVA PDMS, E3D, Marine; attributes in a\n"
-        "                    file of the same name that ends in .att or .txt); .step .stp .stpz .iges .igs;\n"
-        "                    .ifc .ifczip; .obj .stl .ply .fbx .dae .zae .3ds. All but glTF may be compressed\n"
-        "                    with gzip (.stp.gz)\n"
-        "  --name NAME       name of the plant (default: file name of the first model)\n"
-        "  --dry-run         print what a new revision would change, and change nothing\n"
-        "  --undo            undo the last revision: restore models, plant file, tag list and matches\n"
-        "  --force           with --undo: undo even if these files were edited since; the edited files are\n"
-        "                    kept as NAME.undone\n"
-        "  --anew            start a new plant.yaml and tags.csv; the present ones are kept as NAME.1,\n"
-        "                    NAME.2, ...\n"
-        "  --report FILE     write to FILE, as JSON, what was lost, left out, guessed or wrong in the import\n"
-        "                    (IMPORT.md)\n"
-        "  --serve           serve a page on this machine on which to upload models and tag lists, match tags\n"
-        "                    and place sensors\n"
-        "  --port N          TCP port of the page of --serve (default: 8080)\n",
-        out);
+    fputs("usage: plantcast import MODEL... -o FOLDER [--name NAME] [--dry-run] [--anew]\n"
+          "       plantcast import --undo [--force] -o FOLDER\n"
+          "       plantcast import --serve [--port N] [MODEL... TAGS] -o FOLDER\n"
+          "\n"
+          "Converts CAD exports to GLB with names, hierarchy and attributes, and writes a plant.yaml for the models.\n"
+          "If FOLDER contains a plant already, the exports are imported as a new revision of that plant:\n"
+          "the import searches the new geometry for the assets and sensors of the plant.\n"
+          "review.csv then lists what was added, removed, moved or renamed, and which tags lost their position.\n"
+          "\n"
+          "  MODEL             file of a CAD export in one of these formats:\n"
+          "                    glTF (.glb .gltf), STEP (.step .stp .stpz), IGES (.iges .igs), IFC (.ifc .ifczip),\n"
+          "                    meshes (.obj .stl .ply .fbx .dae .zae .3ds), RVM of AVEVA PDMS, E3D or Marine (.rvm;\n"
+          "                    attributes in a file of the same name that ends in .att or .txt)\n"
+          "                    Files of all formats but glTF may be compressed with gzip (.stp.gz)\n"
+          "  --name NAME       name of the plant (default: file name of the first model)\n"
+          "  --dry-run         print what a new revision would change, and change nothing\n"
+          "  --undo            undo the last revision: restore models, plant file, tag list and matches\n"
+          "  --force           with --undo: undo even if files were edited since; edited files are kept as NAME.undone\n"
+          "  --anew            write a new plant.yaml and tags.csv; the old files are kept as NAME.1, NAME.2, ...\n"
+          "  --report FILE     write a JSON report of lost, left out, guessed and wrong parts to FILE (IMPORT.md)\n"
+          "  --serve           serve a web page on this machine, on which to upload models and tag lists, match tags\n"
+          "                    and place sensors\n"
+          "  --port N          TCP port of the page of --serve (default: 8080)\n",
+          out);
     options_print(out);
-    fputs("Exit status: 0 success, 1 nothing imported, 2 wrong usage, 3 some models could not be read, the others were imported.\n", out);
+    fputs("Exit status: 0 success, 1 nothing imported, 2 wrong usage, 3 some models could not be read, all other models were imported.\n",
+          out);
 }
 
 static int fail_at(const char *path, const char *why)
@@ -165,11 +163,11 @@ static int convert_all(struct import_command *import)
         return fail_at(import->folder, "interrupted");
     if (import->unread > 0 && (import->count == 0 || (import->anew && find_plant(import) == WHOLE_PLANT))) {
         if (import->count > 0)
-            fail_at(import->folder, "nothing was imported: --anew needs every model; name them all");
+            fail_at(import->folder, "nothing was imported: --anew needs all models of the plant, and some could not be read");
         return 1;
     }
     if (import->unread > 0)
-        fprintf(stderr, "plantcast import: %d of %d models could not be read; the others are imported\n", import->unread, count);
+        fprintf(stderr, "plantcast import: %d of %d models could not be read; all other models are imported\n", import->unread, count);
     return 0;
 }
 
@@ -210,7 +208,7 @@ static int bring_in(const struct import_command *import)
     if (found == WHOLE_PLANT && !import->anew)
         return revise(&params);
     if (import->dry_run)
-        return fail_at(import->folder, "there is no plant here yet to compare with; leave out --dry-run");
+        return fail_at(import->folder, "this folder contains no plant to compare with: leave out --dry-run");
     if (import->anew || found == BEGUN_PLANT)
         return import_anew(&params, &draft);
     int status = move_all(import);
@@ -260,7 +258,8 @@ static bool two_alike(char **paths, int count)
             char *first = file_name_stem(paths[k]), *second = file_name_stem(paths[i]);
             alike = !strcmp(first, second);
             if (alike)
-                fprintf(stderr, "plantcast import: %s and %s would both be %s.glb; rename one of them\n", paths[k], paths[i], first);
+                fprintf(stderr, "plantcast import: %s and %s would both be written as %s.glb: rename one of these files\n", paths[k],
+                        paths[i], first);
             mem_free(first);
             mem_free(second);
         }

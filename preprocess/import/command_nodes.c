@@ -12,20 +12,18 @@
 
 static void print_usage(FILE *out)
 {
-    fputs(
-        "usage: plantcast nodes MODEL [--grep RE] [--tree N] [--json]\n"
-        "\n"
-        "Lists the nodes (parts) of a CAD model.\n"
-        "Prints for each node its number, triangles, size, centre (Z up), path and properties.\n"
-        "Triangles, size and centre include the children of the node.\n"
-        "The first lines give the number of nodes, the size of the model, and its distance from the origin.\n"
-        "A node without a name gets the name of its mesh, else its number.\n"
-        "A plant file accepts the number of a node too (nodes: \"#12\").\n"
-        "  --grep RE         list only nodes whose path or properties match the extended regular expression\n"
-        "                    RE, ignoring case\n"
-        "  --tree N          list only the first N levels of the hierarchy, indented\n"
-        "  --json            print the list as JSON\n",
-        out);
+    fputs("usage: plantcast nodes MODEL [--grep RE] [--tree N] [--json]\n"
+          "\n"
+          "Lists the nodes (parts) of a CAD model.\n"
+          "Prints the number, triangles, size, centre (Z up), path and properties of each node.\n"
+          "Triangles, size and centre include the children of the node.\n"
+          "The first lines print the number of nodes, the model's size, and the model's distance from the origin.\n"
+          "A node without a name is listed under the name of its mesh, or else under its number.\n"
+          "A plant file can also select a node by its number (nodes: \"#12\").\n"
+          "  --grep RE         list only nodes whose path or properties match RE (extended, ignoring case)\n"
+          "  --tree N          list only the first N levels of the hierarchy, indented\n"
+          "  --json            print the list as JSON\n",
+          out);
     options_print(out);
     fputs("Exit status: 0 success, 1 the model could not be read, 2 wrong usage, 3 no node matched.\n", out);
 }
@@ -74,7 +72,7 @@ int command_nodes(int argc, char **argv)
         switch (option) {
         case 'g':
             if (list.grep || regcomp(&grep, optarg, REG_EXTENDED | REG_NOSUB | REG_ICASE) != 0) {
-                fprintf(stderr, "plantcast nodes: --grep %s: expected one regular expression\n", optarg);
+                fprintf(stderr, "plantcast nodes: --grep %s: expected one valid extended regular expression\n", optarg);
                 return 2;
             }
             list.grep = &grep;
@@ -82,7 +80,7 @@ int command_nodes(int argc, char **argv)
         case 'T':
             list.levels = (int)strtol(optarg, &end, 10);
             if (*end || list.levels < 1) {
-                fprintf(stderr, "plantcast nodes: --tree %s: expected a number of levels from 1 on\n", optarg);
+                fprintf(stderr, "plantcast nodes: --tree %s: expected a number of levels, at least 1\n", optarg);
                 return 2;
             }
             break;

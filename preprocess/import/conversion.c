@@ -71,9 +71,9 @@ static bool add_attributes(struct cad_model *model, const char *path, const stru
     if (!good)
         return fail(why, "%s: %s", path, reason);
     if (counts.elements == 0)
-        return fail(why, "%s: not an attribute file: it has no elements (NEW ... END). If it is something else, rename it", path);
-    text_add(said, "attributes of %s: %zu elements, %zu of them in the model; %zu values\n",
-             text_base_name(path), counts.elements, counts.matched, counts.attributes);
+        return fail(why, "%s: this attribute file has no elements (NEW ... END): rename the file if it contains no attributes", path);
+    text_add(said, "attributes of %s: %zu elements, of which %zu are in the model; %zu values\n", text_base_name(path), counts.elements,
+             counts.matched, counts.attributes);
     encoding_say(said, "attributes", &counts.encoding);
     return true;
 }
@@ -82,11 +82,11 @@ static void say_counts(struct text *said, const struct rvm_counts *counts)
 {
     text_add(said, "%zu primitives\n", counts->primitives);
     if (counts->covered_faces > 0)
-        text_add(said, "left out: %zu faces, %.1f m2, that lie on a neighbour's face and cannot be seen (--keep-covered keeps them)\n",
+        text_add(said, "left out: %zu faces, %.1f m2, that are hidden behind a neighbour's face (--keep-covered keeps hidden faces)\n",
                  counts->covered_faces, counts->covered_m2);
     if (counts->unknown_chunks > 0)
-        text_add(said, "error\t%zu\tRVM: unknown chunks were skipped, the first is %s\n",
-                 counts->unknown_chunks, counts->unknown_chunk);
+        text_add(said, "error\t%zu\tRVM: unknown chunks were skipped, the first unknown chunk is %s\n", counts->unknown_chunks,
+                 counts->unknown_chunk);
 }
 
 static bool convert_rvm(const char *path, const char *attributes, const char *glb, const struct conversion_params *params,
@@ -110,7 +110,8 @@ static bool convert_rvm(const char *path, const char *attributes, const char *gl
         encoding_say(said, "names", &counts.encoding);
     }
     if (good && counts.primitives > 0 && counts.empty == counts.primitives)
-        good = fail(why, "none of its %zu primitives can be shown: they have no extent, or numbers that are not finite", counts.primitives);
+        good = fail(why, "none of the model's %zu primitives can be shown: each has no extent, or numbers that are not finite",
+                    counts.primitives);
     if (good && attributes) {
         const struct attribute_params read = { .encoding = params->encoding,
                                                .model_encoding = counts.encoding.ascii ? "" : counts.encoding.name };
@@ -119,7 +120,10 @@ static bool convert_rvm(const char *path, const char *attributes, const char *gl
     text_finish(&findings);
     int status = good ? cad_glb_write(model, stem, glb) : 0;
     if (status != 0)
-        good = fail(why, status == -EFBIG ? "a GLB file holds at most 4 GiB: export the plant in parts" : "%s", strerror(-status));
+        good =
+            fail(why,
+                 status == -EFBIG ? "the model does not fit into a GLB file, which holds at most 4 GiB: export the plant in parts" : "%s",
+                 strerror(-status));
     mem_free(stem);
     cad_model_destroy(&model);
     return good;
@@ -169,7 +173,7 @@ static void say_empty_nodes(const struct gltf_model *model)
             text_add(&names, "%s%s", count > 1 ? ", " : "", *node->name ? node->name : "a node without a name");
     }
     if (count > 0)
-        printf("not shown: %zu nodes that are only lines or points: %s%s\n", count, names.at, count > MAX_NAMED ? ", ..." : "");
+        printf("not shown: %zu nodes that consist only of lines or points: %s%s\n", count, names.at, count > MAX_NAMED ? ", ..." : "");
     text_finish(&names);
 }
 
@@ -201,8 +205,8 @@ static bool run(const struct model_reading *reading, struct child_params *child,
     child->folder = reading->folder;
     child->timeout_s = reading->params->timeout_s;
     child->memory_bytes = reading->params->memory_bytes;
-    child->timeout_option = "--timeout; plantcastd: --limit import-seconds";
-    child->memory_option = "--memory; plantcastd: --limit import-megabytes";
+    child->timeout_option = "limit set by --timeout, or by plantcastd --limit import-seconds";
+    child->memory_option = "limit set by --memory, or by plantcastd --limit import-megabytes";
     child->role = CONFINE_READER;
     child->paths = paths->at;
     child->path_count = paths->count;
@@ -281,7 +285,7 @@ static bool ask_encoding(const struct model_reading *reading, char encoding[CHAR
     if (good && length > 0 && length < CHARSET_NAME_BYTES) {
         memcpy(encoding, shared, length + 1);
         if (encoding[strspn(encoding, letters)])
-            good = fail(why, "the %s reader found no encoding", reading->format->name);
+            good = fail(why, "the %s reader could not determine the character encoding of names", reading->format->name);
     }
     munmap(shared, CHARSET_NAME_BYTES);
     return good;
@@ -293,7 +297,9 @@ static bool build_curved_solids(const struct model_reading *reading, const char 
 {
     char *program = import_format_program(import_format_of("x.step"));
     if (!program) {
-        text_add(said, "this Plantcast was built without Open CASCADE: pipes and curved solids have web-ifc's coarser shape\n");
+        text_add(
+            said,
+            "this Plantcast was built without Open CASCADE: pipes and curved solids are imported with the coarser shapes of web-ifc\n");
         return true;
     }
     struct child_paths paths = { 0 };
@@ -305,7 +311,7 @@ static bool build_curved_solids(const struct model_reading *reading, const char 
     bool built = run(reading, &(struct child_params){ .argv = argv }, &paths, said, why);
     bool interrupted = !built && !strcmp(why, "interrupted");
     if (!built && !interrupted)
-        text_add(said, "error\t1\tOpen CASCADE: %s; pipes and curved solids have web-ifc's coarser shape\n", why);
+        text_add(said, "error\t1\tOpen CASCADE: %s; pipes and curved solids are imported with the coarser shapes of web-ifc\n", why);
     mem_free(output);
     mem_free(chord);
     mem_free(program);
@@ -391,9 +397,9 @@ static bool take_output(const struct model_reading *reading, const char *glb, st
 {
     struct stat st;
     if (lstat(reading->output, &st) != 0)
-        return fail(why, "the %s reader wrote nothing", reading->format->name);
+        return fail(why, "the %s reader wrote no output file", reading->format->name);
     if (!S_ISREG(st.st_mode) || st.st_nlink != 1)
-        return fail(why, "the %s reader's output is not a regular file", reading->format->name);
+        return fail(why, "the output of the %s reader is not a regular file", reading->format->name);
     struct child_paths paths = { 0 };
     child_paths_add(&paths, reading->output, CONFINE_READ);
     bool good = run(reading, &(struct child_params){ .call = check, .arg = (void *)(uintptr_t)reading }, &paths, said, why);
@@ -448,16 +454,16 @@ bool conversion_run(const char *path, const char *glb, const char *folder, const
     if (stat(path, &st) != 0)
         return fail(why, "%s", strerror(errno));
     if (!S_ISREG(st.st_mode))
-        return fail(why, "it is not a regular file");
+        return fail(why, "the model is not a regular file");
     const char *dot = strrchr(path, '.');
     if (!format && dot && !strcasecmp(dot, ".ifcxml"))
         return fail(why, FORMAT_IFC_XML);
     if (!format)
-        return fail(
-            why, "unknown file ending (known: plantcast import --formats); `convert` in the plant file runs your own converter (PLANT.md)");
+        return fail(why, "unknown file ending: `plantcast import --formats` prints the known ones; `convert` in the plant file runs your "
+                         "own converter (PLANT.md)");
     if (params->units && !format->unitless)
-        return fail(why, "%s states its own units: leave out --units", format->name);
+        return fail(why, "%s files state their own units: leave out --units", format->name);
     if (params->up && !format->upless)
-        return fail(why, "%s states its own up axis: leave out --up", format->name);
+        return fail(why, "%s files state their own up axis: leave out --up", format->name);
     return read_model(format, path, glb, folder, params, said, why);
 }

@@ -108,5 +108,5 @@ void import_formats_print(FILE *out)
                 there ? "" : import_format_missing(&formats[i]));
         mem_free(program);
     }
-    fputs("All but glTF may be compressed with gzip, such as .stp.gz.\n", out);
+    fputs("All formats but glTF may be compressed with gzip, such as .stp.gz.\n", out);
 }

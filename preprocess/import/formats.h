@@ -21,7 +21,7 @@ struct import_format {
 };
 
 /* Error message for a model in ifcXML, a form of IFC that the reader does not support. */
-#define FORMAT_IFC_XML "it is IFC in XML (ifcXML), which is not read: export it as IFC in STEP text (.ifc)"
+#define FORMAT_IFC_XML "IFC in XML (ifcXML) is not supported: export the model as IFC in STEP text (.ifc)"
 
 /* Returns the format that the path's ending (in upper or lower case) belongs to, or NULL if there is none. All but glTF may be followed by
  * ".gz". */

@@ -128,12 +128,13 @@ void model_outline_summary(const struct model_outline *outline, struct text *out
     text_add(out, "%s nodes, %s unnamed", nodes, text_table_number(outline->unnamed).text);
     text_add(out, "; %s triangles", text_table_number(outline->triangles).text);
     if (!model_outline_extent(&outline->box, size, centre)) {
-        text_add(out, "; nothing in it can be shown");
+        text_add(out, "; nothing in the model can be shown");
         return;
     }
-    text_add(out, "; %.1f x %.1f x %.1f m if metres, up y; %.0f m from the origin", size[0], size[1], size[2], vec_length(centre));
+    text_add(out, "; %.1f x %.1f x %.1f m if the unit is metres and Y is up; %.0f m from the origin", size[0], size[1], size[2],
+             vec_length(centre));
     if (outline->header.partial)
-        text_add(out, " (some boxes are unknown: instances, or positions without a range)");
+        text_add(out, " (the extent of some nodes is unknown: instances, or positions without min and max)");
     if (!knows_units(outline) && asset_size_doubtful(&metres, size, 0, why))
         text_add(out, "\n%s", why);
 }

@@ -42,8 +42,8 @@ void model_outline_add_printable(struct text *out, const char *text);
  * become U+FFFD. */
 void model_outline_path(const struct model_outline *outline, size_t node, struct text *out);
 
-/* Appends a summary of the model without a line end: "4,679 nodes, 592 unnamed; 52,830 triangles; 21.5 x 22.6 x 3.9 m if metres, up y; 310
- * m from the origin". If a plant can hardly be that large or small, a hint follows that the units may be different. */
+/* Appends a summary of the model without a line end: "4,679 nodes, 592 unnamed; 52,830 triangles; 21.5 x 22.6 x 3.9 m if the unit is metres
+ * and Y is up; 310 m from the origin". If a plant can hardly be that large or small, a hint follows that the units may be different. */
 void model_outline_summary(const struct model_outline *outline, struct text *out);
 
 /* Converts a box to size and centre in plant axes: Z up, so the last number is the height. Returns false for an empty box. */

@@ -14,11 +14,10 @@
 #include "placing/tag_file.h"
 #include "preprocess/glb/glb_scene.h"
 
-static const char head[] =
-    "# The plant as its models were imported. Lengths are metres, Z is up. PLANT.md tells what else may stand here.\n"
-    "plant:\n";
+static const char head[] = "# Plant file written by plantcast import. Lengths are in metres, Z is up. PLANT.md describes all keys.\n"
+                           "plant:\n";
 static const char tail[] = "\n"
-                           "# What is measured: one group for each quantity, with the range of its legend.\n"
+                           "# Sensor groups: one group for each measured quantity, with the range of the legend.\n"
                            "groups:\n"
                            "  - { id: temperature, quantity: Temperature, unit: °C, min: 0, max: 100 }\n"
                            "\n"

@@ -212,7 +212,7 @@ static bool read_primitive(struct rvm_reader *r)
     primitive.node = r->stack[r->depth - 1];
     if (kind < RVM_PYRAMID || kind > RVM_FACETS) {
         r->counts->unknown_kinds++;
-        rvm_losses_add(&r->losses, primitive.node, RVM_UNKNOWN_KIND, primitive.byte, "is of an unknown kind");
+        rvm_losses_add(&r->losses, primitive.node, RVM_UNKNOWN_KIND, primitive.byte, "unknown kind of primitive");
         return true;
     }
     primitive.shape.kind = (enum rvm_kind)kind;
@@ -276,7 +276,7 @@ static bool read_chunks(struct rvm_reader *r)
         char id[5];
         size_t from = r->at;
         if (r->count - from < 16 || !chunk_id(r->bytes + from, id))
-            return fail(r, "expected a chunk here");
+            return fail(r, "expected the header of a chunk");
         if (!strcmp(id, "END:")) /* stops at the chunk END: without reading its header, because some files omit header fields there */
             return true;
         if (r->count - from < HEADER)
@@ -285,7 +285,7 @@ static bool read_chunks(struct rvm_reader *r)
         if (next > r->count)
             return fail(r, "the file ends within chunk %s, which should extend to byte %u of %zu", id, next, r->count);
         if (next < from + HEADER)
-            return fail(r, "chunk %s has an end before its start: byte %u", id, next);
+            return fail(r, "chunk %s ends before its start, at byte %u", id, next);
         r->at = from + HEADER;
         r->chunk_end = next;
         if (!read_chunk(r, id, &ended))
@@ -425,7 +425,7 @@ bool rvm_read(struct cad_model *model, const void *bytes, size_t count, const st
     *r = (struct rvm_reader){ .bytes = bytes, .count = count, .model = model, .counts = counts, .why = why, .why_bytes = why_bytes };
     *counts = (struct rvm_counts){ 0 };
     why[0] = 0;
-    bool good = is_rvm(bytes, count) ? read_chunks(r) : fail(r, "not an RVM file: it does not begin with HEAD");
+    bool good = is_rvm(bytes, count) ? read_chunks(r) : fail(r, "not an RVM file: the file does not begin with HEAD");
     decode_names(r, first, params->encoding);
     for (size_t i = 0; i < r->primitive_count; i++)
         if (r->primitives[i].shape.contour_count > 0) {

@@ -42,7 +42,7 @@ static void say_group(const struct rvm_loss *first, size_t count, const struct c
         text_add(said, "lost\tbyte %zu\t%s\tgroup\t\t", first->byte, name);
     else
         text_add(said, "error\t%zu\tRVM: %s: ", count, name);
-    text_add(said, "%zu of its %zu primitives %s left out: the %s at byte %zu %s\n", count, primitives, count > 1 ? "are" : "is",
+    text_add(said, "%zu of the %zu primitives of the group %s left out: %s at byte %zu: %s\n", count, primitives, count > 1 ? "are" : "is",
              name_of(first->kind), first->byte, first->why);
 }
 
@@ -85,8 +85,10 @@ void rvm_losses_say(struct rvm_losses *losses, const struct cad_model *model, co
         if (first)
             say_group(first, count, node, primitives[i], said);
         else if (primitives[i] > 0 && node->triangle_count + node->line_count == 0)
-            text_add(said, "lost\t#%zu\t%s\tgroup\t\tall its faces lie on faces of its neighbours (--keep-covered keeps them)\n",
-                     i, node->name);
+            text_add(
+                said,
+                "lost\t#%zu\t%s\tgroup\t\tall faces of the group lie on faces of neighbouring groups (--keep-covered keeps such faces)\n",
+                i, node->name);
     }
     say_volumes(losses, RVM_OBSTRUCTION, "obstruction", model, said);
     say_volumes(losses, RVM_INSULATION, "insulation", model, said);

@@ -496,7 +496,7 @@ static const char *add_facets(struct cad_node *node, const struct primitive_fram
     }
     gluDeleteTess(tess);
     mem_free(polygon.made);
-    return node->triangle_count > before ? NULL : "has no polygon with an area";
+    return node->triangle_count > before ? NULL : "none of the polygons has an area";
 }
 
 /* --- public functions ------------------------------------------------------------------------------------------------------------- */
@@ -545,11 +545,11 @@ const char *rvm_shape_tessellate(const struct rvm_shape *shape, double chord_m, 
     struct primitive_frame frame;
     const double *n = shape->numbers;
     if (!is_finite(shape))
-        return "has numbers that are not finite";
+        return "the primitive has numbers that are not finite";
     if (!frame_of(shape->to_plant, &frame))
-        return "has a transformation that is singular or not finite";
+        return "the transformation of the primitive is singular or not finite";
     if (!has_extent(shape))
-        return "has no extent";
+        return "the primitive has no extent";
     switch (shape->kind) {
     case RVM_PYRAMID: add_pyramid(node, &frame, n, shape->open_faces); break;
     case RVM_BOX: add_box(node, &frame, n, shape->open_faces); break;

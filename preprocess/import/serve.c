@@ -37,7 +37,7 @@ static int add_link(const char *exports, const char *file)
     if (!realpath(file, target))
         return fail_at(file, strerror(errno));
     if (!export_name_good(name))
-        return fail_at(file, "this file name is not allowed");
+        return fail_at(file, "import --serve does not allow this file name: rename the file");
     char *link = mem_printf("%s/%s", exports, name);
     int status = 0;
     if (export_kind_of(name) == EXPORT_TAGS)
@@ -56,7 +56,7 @@ static int beside(char path[PATH_MAX], const char *name)
     path[length > 0 ? length : 0] = 0;
     char *slash = strrchr(path, '/');
     if (!slash)
-        return fail_at(name, "is not in the folder of this program");
+        return fail_at(name, "this program cannot be found: the folder of the running program is unknown");
     strcpy(slash + 1, name);
     return 0;
 }

@@ -162,7 +162,7 @@ bool unpack(const char *path, const char *output, struct text *said, char *why, 
     if (from.zip)
         reason = open_file(from.zip, ending_of(output), said);
     else if (!from.gzip || gzdirect(from.gzip))
-        reason = "not a ZIP or gzip file";
+        reason = "the file is not a ZIP or gzip archive";
     FILE *to = reason ? NULL : fopen(output, "wb");
     if (!reason)
         reason = to ? copy(&from, to, most) : strerror(errno);

@@ -480,8 +480,9 @@ bool gaussian_solve(struct influence *influence, const struct influence_task *ta
     if (good)
         find_deviations(&solving);
     else
-        log_err(task->log, "Gaussian process between %zu sensors on %zu points, range %g m: %s", influence->count, mesh->mesh.point_count,
-                params->range_m, common.status == CHOLMOD_NOT_POSDEF ? "system is not positive definite" : "out of memory");
+        log_err(task->log, "Gaussian process between %zu sensors on %zu points, range %g m, failed: %s", influence->count,
+                mesh->mesh.point_count, params->range_m,
+                common.status == CHOLMOD_NOT_POSDEF ? "the system of equations is not positive definite" : "out of memory");
     finish(&solving, &common);
     cholmod_finish(&common);
     return good;

@@ -59,8 +59,8 @@ static void read_rows(struct readings_table *table, struct csv *csv, const char 
         }
         if (csv->diag->errors == 0 && table->instants < MIN_INSTANTS)
             diag_error(csv->diag, csv->path, 0, 0,
-                       "%zu lines have numbers of all %zu sensors, %zu do not; at least %d complete lines are needed", table->instants,
-                       table->count, table->left_out, MIN_INSTANTS);
+                       "%zu lines have numbers of all %zu sensors, %zu lines do not; a fit needs at least %d complete lines",
+                       table->instants, table->count, table->left_out, MIN_INSTANTS);
     }
     mem_free(columns);
 }
@@ -318,7 +318,7 @@ bool gaussian_fit(struct gaussian_params *params, const struct gaussian_data *da
     const size_t n = data->table->count;
     struct gaussian_fit fit;
     if (n < PLANT_GP_FITTED) {
-        snprintf(why, 300, "%zu sensors on one asset: a fit needs at least %d; state range_m, noise and deviation instead", n,
+        snprintf(why, 300, "%zu sensors on one asset, but a fit needs at least %d: state range_m, noise and deviation instead", n,
                  PLANT_GP_FITTED);
         return false;
     }
@@ -331,9 +331,9 @@ bool gaussian_fit(struct gaussian_params *params, const struct gaussian_data *da
         good = try_one(&fit, logarithm(params->range_m), &trial);
     }
     if (!good)
-        snprintf(why, 300, "the fit failed: see the messages above");
+        snprintf(why, 300, "the fit of gp to the readings failed: see the messages above");
     else if (!(fit.best.deviation > 0)) {
-        snprintf(why, 300, "the fit failed: no two sensors on one body ever differ");
+        snprintf(why, 300, "the fit of gp failed: the readings of sensors on one body never differ");
         good = false;
     } else
         *params = fit.best;

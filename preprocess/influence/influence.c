@@ -174,8 +174,8 @@ bool influence_conduct(struct influence *influence, const struct influence_task 
     if (good)
         make_symmetric(influence);
     else
-        log_err(task->log, "conduction between %zu sensors on %zu points: %s", influence->count, mesh->mesh.point_count,
-                common.status == CHOLMOD_NOT_POSDEF ? "system is not positive definite" : "out of memory");
+        log_err(task->log, "conduction between %zu sensors on %zu points failed: %s", influence->count, mesh->mesh.point_count,
+                common.status == CHOLMOD_NOT_POSDEF ? "the system of equations is not positive definite" : "out of memory");
     cholmod_free_factor(&conduct.factor, &common);
     cholmod_finish(&common);
     laplacian_finish(&conduct.laplacian);

@@ -88,7 +88,8 @@ static void take_defaults(const struct influence_making *making, const struct pl
     gp->noise = isnan(gp->noise) ? PLANT_GP_NOISE * range : gp->noise;
     gp->deviation = isnan(gp->deviation) ? PLANT_GP_DEVIATION * range : gp->deviation;
     log_warn(making->log,
-             "asset %s, group %s: gp cannot be fitted to %zu sensors (at least %d): default range %.3g m, noise %.3g, deviation %.3g %s",
+             "asset %s, group %s: gp cannot be fitted to %zu sensors (at least %d are needed): using default range %.3g m, noise %.3g, "
+             "deviation %.3g %s",
              asset_of(making->input)->id, of->id, count, PLANT_GP_FITTED, gp->range_m, gp->noise, gp->deviation, of->unit);
 }
 
@@ -105,9 +106,8 @@ static bool find_params(struct influence_making *making, int group, const double
     *gp = (struct gaussian_params){ of->gp.range_m, of->gp.noise, of->gp.deviation };
     if (gp->range_m > LONGEST * size)
         log_warn(making->log,
-                 "asset %s, group %s: gp's range_m %g is far longer than the asset (%.3g m): using %.3g m, which gives the same field",
-                 asset,
-                 of->id, gp->range_m, size, LONGEST * size);
+                 "asset %s, group %s: range_m %g of gp is far longer than the asset (%.3g m): using %.3g m, which gives the same values",
+                 asset, of->id, gp->range_m, size, LONGEST * size);
     if (!isnan(gp->range_m) && !isnan(gp->noise) && !isnan(gp->deviation))
         return true;
     if (count < PLANT_GP_FITTED) {
@@ -141,8 +141,8 @@ static bool range_good(const struct influence_making *making, int group, const s
     if (mesh->longest_m * MIN_EDGES <= gp->range_m)
         return true;
     log_err(making->log,
-            "asset %s, group %s: gp's range_m %.3g is too short for its surface: with %zu points its triangles are %.3g m long; "
-            "at least %.3g is possible",
+            "asset %s, group %s: range_m %.3g of gp is too short: the triangles between %zu points are up to %.3g m long, so "
+            "range_m must be at least %.3g",
             asset_of(making->input)->id, making->input->plant->groups[group].id, gp->range_m, mesh->mesh.point_count, mesh->longest_m,
             mesh->longest_m * MIN_EDGES);
     return false;

@@ -321,8 +321,8 @@ bool transport_angles(struct influence *influence, struct log *log, struct worke
         solve_some(&transport, 0, influence->count);
     good = good && !transport.failed;
     if (!good)
-        log_err(log, "directions of %zu sensors on %zu points: %s", influence->count, mesh->mesh.point_count,
-                common.status == CHOLMOD_NOT_POSDEF ? "system is not positive definite" : "out of memory");
+        log_err(log, "directions of %zu sensors on %zu points cannot be computed: %s", influence->count, mesh->mesh.point_count,
+                common.status == CHOLMOD_NOT_POSDEF ? "the system of equations is not positive definite" : "out of memory");
     cholmod_free_factor(&transport.factor, &common);
     cholmod_finish(&common);
     laplacian_finish(&transport.laplacian);

@@ -119,7 +119,7 @@ int equipment_choose(const struct model_index *site, const char *const *choices,
     if (found == 0)
         found = choose(site, choices, lists, count, lines);
     if (found == 0) {
-        snprintf(why, MODEL_INDEX_WHY_BYTES, "no node with triangles is selected");
+        snprintf(why, MODEL_INDEX_WHY_BYTES, "--equipment selects no node with triangles");
         found = -1;
     }
     for (int i = 0; i < count; i++)

@@ -17,29 +17,24 @@ static void print_usage(FILE *out)
           "\n"
           "Finds the equipment of an imported plant to which each tag of a control system's tag list belongs.\n"
           "Writes tags.csv, matches.csv (each match with its reason) and the sensor groups of plant.yaml.\n"
-          "Entries of these files that a person edited are kept.\n"
-          "If the plant's folder has match_rules.csv (Tag,Equipment), its patterns are applied in their order.\n"
-          "If the folder has aliases.csv (Alias,Equipment), it gives other names of equipment.\n"
+          "Entries of these files that were edited by hand are kept.\n"
+          "A file match_rules.csv (Tag,Equipment) in the plant's folder contains patterns, applied in their order.\n"
+          "A file aliases.csv (Alias,Equipment) in the plant's folder contains other names of equipment.\n"
           "\n"
           "  PLANT                 folder of the plant, or its plant.yaml\n"
-          "  TAGS                  tag list: an export of Kepware, Ignition, AVEVA, Emerson or Honeywell, plain\n"
-          "                        CSV or .xlsx\n"
-          "  --equipment NODES     which nodes of the models become assets: level=N (all nodes of that level of\n"
-          "                        the hierarchy), a pattern of names, or @FILE with one name a line; may be\n"
-          "                        repeated\n"
-          "  --encoding NAME       character encoding of TAGS, such as GB18030, Shift-JIS, EUC-KR, Windows-1251\n"
-          "                        (default: detected, and printed)\n"
-          "  --decide FILE         CSV file (Tag,Status,Asset) with decisions to apply as if edited by hand in\n"
-          "                        matches.csv\n"
-          "  --source ID           source (connection to field devices) of plant.yaml from which the daemon\n"
-          "                        reads these tags\n"
-          "  --modbus HOST[:PORT]  create the source ID as a Modbus device at HOST, or change its address\n"
+          "  TAGS                  tag list: CSV, .xlsx, or an export of Kepware, Ignition, AVEVA, Emerson, Honeywell\n"
+          "  --equipment NODES     nodes of the models that become assets; may be repeated. NODES is level=N (all\n"
+          "                        nodes of level N of the hierarchy), a pattern of node names, or @FILE (a file\n"
+          "                        with one node name per line)\n"
+          "  --encoding NAME       character encoding of TAGS, such as GB18030 or Windows-1251 (default: detected)\n"
+          "  --decide FILE         CSV file (Tag,Status,Asset) of decisions to apply as if edited in matches.csv\n"
+          "  --source ID           source of plant.yaml (connection to field devices) that provides these tags\n"
+          "  --modbus HOST[:PORT]  create source ID as a Modbus device at HOST, or change the address of the source\n"
           "  --unit N              Modbus unit identifier of the source, 0 to 255\n"
-          "  --byte-order ORDER    byte order of values of several registers: ABCD, CDAB, BADC or DCBA\n"
-          "  --address-base N      number that TAGS gives to the first register of the source, 0 or 1 (default:\n"
-          "                        1)\n"
-          "  --timeout S           longest time in seconds that the matching may take (default: 120)\n"
-          "  --memory MB           most memory that the matching may take (default: 2048)\n"
+          "  --byte-order ORDER    byte order of values in several registers: ABCD, CDAB, BADC or DCBA\n"
+          "  --address-base N      number of the source's first register in TAGS, 0 or 1 (default: 1)\n"
+          "  --timeout S           maximum time in seconds for the matching (default: 120)\n"
+          "  --memory MB           maximum memory in MB for the matching (default: 2048)\n"
           "  --dry-run             print the changes, and write nothing\n"
           "Exit status: 0 success, 1 input cannot be read or the result would be invalid (nothing is written), 2 wrong usage.\n",
           out);
@@ -87,7 +82,7 @@ int main(int argc, char **argv)
         case ENCODING:
             params.encoding = encoding;
             if (!charset_resolve(optarg, encoding)) {
-                fprintf(stderr, "plantcast match: --encoding %s: unknown; iconv --list shows the names that are known\n", optarg);
+                fprintf(stderr, "plantcast match: --encoding %s: unknown encoding: iconv --list prints the known names\n", optarg);
                 return 2;
             }
             break;
@@ -101,20 +96,21 @@ int main(int argc, char **argv)
         case ORDER:
             params.byte_order = optarg;
             if (!byte_order_parse(optarg, &order)) {
-                fprintf(stderr, "plantcast match: --byte-order %s: ABCD, CDAB, BADC or DCBA\n", optarg);
+                fprintf(stderr, "plantcast match: --byte-order %s: expected ABCD, CDAB, BADC or DCBA\n", optarg);
                 return 2;
             }
             break;
         case BASE:
             params.address_base = !strcmp(optarg, "1");
             if (!params.address_base && strcmp(optarg, "0") != 0) {
-                fprintf(stderr, "plantcast match: --address-base %s: 0 or 1\n", optarg);
+                fprintf(stderr, "plantcast match: --address-base %s: expected 0 or 1\n", optarg);
                 return 2;
             }
             break;
         case EQUIPMENT:
             if (params.equipment_count == EQUIPMENT_MOST) {
-                fprintf(stderr, "plantcast match: --equipment: %d at most; put names into a file, @FILE\n", EQUIPMENT_MOST);
+                fprintf(stderr, "plantcast match: --equipment: more than %d options: put the names into a file, --equipment @FILE\n",
+                        EQUIPMENT_MOST);
                 return 2;
             }
             equipment[params.equipment_count++] = optarg;

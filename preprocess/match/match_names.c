@@ -74,9 +74,9 @@ bool method_own_node(const struct matcher *matcher, const struct match_subject *
         return false;
     out->confidence = 0.99;
     if (out->candidates.nodes[0] >= 0)
-        snprintf(out->reason, sizeof(out->reason), "node '%.60s' has its name", node_name(matcher, &out->candidates));
+        snprintf(out->reason, sizeof(out->reason), "node '%.60s' has the tag's name", node_name(matcher, &out->candidates));
     else
-        snprintf(out->reason, sizeof(out->reason), "'%.60s' has its name", id_of(matcher, &out->candidates));
+        snprintf(out->reason, sizeof(out->reason), "'%.60s' has the tag's name", id_of(matcher, &out->candidates));
     return true;
 }
 
@@ -108,7 +108,7 @@ bool method_rules(const struct matcher *matcher, const struct match_subject *sub
         if (asset >= 0) {
             candidates_add(&out->candidates, asset, -1);
             out->confidence = 0.97;
-            snprintf(out->reason, sizeof(out->reason), "rule %zu makes '%.60s' of it", i + 1, equipment.at);
+            snprintf(out->reason, sizeof(out->reason), "rule %zu maps the tag to '%.60s'", i + 1, equipment.at);
         }
         text_finish(&equipment);
         if (asset >= 0)
@@ -152,8 +152,8 @@ bool method_name_within(const struct matcher *matcher, const struct match_subjec
     if (!in_name && !find_within(matcher, &subject->area, out))
         return false;
     const char *what = out->candidates.nodes[0] >= 0 ? node_name(matcher, &out->candidates) : id_of(matcher, &out->candidates);
-    snprintf(out->reason, sizeof(out->reason), "its %s has '%.60s' in it%s", in_name ? "name" : "path", what,
-             out->confidence < 0.9 ? ", but without a separator around it" : "");
+    snprintf(out->reason, sizeof(out->reason), "the tag's %s contains '%.60s'%s", in_name ? "name" : "path", what,
+             out->confidence < 0.9 ? ", but without separators around this name" : "");
     return true;
 }
 
@@ -170,7 +170,7 @@ static bool find_folded(const struct matcher *matcher, const struct name_tokens 
                 !candidates_find(&out->candidates, &matcher->site->folded, key))
                 continue;
             out->confidence = 0.9;
-            snprintf(out->reason, sizeof(out->reason), "its name has '%.60s' in it, with O for 0 or I for 1",
+            snprintf(out->reason, sizeof(out->reason), "the tag's name contains '%.60s', with O for 0 or I for 1",
                      id_of(matcher, &out->candidates));
             return true;
         }
@@ -200,7 +200,7 @@ static bool find_slip(const struct matcher *matcher, const struct name_tokens *t
             if (out->candidates.count == 0)
                 continue;
             out->confidence = other ? 0.6 : 0.88;
-            snprintf(out->reason, sizeof(out->reason), "its name has '%.60s' in it, with one letter wrong",
+            snprintf(out->reason, sizeof(out->reason), "the tag's name contains '%.60s', with one letter wrong",
                      id_of(matcher, &out->candidates));
             return true;
         }
@@ -223,7 +223,7 @@ static bool find_ending(const struct matcher *matcher, const struct name_tokens 
             bool contradicts = before && dropped >= 0 && before->digits == of->at[dropped].digits &&
                                strcmp(before->text, of->at[dropped].text) != 0 && !isa_are_letters(before->text);
             out->confidence = contradicts ? 0.5 : 0.87;
-            snprintf(out->reason, sizeof(out->reason), "its name has the end of '%.60s' in it", id_of(matcher, &out->candidates));
+            snprintf(out->reason, sizeof(out->reason), "the tag's name contains the end of '%.60s'", id_of(matcher, &out->candidates));
             return true;
         }
     return false;

@@ -166,9 +166,9 @@ bool method_number(const struct matcher *matcher, const struct match_subject *su
     bool other_area = rate_prefix(matcher, subject, list->assets[0]) == 0;
     out->confidence = other_area || !same_width ? 0.6 : cut ? 0.9 : 0.93;
     snprintf(out->reason, sizeof(out->reason), "loop %.30s: equipment number %.30s%s", number->text, text,
-             other_area   ? ", but the part before it is not that of the equipment"
+             other_area   ? ", but the prefix is not that of the equipment"
              : same_width ? ""
-                          : ", with another number of leading zeros");
+                          : ", with a different number of leading zeros");
     return true;
 }
 
@@ -214,7 +214,7 @@ bool method_parts(const struct matcher *matcher, const struct match_subject *sub
     if (out->candidates.count == 0)
         return false;
     out->confidence = 0.9;
-    snprintf(out->reason, sizeof(out->reason), "its name has the number and other parts of '%.60s'",
+    snprintf(out->reason, sizeof(out->reason), "the tag's name has the number and other parts of '%.60s'",
              matcher->site->plant->assets[out->candidates.assets[0]].id);
     return true;
 }

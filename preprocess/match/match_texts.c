@@ -14,7 +14,7 @@ bool method_attributes(const struct matcher *matcher, const struct match_subject
     if (tokens->count < 2 || !candidates_find(&out->candidates, &matcher->site->attributes, key))
         return false;
     out->confidence = 0.95;
-    snprintf(out->reason, sizeof(out->reason), "an attribute of '%.60s' says so",
+    snprintf(out->reason, sizeof(out->reason), "an attribute of '%.60s' is the tag's name",
              matcher->site->plant->assets[out->candidates.assets[0]].id);
     return true;
 }

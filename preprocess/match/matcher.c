@@ -83,7 +83,7 @@ static void decide(const struct matcher *matcher, const struct proposal proposal
             candidates_name(&proposals[open].candidates, matcher->site, names, sizeof(names));
             text_add(&reason, "%s: %s", proposals[open].reason, names);
         } else {
-            text_add(&reason, "nothing in the model has its name, number or words");
+            text_add(&reason, "nothing in the model has the name, number or words of the tag");
         }
     } else {
         const struct proposal *of = &proposals[chosen];
@@ -217,7 +217,7 @@ bool matcher_read_rules(struct matcher *matcher, const char *path, char why[MATC
         int error = regcomp(&rule->pattern, table_cell(&table.rows[i], 0), REG_EXTENDED | REG_ICASE);
         if (error) {
             regerror(error, &rule->pattern, reason, sizeof(reason));
-            snprintf(why, MATCH_WHY_BYTES, "line %d: '%.80s' is no regular expression: %s", table.rows[i].line,
+            snprintf(why, MATCH_WHY_BYTES, "line %d: '%.80s' is not a valid regular expression: %s", table.rows[i].line,
                      table_cell(&table.rows[i], 0), reason);
             good = false;
         } else {

@@ -71,8 +71,7 @@ static void print_list(const struct matching_run *run)
         printf(", separated by %s", separator == ',' ? "commas" : separator == ';' ? "semicolons" : separator == '\t' ? "tabs" : "bars");
     printf("; %zu tags\n", list->count);
     if (*list->encoding.other)
-        printf("%s: read as %s, but may be %s: set --encoding NAME\n", path, list->encoding.name,
-               list->encoding.other);
+        printf("%s: encoding read as %s, but may be %s: set --encoding NAME\n", path, list->encoding.name, list->encoding.other);
     else if (*list->encoding.name && strcmp(list->encoding.name, "UTF-8") != 0)
         printf("%s: read as %s\n", path, list->encoding.name);
     if (list->same > 0)
@@ -81,15 +80,15 @@ static void print_list(const struct matching_run *run)
         printf("%s: %zu rows repeat a tag with different contents: the first row is used: %s%s\n", path, list->differing,
                list->differing_lines, list->differing > 5 ? ", ..." : "");
     if (list->renamed > 0)
-        printf("%s: %zu tags share their name with a tag in another folder: named by their path instead\n", path, list->renamed);
+        printf("%s: %zu tags have the name of a tag in another folder: each of these tags is named by its path\n", path, list->renamed);
     for (const char *line = list->remarks.at, *end; line && *line; line = *end ? end + 1 : end) {
         end = line + strcspn(line, "\n");
         printf("%s: %.*s\n", path, (int)(end - line), line);
     }
     if (list->nameless > 0)
-        printf("%s: %zu rows have no name: left out\n", path, list->nameless);
+        printf("%s: %zu rows without a tag name are left out\n", path, list->nameless);
     if (list->control > 0)
-        printf("%s: %zu control characters: read as blanks\n", path, list->control);
+        printf("%s: %zu control characters are read as blanks\n", path, list->control);
     if (list->damaged > 0)
         printf("%s: %zu characters are not valid %s: shown as \xef\xbf\xbd\n", path, list->damaged,
                *list->encoding.name ? list->encoding.name : "text");
@@ -103,12 +102,11 @@ static bool choose_equipment(struct matching_run *run)
     struct text lines = { 0 };
     for (size_t i = 0; i < run->plant->tag_count; i++)
         if (run->plant->tags[i].asset >= 0)
-            return fail_at(run->params->plant,
-                           "--equipment would replace assets that have tags; edit the list of assets by hand");
+            return fail_at(run->params->plant, "--equipment would replace assets that have tags: edit `assets` in the plant file by hand");
     int count = equipment_choose(&run->site, run->params->equipment, run->params->equipment_count, &lines, why);
     char *text = count < 0 ? NULL : plant_edit_replace(run->plant_text, "assets", lines.at);
     if (count >= 0 && !text)
-        snprintf(why, sizeof(why), "the list of assets needs one item a line");
+        snprintf(why, sizeof(why), "the list `assets` in the plant file needs one item a line");
     struct plant *plant = text ? plant_trial_load(run->plant, text, NULL, "plantcast match") : NULL;
     text_finish(&lines);
     if (!text)
@@ -223,7 +221,7 @@ static bool find_source(struct matching_run *run)
         run->source = (struct tag_source){ id ? id : "plc", true, params->address_base };
     else if (params->source || run->plant->source_count > 1)
         return fail_at(params->plant, params->source ? "--source: the plant has no source with this id"
-                                                     : "the plant has several sources; select one with --source ID");
+                                                     : "the plant has several sources: select one source with --source ID");
     return true;
 }
 
@@ -318,16 +316,16 @@ static void add_group(const struct quantity *quantity, struct text *lines)
     text_add(lines, ", unit: ");
     plant_edit_add_quoted(lines, quantity->unit);
     text_add(lines, ", min: %.6g, max: %.6g } # %zu tags; ", known ? quantity->low : 0, known ? quantity->high : 100, quantity->tags);
-    text_add(lines, known ? "the range of their scaled limits" : "the range is a guess: no tag of the group has scaled limits");
+    text_add(lines, known ? "range: scaled limits of these tags" : "the range is a guess: no tag of the group has scaled limits");
     if (quantity->blank > 0)
-        text_add(lines, "; %zu of them have no unit", quantity->blank);
+        text_add(lines, "; %zu tags have no unit", quantity->blank);
     text_add(lines, "\n");
 }
 
 static bool take_text(struct matching_run *run, char *text)
 {
     if (!text)
-        return fail_at(run->params->plant, "the lists of groups and sources need one item a line");
+        return fail_at(run->params->plant, "the lists `groups` and `sources` in the plant file need one item a line");
     mem_free(run->new_text);
     run->new_text = text;
     return true;
@@ -367,7 +365,8 @@ static bool change_source(struct matching_run *run)
     regfree(&regex);
     mem_free(pattern);
     mem_free(line);
-    return good || fail_at(run->params->plant, "the source was edited by hand and --modbus cannot change it: edit it in the plant file");
+    return good ||
+           fail_at(run->params->plant, "--modbus cannot change a source that was edited by hand: edit the source in the plant file");
 }
 
 static bool add_source(struct matching_run *run)
@@ -407,7 +406,7 @@ static bool is_as_read(const char *path, const char *before)
     char *now = text_read_file(path, max_list_bytes, &length);
     bool is = before && now ? !strcmp(before, now) : before == now;
     mem_free(now);
-    return is || fail_at(path, "was changed by another program during matching; nothing was written: run the command again");
+    return is || fail_at(path, "this file was changed by another program during matching, so nothing was written: run the command again");
 }
 
 static bool add_one(struct file_set *set, const char *path, const char *before, const char *text)
@@ -451,14 +450,14 @@ static void print_result(const struct matching_run *run, FILE *out)
         counts[run->matches[i].status]++;
     fprintf(out, "%zu tags: %zu sure, %zu likely, %zu none", run->list.count, counts[MATCH_SURE], counts[MATCH_LIKELY], counts[MATCH_NONE]);
     fprintf(out, run->by_hand > 0 ? "; %zu of them by hand\n" : "\n", run->by_hand);
-    fprintf(out, "places: %zu at a node of their own, %zu assumed\n", run->own_nodes, run->assumed);
+    fprintf(out, "positions: %zu tags at a node of their own, %zu tags at an assumed position\n", run->own_nodes, run->assumed);
     if (run->left_out > 0)
-        fprintf(out, run->left_out == 1 ? "%zu tag is not in the tag list: it is text, or has no address for %s\n"
-                                  : "%zu tags are not in the tag list: they are text, or have no address for %s\n",
-               run->left_out,
-               run->source.id ? run->source.id : "a source");
+        fprintf(out,
+                run->left_out == 1 ? "%zu tag is not in the tag list, because the tag is text or has no address for %s\n"
+                                   : "%zu tags are not in the tag list, because these tags are text or have no address for %s\n",
+                run->left_out, run->source.id ? run->source.id : "a source");
     if (run->left > 0)
-        fprintf(out, "%zu tags are no longer in the list; decisions about them are kept: %s%s\n", run->left,
+        fprintf(out, "%zu tags are no longer in the exported list; decisions about these tags are kept: %s%s\n", run->left,
                 run->left_names.at, run->left > LEFT_NAMED ? ", ..." : "");
     if (!run->source.id)
         fprintf(out, "the tag list has no addresses, because the plant has no source: add one with --modbus HOST\n");
@@ -640,8 +639,8 @@ static bool match(struct matching_run *run)
                                                   .folder = folder,
                                                   .timeout_s = run->params->timeout_s,
                                                   .memory_bytes = run->params->memory_bytes,
-                                                  .timeout_option = "--timeout; plantcastd: --limit import-seconds",
-                                                  .memory_option = "--memory; plantcastd: --limit import-megabytes",
+                                                  .timeout_option = "limit set by --timeout, or by plantcastd --limit import-seconds",
+                                                  .memory_option = "limit set by --memory, or by plantcastd --limit import-megabytes",
                                                   .role = CONFINE_READER,
                                                   .paths = paths.at,
                                                   .path_count = paths.count,

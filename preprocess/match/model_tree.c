@@ -176,7 +176,7 @@ bool model_tree_read(struct model_tree *tree, const char *path, char why[TREE_WH
         snprintf(why, TREE_WHY_BYTES, "has no nodes");
         good = false;
     } else if (!good && tree->json) {
-        snprintf(why, TREE_WHY_BYTES, "the node tree has a missing node, a circle, or more than %d levels or %d nodes", MAX_DEPTH,
+        snprintf(why, TREE_WHY_BYTES, "the node tree has a missing node, a cycle, or more than %d levels or %d nodes", MAX_DEPTH,
                  MAX_NODES);
     }
     if (!good)

@@ -226,7 +226,7 @@ static int read_part(struct xlsx_sheet *sheet, unzFile zip, const char *part, XM
                  count < 0 ? "cannot be unpacked" : XML_ErrorString(XML_GetErrorCode(parser)));
     XML_ParserFree(parser);
     if (unzCloseCurrentFile(zip) == UNZ_CRCERROR && good == 1) {
-        snprintf(why, why_bytes, "%s is damaged: its checksum is wrong", part);
+        snprintf(why, why_bytes, "%s is damaged: the checksum is wrong", part);
         good = -1;
     }
     return good;
@@ -285,7 +285,7 @@ static bool find_sheets(struct book *book, unzFile zip, char *why, size_t why_by
         read_part(&book->sheet, zip, "xl/_rels/workbook.xml.rels", relation_begins, nothing_ends, why, why_bytes) < 0)
         return false;
     if (book->too_many) {
-        snprintf(why, why_bytes, "more than %d sheets; save the sheet with the tags as a file of its own", MAX_SHEETS);
+        snprintf(why, why_bytes, "more than %d sheets: save the sheet with the tags as a separate file", MAX_SHEETS);
         return false;
     }
     for (int i = 0; i < MAX_SHEETS && book->count == i; i++) {
@@ -301,7 +301,7 @@ bool table_read_xlsx(const char *path, table_take_sheet *take, void *data, char 
 {
     unzFile zip = unzOpen(path);
     if (!zip) {
-        snprintf(why, why_bytes, "not a spreadsheet: its ZIP archive cannot be opened");
+        snprintf(why, why_bytes, "not a spreadsheet: the ZIP archive cannot be opened");
         return false;
     }
     struct book *book = mem_new(sizeof(*book));
@@ -322,7 +322,7 @@ bool table_read_xlsx(const char *path, table_take_sheet *take, void *data, char 
         table_row_finish(&sheet->row);
     }
     if (good >= 0 && sheets == 0) {
-        snprintf(why, why_bytes, "not a spreadsheet: it has no sheet");
+        snprintf(why, why_bytes, "not a spreadsheet: the file has no sheet");
         good = -1;
     }
     unzClose(zip);

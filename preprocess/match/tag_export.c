@@ -219,7 +219,7 @@ static bool read_rows(struct tag_export *list, const struct cell_table *table, c
         list->format = "one name a line";
         first = 0;
     } else {
-        snprintf(why, why_bytes, "no header with a column of tag names in the first %d rows; expected Tag Name, Point ID, Name, ...",
+        snprintf(why, why_bytes, "no header with a column of tag names in the first %d rows: expected Tag Name, Point ID, Name, ...",
                  HEADER_ROWS);
         return false;
     }
@@ -306,7 +306,7 @@ static bool read_text(struct tag_export *list, const char *bytes, size_t count, 
     list->damaged = text.damaged;
     bool good, json = *first_sign(text.utf8) == '{' || *first_sign(text.utf8) == '[';
     if (*first_sign(text.utf8) == '<') {
-        snprintf(why, why_bytes, "it is XML, which is not read: export the tags as JSON, CSV or .xlsx");
+        snprintf(why, why_bytes, "XML is not supported: export the tags as JSON, CSV or .xlsx");
         good = false;
     } else if (json) {
         good = tag_export_read_json(list, text.utf8, text.length, why, why_bytes);
@@ -367,7 +367,7 @@ static bool read_workbook(struct tag_export *list, const char *path, char *why, 
     bool good = table_read_xlsx(path, take_sheet, &book, why, why_bytes) && read_rows(list, &book.best, why, why_bytes);
     list->control = book.best.control;
     if (good && book.sheets > 1)
-        text_add(&list->remarks, "the list is sheet '%.60s' of %zu\n", book.name, book.sheets);
+        text_add(&list->remarks, "the tag list is sheet '%.60s' of %zu sheets\n", book.name, book.sheets);
     if (good && book.others.length > 0)
         text_add(&list->remarks, "other sheets with a header are not read: %s\n", book.others.at);
     table_finish(&book.best);
@@ -386,7 +386,7 @@ bool tag_export_read(struct tag_export *list, const char *path, const char *enco
     } else if (count >= 4 && !memcmp(bytes, "PK\3\4", 4)) {
         good = read_workbook(list, path, why, why_bytes);
     } else if (count >= 4 && !memcmp(bytes, "\xd0\xcf\x11\xe0", 4)) {
-        snprintf(why, why_bytes, "a spreadsheet of Excel 97 to 2003 (.xls); save it as .xlsx or CSV");
+        snprintf(why, why_bytes, "spreadsheets of Excel 97 to 2003 (.xls) are not supported: save the sheet as .xlsx or CSV");
     } else {
         good = read_text(list, bytes, count, encoding, why, why_bytes);
     }

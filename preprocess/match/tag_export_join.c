@@ -116,8 +116,9 @@ static void say_alike(struct tag_export *list)
             text_add(&names, " (lines %d and %d)", list->tags[all[i - 1].tag].line, list->tags[all[i].tag].line);
     }
     if (pairs > 0)
-        text_add(&list->remarks, "%zu tag%s from another one only in the kind of dashes, letter widths or blanks; both are kept: %s%s\n",
-                 pairs, pairs == 1 ? " differs" : "s differ", names.at, pairs > NAMED ? ", ..." : "");
+        text_add(&list->remarks,
+                 "%zu tag%s from another tag only in the kind of dashes, letter widths or blanks; both tags are kept: %s%s\n", pairs,
+                 pairs == 1 ? " differs" : "s differ", names.at, pairs > NAMED ? ", ..." : "");
     for (size_t i = 0; i < list->count; i++)
         mem_free(all[i].key);
     mem_free(all);

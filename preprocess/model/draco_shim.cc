@@ -45,12 +45,12 @@ bool claims_good(const char *bytes, size_t size, char *why)
         char magic[5];
         uint8_t major, minor, type, method, flags[2];
     } header;
-    static_assert(sizeof(header) == 11, "packed as Draco writes it");
+    static_assert(sizeof(header) == 11, "the header must have no padding, as in Draco data");
     buffer.Init(bytes, size);
     if (!buffer.Decode(&header, sizeof(header)) || memcmp(header.magic, "DRACO", 5) != 0)
         return wrong(why, "%zu bytes without Draco's signature", size);
     if (header.major != 2 || header.minor != 2 || header.type != draco::TRIANGULAR_MESH || header.method > draco::MESH_EDGEBREAKER_ENCODING)
-        return wrong(why, "version %u.%u, type %u, method %u: only meshes of version 2.2 are supported", header.major, header.minor,
+        return wrong(why, "Draco version %u.%u, type %u, method %u: only meshes of version 2.2 are supported", header.major, header.minor,
                      header.type, header.method);
     draco::GeometryMetadata metadata;
     if ((header.flags[1] & 128) && !draco::MetadataDecoder().DecodeGeometryMetadata(&buffer, &metadata))
@@ -64,7 +64,7 @@ bool claims_good(const char *bytes, size_t size, char *why)
     uint64_t triangles = edgebreaker ? second : first, vertices = edgebreaker ? first : second,
              most = FREE_TRIANGLES + TRIANGLES_PER_BYTE * size;
     if (triangles > most || vertices > 3 * most)
-        return wrong(why, "%zu bytes cannot hold the stated %llu vertices and %llu triangles", size,
+        return wrong(why, "%zu bytes of Draco data cannot hold the stated %llu vertices and %llu triangles", size,
                      static_cast<unsigned long long>(vertices), static_cast<unsigned long long>(triangles));
     return true;
 }

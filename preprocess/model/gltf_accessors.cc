@@ -63,7 +63,7 @@ byte_span view_span(const gltf_work &w, int number, uint64_t offset, uint64_t el
         refuse("%s: byteStride %llu of bufferView %d is less than an element's %llu bytes", what.c_str(),
                static_cast<unsigned long long>(stride), number, static_cast<unsigned long long>(element));
     if (count > view.byteLength)
-        refuse("%s: %llu elements are more than the %zu bytes of bufferView %d", what.c_str(), static_cast<unsigned long long>(count),
+        refuse("%s: %llu elements do not fit into the %zu bytes of bufferView %d", what.c_str(), static_cast<unsigned long long>(count),
                view.byteLength, number);
     if (count > 0 && (offset > view.byteLength || (count - 1) * stride + element > view.byteLength - offset))
         refuse("%s: %llu elements do not fit into bufferView %d of %zu bytes", what.c_str(), static_cast<unsigned long long>(count), number,
@@ -92,14 +92,14 @@ accessor::accessor(const gltf_work &w, int number, int width, const std::string 
     size_t count = static_cast<size_t>(a.sparse.count), index_bytes = component_bytes(index_type);
     if (count > a.count || index_bytes == 0 || index_type == TINYGLTF_COMPONENT_TYPE_FLOAT || index_type == TINYGLTF_COMPONENT_TYPE_BYTE ||
         index_type == TINYGLTF_COMPONENT_TYPE_SHORT)
-        refuse("%s: sparse: %zu of %zu elements, by indices of component type %d", what.c_str(), count, a.count, index_type);
+        refuse("%s: invalid sparse accessor: %zu of %zu elements, indices of component type %d", what.c_str(), count, a.count, index_type);
     byte_span places =
         view_span(w, a.sparse.indices.bufferView, static_cast<uint64_t>(a.sparse.indices.byteOffset), index_bytes, count, false, what);
     values = view_span(w, a.sparse.values.bufferView, static_cast<uint64_t>(a.sparse.values.byteOffset), element, count, false, what);
     for (size_t i = 0; i < count; i++) {
         size_t place = integer(places.bytes + i * index_bytes, index_type);
         if (place >= a.count || (i > 0 && place <= replaced.back().first))
-            refuse("%s: sparse: element %zu of %zu, or out of order", what.c_str(), place, a.count);
+            refuse("%s: invalid sparse accessor: element %zu of %zu is out of range or out of order", what.c_str(), place, a.count);
         replaced.emplace_back(place, i);
     }
 }

@@ -132,12 +132,12 @@ void read_textures(gltf_work *w, const tinygltf::Material &from, asset_material 
         if (uses[i].texture < 0)
             continue;
         if (lays.of[i] == 2)
-            why =
-                "(TEXCOORD_" + std::to_string(transform_of(w->parsed, uses[i]).set) + ") needs a third texture mapping; two are supported";
+            why = "(TEXCOORD_" + std::to_string(transform_of(w->parsed, uses[i]).set) +
+                  ") needs a third texture mapping, but only two are supported";
         else
             *places[i] = texture_of(w, uses[i].texture, i == BASE_COLOR || i == EMISSIVE, &why);
         if (!why.empty())
-            leave_out(w, what + ": its " + use_names[i] + " texture" + (why[0] == '(' ? " " : ": ") + why);
+            leave_out(w, what + ": the " + use_names[i] + " texture" + (why[0] == '(' ? " " : ": ") + why);
         else
             to->second |= static_cast<uint32_t>(lays.of[i]) << i;
     }
@@ -199,8 +199,8 @@ void leave_out_bounded(gltf_work *w, int material, size_t lay)
     for (size_t i = 0; i < USE_COUNT; i++)
         if (*places[i] != ASSET_NO_TEXTURE && lays.of[i] == lay && transform_of(w->parsed, uses[i]).bounded) {
             *places[i] = ASSET_NO_TEXTURE;
-            leave_out(w, material_what(*w, material) + ": its " + use_names[i] +
-                             " texture: beyond 0..1 it is mirrored, or wrapped differently along u and v");
+            leave_out(w, material_what(*w, material) + ": the " + use_names[i] +
+                             " texture: mirroring, or different wrapping along u and v, is not supported outside 0..1");
         }
 }
 

@@ -36,7 +36,7 @@ std::vector<uint32_t> read_indices(gltf_work *w, const tinygltf::Primitive &p, s
         double index;
         from.get(i, &index);
         if (!(index < static_cast<double>(vertex_count)))
-            refuse("%s: indices: index %zu names vertex %.0f of %zu", what.c_str(), i, index, vertex_count);
+            refuse("%s: indices: index %zu refers to vertex %.0f, but there are only %zu vertices", what.c_str(), i, index, vertex_count);
         out[i] = static_cast<uint32_t>(index);
     }
     return out;
@@ -47,7 +47,7 @@ std::vector<uint32_t> triangle_list(std::vector<uint32_t> in, int mode, const st
     std::vector<uint32_t> out;
     if (mode == TINYGLTF_MODE_TRIANGLES) {
         if (in.size() % 3 != 0)
-            refuse("%s: %zu indices are not a multiple of 3", what.c_str(), in.size());
+            refuse("%s: the number of indices, %zu, is not a multiple of 3", what.c_str(), in.size());
         return in;
     }
     for (size_t i = 2; i < in.size(); i++) {
@@ -202,7 +202,7 @@ bool read_primitive(gltf_work *w, const tinygltf::Primitive &p, gltf_primitive *
         return false;
     }
     if (mode < 0 || mode > TINYGLTF_MODE_TRIANGLE_FAN)
-        refuse("%s: mode %d does not exist in glTF 2.0", what.c_str(), mode);
+        refuse("%s: primitive mode %d does not exist in glTF 2.0", what.c_str(), mode);
     auto position = p.attributes.find("POSITION");
     if (position == p.attributes.end())
         refuse("%s: has no POSITION", what.c_str());

@@ -24,7 +24,7 @@ void check_rotation(gltf_work *w, const double q[4], const std::string &what)
 {
     double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (!(length >= LEAST_ROTATION))
-        refuse("%s: its rotation [%g, %g, %g, %g] is not a unit quaternion", what.c_str(), q[0], q[1], q[2], q[3]);
+        refuse("%s: the rotation [%g, %g, %g, %g] is not a unit quaternion", what.c_str(), q[0], q[1], q[2], q[3]);
     w->model->scaled_rotations += std::fabs(length - 1) > ROTATION_SLACK;
 }
 
@@ -32,10 +32,10 @@ void check_affine(double m[16], const std::string &what)
 {
     for (int i = 0; i < 16; i++)
         if (!std::isfinite(m[i]) || std::fabs(m[i]) > 1e15)
-            refuse("%s: its position is not finite or exceeds 1e15", what.c_str());
+            refuse("%s: the position of the node is not finite or exceeds 1e15", what.c_str());
     for (int c = 0; c < 4; c++) {
         if (std::fabs(m[4 * c + 3] - (c == 3)) > 1e-6)
-            refuse("%s: the last row of its matrix is not 0 0 0 1", what.c_str());
+            refuse("%s: the last row of the matrix is not 0 0 0 1", what.c_str());
         m[4 * c + 3] = c == 3;
     }
 }
@@ -105,7 +105,7 @@ void add_instances(node_order *tree, int number, int parent, const tinygltf::Val
             refuse("%s: %zu and %zu instances", what.c_str(), values.front().count(), values.back().count());
     }
     if (values.empty())
-        refuse("%s: has neither TRANSLATION, ROTATION nor SCALE", what.c_str());
+        refuse("%s: the instances have neither TRANSLATION, ROTATION nor SCALE", what.c_str());
     take_elements(tree->w, values.front().count() * ELEMENTS_PER_INSTANCE, what);
     for (size_t i = 0; i < values.front().count(); i++) {
         double t[3] = { 0, 0, 0 }, q[4] = { 0, 0, 0, 1 }, s[3] = { 1, 1, 1 }, local[16], world[16];
@@ -163,7 +163,7 @@ std::vector<int> roots_of(const tinygltf::Model &m)
         if (!child[i])
             roots.push_back(static_cast<int>(i));
     if (roots.empty() && !m.nodes.empty())
-        refuse("every node is a child of another: a cycle");
+        refuse("every node is the child of another node: the nodes form a cycle");
     return roots;
 }
 

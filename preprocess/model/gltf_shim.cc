@@ -68,7 +68,7 @@ void parse(gltf::gltf_work *w)
     std::string error, warning;
     loader.SetFsCallbacks(no_files());
     if (w->document->json_bytes > std::numeric_limits<unsigned>::max())
-        refuse("%zu bytes of JSON are too many", w->document->json_bytes);
+        refuse("the JSON of the model is too large: %zu bytes", w->document->json_bytes);
     bool good =
         loader.LoadASCIIFromString(&w->parsed, &error, &warning, w->document->json, static_cast<unsigned>(w->document->json_bytes), "");
     while (!error.empty() && error.back() == '\n')

@@ -29,14 +29,14 @@ static bool load_buffer(struct document_work *work, size_t number, const json_t 
     } else if (number == 0 && work->binary.at && !standin) {
         bytes = (struct document_bytes){ .at = work->binary.at, .size = work->binary.size };
     } else if (!standin) {
-        return wrong(work->why, "buffer %zu: has no uri, and there is no binary chunk for it", number);
+        return wrong(work->why, "buffer %zu has no uri, and the file has no binary chunk", number);
     }
     size_t has = bytes.size;
     if (length < has)
         bytes.size = (size_t)length;
     document_add_buffer(work, bytes);
     if (length > has && bytes.at)
-        return wrong(work->why, "buffer %zu: truncated: %zu bytes, it should have %" PRIu64, number, has, length);
+        return wrong(work->why, "buffer %zu is truncated: %zu bytes instead of %" PRIu64, number, has, length);
     return true;
 }
 
@@ -80,7 +80,7 @@ static bool fill_with_zeros(struct document_work *work, const json_t *number, ui
         return true;
     uint64_t count = document_number(accessor, "count"), element = document_element_bytes(accessor, &component_type, &width);
     if (count > MAX_ZERO_BYTES || (*zeros += count * element) > MAX_ZERO_BYTES)
-        return wrong(work->why, "accessor %lld: %" PRIu64 " elements, but no data in the file",
+        return wrong(work->why, "accessor %lld: %" PRIu64 " elements without data in the file are too many",
                      (long long)json_integer_value(number), count);
     unsigned char *own = mem_try_array(count * element + 1, 1);
     if (!own)
@@ -141,7 +141,7 @@ static bool load_image(struct document_work *work, size_t number, const json_t *
         if (!image->bytes.at)
             image->missing = mem_strdup(uri_why);
     } else {
-        return wrong(work->why, "image %zu: has neither a uri nor a bufferView", number);
+        return wrong(work->why, "image %zu has neither a uri nor a bufferView", number);
     }
     return true;
 }
@@ -168,14 +168,14 @@ static void take_left_out(struct document_work *work)
     for (size_t i = 0; i < json_array_size(required); i++) {
         const char *name = json_string_value(json_array_get(required, i));
         if (name && model_rules_look(name))
-            d->looks[d->look_count++] = mem_printf("the file requires %.100s%s", name,
-                                                   strcmp(name, specular) == 0 ? ": diffuse colours are kept, specular ones are ignored"
-                                                                               : ", which only affects its looks");
+            d->looks[d->look_count++] = mem_printf("the file requires the extension %.100s%s", name,
+                                                   strcmp(name, specular) == 0 ? ": diffuse colours are kept, specular colours are ignored"
+                                                                               : ", which affects only the look of the model");
     }
     for (size_t i = 0; i < json_array_size(used); i++) {
         const char *name = json_string_value(json_array_get(used, i));
         if (name && !model_rules_known(name) && !model_rules_look(name))
-            d->looks[d->look_count++] = mem_printf("the file uses %.100s, which is not supported", name);
+            d->looks[d->look_count++] = mem_printf("the file uses the extension %.100s, which is not supported", name);
     }
 }
 
@@ -230,7 +230,7 @@ static bool make_plain(struct document_work *work)
     strip(work->root);
     work->document->json = json_dumps(work->root, JSON_COMPACT);
     if (!work->document->json)
-        return wrong(work->why, "out of memory for its JSON");
+        return wrong(work->why, "out of memory for the JSON of the model");
     work->document->json_bytes = strlen(work->document->json);
     return true;
 }

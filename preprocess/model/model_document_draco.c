@@ -25,15 +25,15 @@ static bool take_attribute(struct document_work *work, const struct draco_mesh *
     json_t *attributes = json_object_get(primitive, "attributes"), *number = json_object_get(attributes, name);
     int component_type, width;
     if (!number)
-        return wrong(work->why, "%s: the Draco data has %.40s, which the primitive does not have", what, name);
+        return wrong(work->why, "%s: the Draco data has the attribute %.40s, which the primitive lacks", what, name);
     json_t *accessor = json_copy(json_array_get(json_object_get(work->root, "accessors"), (size_t)json_integer_value(number)));
     size_t element = document_element_bytes(accessor, &component_type, &width), size = element * draco_mesh_vertex_count(mesh);
     unsigned char *own = element ? mem_try_array(size + 1, 1) : NULL;
     if (!own || !draco_mesh_attribute(mesh, id, component_type, width, own)) {
         mem_free(own);
         json_decref(accessor);
-        return wrong(work->why, "%s: %.40s is not in its Draco data as attribute %u of %d numbers of type %d", what, name, id, width,
-                     component_type);
+        return wrong(work->why, "%s: the Draco data does not have %.40s as attribute %u with %d components of type %d", what, name, id,
+                     width, component_type);
     }
     json_object_set_new(accessor, "count", json_integer(draco_mesh_vertex_count(mesh)));
     json_object_set_new(attributes, name, json_integer((json_int_t)add_accessor(work, accessor, own, size)));
@@ -63,7 +63,7 @@ static bool expand(struct document_work *work, json_t *primitive, const json_t *
     const char *name;
     json_t *id;
     if (mode && json_integer_value(mode) != MODE_TRIANGLES)
-        return wrong(work->why, "%s: Draco with mode %lld, only triangles are supported", what, json_integer_value(mode));
+        return wrong(work->why, "%s: Draco data with primitive mode %lld: only triangles are supported", what, json_integer_value(mode));
     if (!document_range(work, (size_t)json_integer_value(json_object_get(view, "buffer")),
                         (uint64_t)json_integer_value(json_object_get(view, "byteOffset")),
                         (uint64_t)json_integer_value(json_object_get(view, "byteLength")), what, &from))

@@ -81,7 +81,7 @@ json_t *model_json_load(struct model_bytes file, struct model_bytes *binary, cha
     if (!root) {
         wrong(why, "JSON: line %d, column %d: %s", error.line, error.column, error.text);
     } else if (!json_is_object(root)) {
-        wrong(why, "JSON: the top is not an object");
+        wrong(why, "JSON: the top-level value is not an object");
         json_decref(root);
         root = NULL;
     }

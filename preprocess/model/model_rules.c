@@ -215,7 +215,7 @@ static bool whole_good(const struct rule_check *c, const struct model_rule *rule
     if (rule->kind == INDEX && !index_good(c, rule->path, value, rule->target))
         return false;
     if (!whole(value, &number) || number < 0 || number > most)
-        return object_wrong(c, "%s is not a whole number of 0 to %lld", rule->path, (long long)most);
+        return object_wrong(c, "%s is not a whole number from 0 to %lld", rule->path, (long long)most);
     if (json_is_real(value))
         json_object_set_new(parent, key, json_integer(number));
     return true;
@@ -331,7 +331,7 @@ static bool head_good(json_t *root, char *why)
     for (size_t i = 0; i < json_array_size(required); i++) {
         const char *name = json_string_value(json_array_get(required, i));
         if (!name || (!model_rules_known(name) && !model_rules_look(name)))
-            return wrong(why, "requires the extension %.100s, which is not supported", name ? name : "without a name");
+            return wrong(why, "the model requires the extension %.100s, which is not supported", name ? name : "without a name");
     }
     static const struct model_rule scene = { "", "scene", INDEX, MAY, "scenes", 0 };
     return rule_good(&(struct rule_check){ root, NULL, 0, -1, why }, &scene, root);

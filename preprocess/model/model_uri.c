@@ -45,18 +45,18 @@ static const char *find_inside(const char *folder, const char *name, char **real
     struct stat st;
     size_t length = strcmp(folder, "/") == 0 ? 0 : strlen(folder);
     if (name[0] == '/')
-        return "it is an absolute path";
+        return "the name is an absolute path";
     if (strstr(name, "://"))
-        return "it is a URL";
+        return "the name is a URL";
     char *joined = mem_printf("%s/%s", folder, name);
     *real = realpath(joined, NULL);
     mem_free(joined);
     if (!*real)
-        return errno == ENOENT ? "there is none" : strerror(errno);
+        return errno == ENOENT ? "no such file" : strerror(errno);
     if (strncmp(*real, folder, length) != 0 || (*real)[length] != '/')
-        return "it leads out of the model's folder";
+        return "the name leads out of the model's folder";
     if (stat(*real, &st) != 0 || !S_ISREG(st.st_mode))
-        return "it is not a file";
+        return "not a regular file";
     return NULL;
 }
 
@@ -115,13 +115,13 @@ static unsigned char *base64_decode(const char *text, size_t *size, char *why)
     unsigned char *out = mem_try_array(length / 4 * 3 + 3, 1);
     unsigned bits = 0;
     if (!out || length % 4 == 1) {
-        wrong(why, out ? "data URI: %zu base64 digits are truncated" : "out of memory for %zu base64 digits", length);
+        wrong(why, out ? "data URI: the base64 data of %zu digits are truncated" : "out of memory for %zu base64 digits", length);
         goto error;
     }
     for (size_t i = 0; i < length; i++) {
         int digit = base64_digit(text[i]);
         if (digit < 0) {
-            wrong(why, "data URI: byte %zu is not base64", i);
+            wrong(why, "data URI: byte %zu is not a base64 digit", i);
             goto error;
         }
         bits = (bits << 6 | (unsigned)digit) & 0xffffff;
@@ -146,7 +146,7 @@ unsigned char *model_uri_read(const char *folder, const char *uri, size_t *size,
         const char *comma = strchr(uri, ',');
         if (comma && comma - uri >= 7 && strncmp(comma - 7, ";base64", 7) == 0)
             return base64_decode(comma + 1, size, why);
-        wrong(why, "data URI: '%.40s' is not base64", uri);
+        wrong(why, "data URI: '%.40s' is not encoded as base64", uri);
         return NULL;
     }
     char *name = mem_strdup(uri);

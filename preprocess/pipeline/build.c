@@ -201,7 +201,7 @@ static void make_levels(struct build *build)
     int64_t since_ns = clock_mono_ns();
     build->failed[0] = !levels_make(&build->levels, &build->geometry, build->workers);
     if (build->failed[0])
-        wrong(build->why, "out of memory for the levels of %u vertices", build->geometry.vertex_count);
+        wrong(build->why, "out of memory for the levels of detail of %u vertices", build->geometry.vertex_count);
     report->repeated_triangles = (uint32_t)build->levels.repeated;
     report->levels_s = seconds_since(&since_ns);
 }
@@ -270,7 +270,7 @@ static void split(struct build *build)
                                                                  .arg = build },
                                          &build->distances);
     if (build->failed[0])
-        wrong(build->why, "out of memory for the levels of %u vertices", build->geometry.vertex_count);
+        wrong(build->why, "out of memory for the levels of detail of %u vertices", build->geometry.vertex_count);
     build->output->report.split_measured = build->findings.measured_count;
     build->output->report.split_kept = build->findings.kept_count;
     linear_error_finish(&linear);
@@ -290,7 +290,7 @@ static void check(struct build *build)
     if (!known && !is_constant(input->plant, input->sensors, input->sensor_count))
         build->failed[1] = !surface_check(measured->surface, &measured->field);
     if (build->failed[1])
-        wrong(build->why, "out of memory for the check of its distances");
+        wrong(build->why, "out of memory for the check of the asset's distances");
     if (!input->cache) {
         *report = *found;
     } else if (!known) {
@@ -369,7 +369,7 @@ static bool put_in_order(struct build *build, uint32_t own)
         memcpy(report->levels[i].left, build->levels.at[i].left, sizeof(report->levels[i].left));
     }
     mem_free(new_of);
-    return good || wrong(build->why, "out of memory for the levels of %u vertices", g->vertex_count);
+    return good || wrong(build->why, "out of memory for the levels of detail of %u vertices", g->vertex_count);
 }
 
 /* Computes the influence file (weights of sensors for harmonic, fin and gp). Needs the surface and the final order of vertices. */
@@ -406,7 +406,7 @@ static bool make_influence(struct build *build)
     if (!influence_file_make(build->log, build->workers, &wanted, why))
         return wrong(build->why, "%s", why);
     double seconds = seconds_since(&since_ns);
-    log_info(build->log, "influence of %zu sensors at %u vertices in %.1f s", input->sensor_count, g->vertex_count, seconds);
+    log_info(build->log, "computed the influence of %zu sensors at %u vertices in %.1f s", input->sensor_count, g->vertex_count, seconds);
     return true;
 }
 
@@ -431,7 +431,8 @@ static void *make_file(void *arg, size_t bytes)
     struct build *build = arg;
     int status = folder_draft(&build->output->file, build->input->folder, build->input->key, bytes);
     if (status != 0)
-        wrong(build->why, "the asset's file of %zu bytes cannot be written to %s: %s", bytes, build->input->folder, strerror(-status));
+        wrong(build->why, "the prepared file of the asset, %zu bytes, cannot be written to %s: %s", bytes, build->input->folder,
+              strerror(-status));
     return build->output->file.bytes;
 }
 
@@ -478,14 +479,15 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
     memcpy(parts.origin_m, g->origin_m, sizeof(parts.origin_m));
     size_t size;
     /* error text in case asset_build() fails for lack of memory; a later failure overwrites it */
-    wrong(build->why, "out of memory for the asset's file");
+    wrong(build->why, "out of memory for the prepared file of the asset");
     void *bytes = asset_build(&parts, &size);
     if (bytes && build->write_error)
-        return wrong(build->why, "the asset's distances cannot be written to %s: %s", input->folder, strerror(build->write_error));
+        return wrong(build->why, "the distances of the asset cannot be written to %s: %s", input->folder, strerror(build->write_error));
     if (!bytes)
         return false;
     /* check the file as a reader would, because an invalid file must not be written */
-    return asset_view_fresh(&output->view, bytes, size, view_why) || wrong(build->why, "the asset's file would be invalid: %s", view_why);
+    return asset_view_fresh(&output->view, bytes, size, view_why) ||
+           wrong(build->why, "the prepared file of the asset would be invalid: %s", view_why);
 }
 
 static bool build_file(struct build *build)

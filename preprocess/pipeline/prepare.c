@@ -499,8 +499,9 @@ static void warn(struct prepare_run *run, const struct prepare_asset *asset)
         const struct plant_tag *tag = &plant->tags[asset->sensors[s].tag];
         double distance_m = (double)asset->surface_distances_m[s];
         if (distance_m > asset->far_m)
-            diag_warning(run->diag, plant->files.tags_path, tag->line, 0, "tag %s: %.3f m from the surface of asset %s (more than %.3f m)",
-                         tag->name, distance_m, asset->plant->id, asset->far_m);
+            diag_warning(run->diag, plant->files.tags_path, tag->line, 0,
+                         "tag %s: the sensor is %.3f m from the surface of asset %s (more than %.3f m)", tag->name, distance_m,
+                         asset->plant->id, asset->far_m);
     }
 }
 

@@ -11,7 +11,7 @@ void progress_begin(struct progress *progress, FILE *out, size_t total, size_t t
     *progress = (struct progress){ .out = out, .terminal = out && isatty(fileno(out)), .total = total, .there = there };
     progress->began_ns = progress->said_ns = now_ns;
     if (out && there < total)
-        fprintf(out, "preparing %zu of %zu assets%s\n", total - there, total, there ? "; the others are up to date" : "");
+        fprintf(out, "preparing %zu of %zu assets%s\n", total - there, total, there ? "; all other assets are up to date" : "");
 }
 
 void progress_expect(struct progress *progress, double work)
@@ -42,7 +42,7 @@ static void say(const struct progress *progress, int64_t now_ns)
         snprintf(left, sizeof(left), "%ld min %02ld s", s / 60, s % 60);
     else
         snprintf(left, sizeof(left), "%ld s", s);
-    fprintf(progress->out, "%s%zu of %zu assets, %.1f a second, about %s left%s", progress->terminal ? "\r" : "",
+    fprintf(progress->out, "%s%zu of %zu assets prepared, %.1f a second, about %s left%s", progress->terminal ? "\r" : "",
             progress->there + progress->done, progress->total, passed_s > 0 ? (double)progress->done / passed_s : 0.0,
             progress->done < all ? left : "0 s", progress->terminal ? "\033[K" : "\n");
     fflush(progress->out);

@@ -48,18 +48,19 @@ bool distances_print(const struct prepare *prepare, const char *folder, int asse
     }
     if (prepare->plant->tags[tag].place.assumed && !sensor_distances_matter(prepare->plant, asset->sensors, asset->sensor_count)) {
         diag_error(diag, prepare->plant->files.tags_path, prepare->plant->tags[tag].line, 0,
-                   "tag %s: its place on asset %s is assumed: it represents the whole asset, so there are no distances from it",
+                   "tag %s: the position on asset %s is only assumed: the sensor represents the whole asset and has no distances",
                    prepare->plant->tags[tag].name, asset->plant->id);
         return false;
     }
     if (folder_open(&file, folder, asset->key, why) != 1) {
         char *path = folder_asset_path(folder, asset->key);
-        diag_error(diag, prepare->plant->files.path, asset->plant->line, 0, "asset %s: its file %s: %s", asset->plant->id, path, why);
+        diag_error(diag, prepare->plant->files.path, asset->plant->line, 0, "asset %s: the prepared file %s: %s", asset->plant->id, path, why);
         mem_free(path);
         return false;
     }
     if (!folder_unpack(&file)) {
-        diag_error(diag, prepare->plant->files.path, asset->plant->line, 0, "asset %s: out of memory for its distances", asset->plant->id);
+        diag_error(diag, prepare->plant->files.path, asset->plant->line, 0, "asset %s: out of memory for the distances of the asset",
+                   asset->plant->id);
         folder_close(&file);
         return false;
     }

@@ -73,7 +73,7 @@ static void print_assets(const struct text_report *report)
         text_table_add(&table, "%s", r->skipped_points ? NUMBER(r->skipped_points) : "");
         text_table_add(&table, "%.2f", asset->seconds);
     }
-    print(report, "Assets (added: vertices that preparing added; repeated: duplicate triangles; lines, points: primitives skipped)",
+    print(report, "Assets (added: vertices that plantcast-prep added; repeated: duplicate triangles; lines, points: skipped primitives)",
           &table);
 }
 
@@ -109,7 +109,8 @@ static void print_surfaces(const struct text_report *report)
             text_table_add(&table, "%.2f", 100 * s->heat_disagreement);
     }
     print(report,
-          "Surfaces of assets with sensors, before > after bridging (differ: largest relative difference between the two distance methods; "
+          "Surfaces of assets with sensors, before > after bridging gaps (differ: largest relative difference between the two distance "
+          "methods; "
           "-: not compared)",
           &table);
 }
@@ -142,8 +143,9 @@ static void print_clouds(const struct text_report *report)
     }
     if (any)
         print(report,
-              "Distances by the heat method on a point cloud (differ: from exact distances; reached alone: only the point cloud gets "
-              "there, through thin walls; ours differ: from the heat method on the mesh)",
+              "Distances by the heat method on a point cloud (differ: difference from exact distances; reached alone: vertices that "
+              "only the point cloud reaches, through thin walls; ours differ: difference of exact distances from the heat method on the "
+              "mesh)",
               &table);
     else
         text_table_finish(&table);
@@ -174,7 +176,8 @@ static void print_levels(const struct text_report *report)
         }
     }
     print(report,
-          "Levels of detail, before and after splitting (edges left: edges whose error still exceeds one step of colour, and by how much)",
+          "Levels of detail, before and after splitting (edges left: number of edges whose error still exceeds one step of colour, and "
+          "that error in steps)",
           &table);
 }
 
@@ -248,7 +251,7 @@ static void print_sensors(const struct text_report *report)
         text_table_add(&table, "%.3f", asset->far_m);
     }
     mem_free(sensors);
-    print(report, "Sensors, the farthest from their surface first", &table);
+    print(report, "Sensors, sorted by distance from their surface, farthest first", &table);
 }
 
 static void print_models(const struct text_report *report)
@@ -259,11 +262,11 @@ static void print_models(const struct text_report *report)
             continue;
         fprintf(report->out, "%s: read in %.2f s", model->path, model->parse_s);
         if (model->skipped_lines || model->skipped_points)
-            fprintf(report->out, "; skipped: %u primitives of lines and %u of points", model->skipped_lines, model->skipped_points);
+            fprintf(report->out, "; skipped: %u line primitives and %u point primitives", model->skipped_lines, model->skipped_points);
         if (model->scaled_rotations)
             fprintf(report->out, "; %u rotations were normalised to length 1", model->scaled_rotations);
         if (model->left_out_textures)
-            fprintf(report->out, "; left out: %u textures or looks", model->left_out_textures);
+            fprintf(report->out, "; left out: %u textures or material extensions", model->left_out_textures);
         fprintf(report->out, "\n");
         for (size_t t = 0; t < model->left_out_textures && t < report->rows; t++)
             fprintf(report->out, "  left out: %s\n", model->left_out[t]);
@@ -312,7 +315,7 @@ static void print_summary(const struct text_report *report)
             prepare->plant->name, wanted, NUMBER(triangles), sensors, counts[PREPARE_BUILT], counts[PREPARE_UNCHANGED],
             counts[PREPARE_SHARED], counts[PREPARE_FAILED]);
     if (prepare->interrupted)
-        fprintf(report->out, "; interrupted: %zu are left; run plantcast-prep again to continue", counts[PREPARE_LEFT]);
+        fprintf(report->out, "; interrupted: %zu assets are left; run plantcast-prep again to continue", counts[PREPARE_LEFT]);
     if (prepare->removed)
         fprintf(report->out, "; %zu old files removed", prepare->removed);
     fprintf(report->out, "; %.1f s\n", prepare->seconds);
@@ -338,7 +341,7 @@ void report_text(const struct prepare *prepare, bool all, FILE *out)
     for (size_t i = 0; i < shown; i++)
         fprintf(out, "! %s: %s\n", concerns[i].asset->plant->id, concerns[i].text);
     if (shown < count)
-        fprintf(out, "... and %zu more warnings: --report text lists all\n", count - shown);
+        fprintf(out, "... and %zu more warnings: --report text lists all warnings\n", count - shown);
     print_summary(&report);
     report_concerns_free(concerns, count);
     mem_free(report.order);

@@ -81,7 +81,7 @@ void text_table_print(const struct text_table *table, size_t rows, FILE *out)
         print_line(&line, out);
     }
     if (shown < all)
-        fprintf(out, "... and %zu more: --report text lists all\n", all - shown);
+        fprintf(out, "... and %zu more rows: --report text lists all rows\n", all - shown);
     text_finish(&line);
     mem_free(widths);
 }

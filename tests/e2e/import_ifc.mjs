@@ -192,7 +192,8 @@ test('an element is placed where axes of a grid meet, or named', { skip: skip ||
         assert.doesNotMatch(found.stdout, /error/);
     }
     assert.match(imported('IFC4', 'IFCGRIDPLACEMENT(#{meet},$)', '#{line}').stdout, new RegExp('error: at a wrong place, because a grid ' +
-        'placement is not computed \\(grid axes that do not meet\\): #\\d+ K-1 \\(IfcBuildingElementProxy, 0\\$PlantcastKinds0000004\\)'));
+        'placement is not computed \\(the axes of the grid placement do not meet\\): #\\d+ K-1 '
+        + '\\(IfcBuildingElementProxy, 0\\$PlantcastKinds0000004\\)'));
 }));
 
 test('broken files are read or refused in one line, and leave nothing behind', { skip }, () => inFolder((folder) => {

@@ -55,12 +55,12 @@ test('units and axis are guessed and said, or given', { skip }, () => withMateri
     writeFileSync(join(folder, 'a.stl'), stl(1000));
     const said = plantcast('import', join(folder, 'a.stl'), '-o', join(folder, 'plant'));
     assert.match(said.stdout,
-        /states no unit: mm is assumed, because its length of 2000 is then 2 m\. Is that right\?.*set --units/);
-    assert.match(said.stdout, /states no up axis: z is assumed/);
+        /states no unit: assuming mm, which makes the model's length of 2000 equal to 2 m;.*set --units/);
+    assert.match(said.stdout, /states no up axis: assuming z/);
     const given = boxed(folder, 'b.stl', stl(10), '--units', 'ft', '--up', 'y');
     assert.ok(near(given.size, [6.096, 1.524, 3.048]), JSON.stringify(given.size));
     writeFileSync(join(folder, 'a.dae'), dae());
-    assert.match(plantcast('nodes', join(folder, 'a.dae'), '--units', 'mm').stderr, /COLLADA states its own units/);
+    assert.match(plantcast('nodes', join(folder, 'a.dae'), '--units', 'mm').stderr, /COLLADA files state their own units/);
 }));
 
 test('STL in capitals is read', { skip }, () => withMaterials((folder) => {
@@ -138,7 +138,7 @@ test('glTF: names of files with percent signs and accents, required looks, missi
         materials: [{ name: 'paint', pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }] }));
     const { status, stdout, stderr } = plantcast('import', join(folder, 'look.gltf'), '-o', join(folder, 'plant'));
     assert.equal(status, 0, stderr);
-    assert.match(stdout, /left out: the file requires KHR_texture_basisu, which only affects its looks/);
+    assert.match(stdout, /left out: the file requires the extension KHR_texture_basisu, which affects only the look of the model/);
     assert.match(stdout, /left out: material 0 'paint': its base colour texture: the texture's image is missing: 'none\.png'/);
     const ran = (program, ...args) => spawnSync(join(BIN, program), [...args, join(folder, 'plant/plant.yaml')], { encoding: 'utf8' });
     assert.match(ran('plantcastd', '--check').stdout,
@@ -174,7 +174,7 @@ test('FBX: surfaces without place, with two places or without finite corners are
     assert.deepEqual(ring.lost, [{ id: '201', name: 'Drum 1 A', class: 'model', guid: '',
         why: 'no chain of parents connects the model with the scene' }]);
     const shared = read(folder, 'shared.fbx', withModels(model(201, 'Drum'), ['C: "OO",201,200', 'C: "OO",201,0', 'C: "OO",100,201']));
-    assert.deepEqual(shared.errors[0], { count: 1, text: 'model Drum has 2 parents: it is shown below each of them' });
+    assert.deepEqual(shared.errors[0], { count: 1, text: 'model Drum has 2 parents: the model is shown below each parent' });
     const twice = read(folder, 'twice.fbx', fbx().replace(/P: "Lcl Translation".*0,0,0/, (line) =>
         [5, 7].map((x) => line.replace('0,0,0', `${x},0,0`)).join('\n')));
     assert.deepEqual(twice.errors[0], { count: 1, text: 'model Feed pump states Lcl Translation more than once: the last value is used' });
@@ -190,17 +190,17 @@ test('FBX, COLLADA and OBJ: shapes that are not read are named', { skip }, () =>
         .replace('    C: "OO",200,0', '    C: "OO",200,0\n    C: "OO",201,0\n    C: "OO",101,201');
     const { errors: fbxErrors, lost: fbxLost } = read(folder, 'a.fbx', nurbs), fbxTexts = fbxErrors.map(({ text }) => text);
     assert.deepEqual(fbxLost, [{ id: '', name: 'Tank shell', class: 'model', guid: '',
-        why: 'NURBS and patches are not read: export it as polygons' }]);
+        why: 'NURBS and patches are not read: export the model as polygons' }]);
     assert.ok(fbxTexts.includes('Assimp: FBX-DOM failed to read source object for incoming Model link, ignoring'), fbxTexts.join('; '));
     const hull = '<geometry id="h" name="Hull"><convex_mesh convex_hull_of="#g"/></geometry></library_geometries>';
     const { lost, errors } = read(folder, 'b.dae', dae().replace('</library_geometries>', hull).replace('</visual_scene>',
         '<node id="n8" name="Gone"><instance_geometry url="#zz"/></node></visual_scene>'));
     assert.deepEqual(lost, [{ id: 'h', name: 'Hull', class: 'geometry', guid: '',
-        why: 'convex hulls are not read: export it as polygons' }]);
+        why: 'convex hulls are not read: export the geometry as polygons' }]);
     assert.deepEqual(errors, [{ count: 1, text: 'Assimp: Collada: Unable to find geometry for ID "zz". Skipping.' }]);
     const free = read(folder, 'c.obj', `${obj()}cstype bezier\ndeg 3 3\nsurf 0 1 0 1 1 2 3 4\nparm u 0 1\nend\no Pipe axis\nl 1 2\n`);
     assert.deepEqual(free.errors[0], { count: 1, text: 'free-form surfaces (surf) are not read: export them as polygons' });
-    assert.match(free.out, /not shown: 1 nodes that are only lines or points: Pipe axis\n/);
+    assert.match(free.out, /not shown: 1 nodes that consist only of lines or points: Pipe axis\n/);
 }));
 
 // Files of the kinds on which exporters differ. The second reader is three.js, which does not apply the unit of FBX and OBJ.
@@ -240,7 +240,7 @@ test('glTF: nodes without triangles, and nodes in no scene, are named', { skip }
             { bufferView: 1, componentType: 5123, count: 0, type: 'SCALAR' }], extensionsUsed: ['ACME_bent', 'KHR_materials_unlit'],
         nodes: [...['T-1', 'L-2', 'P-3', 'E-4'].map((name, i) => ({ name, mesh: i })), { name: 'S-5', mesh: 0 }] }));
     assert.deepEqual(lost, [{ id: '#3', name: 'E-4', class: 'node', guid: '', why: 'the node\'s mesh has no triangles' }]);
-    assert.match(out, /not shown: 2 nodes that are only lines or points: L-2, P-3\n/);
+    assert.match(out, /not shown: 2 nodes that consist only of lines or points: L-2, P-3\n/);
     assert.deepEqual(left_out, ['the file uses ACME_bent, which is not supported',
         "not in the file's default scene: 1 node with a mesh, node 4 'S-5'"]);
 }));
@@ -253,8 +253,8 @@ test('glTF: the diffuse colour of older materials, odd kinds of images, other ch
         images: ['image/jpg', 'application/octet-stream', ''].map((type) => ({ uri: `data:${type};base64,${png}` })),
         textures: [{ source: 0 }, { source: 1 }, { source: 2 }], materials: [0, 1, 2].map((index) =>
             old({ diffuseFactor: [1, 0, 0, 1], diffuseTexture: { index } })) }));
-    assert.deepEqual(left_out, ['the file requires KHR_materials_pbrSpecularGlossiness: diffuse colours are kept, ' +
-        'specular ones are ignored']);
+    assert.deepEqual(left_out, ['the file requires the extension KHR_materials_pbrSpecularGlossiness: diffuse colours are kept, ' +
+        'specular colours are ignored']);
     const json = Buffer.from(JSON.stringify({ ...JSON.parse(gltf()), buffers: [{ byteLength: 42 }] }).padEnd(2000));
     const [first, bin, other] = [['JSON', json], ['BIN', triangle], ['ACME', Buffer.alloc(8)]];
     for (const [name, ...chunks] of [['after.glb', first, bin, other], ['between.glb', first, other, bin]])

@@ -326,7 +326,7 @@ test('40 % of the rows are there twice, and one tag with control characters', op
         const state = await served.idle();
         assert.equal(state.failed, null, state.failed);
         assert.match(state.said, /5 rows are exact repetitions of a tag: each tag is used once/);
-        assert.match(state.said, /1 control characters: read as blanks/);
+        assert.match(state.said, /1 control characters are read as blanks/);
     } finally {
         await served.destroy();
         rmSync(given, { recursive: true });
@@ -599,7 +599,8 @@ test('a source: stated, values seen to arrive, corrected, kept when the plant is
         // A line that the user wrote is kept.
         writeFileSync(join(own.folder, 'plant.yaml'), own.read('plant.yaml').replace('CDAB }', 'CDAB, poll_ms: 2000 }'));
         await own.post(`/source?host=127.0.0.1&port=${wrongPort}&order=CDAB`);
-        assert.match((await own.idle()).failed, /the source was edited by hand and --modbus cannot change it: edit it in the plant file/);
+        assert.match((await own.idle()).failed,
+            /--modbus cannot change a source that was edited by hand: edit the source in the plant file/);
         assert.match(own.read('plant.yaml'), /poll_ms: 2000/);
         assert.deepEqual(seen.errors, []);
     } finally {

@@ -66,7 +66,7 @@ test('a finer chord error has more triangles, Y up stands otherwise', { skip }, 
     assert.ok(near(coarse.size, [2, 1, 0.32]) && near(y.size, [2, 0.32, 1]), JSON.stringify([coarse.size, y.size]));
     const units = plantcast('nodes', join(folder, 'skid_203.step'), '--units', 'mm');
     assert.equal(units.status, 1);
-    assert.match(units.stderr, /STEP states its own units/);
+    assert.match(units.stderr, /STEP files state their own units/);
 }));
 
 for (const { file, unit } of [{ file: 'tree.igs', unit: 'millimetre' }, { file: 'inches.IGES', unit: 'inch' }])

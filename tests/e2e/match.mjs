@@ -120,8 +120,8 @@ test('a list in a bad way: repeated rows, Korean, slashes, blanks, control chara
     const said = good(run('plantcast', 'match', folder, join(folder, 'export.csv'), '--equipment', 'level=2'));
     assert.match(said.stdout, /7 rows are exact repetitions of a tag: each tag is used once/);
     assert.match(said.stdout, /1 rows repeat a tag with different contents: the first row is used: P-102 A\/B_PT01 \(lines 3 and 8\)/);
-    assert.match(said.stdout, /3 rows have no name: left out/);
-    assert.match(said.stdout, /6 control characters: read as blanks/);
+    assert.match(said.stdout, /3 rows without a tag name are left out/);
+    assert.match(said.stdout, /6 control characters are read as blanks/);
     const found = Object.fromEntries(table(join(folder, 'matches.csv')).map(({ Tag, Status, Asset }) => [Tag, `${Status} ${Asset}`]));
     assert.deepEqual(found, { '열교환기-101/TT-01': 'sure 열교환기-101', 'P-102 A/B_PT01': 'sure P-102 A/B',
         'V 201 . LT  01': 'sure V 201', X: 'none ' });
@@ -169,7 +169,7 @@ test('what people change stays; a second run changes nothing', { skip: notBuilt 
     writeFileSync(join(folder, 'match_rules.csv'), 'Tag,Equipment\n[,x\n');
     const said = run('plantcast', 'match', folder, list);
     assert.equal(said.status, 1);
-    assert.match(said.stderr, /match_rules\.csv: line 2: '\[' is no regular expression/);
+    assert.match(said.stderr, /match_rules\.csv: line 2: '\[' is not a valid regular expression/);
     rmSync(join(folder, 'match_rules.csv'));
     writeFileSync(join(folder, 'aliases.csv'), 'Alias,Equipment\nfeed tank,V-201\n');
     writeFileSync(list, `${readFileSync(list, 'utf8')}XT_7,degC,0,90,Feed tank shell\n`);
@@ -206,7 +206,7 @@ test('what somebody saves while tags are matched is not replaced', { skip: notBu
         if (!stopped)
             continue;
         assert.equal(status, 1, said);
-        assert.match(said, /matches\.csv: was changed by another program during matching; nothing was written/);
+        assert.match(said, /matches\.csv: this file was changed by another program during matching, so nothing was written/);
         assert.equal(readFileSync(join(folder, 'matches.csv'), 'utf8'), mine);
         assert.doesNotMatch(readFileSync(join(folder, 'tags.csv'), 'utf8'), new RegExp(`XT-${tries},`));
     }
@@ -378,7 +378,7 @@ test('from exports of two systems to a live picture', { skip: noData, timeout: 2
     const source = ['--modbus', `127.0.0.1:${tiny.modbusPort}`, '--byte-order', 'CDAB'];
     const said = good(run('plantcast', 'match', out, join(out, 'kepware.csv'), ...source));
     assert.match(said.stdout, /10 tags: 9 sure, 0 likely, 1 none/);
-    assert.match(said.stdout, /1 tag is not in the tag list: it is text/);
+    assert.match(said.stdout, /1 tag is not in the tag list, because the tag is text/);
     const rows = table(join(out, 'tags.csv'));
     assert.deepEqual(rows.map(({ 'Tag Name': name, Asset, Group, Place }) => [name, Asset, Group, Place].join(' ')), [
         'ART1105BA_TT01 -ART1105BA- temperature equipment', 'ART1105BA_TT02 -ART1105BA- temperature equipment',

@@ -44,7 +44,8 @@ test('the first line says what must be known, then one line for each node', { sk
     const { status, stdout } = nodes(three());
     assert.equal(status, 0);
     const lines = stdout.trimEnd().split('\n');
-    assert.equal(lines[0], '4 nodes, 1 unnamed; 2 triangles; 101.0 x 240.0 x 4.0 m if metres, up y; 130 m from the origin');
+    assert.equal(lines[0],
+        '4 nodes, 1 unnamed; 2 triangles; 101.0 x 240.0 x 4.0 m if the unit is metres and Y is up; 130 m from the origin');
     assert.equal(lines.length, 6);
     assert.match(lines[3], /^#1 +1 +1 x 0 x 2 +100\.50, 240\.00, 1\.00 +Unit\/펌프\/P-101 {2}\| Type=PUMP; power_kW=7\.5$/);
     assert.match(lines[4], /^#2 +1 +2 x 0 x 4 .* Unit\/plate$/, 'the name of its mesh');
@@ -109,6 +110,7 @@ test('an RVM file is read as import would', { skip: skip || noData }, () => {
     const { status, stdout } = spawnSync(join(BIN, 'plantcast'), args,
         { encoding: 'utf8', timeout: 60000 });
     assert.equal(status, 0);
-    assert.match(stdout, /^316 nodes, 0 unnamed; [\d,]+ triangles; 12\.5 x 6\.5 x 8\.0 m if metres, up y; 5 m from the origin\n/);
+    assert.match(stdout,
+        /^316 nodes, 0 unnamed; [\d,]+ triangles; 12\.5 x 6\.5 x 8\.0 m if the unit is metres and Y is up; 5 m from the origin\n/);
     assert.match(stdout, /\/-ART10 {2}\| Name=/);
 });

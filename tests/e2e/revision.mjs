@@ -88,7 +88,7 @@ test('a real plant: rename, move, delete, add; and back', { skip: noData }, () =
     // Matching again undoes nothing; a tag that left the list is named.
     writeFileSync(join(plant, 'export.csv'), LIST.replace(/^art1111po.*\n/m, ''));
     const again = good(run('plantcast', 'match', plant, join(plant, 'export.csv')));
-    assert.match(again.stdout, /1 tags are no longer in the list; decisions about them are kept: art1111po\.TE-03/);
+    assert.match(again.stdout, /1 tags are no longer in the exported list; decisions about these tags are kept: art1111po\.TE-03/);
     assert.equal(readFileSync(join(plant, 'tags.csv'), 'utf8'), list);
     assert.match(readFileSync(join(plant, 'matches.csv'), 'utf8'), /^art1111po\.TE-03,sure,-ART1111PO-,/m);
     // matches.csv has changed since, so undoing requires --force.
@@ -166,7 +166,7 @@ T6;temperature;second;TT-9;;;;;f
     assert.match(tags, /^T3;temperature;third;"?#2"?;;;;;c$/m);
     assert.match(tags, /^T4;temperature;fourth;;;20\.5;3;1;d$/m);
     assert.match(tags, /^T5;temperature;second;;equipment;;;;e$/m);
-    assert.match(said.stdout, /tag +place lost +T2 +on second: its node TT-9 is no longer in the model/);
+    assert.match(said.stdout, /tag +place lost +T2 +on second: the tag's node TT-9 is no longer in the model/);
     assert.match(said.stdout, /tags: 2 moved, 2 place lost/);
     assert.ok(review(plant).includes('node removed E'));
     // Importing the same again changes nothing, and undo still restores the state before the first import.
@@ -177,7 +177,7 @@ T6;temperature;second;TT-9;;;;;f
     boxes(model, [{ name: 'X', at: [100, 0, 0] }]);
     const other = run('plantcast', 'import', model, '-o', plant);
     assert.equal(other.status, 1);
-    assert.match(other.stderr, /has no models of this plant/);
+    assert.match(other.stderr, /the imported models contain no asset of this plant/);
     // An additional model adds its assets.
     boxes(join(folder, 'n.gltf'), [{ name: 'G', at: [50, 0, 0] }, { name: 'A', at: [60, 0, 0] }]);
     good(run('plantcast', 'import', join(folder, 'n.gltf'), '-o', plant));

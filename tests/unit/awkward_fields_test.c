@@ -160,7 +160,7 @@ static struct named prepare(const struct awkward *a, struct folder_file *file)
     const char *text = json_string_value(json_object_get(json_array_get(json_object_get(report, "look_at"), 0), "text"));
     struct named named = { .beside_rims = fmax(prep_case_number(report, "assets.0.levels.0.steps_by_length"),
                                                prep_case_number(report, "assets.0.levels.0.steps_by_jumps")) };
-    if (text && strstr(text, "its field errs by up to"))
+    if (text && strstr(text, "values err by up to"))
         named.worth_a_look = prep_case_number(report, "assets.0.levels.0.steps_by_triangles");
     named.by_power = steps_by_power(json_object_get(report, "look_at"));
     json_decref(report);

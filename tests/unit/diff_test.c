@@ -136,7 +136,7 @@ static void check_assets(const json_t *root, bool exact)
         assert_float_equal(prep_case_number(asset_of(root, "TURNED", "moved"), "turned_deg"), 90, 1e-2);
     assert_float_equal(prep_case_number(changed, "apart_m"), 0.025, 1e-4); /* both boxes are laid middle over middle */
     assert_non_null(strstr(json_string_value(json_object_get(asset_of(root, "GONE", "removed"), "why")),
-                           "no node's name matches 'GONE': 'VESSEL' has the same shape at the same place"));
+                           "no node's name matches 'GONE': node 'VESSEL' has the same shape at the same place"));
     asset_of(root, "DROPPED", "removed");
     asset_of(root, "ADDED", "added");
 }
@@ -171,8 +171,8 @@ CASE(a_revision_is_compared)
     check_tags(root);
     json_decref(root);
     prep_case_expect(c, "--diff $FOLDER/old.yaml $FOLDER/new.yaml", 1);
-    prep_case_says(&c->out, "! T-NODE: orphaned: the model has no node 'TT-2'");
-    prep_case_says(&c->out, "1 assets added, 2 removed, 3 moved, 1 changed, 1 the same; 3 sensors' surface moved; 4 tags orphaned");
+    prep_case_says(&c->out, "! T-NODE: position lost: the model has no node 'TT-2'");
+    prep_case_says(&c->out, "1 assets added, 2 removed, 3 moved, 1 changed, 1 unchanged; surface of 3 sensors moved; 4 tags lost their position");
 }
 
 /* The usual case: the model file was overwritten, and only its prepared folder is left of the old revision. */

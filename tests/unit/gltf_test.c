@@ -170,18 +170,18 @@ CASE(rotations_have_a_length)
     assert_float_equal(l->model.nodes[0].world[0], 0, 1e-12);
     assert_float_equal(l->model.nodes[0].world[1], 1, 1e-12);
     assert_float_equal(l->model.nodes[0].world[10], 1, 1e-12);
-    refused(l, TURNED("[0,0,0,0]"), "node 0 'valve': its rotation [0, 0, 0, 0] is not a unit quaternion");
-    refused(l, TURNED("[0,0,1e-9,0]"), "node 0 'valve': its rotation");
+    refused(l, TURNED("[0,0,0,0]"), "node 0 'valve': the rotation [0, 0, 0, 0] is not a unit quaternion");
+    refused(l, TURNED("[0,0,1e-9,0]"), "node 0 'valve': the rotation");
 }
 
 CASE(wrong_numbers_are_refused)
 {
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":7}") ACCESSORS "}",
-            "mesh 0 'm', primitive 0: indices: index 5 names vertex 4 of 4");
+            "mesh 0 'm', primitive 0: indices: index 5 refers to vertex 4, but there are only 4 vertices");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":6},\"indices\":1}") ACCESSORS "}", "POSITION: element 1 is not finite");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":12},\"indices\":1}") ACCESSORS "}",
             "4 elements do not fit into bufferView 0");
-    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":13},\"indices\":1}") ACCESSORS "}", "elements are more than");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":13},\"indices\":1}") ACCESSORS "}", "elements do not fit into the");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":14},\"indices\":1}") ACCESSORS "}", "there is no bufferView 7");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":99},\"indices\":1}") ACCESSORS "}", "there is no accessor 99");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":1},\"indices\":1}") ACCESSORS "}", "1 components, expected 3");
@@ -191,7 +191,7 @@ CASE(wrong_numbers_are_refused)
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":16,\"mode\":5}") ACCESSORS "}",
             "indices: must not be normalized");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"NORMAL\":0},\"indices\":1}") ACCESSORS "}", "has no POSITION");
-    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":2}") ACCESSORS "}", "4 indices are not a multiple of 3");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":2}") ACCESSORS "}", "the number of indices, 4, is not a multiple of 3");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":1,\"mode\":7}") ACCESSORS "}", "mode 7");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":3}") ACCESSORS "}",
             "there is no material 3");
@@ -243,11 +243,11 @@ CASE(broken_files_are_refused)
     }
     mem_free(bytes);
     refused(l, "{\"asset\":{\"version\":\"2.0\"},,}", "JSON: line 1");
-    refused(l, "[1]", "the top is not an object");
+    refused(l, "[1]", "the top-level value is not an object");
     refused(l,
             "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":308}],\"bufferViews\":[{\"buffer\":0,\"byteOffset\":300,"
             "\"byteLength\":9}]}",
-            "bufferView 0: bytes 300+9 of a buffer of 308");
+            "bufferView 0: bytes 300+9 lie outside the buffer of 308 bytes");
     refused(l, "{\"asset\":{\"version\":\"2.0\"},\"bufferViews\":[{\"buffer\":-1,\"byteLength\":9}]}", "there is no buffer -1");
     struct text deep = { 0 };
     text_add(&deep, "{\"extras\":");
@@ -405,7 +405,7 @@ CASE(a_name_that_is_there_several_times_is_refused)
     struct geometry_params params = { .unit_m = 1, .up = AXIS_Z };
     good(l, ALIKE);
     assert_false(geometry_node_place(&l->model, &params, "pump", place, why));
-    assert_string_equal(why, "the model has 3 nodes named 'pump' at different places (#1, #2, #4): select one by its number or path");
+    assert_string_equal(why, "the model has 3 nodes named 'pump' at different places (#1, #2, #4): select one node by its number or path");
     assert_true(geometry_node_place(&l->model, &params, "#2", place, why));
     assert_float_equal(place[0], 10.5, 1e-9);
     assert_true(geometry_node_place(&l->model, &params, "south/pump", place, why));
@@ -427,11 +427,11 @@ CASE(what_cannot_be_cut_is_refused)
     static const struct {
         const char *json, *reason;
     } cases[] = {
-        { HEAD "\"scenes\":[{\"nodes\":[]}],\"nodes\":[{\"mesh\":0}]," MESH(SQUARE) ACCESSORS "}", "the scene has no node" },
+        { HEAD "\"scenes\":[{\"nodes\":[]}],\"nodes\":[{\"mesh\":0}]," MESH(SQUARE) ACCESSORS "}", "the scene of the model has no node" },
         { HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"scale\":[1,0,1]}]," MESH(SQUARE) ACCESSORS "}",
-          "none of its 2 triangles has an area" },
+          "none of the asset's 2 triangles has an area" },
         { HEAD "\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"translation\":[0,2e7,0]}]," MESH(SQUARE) ACCESSORS "}",
-          "its size is 2e+07 m along axis 1, more than 1e+07 m" },
+          "the size of the asset is 2e+07 m along axis 1, more than 1e+07 m" },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
         struct geometry g;
@@ -447,7 +447,7 @@ CASE(wrong_instances_and_sparse_elements_are_refused)
     static const struct {
         const char *attributes, *reason;
     } instances[] = {
-        { "\"_OWN\":11", "node 0 'i': EXT_mesh_gpu_instancing: has neither TRANSLATION, ROTATION nor SCALE" },
+        { "\"_OWN\":11", "node 0 'i': EXT_mesh_gpu_instancing: the instances have neither TRANSLATION, ROTATION nor SCALE" },
         { "\"TRANSLATION\":11,\"SCALE\":15", "node 0 'i': EXT_mesh_gpu_instancing: 2 and 3 instances" },
         { "\"TRANSLATION\":10", "node 0 'i': EXT_mesh_gpu_instancing: TRANSLATION: 2 components, expected 3" },
         { "\"TRANSLATION\":6", "TRANSLATION: element 1 is not finite" },
@@ -463,9 +463,9 @@ CASE(wrong_instances_and_sparse_elements_are_refused)
         int count, type, at;
         const char *reason;
     } sparse[] = {
-        { 5, 5123, 112, "POSITION: sparse: 5 of 4 elements, by indices of component type 5123" },
-        { 1, 5122, 112, "POSITION: sparse: 1 of 4 elements, by indices of component type 5122" },
-        { 1, 5123, 186, "POSITION: sparse: element 4 of 4, or out of order" },
+        { 5, 5123, 112, "POSITION: invalid sparse accessor: 5 of 4 elements, indices of component type 5123" },
+        { 1, 5122, 112, "POSITION: invalid sparse accessor: 1 of 4 elements, indices of component type 5122" },
+        { 1, 5123, 186, "POSITION: invalid sparse accessor: element 4 of 4 is out of range or out of order" },
         { 1, 5123, 307, "do not fit into bufferView 0" },
     };
     for (size_t i = 0; i < sizeof(sparse) / sizeof(sparse[0]); i++) {

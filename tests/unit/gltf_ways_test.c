@@ -308,13 +308,13 @@ CASE(false_claims_of_compressed_views_are_refused)
     } cases[] = {
         { "count", json_integer(4000000000), "cannot hold 4000000000 elements" },
         { "count", json_integer(-1), "bufferView 0: extensions.EXT_meshopt_compression.count is not a whole number" },
-        { "count", json_integer(34), "bytes when decoded, byteLength says" },
+        { "count", json_integer(34), "bytes when decoded, but byteLength is" },
         { "byteStride", json_integer(6), "cannot be of mode ATTRIBUTES" },
-        { "byteLength", json_integer(9999999), "bufferView 0: bytes 0+9999999 of a buffer of" },
+        { "byteLength", json_integer(9999999), "bufferView 0: bytes 0+9999999 lie outside the buffer of" },
         { "byteLength", json_integer(40), "are damaged" },
         { "mode", json_string("LINES"), "mode or filter is unknown" },
-        { "filter", json_string("QUATERNION"), "filter QUATERNION on elements of 12 bytes" },
-        { "buffer", json_integer(1), "buffer 1 has no data of its own" },
+        { "filter", json_string("QUATERNION"), "filter QUATERNION is not allowed for elements of 12 bytes" },
+        { "buffer", json_integer(1), "buffer 1 has no data" },
         { "buffer", json_integer(7), "there is no buffer 7" },
         { "mode", json_null(), "has no extensions.EXT_meshopt_compression.mode" },
     };
@@ -327,7 +327,7 @@ CASE(false_claims_of_compressed_views_are_refused)
     struct model_maker maker = seed_open(8, "meshopt.glb", &sheet);
     json_object_del(maker_get(&maker, "bufferViews", 0), "extensions");
     try_model(l, &maker);
-    assert_refused(l, "bufferView 0: buffer 1 has no data of its own");
+    assert_refused(l, "bufferView 0: buffer 1 has no data");
     sheet_finish(&sheet);
 }
 
@@ -348,13 +348,13 @@ CASE(false_claims_of_draco_are_refused)
     maker = seed_open(11, "draco_edgebreaker.glb", &sheet);
     json_object_set_new(primitive_of(&maker), "mode", json_integer(5));
     try_model(l, &maker);
-    assert_refused(l, "Draco with mode 5");
+    assert_refused(l, "Draco data with primitive mode 5");
     maker = seed_open(11, "draco_edgebreaker.glb", &sheet);
     json_object_set_new(json_object_get(json_object_get(json_object_get(primitive_of(&maker), "extensions"), "KHR_draco_mesh_compression"),
                                         "attributes"),
                         "NORMAL", json_integer(9));
     try_model(l, &maker);
-    assert_refused(l, "NORMAL is not in its Draco data as attribute 9");
+    assert_refused(l, "the Draco data does not have NORMAL as attribute 9");
     maker = seed_open(12, "draco_sequential.glb", &sheet);
     json_object_set_new(maker_get(&maker, "bufferViews", 0), "byteLength", json_integer(100));
     try_model(l, &maker);
@@ -376,7 +376,7 @@ CASE(false_claims_of_draco_are_refused)
                                         "attributes"),
                         "TANGENT", json_integer(0));
     try_model(l, &maker);
-    assert_refused(l, "mesh 0 'm', primitive 0: the Draco data has TANGENT, which the primitive does not have");
+    assert_refused(l, "mesh 0 'm', primitive 0: the Draco data has the attribute TANGENT, which the primitive lacks");
     sheet_finish(&sheet);
 }
 
@@ -408,7 +408,7 @@ CASE(what_a_small_file_claims_is_bounded)
     int at = maker_accessor(&maker, -1, FLOAT, 4000000000u, "VEC3");
     maker_node(&maker, "n", maker_mesh(&maker, json_pack("{s:{s:i}}", "attributes", "POSITION", at)), NULL);
     try_model(l, &maker);
-    assert_refused(l, "accessor 0: 4000000000 elements, but no data in the file");
+    assert_refused(l, "accessor 0: 4000000000 elements without data in the file are too many");
 
     maker_init(&maker); /* a thousand primitives use the same million indices */
     at = maker_accessor(&maker, -1, FLOAT, 3, "VEC3");
@@ -444,8 +444,8 @@ CASE(wrong_types_and_references_are_refused_by_name)
         { "nodes", "children", "5", "node 0 'sheet': children is not a list" },
         { "nodes", "children", "[0]", "a cycle" },
         { "nodes", "matrix", "[1,0,0]", "node 0 'sheet': matrix is not 16 numbers" },
-        { "nodes", "matrix", "[1,0,0,0,0,1,0,0,0,0,1,1,0,0,0,1]", "the last row of its matrix is not 0 0 0 1" },
-        { "nodes", "translation", "[1e300,0,0]", "its position is not finite or exceeds" },
+        { "nodes", "matrix", "[1,0,0,0,0,1,0,0,0,0,1,1,0,0,0,1]", "the last row of the matrix is not 0 0 0 1" },
+        { "nodes", "translation", "[1e300,0,0]", "the position of the node is not finite or exceeds" },
         { "nodes", "skin", "0", "there is no skin 0" },
         { "nodes", "name", "5", "name is not text" },
         { "nodes", "weights", "[0.5]", "morph targets are not supported" },
@@ -463,16 +463,16 @@ CASE(wrong_types_and_references_are_refused_by_name)
           "{\"count\":2,\"indices\":{\"bufferView\":1,\"componentType\":5121,\"byteOffset\":4},\"values\":{\"bufferView\":0}}",
           "or out of order" },
         { "bufferViews", "byteOffset", "-4", "bufferView 0: byteOffset is not a whole number" },
-        { "bufferViews", "byteLength", "99999", "bufferView 0: bytes 0+99999 of a buffer of" },
+        { "bufferViews", "byteLength", "99999", "bufferView 0: bytes 0+99999 lie outside the buffer of" },
         { "bufferViews", "byteStride", "4", "byteStride 4 of bufferView 0 is less than an element's 12 bytes" },
         { "bufferViews", "buffer", "1", "bufferView 0: buffer: there is no buffer 1" },
-        { "buffers", "byteLength", "100000", "buffer 0: truncated:" },
-        { "buffers", "uri", "\"data:text/plain,hello\"", "buffer 0: data URI: 'data:text/plain,hello' is not base64" },
+        { "buffers", "byteLength", "100000", "buffer 0 is truncated:" },
+        { "buffers", "uri", "\"data:text/plain,hello\"", "buffer 0: data URI: 'data:text/plain,hello' is not encoded as base64" },
         { "buffers", "uri", "\"data:;base64,AAAA$\"", "buffer 0: data URI:" },
         { "buffers", "uri", "\"model%00.bin\"", "the name contains a 0 byte" },
-        { "buffers", "uri", "\"/etc/passwd\"", "it is an absolute path" },
+        { "buffers", "uri", "\"/etc/passwd\"", "the name is an absolute path" },
         { "buffers", "uri", "\"../x.bin\"", "is not a readable file inside the model's folder" },
-        { "buffers", "uri", "\"https://localhost/x.bin\"", "it is a URL" },
+        { "buffers", "uri", "\"https://localhost/x.bin\"", "the name is a URL" },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
         struct model_maker maker;
@@ -518,7 +518,7 @@ CASE(heads_are_checked)
         { "{\"asset\":{\"version\":\"2.0\"},\"nodes\":{}}", "nodes is not a list" },
         { "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[5]}", "node 0: is not an object" },
         { "{\"asset\":{\"version\":\"2.0\"},\"scene\":3}", "scene: there is no scene 3" },
-        { "{\"asset\":{\"version\":\"2.0\"},\"images\":[{}]}", "image 0: has neither a uri nor a bufferView" },
+        { "{\"asset\":{\"version\":\"2.0\"},\"images\":[{}]}", "image 0 has neither a uri nor a bufferView" },
         { "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":3}]}", "buffer 0: has no uri" },
         { "\xEF\xBB\xBF{\"asset\":{\"version\":\"2.0\"},\"scene\":3}", "scene: there is no scene 3" },
         { "{\"asset\":{\"version\":\"2.0\"}", "JSON: line 1" },
@@ -575,7 +575,7 @@ static void second_texcoords_are_read(struct gltf_case *l, const struct wavy_she
     assert_true(m->occlusion_texture != ASSET_NO_TEXTURE && m->emissive_texture == ASSET_NO_TEXTURE);
     assert_int_equal(l->model.left_out_textures, 1);
     assert_string_equal(l->model.left_out[0],
-                        "material 0 'paint': its emissive texture (TEXCOORD_0) needs a third texture mapping; two are supported");
+                        "material 0 'paint': the emissive texture (TEXCOORD_0) needs a third texture mapping, but only two are supported");
     assert_true(geometry_cut(&g, &l->model, &(struct geometry_params){ .unit_m = 1, .up = AXIS_Y }, why));
     assert_true(g.second_texcoords && g.materials[0].second == m->second);
     geometry_finish(&g);
@@ -631,7 +631,7 @@ CASE(textures_lie_where_their_transform_puts_them)
     try_model(l, &maker);
     assert_good(l);
     assert_string_equal(l->model.left_out[0],
-                        "material 0 'paint': its base colour texture: beyond 0..1 it is mirrored, or wrapped differently along u and v");
+                        "material 0 'paint': the base colour texture: mirroring, or different wrapping along u and v, is not supported outside 0..1");
     assert_int_equal(l->model.materials[0].base_color_texture, ASSET_NO_TEXTURE);
 
     maker = seed_open(15, "textured.glb", &sheet);
@@ -639,7 +639,7 @@ CASE(textures_lie_where_their_transform_puts_them)
     try_model(l, &maker);
     assert_good(l);
     assert_string_equal(l->model.left_out[0],
-                        "material 0 'paint': its base colour texture: the texture's image is not PNG, JPEG or WebP");
+                        "material 0 'paint': the base colour texture: the texture's image is not PNG, JPEG or WebP");
 
     static const char *const looks[] = { "KHR_texture_basisu", "KHR_materials_pbrSpecularGlossiness", "EXT_mesh_features",
                                          "EXT_structural_metadata", "EXT_texture_avif" };
@@ -650,8 +650,8 @@ CASE(textures_lie_where_their_transform_puts_them)
         try_model(l, &maker);
         assert_good(l);
         snprintf(said, sizeof(said), "the file requires %s%s", looks[i],
-                 strstr(looks[i], "Specular") ? ": diffuse colours are kept, specular ones are ignored"
-                                              : ", which only affects its looks");
+                 strstr(looks[i], "Specular") ? ": diffuse colours are kept, specular colours are ignored"
+                                              : ", which affects only the look of the model");
         assert_string_equal(l->model.left_out[0], said);
         assert_true(l->model.materials[0].base_color_texture != ASSET_NO_TEXTURE);
     }
@@ -793,7 +793,7 @@ CASE(what_many_nodes_draw_is_bounded)
     try_model(l, &maker);
     assert_good(l);
     assert_false(geometry_cut(&g, &l->model, &(struct geometry_params){ .unit_m = 1 }, why));
-    assert_string_equal(why, "50001000 triangles are more than 50000000");
+    assert_string_equal(why, "the asset has 50001000 triangles, more than the limit of 50000000");
     g = cut(l, "one", 1, AXIS_Z);
     assert_int_equal(g.index_count, 3000);
     geometry_finish(&g);
@@ -835,7 +835,7 @@ CASE(lines_are_counted_for_the_asset_that_has_them)
     geometry_finish(&g);
     assert_int_equal(l->model.skipped_lines, 2);
     assert_false(geometry_cut(&g, &l->model, &(struct geometry_params){ .nodes = "wire", .unit_m = 1 }, why));
-    assert_string_equal(why, "'wire' has no triangles (1 primitives of lines and 0 of points)");
+    assert_string_equal(why, "'wire' has no triangles (1 line primitives, 0 point primitives)");
     sheet_finish(&sheet);
 }
 

@@ -619,7 +619,7 @@ CASE(test_gp_bad_input)
     prep_case_says(&c->err, "nothing.csv: cannot be read");
     write_plant(c, "", ", prepare: [gp], gp: { range_m: 0.001 }", 3);
     prep_case_expect(c, "$PLANT", 1);
-    prep_case_says(&c->err, "gp's range_m 0.001 is too short for its surface");
+    prep_case_says(&c->err, "range_m 0.001 of gp is too short");
     write_plant(c, "", ", prepare: [gp], gp: { range_m: 100000, noise: 0 }", 3);
     prep_case_expect(c, "$PLANT", 0);
     assert_true(use(&u, c));

@@ -81,11 +81,11 @@ static void expect(struct match_fixture *f, const char *name, const char *descri
 
 CASE(test_by_name)
 {
-    expect(f, "TT-1011.PV", "", MATCH_SURE, "E-101", "node 'TT-1011' has its name");
-    expect(f, "E101_TIC_01", "", MATCH_SURE, "E-101", "its name has 'E-101' in it");
-    expect(f, "Plant/e_101/PT-7", "", MATCH_SURE, "E-101", "its name has 'E-101' in it");
-    expect(f, "P-205-A.PV", "", MATCH_SURE, "P-205A", "has its name");
-    expect(f, "E-101-B_TT01", "", MATCH_LIKELY, "E-101", "without a separator");
+    expect(f, "TT-1011.PV", "", MATCH_SURE, "E-101", "node 'TT-1011' has the tag's name");
+    expect(f, "E101_TIC_01", "", MATCH_SURE, "E-101", "the tag's name contains 'E-101'");
+    expect(f, "Plant/e_101/PT-7", "", MATCH_SURE, "E-101", "the tag's name contains 'E-101'");
+    expect(f, "P-205-A.PV", "", MATCH_SURE, "P-205A", "has the tag's name");
+    expect(f, "E-101-B_TT01", "", MATCH_LIKELY, "E-101", "without separators");
     expect(f, "TT_Radiator-583216", "", MATCH_SURE, "M_Radiator:25:583216", "number and other parts");
     expect(f, "ART11O5BA-TT01", "", MATCH_SURE, "-ART1105BA-", "O for 0");
     expect(f, "ARTT1105BA.TT01", "", MATCH_SURE, "-ART1105BA-", "");
@@ -97,7 +97,7 @@ CASE(test_by_number)
 {
     expect(f, "TE-330A", "", MATCH_SURE, "20-V-330", "loop 330: equipment number 330");
     expect(f, "20-LT-3302", "", MATCH_SURE, "20-V-330", "loop 3302: equipment number 330");
-    expect(f, "40-LT-330", "", MATCH_LIKELY, "20-V-330", "the part before it is not that of the equipment");
+    expect(f, "40-LT-330", "", MATCH_LIKELY, "20-V-330", "the prefix is not that of the equipment");
     expect(f, "PT-205B", "", MATCH_SURE, "P-205B", "");
     expect(f, "PT-205C", "", MATCH_NONE, NULL, "nothing in the model");
     expect(f, "PT-205", "", MATCH_NONE, NULL, "P-205A or P-205B");
@@ -116,7 +116,7 @@ CASE(test_by_text)
     expect(f, "XT_9", "from P-101 to E-101", MATCH_NONE, NULL, "P-101 or E-101");
     expect(f, "XT_9", "Level of storage tank", MATCH_SURE, "StorageTank", "2 words");
     expect(f, "XT_9", "preheater of feed, shell", MATCH_SURE, "E-101", "2 words");
-    expect(f, "PLC1.Heartbeat", "", MATCH_NONE, NULL, "nothing in the model has its name, number or words");
+    expect(f, "PLC1.Heartbeat", "", MATCH_NONE, NULL, "nothing in the model has the name, number or words of the tag");
     path = temp_write_text(f->folder, "aliases.csv", "Alias;Equipment\nThe big one;V-330\n");
     assert_false(matcher_read_aliases(&f->matcher, path, why));
     assert_string_equal(why, "line 2: no asset is called 'V-330'");

@@ -429,7 +429,7 @@ CASE(assumed_places_need_no_surface)
         mem_free(path);
         prep_case_expect(c, "distances $PLANT --asset A --sensor T1", !known);
         if (!known)
-            prep_case_says(&c->err, "tags.csv:2: error: tag T1: its place on asset A is assumed");
+            prep_case_says(&c->err, "tags.csv:2: error: tag T1: the position on asset A is only assumed");
     }
 }
 

@@ -128,14 +128,14 @@ TEST_WITH(what_is_wrong_comes_first, set_up, prep_case_tear_down)
     const json_t *look_at = json_object_get(report, "look_at");
     assert_true(json_array_size(look_at) >= 2);
     assert_string_equal(json_string_value(json_object_get(json_array_get(look_at, 0), "asset")), "APART");
-    assert_non_null(strstr(json_string_value(json_object_get(json_array_get(look_at, 0), "text")), "T-APART is 0.500 m from its surface"));
+    assert_non_null(strstr(json_string_value(json_object_get(json_array_get(look_at, 0), "text")), "sensor T-APART is 0.500 m from the surface of the asset"));
     assert_non_null(strstr(json_string_value(json_object_get(json_array_get(look_at, 1), "text")), "no sensor reaches 24 of its"));
     json_decref(report);
     prep_case_expect(c, "$PLANT --report text", 0);
     const char *apart = strstr(c->out.at, "!  APART"), *gap = strstr(c->out.at, "   GAP");
     assert_true(apart && gap && apart < gap);
     prep_case_says(&c->out, "2 > 1");
-    prep_case_says(&c->out, "! APART: T-APART is 0.500 m from its surface (more than 0.122 m)");
+    prep_case_says(&c->out, "! APART: sensor T-APART is 0.500 m from the surface of the asset (more than 0.122 m)");
     prep_case_says(&c->out, "Boxes: 4 assets, ");
 }
 
@@ -207,7 +207,7 @@ TEST(tables_fit_what_is_in_them)
     }
     text_table_print(&table, 2, out);
     fclose(out);
-    assert_string_equal(text, "name       number\nK\xc3\xbchler  1,234,567\nP              12\n... and 1 more: --report text lists all\n");
+    assert_string_equal(text, "name       number\nK\xc3\xbchler  1,234,567\nP              12\n... and 1 more rows: --report text lists all rows\n");
     text_table_finish(&table);
     assert_string_equal(text_table_number(0).text, "0");
     assert_string_equal(text_table_number(100).text, "100");
@@ -234,6 +234,6 @@ TEST(the_time_left_follows_the_work)
     assert_float_equal(progress_left_s(&progress, 6 * s), 0.03, 1e-9);
     progress_end(&progress);
     fclose(out);
-    assert_string_equal(text, "preparing 6 of 10 assets; the others are up to date\n"
-                              "6 of 10 assets, 0.4 a second, about 7 s left\n");
+    assert_string_equal(text, "preparing 6 of 10 assets; all other assets are up to date\n"
+                              "6 of 10 assets prepared, 0.4 a second, about 7 s left\n");
 }

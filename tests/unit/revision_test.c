@@ -299,7 +299,7 @@ TEST(the_plant_file_stays_as_people_wrote_it)
                              "tags: tags.csv\n");
     mem_free(out);
     assert_null(asset_edit_apply("assets: [{ id: a }]\n", &(struct asset_edit){ .removed = true }, 1, NULL, why));
-    assert_string_equal(why, "the lists of assets and nodes need one item a line");
+    assert_string_equal(why, "the lists `assets` and `nodes` in the plant file need one item a line");
     mem_free(pump[1]);
     mem_free(vessel[0]);
     mem_free(vessel[1]);

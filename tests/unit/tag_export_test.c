@@ -187,11 +187,11 @@ TEST(test_udt_kinds)
           "1 instances have a type that is not in the export; export the folder of types too: A/P (Pump)" },
         { "a type within itself", PROVIDER(TYPE("L", "'tags':[" INSTANCE("I", "L", "") "," MEMBER("T", "") "]"), INSTANCE("P", "L", "")),
           "A/P/T",
-          "", "", "", 1, "1 instances have a type that contains itself: its inner copies are left out: A/P/I (L)" },
+          "", "", "", 1, "1 instances have a type that contains itself: the inner copies are left out: A/P/I (L)" },
         { "types that are each other's parents",
           PROVIDER(TYPE("X", "'typeId':'Y','tags':[" MEMBER("T", ",'engUnit':'bar'") "]") "," TYPE("Y", "'typeId':'X'"), INSTANCE("P",
             "X", "")),
-          "A/P/T", "bar", "", "", 1, "contains itself: its inner copies are left out: A/P (X)" },
+          "A/P/T", "bar", "", "", 1, "contains itself: the inner copies are left out: A/P (X)" },
         { "types and instances in a list", "[" PUMP "," INSTANCE("P", "Pump", "") "]", "P/T", "°C", "120", "[PLC1]HR0", 1, NULL },
         { "arithmetic with precedence",
           PROVIDER(TYPE("Pump", "'parameters':{'N':{'value':3}},'tags':[" MEMBER("T", ",'opcItemPath':" BOUND("{N*10+2} {2+N*10} "
@@ -212,7 +212,7 @@ TEST(test_udt_kinds)
           "[PLC1]HR0", 2, NULL },
         { "a unit bound to another tag", PROVIDER(TYPE("Pump", "'tags':[" MEMBER("T", ",'engUnit':{'bindType':'tag','binding':'[.]U'}")
             "]"), INSTANCE("P", "Pump", "")),
-          "A/P/T", "", "", "", 1, "1 units, ranges and descriptions are bound to something without a value: left out: A/P/T ([.]U)" },
+          "A/P/T", "", "", "", 1, "1 units, ranges and descriptions are bound to items without a value: left out: A/P/T ([.]U)" },
         { "a type's path with the provider and another case", PROVIDER(PUMP, INSTANCE("P", "[default]_types_/pump", "")), "A/P/T", "°C",
           "120", "[PLC1]HR0", 1, NULL },
         { "one member of two overridden",
@@ -543,7 +543,7 @@ TEST(test_checksum)
     assert_int_equal(fwrite(bytes, 1, length, file), length);
     fclose(file);
     assert_false(tag_export_read(&list, path, NULL, why, sizeof(why)));
-    assert_non_null(strstr(why, "sheet1.xml is damaged: its checksum is wrong"));
+    assert_non_null(strstr(why, "sheet1.xml is damaged: the checksum is wrong"));
     mem_free(bytes);
     mem_free(path);
 }
@@ -620,9 +620,9 @@ TEST(test_refused)
         const char *text, *why;
     } cases[] = {
         { "", "no header" },         { "a,b\n1,2\n", "no header" },         { "Tag,Unit\n\"TT-1,2\n", "line 2: a quote is never closed" },
-        { "Tag,Unit\n", "no tags" }, { "PK\3\4rest", "not a spreadsheet" }, { "\xd0\xcf\x11\xe0", "save it as .xlsx" },
+        { "Tag,Unit\n", "no tags" }, { "PK\3\4rest", "not a spreadsheet" }, { "\xd0\xcf\x11\xe0", "save the sheet as .xlsx" },
         { "[1, 2]", "no tags" },
-        { "<Tags><Tag name=\"T1\"/></Tags>", "it is XML, which is not read" },
+        { "<Tags><Tag name=\"T1\"/></Tags>", "XML is not supported" },
         { "{\"tags\":[{\"name\":\"P\",\"tagType\":\"UdtInstance\",\"typeId\":\"Pump\"}]}", "no tags in it: 1 instances have a type" },
     };
     struct tag_export list;

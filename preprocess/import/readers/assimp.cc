@@ -263,15 +263,16 @@ void root_matrix(const aiScene *scene, const format &from, const char *units, co
     if (!unit) {
         double longest = longest_side(scene);
         unit = longest > LONGEST_IN_METRES ? "mm" : "m";
-        printf("the file states no unit: %s is assumed, because its length of %.4g is then %.4g m. Is that right? If not, set --units (m, "
-               "mm, cm, in, ft)\n",
-               unit, longest, longest * metres_of(unit));
+        printf(
+            "the file states no unit: assuming %s, which makes the model's length of %.4g equal to %.4g m; if that is wrong, set --units "
+            "(m, mm, cm, in, ft)\n",
+            unit, longest, longest * metres_of(unit));
         printf("unit\t%s\t%.9g\n", unit, longest);
     }
     const char *axis = strcmp(up, "-") != 0 ? up : from.up;
     if (!axis) {
         axis = strcmp(from.ending, ".obj") == 0 ? "y" : "z";
-        printf("the file states no up axis: %s is assumed, as usual for %s; set it with --up\n", axis, from.ending);
+        printf("the file states no up axis: assuming %s, as usual for %s; if that is wrong, set --up\n", axis, from.ending);
     }
     double m = metres_of(unit) * (strcmp(from.ending, ".fbx") == 0 ? fbx_axes(scene, &axis) : 1);
     const double y_up[16] = { m, 0, 0, 0, 0, m, 0, 0, 0, 0, m, 0, 0, 0, 0, 1 },
@@ -362,8 +363,8 @@ void say_empty(assimp_reader *r, const aiNode *node)
     if (types != 0 && (types & ~static_cast<unsigned>(aiPrimitiveType_LINE | aiPrimitiveType_POINT)) == 0)
         r->lines.push_back(name.empty() ? "a node without a name" : name);
     else
-        printf("lost\t\t%s\tnode\t\t%s\n",
-               name.c_str(), types == 0 ? "the node's mesh has no triangles" : "none of its triangles has finite corners");
+        printf("lost\t\t%s\tnode\t\t%s\n", name.c_str(),
+               types == 0 ? "the node's mesh has no triangles" : "none of the node's triangles has finite corners");
 }
 
 /* Returns the output mesh of a node, creating it if necessary, or -1 if the node has no triangles. */
@@ -422,7 +423,7 @@ void matrix_of(const aiNode *node, const transform &place, double matrix[16])
         for (unsigned column = 0; column < 4; column++) {
             matrix[4 * column + row] = place[row][column];
             if (!std::isfinite(matrix[4 * column + row]))
-                refuse("node '%.80s': its position is not finite", node->mName.C_Str());
+                refuse("node '%.80s': the position of the node is not finite", node->mName.C_Str());
         }
 }
 
@@ -564,7 +565,7 @@ void convert(const char *input, const char *output, const char *units, const cha
     int root = glb_scene_add_node(r.out, -1, std::string(base, strlen(base) - strlen(from.ending)).c_str(), -1, matrix);
     add(&r, scene->mRootNode, transform(), root, 0);
     if (!r.lines.empty())
-        printf("not shown: %zu nodes that are only lines or points: %s\n", r.lines.size(), listed(r.lines).c_str());
+        printf("not shown: %zu nodes that consist only of lines or points: %s\n", r.lines.size(), listed(r.lines).c_str());
     if (r.triangles == 0)
         refuse("the file contains no surface");
     write_scene(&r.out, output, "");

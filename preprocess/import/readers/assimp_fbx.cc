@@ -28,7 +28,7 @@ static std::string name_before(const std::string &bytes, size_t end)
 
 static void say_fbx(const std::string &name)
 {
-    printf("lost\t\t%s\tmodel\t\tNURBS and patches are not read: export it as polygons\n", one_line(name).c_str());
+    printf("lost\t\t%s\tmodel\t\tNURBS and patches are not read: export the model as polygons\n", one_line(name).c_str());
 }
 
 void assimp_losses_of_fbx(const std::string &bytes)
@@ -94,7 +94,7 @@ void keep_last(std::string *text, size_t at, std::string_view line, std::map<std
         (*text)[i] = ' ';
     first->second = at;
     if (say)
-        printf("error\t1\t%s %s more than once: the last value is used\n", owner.c_str(), one_line(name).c_str());
+        printf("error\t1\t%s: property %s is stated more than once: the last value is used\n", owner.c_str(), one_line(name).c_str());
 }
 
 void say_graph(const fbx_graph &graph)
@@ -112,7 +112,7 @@ void say_graph(const fbx_graph &graph)
         if (graph.shown.count(id) > 0 && reached.count(id) == 0)
             printf("lost\t%s\t%s\tmodel\t\tno chain of parents connects the model with the scene\n", id.c_str(), name.c_str());
         else if (parents != graph.parents.end() && parents->second > 1)
-            printf("error\t1\tmodel %s has %zu parents: it is shown below each of them\n", name.c_str(), parents->second);
+            printf("error\t1\tmodel %s has %zu parents: the model is shown below each parent\n", name.c_str(), parents->second);
     }
 }
 

@@ -74,8 +74,8 @@ void assimp_losses_of_dae(const std::string &text)
         const bool lines = has_any(text, close, end, { "<lines", "<linestrips" });
         const char *kind = has_any(text, close, end, { "<convex_mesh" }) ? "convex hulls" : "splines and boundary representations";
         if (!shown && !lines && has_any(text, close, end, { "<convex_mesh", "<spline", "<brep" }))
-            printf("lost\t%s\t%s\tgeometry\t\t%s are not read: export it as polygons\n",
-                   attribute(tag, "id").c_str(), attribute(tag, "name").c_str(), kind);
+            printf("lost\t%s\t%s\tgeometry\t\t%s are not read: export the geometry as polygons\n", attribute(tag, "id").c_str(),
+                   attribute(tag, "name").c_str(), kind);
         at = end + strlen(end_tag);
     }
 }

@@ -215,7 +215,7 @@ async function main([input, output, , , , encoding]) {
     const bytes = inUtf8(readFileSync(input), encoding), folder = dirname(fileURLToPath(import.meta.url));
     const head = bytes.subarray(0, 4096).toString('latin1');
     if (/^\W*</.test(head) && /ifcxml/i.test(head))
-        throw new Error('it is IFC in XML (ifcXML), which is not read: export it as IFC in STEP text (.ifc)');
+        throw new Error('IFC in XML (ifcXML) is not supported: export the model as IFC in STEP text (.ifc)');
     if (!head.includes('ISO-10303-21'))
         throw new Error('it is no IFC file: it does not begin with ISO-10303-21');
     if (!bytes.subarray(-4096).toString('latin1').includes('END-ISO-10303-21'))
@@ -251,7 +251,8 @@ async function main([input, output, , , , encoding]) {
     const openings = [...model.ofType(webIfc.IFCRELVOIDSELEMENT)].length - uncut.length;
     process.stdout.write([`${schema}: ${drawn.size} elements with a shape, ${lost.length} lost, ${storeys} storeys, ${openings} openings ` +
         `cut; ${solids.elements.size} elements by Open CASCADE; of the others circles have ${CORNERS} corners (--chord does not apply)`,
-    ...lines.length > 0 ? [`not shown: ${lines.length} elements that are only lines or points: ${lines.slice(0, MAX_NAMED).join(', ')}${
+    ...lines.length > 0 ? [`not shown: ${lines.length} elements that consist only of lines or points: ${
+        lines.slice(0, MAX_NAMED).join(', ')}${
         lines.length > MAX_NAMED ? ', ...' : ''}`.replace(/[\t\n]/g, ' ')] : [],
     ...lost, ...openingLines(model, uncut), ...drawnInstead,
     ...misplacedLines(model, types, isShown, solids.failed), ...errors.lines(model, solids), ''].join('\n'));

@@ -59,7 +59,7 @@ double measure_of(const ifc_model &in, const entity &parent, const value &measur
     if (parent.is("IFCCIRCLE"))
         return in.length * file::number(parent[1]) * in.angle * number;
     if (number != 0)
-        throw unsupported("a parameter on " + parent.type);
+        throw unsupported("unsupported: a parameter on " + parent.type);
     return 0;
 }
 
@@ -70,7 +70,7 @@ segment_values segment_of(const ifc_model &in, const value &reference)
         throw unsupported(segment.type);
     gp_Trsf place = placement_of(in, segment[1]);
     if (!gp::DZ().Transformed(place).IsEqual(gp::DZ(), 1e-9))
-        throw unsupported("a curve segment that is not level");
+        throw unsupported("unsupported: a curve segment that is not level");
     gp_Dir along = gp::DX().Transformed(place);
     gp_XYZ at = place.TranslationPart();
     entity parent = in.statements.get(segment[4]);
@@ -87,7 +87,7 @@ std::function<double(double)> heading_of(const ifc_model &in, const entity &pare
         return [](double) { return 0; };
     double size = in.length * file::number(parent[1]); /* radius of a circle, or constant of a clothoid, in millimetres */
     if (!(std::fabs(size) > LEAST_MM))
-        throw unsupported("a curve without a radius");
+        throw unsupported("unsupported: a curve without a radius");
     if (parent.is("IFCCIRCLE"))
         return [size](double s) { return s / size; };
     if (parent.is("IFCCLOTHOID"))
@@ -109,7 +109,7 @@ plan_segment plan_segment_of(const curve_piece &piece)
     gp_Vec along = piece.tangent(false);
     Handle(Geom_Circle) circle = Handle(Geom_Circle)::DownCast(piece.curve);
     if (circle.IsNull() && !piece.curve->IsKind(STANDARD_TYPE(Geom_Line)))
-        throw unsupported("a plan of other curves than lines, arcs and clothoids");
+        throw unsupported("unsupported: an alignment in plan with other curves than lines, arcs and clothoids");
     double curvature = circle.IsNull() ? 0 : (circle->Axis().Direction().Z() > 0) == (piece.last > piece.first) ? 1 : -1;
     curvature /= circle.IsNull() ? 1 : circle->Radius();
     auto turn = [curvature](double d) { return curvature * d; };
@@ -139,7 +139,7 @@ std::function<gp_XY(double)> arc_of(double height, double heading, double radius
     return [=](double d) {
         double sine = std::sin(heading) + d / radius;
         if (!(std::fabs(sine) < 1))
-            throw unsupported("an arc of heights that ends too early");
+            throw unsupported("unsupported: a vertical arc that ends before its segment");
         return gp_XY(height + radius * (std::cos(heading) - std::cos(std::asin(sine))), std::tan(std::asin(sine)));
     };
 }
@@ -150,9 +150,9 @@ std::function<gp_XY(double)> polynomial_of(const ifc_model &in, const segment_va
 {
     const std::vector<value> &x = segment.parent[1].list, &y = segment.parent[2].list;
     if (x.size() != 2 || file::number(x[0]) != 0 || file::number(x[1]) != 1 || segment.from_mm != 0 || y.size() < 2)
-        throw unsupported("a polynomial of another parameter than the distance");
+        throw unsupported("unsupported: a polynomial curve whose parameter is not the distance");
     if (std::fabs(file::number(y[1]) - std::tan(segment.heading_rad)) > 1e-4)
-        throw unsupported("a polynomial that is turned");
+        throw unsupported("unsupported: a rotated polynomial curve");
     std::vector<double> terms;
     for (const value &term : y)
         terms.push_back(file::number(term));
@@ -171,14 +171,14 @@ grade grade_of(const ifc_model &in, const segment_values &segment)
 {
     double at = segment.start.X(), height = segment.start.Y(), heading = segment.heading_rad, slope = std::tan(heading);
     if (!(std::cos(heading) > 1e-6))
-        throw unsupported("heights that do not advance");
+        throw unsupported("unsupported: a vertical segment without horizontal length");
     if (segment.parent.is("IFCLINE"))
         return { at, [=](double d) { return gp_XY(height + slope * d, slope); }, true };
     if (segment.parent.is("IFCPOLYNOMIALCURVE"))
         return { at, polynomial_of(in, segment), false };
     double radius = segment.parent.is("IFCCIRCLE") ? in.length * file::number(segment.parent[1]) : 0;
     if (!(radius > LEAST_MM))
-        throw unsupported("heights along " + segment.parent.type);
+        throw unsupported("unsupported: a vertical segment along " + segment.parent.type);
     return { at, arc_of(height, heading, std::copysign(radius, segment.length_mm)), false };
 }
 
@@ -193,10 +193,10 @@ std::vector<grade> grades_of(const ifc_model &in, const entity &curve, double *e
         else
             out.push_back(grade_of(in, segment));
         if (out.size() > 1 && out.back().at_mm < out[out.size() - 2].at_mm)
-            throw unsupported("heights that are not in order");
+            throw unsupported("unsupported: vertical segments that are not in order of distance");
     }
     if (out.empty() || std::fabs(out[0].at_mm) > JOINT_MM)
-        throw unsupported("heights that do not begin with the plan");
+        throw unsupported("unsupported: vertical segments that do not begin at the start of the plan");
     return out;
 }
 
@@ -224,7 +224,7 @@ curve_piece piece_of(const ifc_model &in, const plan_segment &along, const grade
     double rise = std::atan(height(to).Y()) - std::atan(height(from).Y());
     double turn = std::fabs(along.turn(to) - along.turn(from)) + std::fabs(rise), span = (to - from) / in.length;
     if (!(turn < MOST_TURN_RAD))
-        throw unsupported("a curve that turns too often");
+        throw unsupported("unsupported: a curve with too many turns");
     int steps = along.straight && heights.straight ? 1 : std::max(8, static_cast<int>(std::ceil(turn / STEP_RAD)));
     Handle(TColgp_HArray1OfPnt) points = new TColgp_HArray1OfPnt(1, steps + 1);
     Handle(TColStd_HArray1OfReal) distances = new TColStd_HArray1OfReal(1, steps + 1);
@@ -247,7 +247,7 @@ curve_piece piece_of(const ifc_model &in, const plan_segment &along, const grade
     curve.Load(tangent(from), tangent(to), Standard_False);
     curve.Perform();
     if (!curve.IsDone())
-        throw unsupported("an alignment that cannot be interpolated");
+        throw unsupported("unsupported: an alignment that cannot be interpolated by a spline");
     return { Handle(Geom_Curve)(curve.Curve()), from, to, span, to - from };
 }
 
@@ -264,7 +264,7 @@ std::vector<curve_piece> alignment_of(const ifc_model &in, const entity &curve)
     bool rises = curve.is("IFCGRADIENTCURVE");
     entity base = rises ? in.statements.get(curve[2]) : curve;
     if (rises && base.is("IFCGRADIENTCURVE"))
-        throw unsupported("a gradient curve along a gradient curve");
+        throw unsupported("unsupported: a gradient curve along a gradient curve");
     double end_mm = HUGE_VAL, before_mm = 0;
     std::vector<grade> grades = { { 0, [](double) { return gp_XY(0, 0); }, true } };
     if (rises)

@@ -151,9 +151,9 @@ class step_writer
     {
         entity profile = in.statements.get(surface[0]);
         if (profile.type.find("ARBITRARY") == std::string::npos)
-            throw unsupported(profile.type + " of a swept surface");
+            throw unsupported("unsupported: a swept surface with profile " + profile.type);
         if (!surface[1].absent() && placement_of(in, surface[1]).Form() != gp_Identity)
-            throw unsupported("a swept surface that is placed");
+            throw unsupported("unsupported: a swept surface with a placement of its own");
         return text_of(profile[2]);
     }
 
@@ -230,16 +230,16 @@ TopoDS_Shape brep_of(const ifc_model &in, const entity &item)
     std::istringstream text(writer.whole(item.id));
     STEPControl_Reader reader;
     if (reader.ReadStream("brep", text) != IFSelect_RetDone)
-        throw unsupported("the faces could not be read");
+        throw unsupported("Open CASCADE could not read the faces");
     Handle(Standard_Transient) root = reader.WS()->Model()->Value(reader.WS()->Model()->NextNumberForLabel("#8"));
     if (!reader.TransferEntity(root) || reader.NbShapes() < 1)
-        throw unsupported("the faces could not be built");
+        throw unsupported("Open CASCADE could not build the faces");
     TopoDS_Shape out = reader.OneShape();
     size_t faces = 0;
     for (TopExp_Explorer at(out, TopAbs_FACE); at.More(); at.Next())
         faces++;
     if (faces < writer.faces)
-        throw unsupported("only " + std::to_string(faces) + " of its " + std::to_string(writer.faces) + " faces could be built");
+        throw unsupported("only " + std::to_string(faces) + " of the shape's " + std::to_string(writer.faces) + " faces could be built");
     return out;
 }
 

@@ -83,7 +83,7 @@ std::vector<curve_piece> indexed(const ifc_model &in, const entity &curve)
         for (const value &index : indices) {
             double number = file::number(index);
             if (number < 1 || number > static_cast<double>(points.size()))
-                throw unsupported("an index is outside the list of points");
+                throw unsupported("an index of a curve is outside the list of points");
             at.push_back(points[static_cast<size_t>(number) - 1]);
         }
         if (segment.text == "IFCARCINDEX" && at.size() == 3)
@@ -105,7 +105,7 @@ double trim_at(const ifc_model &in, const curve_piece &basis, const value &selec
     if (point && (by_point || !parameter)) {
         GeomAPI_ProjectPointOnCurve onto(point_of(in, *point), basis.curve);
         if (onto.NbPoints() < 1)
-            throw unsupported("a trimming point is not on its curve");
+            throw unsupported("a trimming point is not on the trimmed curve");
         return onto.LowerDistanceParameter();
     }
     if (!parameter)
@@ -126,7 +126,7 @@ std::vector<curve_piece> trimmed_curve(const ifc_model &in, const entity &curve,
             throw unsupported("a trimmed curve lacks its trimming points");
         std::vector<curve_piece> out = trimmed(pieces_within(in, from, depth + 1), curve[1].list[0], curve[2].list[0], &whole);
         if (whole || !same)
-            throw unsupported("a trimmed " + from.type);
+            throw unsupported("unsupported: a trimmed " + from.type);
         return out;
     }
     curve_piece basis = basis_of(in, from);
@@ -170,7 +170,7 @@ Handle(Geom_Curve) spline(const ifc_model &in, const entity &curve)
 {
     const std::vector<value> &points = curve[1].list, &counts = curve[5].list, &knots = curve[6].list;
     if (points.size() < 2 || counts.size() < 2 || counts.size() != knots.size())
-        throw unsupported("a B-spline without knots");
+        throw unsupported("unsupported: a B-spline without knots");
     TColgp_Array1OfPnt poles(1, static_cast<int>(points.size()));
     TColStd_Array1OfReal weights(1, poles.Length()), at(1, static_cast<int>(knots.size()));
     TColStd_Array1OfInteger multiplicities(1, at.Length());
@@ -202,7 +202,7 @@ curve_piece basis_of(const ifc_model &in, const entity &curve)
     if (curve.is("IFCELLIPSE")) {
         double a = in.length * file::number(curve[1]), b = in.length * file::number(curve[2]);
         if (a < b)
-            throw unsupported("an ellipse whose second axis is longer than the first");
+            throw unsupported("unsupported: an ellipse whose second axis is longer than the first");
         Handle(Geom_Ellipse) ellipse = new Geom_Ellipse(gp::XOY(), a, b);
         ellipse->Transform(placement_of(in, curve[0]));
         return { ellipse, 0, turn, turn / in.angle };

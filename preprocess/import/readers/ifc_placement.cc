@@ -43,7 +43,7 @@ std::vector<curve_piece> axis_of(const ifc_model &in, const entity &axis, double
         else if (piece.curve->IsKind(STANDARD_TYPE(Geom_Line)))
             piece.curve->Translate(left);
         else
-            throw unsupported("an offset from a grid axis that is neither a line nor an arc");
+            throw unsupported("unsupported: an offset from a grid axis that is neither a line nor an arc");
     }
     return out;
 }
@@ -87,7 +87,7 @@ crossing crossing_of(const ifc_model &in, const value &reference)
     crossing out;
     bool lines = axes[0].size() == 1 && axes[1].size() == 1;
     if (!find_crossing(axes[0], axes[1], false, &out) && (!lines || !find_crossing(axes[0], axes[1], true, &out)))
-        throw unsupported("grid axes that do not meet");
+        throw unsupported("the axes of the grid placement do not meet");
     out.at.Translate(gp_Vec(0, 0, offset(2)));
     return out;
 }

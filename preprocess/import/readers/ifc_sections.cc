@@ -31,7 +31,7 @@ TopoDS_Shape through(const std::vector<TopoDS_Wire> &sections)
         loft.AddWire(section);
     loft.Build();
     if (!loft.IsDone())
-        throw unsupported("sections that cannot be joined");
+        throw unsupported("unsupported: cross-sections that cannot be joined to a solid");
     return loft.Shape();
 }
 
@@ -73,7 +73,7 @@ double parameter_at(const curve_piece &part, double distance_mm)
         return part.first + (part.last - part.first) * distance_mm / part.level_mm;
     GCPnts_AbscissaPoint point(GeomAdaptor_Curve(part.curve), part.first > part.last ? -distance_mm : distance_mm, part.first);
     if (!point.IsDone())
-        throw unsupported("a section that is not on its curve");
+        throw unsupported("unsupported: a cross-section that is not on its curve");
     return point.Parameter();
 }
 
@@ -107,7 +107,7 @@ station station_of(const ifc_model &in, const value &reference, const value &pro
     entity place = in.statements.get(reference), at = place;
     if (place.is("IFCAXIS2PLACEMENTLINEAR")) {
         if (!direction_of(in, place[1], gp::DZ()).IsParallel(gp::DZ(), 1e-6))
-            throw unsupported("a section that is not upright");
+            throw unsupported("unsupported: a cross-section that is not upright");
         at = in.statements.get(place[0]);
     }
     if (!at.is("IFCPOINTBYDISTANCEEXPRESSION") && !at.is("IFCDISTANCEEXPRESSION"))
@@ -142,7 +142,7 @@ void add_between(const ifc_model &in, const std::vector<curve_piece> &pieces, st
             if (share > 1 - 1e-9)
                 return;
             if (from.profile != to.profile)
-                throw unsupported("a section that changes along a curve");
+                throw unsupported("unsupported: a cross-section that changes along a curve");
             out->push_back(
                 { from.along_mm + share * (to.along_mm - from.along_mm), from.offset + (to.offset - from.offset) * share, from.profile });
         }
@@ -182,11 +182,11 @@ section_frame frame_at(const curve_piece &piece, double parameter, const gp_Dir 
     gp_Vec along;
     piece.curve->D1(parameter, at, along);
     if (along.Magnitude() < 1e-9)
-        throw unsupported("a curve that stands still");
+        throw unsupported("unsupported: a curve without a direction");
     if (piece.first > piece.last)
         along.Reverse();
     if (gp_Dir(along).IsParallel(reference, 1e-6))
-        throw unsupported("a profile whose reference direction is along its curve");
+        throw unsupported("unsupported: a profile whose reference direction is parallel to its curve");
     return { at, gp_Dir(along), gp_Ax3(at, gp_Dir(along), reference).XDirection(), gp_Dir(along) };
 }
 

@@ -67,7 +67,7 @@ ifc_model model_of(const file &in, double chord_mm)
         }
     });
     if (!(out.length > 0) || !(out.angle > 0))
-        throw unsupported("the file has no valid unit of length");
+        throw unsupported("the file has no valid unit of length or of plane angle");
     return out;
 }
 
@@ -259,7 +259,7 @@ void cut_openings(ifc_writer *w, const entity &product, std::vector<placed_item>
         for (const TopoDS_Shape &cutter : cutters) {
             BRepAlgoAPI_Cut cut(shape, cutter);
             if (!cut.IsDone() || cut.Shape().IsNull())
-                throw unsupported("its openings cannot be cut");
+                throw unsupported("the openings of this element cannot be cut");
             shape = cut.Shape();
         }
         if (!TopExp_Explorer(shape, TopAbs_FACE).More())
@@ -340,7 +340,7 @@ void add_placements(ifc_writer *w)
         attempt(w, id, [&] {
             long long unused = last + 1LL + 4 * static_cast<long long>(statements.size());
             if (unused > INT_MAX - 3)
-                throw unsupported("no statement number is left for it");
+                throw unsupported("the file has no free statement number for this grid placement");
             statements[id] = as_local_placement(w->in, w->in.statements.get(id), static_cast<int>(unused));
         });
     });
@@ -394,7 +394,7 @@ void ifc_shapes_write(const char *input, const char *output, double chord_mm, co
     for (const auto &entry : w.failed)
         glb_scene_set_property(w.scene, failed, ("#" + std::to_string(entry.first)).c_str(), entry.second.c_str());
     if (w.elements + w.placements > 0 || !w.failed.empty())
-        write_scene(&w.scene, output, ": a larger --chord makes it smaller");
+        write_scene(&w.scene, output, ": set a larger --chord to make the output file smaller");
     else
         glb_scene_destroy(&w.scene);
 }

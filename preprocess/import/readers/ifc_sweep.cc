@@ -40,10 +40,10 @@ TopoDS_Shape wire_swept(const TopoDS_Wire &outline, const TopoDS_Wire &spine, co
     pipe.SetTransitionMode(BRepBuilderAPI_RightCorner);
     pipe.Add(outline);
     if (!pipe.IsReady())
-        throw unsupported("a profile that cannot be swept along its curve");
+        throw unsupported("unsupported: a profile that cannot be swept along its curve");
     pipe.Build();
     if (!pipe.IsDone())
-        throw unsupported("a profile that cannot be swept along its curve");
+        throw unsupported("unsupported: a profile that cannot be swept along its curve");
     pipe.MakeSolid(); /* the result is ignored: it is false for a closed curve, whose tube has no ends to close */
     return pipe.Shape();
 }
@@ -68,7 +68,7 @@ TopoDS_Shape along(const TopoDS_Face &face, const std::vector<curve_piece> &piec
         if (!wires.Current().IsSame(outer)) {
             BRepAlgoAPI_Cut cut(out, wire_swept(TopoDS::Wire(wires.Current()), spine, up));
             if (!cut.IsDone())
-                throw unsupported("a hollow profile that cannot be swept along its curve");
+                throw unsupported("unsupported: a hollow profile that cannot be swept along its curve");
             out = cut.Shape();
         }
     return out;
@@ -129,7 +129,7 @@ TopoDS_Shape disk_along(const ifc_model &in, const TopoDS_Face &face, double are
         } catch (const Standard_Failure &) { /* try the next method */
         } catch (const unsupported &) {
         }
-    throw unsupported("a pipe that cannot be swept along its curve");
+    throw unsupported("unsupported: a pipe that cannot be swept along its curve");
 }
 
 TopoDS_Face disk(double radius, double hole)
@@ -161,10 +161,10 @@ TopoDS_Shape disk_of(const ifc_model &in, const entity &item)
     double fillet = item.is("IFCSWEPTDISKSOLIDPOLYGONAL") ? in.length * file::number(item[5], 0) : 0;
     bool whole = false;
     if (radius <= 0 || hole >= radius)
-        throw unsupported("a pipe without a wall");
+        throw unsupported("unsupported: a pipe without a wall");
     std::vector<curve_piece> pieces = trimmed(pieces_of(in, in.statements.get(item[0])), item[3], item[4], &whole);
     if (whole)
-        printf("error\t1\tOpen CASCADE: #%d: its parameters lie outside its curve: using the whole curve\n", item.id);
+        printf("error\t1\tOpen CASCADE: #%d: the parameters lie outside the curve: using the whole curve\n", item.id);
     if (fillet > 0) {
         std::vector<gp_Pnt> points = { pieces.front().start() };
         for (const curve_piece &part : pieces)

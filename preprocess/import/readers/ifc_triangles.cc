@@ -23,7 +23,7 @@ void take_face(const TopoDS_Face &face, triangles *to)
     TopLoc_Location place;
     Handle(Poly_Triangulation) mesh = BRep_Tool::Triangulation(face, place);
     if (mesh.IsNull())
-        throw unsupported("a face that could not be tessellated");
+        throw unsupported("a face of this shape could not be tessellated");
     const gp_Trsf &moved = place.Transformation();
     bool reversed = (face.Orientation() == TopAbs_REVERSED) != moved.IsNegative();
     uint32_t first = static_cast<uint32_t>(to->points.size());
@@ -52,10 +52,10 @@ triangles triangles_of(const ifc_model &in, const TopoDS_Shape &shape)
     for (TopExp_Explorer faces(shape, TopAbs_FACE); faces.More(); faces.Next())
         take_face(TopoDS::Face(faces.Current()), &out);
     if (out.corners.empty())
-        throw unsupported("nothing is left of it");
+        throw unsupported("this shape has no triangles left");
     for (const gp_Pnt &at : out.points)
         if (!std::isfinite(at.X()) || !std::isfinite(at.Y()) || !std::isfinite(at.Z()))
-            throw unsupported("a vertex that is not finite");
+            throw unsupported("a vertex of this shape is not finite");
     return out;
 }
 

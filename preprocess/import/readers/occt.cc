@@ -211,9 +211,9 @@ void say_lost_part(occt_reader *r, const TDF_Label &label, const char *id, const
     if (of.faces == 0)
         why = reason_without_faces(r, XCAFDoc_ShapeTool::GetShape(label));
     else if (of.missing == 0)
-        why = "its " + std::to_string(of.faces) + " faces have no extent, or corners that are not finite";
+        why = "the part's " + std::to_string(of.faces) + " faces have no extent, or corners that are not finite";
     else
-        why = std::to_string(of.missing) + " of its " + std::to_string(of.faces) + " faces could not be tessellated";
+        why = std::to_string(of.missing) + " of the part's " + std::to_string(of.faces) + " faces could not be tessellated";
     if (why.empty())
         r->lines.push_back(name.empty() ? "a part without a name" : name);
     else
@@ -309,7 +309,7 @@ std::string read_step(const char *path, const char *output, Handle(TDocStd_Docum
     step.SetNameMode(Standard_True);
     step.SetLayerMode(Standard_True);
     if (step.ReadFile(files.main.c_str()) != IFSelect_RetDone)
-        refuse("not a STEP file, or truncated");
+        refuse("this is not a STEP file, or the file is truncated");
     TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
     step.ChangeReader().FileUnits(lengths, angles, solid_angles);
     bool transferred = step.Transfer(document);
@@ -327,7 +327,7 @@ std::string read_step(const char *path, const char *output, Handle(TDocStd_Docum
             printf("error\t1\treferenced file %s is not in the model's folder\n", one_line(each.second.named).c_str());
     *externals = files.externals;
     if (!transferred)
-        refuse("the shapes could not be read");
+        refuse("Open CASCADE could not read the shapes of the file");
     std::string units;
     for (int i = 1; i <= lengths.Length(); i++)
         if (units.find(lengths.Value(i).ToCString()) == std::string::npos)
@@ -340,14 +340,14 @@ std::string read_iges(const char *path, Handle(TDocStd_Document) document, const
     IGESControl_Reader iges;
     Interface_Static::SetCVal("read.iges.sequence", "none");
     if (iges.ReadFile(path) != IFSelect_RetDone)
-        refuse("not an IGES file, or truncated");
+        refuse("this is not an IGES file, or the file is truncated");
     text_encoding encoding;
     encoding.choose(read_whole(path), asked, "");
     encoding.say();
     iges_tree_add(iges, document, encoding);
     occt_losses_say(iges.WS(), "");
     if (iges.NbShapes() < 1)
-        refuse("the shapes could not be read");
+        refuse("Open CASCADE could not read the shapes of the file");
     return iges_units(iges);
 }
 
@@ -357,7 +357,7 @@ void say_lines(const occt_reader &r)
     for (size_t i = 0; i < r.lines.size() && i < MOST_NAMED; i++)
         names += (i > 0 ? ", " : "") + r.lines[i];
     if (!r.lines.empty())
-        printf("not shown: %zu parts that are only curves or points: %s%s\n", r.lines.size(), names.c_str(),
+        printf("not shown: %zu parts that consist only of curves or points: %s%s\n", r.lines.size(), names.c_str(),
                r.lines.size() > MOST_NAMED ? ", ..." : "");
 }
 
@@ -405,11 +405,11 @@ void convert(const char *input, const char *output, double chord_mm, bool y_up, 
     say_lines(r);
     if (r.places == 0)
         refuse("the file contains no surface");
-    write_scene(&r.scene, output, ": a larger --chord makes it smaller");
+    write_scene(&r.scene, output, ": set a larger --chord to make the output file smaller");
     size_t made = 0;
     for (const auto &entry : r.parts)
         made += entry.second.mesh >= 0;
-    printf("%zu parts in %zu places; chord error %g mm; %s up\n", made, r.places, chord_mm, y_up ? "Y" : "Z");
+    printf("%zu parts in %zu places; chord error %g mm; %s axis up\n", made, r.places, chord_mm, y_up ? "Y" : "Z");
     if (!units.empty())
         printf("units: %s\n", units.c_str());
     if (r.skipped_faces > 0)
@@ -428,11 +428,11 @@ void convert_or_refuse(char **arguments)
             convert(arguments[0], arguments[1], chord_mm, !strcmp(arguments[4], "y"), arguments[5]);
         }
     } catch (const Standard_Failure &e) {
-        refuse("its shapes could not be read: %s", e.GetMessageString());
+        refuse("Open CASCADE could not read the shapes of the file: %s", e.GetMessageString());
     } catch (const std::exception &) {
         throw;
     } catch (...) {
-        refuse("the shapes could not be read");
+        refuse("Open CASCADE could not read the shapes of the file");
     }
 }
 

@@ -193,8 +193,8 @@ void say_lost(const file_losses &of, const lost_faces &lost)
         ids += " " + id_of(of, lost.faces[i]);
     const std::string more = lost.faces.size() > MOST_IDS ? " ..." : "";
     const std::string reason = lost.owner.body == lost.faces[0]
-                                   ? "it could not be read"
-                                   : std::to_string(lost.faces.size()) + " of its faces could not be read:" + ids + more;
+                                   ? "Open CASCADE could not read the body"
+                                   : std::to_string(lost.faces.size()) + " faces of the body could not be read:" + ids + more;
     printf("lost\t%s\t%s%s\t%s\t\t%s\n", id_of(of, lost.owner.body).c_str(), of.file.c_str(), lost.owner.name.c_str(),
            type_of(lost.owner.body).c_str(), reason.c_str());
 }
@@ -224,8 +224,8 @@ void say_lost_places(const file_losses &of)
         if (product.IsNull() || has_shape(of, place) || !has_shape(of, product))
             continue;
         Handle(TCollection_HAsciiString) name = place->Name().IsNull() || place->Name()->IsEmpty() ? place->Id() : place->Name();
-        printf("lost\t%s\t%s%s\tplace\t\tthe file has no placement for the part, or in a form that is not supported\n",
-               id_of(of, place).c_str(), of.file.c_str(), name.IsNull() ? "" : one_line(name->ToCString()).c_str());
+        printf("lost\t%s\t%s%s\tplace\t\tthe file has no placement for the part, or one of an unsupported form\n", id_of(of, place).c_str(),
+               of.file.c_str(), name.IsNull() ? "" : one_line(name->ToCString()).c_str());
     }
 }
 

@@ -86,11 +86,12 @@ static int apply(const struct revision_making *making)
     int status = revision_files_apply(folder, making->params->work, making->files, making->file_count, &changed);
     if (status != 0)
         return status == -ESTALE
-                   ? fail_at(changed, "was changed by another program during the import; nothing was written: run the command again")
+                   ? fail_at(changed,
+                             "this file was changed by another program during the import, so nothing was written: run the command again")
                    : fail_at(folder, strerror(-status));
     for (size_t i = 0; i < TEXTS; i++)
         if (making->texts[i].kept)
-            printf("%s/%s: written; the previous version is %s\n", folder, making->texts[i].name, making->texts[i].kept);
+            printf("%s/%s: written; the previous version is kept as %s\n", folder, making->texts[i].name, making->texts[i].kept);
     return 0;
 }
 

@@ -84,7 +84,7 @@ static bool remove_item(struct editor *editor, const yaml_node_t *item)
     size_t begin = line_begin(text, byte_at(editor, item->start_mark)), indent = strspn(text + begin, " "), end = line_end(text, begin),
            limit = byte_at(editor, item->end_mark);
     if (text[begin + indent] != '-')
-        return fail(editor, "the lists of assets and nodes need one item a line");
+        return fail(editor, "the lists `assets` and `nodes` in the plant file need one item a line");
     for (size_t line = end; text[line]; line = line_end(text, line)) {
         size_t spaces = strspn(text + line, " ");
         char first = text[line + spaces];
@@ -128,7 +128,7 @@ static bool edit_nodes(struct editor *editor, const yaml_node_t *value, const st
     }
     const yaml_node_item_t *items = value->data.sequence.items.start;
     if (value->type != YAML_SEQUENCE_NODE || value->data.sequence.items.top - items != (ptrdiff_t)edit->node_count)
-        return fail(editor, "the nodes of an asset are not written as a list that import can edit");
+        return fail(editor, "import cannot edit `nodes` of an asset in the plant file: write the nodes as a list");
     if (value->data.sequence.style == YAML_FLOW_SEQUENCE_STYLE) {
         replace_flow_list(editor, value, edit);
         return true;
@@ -211,7 +211,7 @@ static bool edit_all(struct editor *editor, const struct asset_edit *edits, size
                 *assets = root && root->type == YAML_MAPPING_NODE ? value_of(editor, root, "assets", &key) : NULL;
     if (!assets || assets->type != YAML_SEQUENCE_NODE ||
         assets->data.sequence.items.top - assets->data.sequence.items.start != (ptrdiff_t)count)
-        return fail(editor, "import cannot edit the list of assets");
+        return fail(editor, "import cannot edit `assets` in the plant file: write the assets as a list");
     bool good = true;
     for (size_t i = 0; i < count && good; i++)
         good = edit_asset(editor, yaml_document_get_node(&editor->doc, assets->data.sequence.items.start[i]), &edits[i]);
@@ -238,7 +238,7 @@ char *asset_edit_apply(const char *text, const struct asset_edit *edits, size_t 
     if (out && added) {
         char *longer = plant_edit_append(out, "assets", "", added);
         if (!longer)
-            fail(&editor, "the list of assets needs one item a line");
+            fail(&editor, "the list `assets` in the plant file needs one item a line");
         mem_free(out);
         out = longer;
     }

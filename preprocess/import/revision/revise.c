@@ -69,7 +69,7 @@ static int find_tags(struct revising *r)
     *slash = 0;
     bool beside = !strcmp(folder, path);
     if (!beside && access(*path ? path : "/", W_OK | X_OK) != 0)
-        return fail_at(r->plant->files.tags_path, "the folder is not writable");
+        return fail_at(r->plant->files.tags_path, "the folder of this tag list is not writable");
     *slash = '/';
     r->tags_name = mem_strdup(beside ? slash + 1 : path);
     return 0;
@@ -208,7 +208,8 @@ static int apply(struct revising *r)
     status = revision_files_apply(r->params->folder, r->params->work, r->files, r->file_count, &changed);
     return status == 0 ? 0
            : status == -ESTALE
-               ? fail_at(changed, "was changed by another program during the import; nothing was written: run the command again")
+               ? fail_at(changed,
+                         "this file was changed by another program during the import, so nothing was written: run the command again")
                : fail_at(r->params->folder, strerror(-status));
 }
 
@@ -287,12 +288,11 @@ int revise_undo(const char *folder, bool forced, int lent)
         close(lock);
     }
     if (status == -EBUSY)
-        fprintf(stderr, "%s: %s: changed since the import: %s; --force undoes it anyway and keeps these files as NAME.undone\n", program,
-                folder, changed.at);
+        fprintf(stderr,
+                "%s: %s: files were changed since the import: %s; --force undoes the import anyway and keeps these files as NAME.undone\n",
+                program, folder, changed.at);
     else if (status != 0)
-        fail_at(folder, why                 ? why
-                        : status == -ENOENT ? "there is nothing to undo"
-                                            : strerror(-status));
+        fail_at(folder, why ? why : status == -ENOENT ? "this folder has no import to undo" : strerror(-status));
     else
         printf("%s: restored to the state before the last import: %s\n", folder, done.at ? done.at : "");
     text_finish(&changed);

@@ -148,7 +148,7 @@ static void lose_equipment(struct planning *p, const struct plant_tag *tag)
     edit_tag(p, tag)->asset = "";
     mem_grow(&p->revision->lost, &p->revision->lost_room, p->revision->lost_count + 1, sizeof(*p->revision->lost));
     p->revision->lost[p->revision->lost_count++] = tag->name;
-    say(p, REVISION_TAG, "equipment lost", tag->name, "%s is no longer in the model", p->input->plant->assets[tag->asset].id);
+    say(p, REVISION_TAG, "equipment lost", tag->name, "asset %s is no longer in the model", p->input->plant->assets[tag->asset].id);
 }
 
 static void follow_node(struct planning *p, const struct plant_tag *tag)
@@ -161,11 +161,11 @@ static void follow_node(struct planning *p, const struct plant_tag *tag)
         edit->node = pattern;
         if (tag->place.assumed)
             edit->place = "equipment";
-        say(p, REVISION_TAG, "renamed", tag->name, "its node %s is now %s", tag->place.node, pattern);
+        say(p, REVISION_TAG, "renamed", tag->name, "the tag's node %s is now %s", tag->place.node, pattern);
         return; /* the edit now owns `pattern` and frees it */
     }
     case ASSET_PATTERN_GONE: {
-        char *detail = mem_printf("its node %s is no longer in the model", tag->place.node);
+        char *detail = mem_printf("the tag's node %s is no longer in the model", tag->place.node);
         lose_place(p, tag, detail);
         mem_free(detail);
     }
@@ -190,7 +190,7 @@ static void follow_part(struct planning *p, const struct plant_tag *tag, const s
         mem_free(one);
     }
     if (!motion.known) {
-        lose_place(p, tag, "the surface below it has changed shape");
+        lose_place(p, tag, "the surface below the sensor has changed shape");
         return;
     }
     moved_in_list(asset, motion.motion, tag->place.position_m, now);
@@ -246,12 +246,12 @@ static void review_asset(struct planning *p, const struct plant_asset *asset, st
         /* rename the asset's tag only if it still is the old node's name */
         if (!strcmp(asset->tag, without_slash(old->nodes[root].name)) && *name)
             edit->tag = mem_strdup(without_slash(name));
-        say(p, REVISION_ASSET, "renamed", asset->id, "now %s; its id stays", name);
+        say(p, REVISION_ASSET, "renamed", asset->id, "now %s; the id of the asset stays", name);
     }
     double moved_m = motion->moved * asset->unit_m;
     if (motion->change == STATES_CHANGED)
         say(p, REVISION_ASSET, "changed", asset->id, "%zu of %zu parts have another shape%s", motion->different, motion->parts,
-            motion->known && moved_m <= tolerance_m ? "; its box is the same" : "");
+            motion->known && moved_m <= tolerance_m ? "; the bounding box is unchanged" : "");
     else if (motion->change == STATES_MOVED)
         say(p, REVISION_ASSET, "moved", asset->id, "%.3f m", moved_m);
 }
@@ -396,7 +396,7 @@ static bool something_stays(const struct planning *p)
         removed += p->assets[i].removed;
     if (removed < p->input->plant->asset_count)
         return true;
-    snprintf(p->why, MODEL_WHY_BYTES, "%s: has no models of this plant", p->input->models[0].draft->file);
+    snprintf(p->why, MODEL_WHY_BYTES, "%s: the imported models contain no asset of this plant", p->input->models[0].draft->file);
     return false;
 }
 

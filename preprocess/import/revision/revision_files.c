@@ -55,7 +55,8 @@ static void take_rights(const char *from, const char *to)
 {
     struct stat st;
     if (stat(from, &st) == 0 && (chmod(to, st.st_mode & 07777) != 0 || chown(to, st.st_uid, st.st_gid) != 0))
-        fprintf(stderr, "plantcast import: %s: owner and permissions cannot be kept: %s\n", from, strerror(errno));
+        fprintf(stderr, "plantcast import: %s: the new file cannot get the owner and permissions of the old file: %s\n", from,
+                strerror(errno));
 }
 
 static int add_file(const char *folder, const char *next, const struct revision_file *file, struct text *list)
