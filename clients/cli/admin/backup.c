@@ -265,9 +265,8 @@ static bool is_known_version(const char *path, const char *version)
 {
     if (!version || strverscmp(version, PLANTCAST_VERSION) <= 0)
         return true;
-    fprintf(stderr,
-            "plantcast: %s: Plantcast %s made this backup; this older version " PLANTCAST_VERSION " cannot read it: install %s or later\n",
-            path, version, version);
+    fprintf(stderr, "plantcast: %s: Plantcast %s made this backup: install version %s or later instead of " PLANTCAST_VERSION "\n", path,
+            version, version);
     return false;
 }
 

@@ -94,8 +94,9 @@ static char *wrong_version(const struct plant *plant, const char *before, const 
         why = mem_strdup("this version does not contain the same tags as the present tag list");
     } else if (strcmp(now, then) != 0) {
         tag_lines(now, then, &lines);
-        why = mem_printf("this version differs from the present tag list in more than `Place` (line %d): restore it on the web page",
-                         lines.count ? lines.at[0].line : 1);
+        why = mem_printf(
+            "this version differs from the present tag list in more than `Place` (line %d): restore this version on the web page",
+            lines.count ? lines.at[0].line : 1);
         tag_lines_finish(&lines);
     }
     mem_free(now);
