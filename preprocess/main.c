@@ -31,7 +31,7 @@ static const char usage[] =
     "       plantcast-prep distances PLANT.yaml --asset ID --sensor TAG [--output DIR]\n"
     "\n"
     "Prepares the models of a plant file for the daemon: extracts the triangles of each asset,\n"
-    "projects sensors onto them, and computes distances along the surface from sensors to vertices.\n"
+    "projects sensors onto the triangles, and computes distances along the surface from sensors to vertices.\n"
     "Results of an earlier run are reused if their inputs have not changed.\n"
     "Only one run at a time works in an output folder; a second run waits.\n"
     "\n"

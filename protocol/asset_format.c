@@ -222,7 +222,8 @@ static bool levels_good(struct format_check *c)
             return wrong(c, "level %u uses the first %u vertices, expected %s%u", i, l->vertex_count, i ? "at most " : "", vertices);
         uint32_t coarser = i + 1 < h->level_count ? v->levels[i + 1].vertex_count : 0;
         if (coarser <= l->vertex_count && l->added_count > l->vertex_count - coarser)
-            return wrong(c, "level %u adds %u vertices, but has only %u of its own", i, l->added_count, l->vertex_count - coarser);
+            return wrong(c, "level %u adds %u vertices, but only %u vertices belong to this level", i, l->added_count,
+                         l->vertex_count - coarser);
         if (!isfinite(l->error_m) || l->error_m < error_m || (i == 0 && l->error_m != 0))
             return wrong(c, "level %u: error of %g m after %g m", i, (double)l->error_m, (double)error_m);
         for (uint32_t p = 0; p < l->primitive_count; p++)

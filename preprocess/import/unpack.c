@@ -145,7 +145,7 @@ static const char *open_file(unzFile zip, const char *ending, struct text *said)
     if (count == 0)
         return xml ? FORMAT_IFC_XML : "the archive contains no model";
     if (locked)
-        return "the archive is encrypted: pack it again without a password";
+        return "the archive is encrypted: create the archive again without a password";
     if (count > 1)
         text_add(said, "left out: %zu other model%s in the archive; only %s was imported\n", count - 1, count == 2 ? "" : "s", taken);
     return unzLocateFile(zip, taken, 1) == UNZ_OK && unzOpenCurrentFile(zip) == UNZ_OK ? NULL : "the archive is damaged";

@@ -331,9 +331,9 @@ bool gaussian_fit(struct gaussian_params *params, const struct gaussian_data *da
         good = try_one(&fit, logarithm(params->range_m), &trial);
     }
     if (!good)
-        snprintf(why, 300, "the fit of gp to the readings failed: see the messages above");
+        snprintf(why, 300, "the fit of the Gaussian process (gp) to the readings failed: see the messages above");
     else if (!(fit.best.deviation > 0)) {
-        snprintf(why, 300, "the fit of gp failed: the readings of sensors on one body never differ");
+        snprintf(why, 300, "the fit of the Gaussian process (gp) failed: the readings of sensors on one body never differ");
         good = false;
     } else
         *params = fit.best;

@@ -88,7 +88,8 @@ static void take_defaults(const struct influence_making *making, const struct pl
     gp->noise = isnan(gp->noise) ? PLANT_GP_NOISE * range : gp->noise;
     gp->deviation = isnan(gp->deviation) ? PLANT_GP_DEVIATION * range : gp->deviation;
     log_warn(making->log,
-             "asset %s, group %s: gp cannot be fitted to %zu sensors (at least %d are needed): using default range %.3g m, noise %.3g, "
+             "asset %s, group %s: the Gaussian process (gp) cannot be fitted to %zu sensors (at least %d are needed): using default range "
+             "%.3g m, noise %.3g, "
              "deviation %.3g %s",
              asset_of(making->input)->id, of->id, count, PLANT_GP_FITTED, gp->range_m, gp->noise, gp->deviation, of->unit);
 }
@@ -124,8 +125,9 @@ static bool find_params(struct influence_making *making, int group, const double
     good = good && gaussian_fit(gp, &(struct gaussian_data){ making->log, making->workers, &mesh, &table }, least_m, FIT_MAX * size, why);
     if (good)
         log_info(making->log,
-                 "asset %s, group %s: gp fitted to %zu readings of each of %zu sensors: range %.3g m, noise %.3g, deviation %.3g %s", asset,
-                 of->id, table.instants, count, gp->range_m, gp->noise, gp->deviation, of->unit);
+                 "asset %s, group %s: Gaussian process (gp) fitted to %zu readings of each of %zu sensors: range %.3g m, noise %.3g, "
+                 "deviation %.3g %s",
+                 asset, of->id, table.instants, count, gp->range_m, gp->noise, gp->deviation, of->unit);
     else
         log_err(making->log, "asset %s, group %s: gp: %s", asset, of->id, why);
     influence_mesh_finish(&mesh);

@@ -82,12 +82,12 @@ static void add_bend(struct concerns *concerns, const struct prepare_asset *asse
     const struct bend_report *bend = &asset->report.bend;
     if (bend->over_share > BENT_SHARE)
         add(concerns, asset, 1 + bend->steps / 255,
-            mem_printf("inside triangles, values of harmonic, fin or gp may err by over a step of colour (1/255 of the range) on "
+            mem_printf("inside triangles, the interpolations harmonic, fin or gp may err by over a step of colour (1/255 of the range) on "
                        "%.3g %% of the asset's surface, by up to %.1f steps",
                        100 * bend->over_share, bend->steps));
     if (bend->unmeasured > 0 || bend->unknown_share > BENT_SHARE)
         add(concerns, asset, 1,
-            mem_printf("the error of harmonic, fin or gp inside triangles is unknown on %.3g %% of the asset's surface",
+            mem_printf("the error of the interpolations harmonic, fin or gp inside triangles is unknown on %.3g %% of the asset's surface",
                        bend->unmeasured > 0 ? 100 : 100 * bend->unknown_share));
 }
 

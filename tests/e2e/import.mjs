@@ -164,7 +164,7 @@ const PACKED = [ // file name, bytes, what is printed
     ['changed.ifczip', Buffer.from(stored.replace('2000.0', '3000.0'), 'latin1'),
         /a wrong checksum/],
     ['cut.ifczip', gzipSync(ifc()).subarray(0, -20), /truncated/],
-    ['locked.ifczip', zip({ 'a.ifc': ifc() }, { flags: 1 }), /the archive is encrypted: pack it again without a password/],
+    ['locked.ifczip', zip({ 'a.ifc': ifc() }, { flags: 1 }), /the archive is encrypted: create the archive again without a password/],
     ['gzip.stpz', gzipSync(cone()), /1 parts in 1 places/], ['zip.stpz', zip({ 'a/cone.step': cone() }), /1 parts in 1 places/],
     ['a.stp.gz', gzipSync(cone()), /1 parts in 1 places/], ['B.STEP.GZ', gzipSync(cone()), /1 parts in 1 places/],
     ['gzip_inside.stp', gzipSync(cone()), /1 parts in 1 places/],

@@ -199,7 +199,7 @@ test('FBX, COLLADA and OBJ: shapes that are not read are named', { skip }, () =>
         why: 'convex hulls are not read: export the geometry as polygons' }]);
     assert.deepEqual(errors, [{ count: 1, text: 'Assimp: Collada: Unable to find geometry for ID "zz". Skipping.' }]);
     const free = read(folder, 'c.obj', `${obj()}cstype bezier\ndeg 3 3\nsurf 0 1 0 1 1 2 3 4\nparm u 0 1\nend\no Pipe axis\nl 1 2\n`);
-    assert.deepEqual(free.errors[0], { count: 1, text: 'free-form surfaces (surf) are not read: export them as polygons' });
+    assert.deepEqual(free.errors[0], { count: 1, text: 'free-form surfaces (surf) are not read: export the surfaces as polygons' });
     assert.match(free.out, /not shown: 1 nodes that consist only of lines or points: Pipe axis\n/);
 }));
 

@@ -343,7 +343,7 @@ TEST(wrong_primitives_and_levels_are_refused)
     refused_sealed(&f, "level 1: error of -1 m after 0 m");
     f = build(&good);
     ((struct asset_level *)part(&f, ASSET_LEVELS))[0].added_count = 2;
-    refused_sealed(&f, "level 0 adds 2 vertices, but has only 1 of its own");
+    refused_sealed(&f, "level 0 adds 2 vertices, but only 1 vertices belong to this level");
     f = build(&good);
     f.header->level_count = 1;
     f.header->sections[ASSET_LEVELS].bytes = sizeof(struct asset_level);

@@ -668,7 +668,7 @@ CASE(test_gp_of_few_sensors_takes_defaults)
     for (int sensors = 1; sensors <= 2; sensors++) {
         write_plant(c, "", ", prepare: [gp], gp: { fit: readings.csv }", sensors);
         prep_case_expect(c, "$PLANT", 0);
-        prep_case_says(&c->err, "gp cannot be fitted");
+        prep_case_says(&c->err, "(gp) cannot be fitted");
         assert_true(use(&u, c));
         const struct influence_entry *entry = influence_find(&u.scene->assets[0].file->influence, 0, INTERPOLATION_GP);
         const struct plant_group *group = &u.plant->groups[0];

@@ -59,7 +59,7 @@ void assimp_losses_of_obj(const std::string &text)
         next = next == std::string::npos ? text.size() : next + 1;
     }
     if (surfaces > 0)
-        printf("error\t%zu\tfree-form surfaces (surf) are not read: export them as polygons\n", surfaces);
+        printf("error\t%zu\tfree-form surfaces (surf) are not read: export the surfaces as polygons\n", surfaces);
 }
 
 void assimp_losses_of_dae(const std::string &text)
