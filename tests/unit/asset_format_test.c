@@ -206,7 +206,7 @@ TEST(truncated_or_foreign_files_are_refused)
     struct asset_bytes f = build(&good);
     refused(&f, f.size - 64, "truncated: ");
     f = build(&good);
-    refused(&f, 100, "truncated: 100 bytes, the header alone has 360");
+    refused(&f, 100, "the file is truncated: 100 bytes, but the header alone has 360");
     f = build(&good);
     f.header->file_bytes -= 64;
     refused(&f, f.size, "too long");

@@ -172,7 +172,8 @@ CASE(a_revision_is_compared)
     json_decref(root);
     prep_case_expect(c, "--diff $FOLDER/old.yaml $FOLDER/new.yaml", 1);
     prep_case_says(&c->out, "! T-NODE: position lost: the model has no node 'TT-2'");
-    prep_case_says(&c->out, "1 assets added, 2 removed, 3 moved, 1 changed, 1 unchanged; surface of 3 sensors moved; 4 tags lost their position");
+    prep_case_says(&c->out, "1 assets added, 2 removed, 3 moved, 1 changed, 1 unchanged; "
+                           "surface of 3 sensors moved; 4 tags lost their position");
 }
 
 /* The usual case: the model file was overwritten, and only its prepared folder is left of the old revision. */

@@ -191,7 +191,8 @@ CASE(wrong_numbers_are_refused)
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":16,\"mode\":5}") ACCESSORS "}",
             "indices: must not be normalized");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"NORMAL\":0},\"indices\":1}") ACCESSORS "}", "has no POSITION");
-    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":2}") ACCESSORS "}", "the number of indices, 4, is not a multiple of 3");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":2}") ACCESSORS "}",
+            "the number of indices, 4, is not a multiple of 3");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":1,\"mode\":7}") ACCESSORS "}", "mode 7");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":3}") ACCESSORS "}",
             "there is no material 3");

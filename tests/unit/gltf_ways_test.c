@@ -519,7 +519,7 @@ CASE(heads_are_checked)
         { "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[5]}", "node 0: is not an object" },
         { "{\"asset\":{\"version\":\"2.0\"},\"scene\":3}", "scene: there is no scene 3" },
         { "{\"asset\":{\"version\":\"2.0\"},\"images\":[{}]}", "image 0 has neither a uri nor a bufferView" },
-        { "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":3}]}", "buffer 0: has no uri" },
+        { "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":3}]}", "buffer 0 has no uri" },
         { "\xEF\xBB\xBF{\"asset\":{\"version\":\"2.0\"},\"scene\":3}", "scene: there is no scene 3" },
         { "{\"asset\":{\"version\":\"2.0\"}", "JSON: line 1" },
         { "", "JSON: line 1" },
@@ -631,7 +631,8 @@ CASE(textures_lie_where_their_transform_puts_them)
     try_model(l, &maker);
     assert_good(l);
     assert_string_equal(l->model.left_out[0],
-                        "material 0 'paint': the base colour texture: mirroring, or different wrapping along u and v, is not supported outside 0..1");
+                        "material 0 'paint': the base colour texture: mirroring, or different wrapping along u and v, is not "
+                        "supported outside 0..1");
     assert_int_equal(l->model.materials[0].base_color_texture, ASSET_NO_TEXTURE);
 
     maker = seed_open(15, "textured.glb", &sheet);
@@ -649,7 +650,7 @@ CASE(textures_lie_where_their_transform_puts_them)
         json_object_set_new(maker.root, "extensionsRequired", json_pack("[s]", looks[i]));
         try_model(l, &maker);
         assert_good(l);
-        snprintf(said, sizeof(said), "the file requires %s%s", looks[i],
+        snprintf(said, sizeof(said), "the file requires the extension %s%s", looks[i],
                  strstr(looks[i], "Specular") ? ": diffuse colours are kept, specular colours are ignored"
                                               : ", which affects only the look of the model");
         assert_string_equal(l->model.left_out[0], said);

@@ -128,7 +128,7 @@ CASE(test_by_text)
     path = temp_write_text(f->folder, "rules.csv", "Tag,Equipment\n^XT_([0-9])$,P-20\\1A\n^XT_.*,E-101\n");
     assert_true(matcher_read_rules(&f->matcher, path, why));
     mem_free(path);
-    expect(f, "xt_5", "", MATCH_SURE, "P-205A", "rule 1 makes 'P-205A' of it");
+    expect(f, "xt_5", "", MATCH_SURE, "P-205A", "rule 1 maps the tag to 'P-205A'");
     expect(f, "XT_77", "", MATCH_SURE, "E-101", "rule 2");
 }
 

@@ -128,8 +128,9 @@ TEST_WITH(what_is_wrong_comes_first, set_up, prep_case_tear_down)
     const json_t *look_at = json_object_get(report, "look_at");
     assert_true(json_array_size(look_at) >= 2);
     assert_string_equal(json_string_value(json_object_get(json_array_get(look_at, 0), "asset")), "APART");
-    assert_non_null(strstr(json_string_value(json_object_get(json_array_get(look_at, 0), "text")), "sensor T-APART is 0.500 m from the surface of the asset"));
-    assert_non_null(strstr(json_string_value(json_object_get(json_array_get(look_at, 1), "text")), "no sensor reaches 24 of its"));
+    assert_non_null(strstr(json_string_value(json_object_get(json_array_get(look_at, 0), "text")),
+                           "sensor T-APART is 0.500 m from the surface of the asset"));
+    assert_non_null(strstr(json_string_value(json_object_get(json_array_get(look_at, 1), "text")), "no sensor reaches 24 of the asset's"));
     json_decref(report);
     prep_case_expect(c, "$PLANT --report text", 0);
     const char *apart = strstr(c->out.at, "!  APART"), *gap = strstr(c->out.at, "   GAP");
@@ -207,7 +208,8 @@ TEST(tables_fit_what_is_in_them)
     }
     text_table_print(&table, 2, out);
     fclose(out);
-    assert_string_equal(text, "name       number\nK\xc3\xbchler  1,234,567\nP              12\n... and 1 more rows: --report text lists all rows\n");
+    assert_string_equal(text, "name       number\nK\xc3\xbchler  1,234,567\nP              12\n"
+                              "... and 1 more rows: --report text lists all rows\n");
     text_table_finish(&table);
     assert_string_equal(text_table_number(0).text, "0");
     assert_string_equal(text_table_number(100).text, "100");

@@ -338,8 +338,10 @@ TEST(test_what_is_not_shown_is_named)
     assert_int_equal(counts.empty, 3);
     assert_int_equal(model->nodes[0].triangle_count, 0);
     assert_string_equal(said.at,
-                        "lost\tbyte 408\t/G\tgroup\t\t3 of the 3 primitives of the group are left out: primitive at byte 408: unknown kind of primitive\n"
-                        "error\t1\tRVM: /H: 1 of its 2 primitives is left out: the cylinder at byte 992 has no extent\n"
+                        "lost\tbyte 408\t/G\tgroup\t\t3 of the 3 primitives of the group are left out: primitive at byte 408: "
+                        "unknown kind of primitive\n"
+                        "error\t1\tRVM: /H: 1 of the 2 primitives of the group is left out: cylinder at byte 992: "
+                        "the primitive has no extent\n"
                         "left out: 1 obstruction volume of /G\nleft out: 1 insulation volume of /G\n");
     cad_model_destroy(&model);
     text_finish(&file);

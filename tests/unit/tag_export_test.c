@@ -574,7 +574,7 @@ TEST(test_sheets)
         fail_msg("%s", why);
     assert_int_equal(list.count, 1);
     check(&list, 0, EXPORT_NAME, "T1");
-    assert_non_null(strstr(list.remarks.at, "the list is sheet 'Tags' of 3"));
+    assert_non_null(strstr(list.remarks.at, "the tag list is sheet 'Tags' of 3 sheets"));
     assert_non_null(strstr(list.remarks.at, "not read: 'Old'"));
     tag_export_finish(&list);
     mem_free(path);
