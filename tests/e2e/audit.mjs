@@ -190,7 +190,7 @@ test('a plant that is brought in: each file and each order, by whom, and what be
         'import done engineer-1 models were read, tags matched', 'reload done engineer-1 configuration .* is active',
         'import done engineer-1 tags were matched', 'reload done engineer-1 configuration .* is active',
         'import done engineer-1 decisions about tags were taken',
-        'import failed engineer-1 a source was set: plantcast match: .*: the source was edited by hand.*',
+        'import failed engineer-1 a source was set: plantcast match: .*: --modbus cannot change a source that was edited by hand.*',
         'reload done engineer-1 configuration .* is active', 'import done engineer-1 the plant was created again from its exports',
         'import failed engineer-1 /api/v1/import/run: units and mesh_units are .*', 'import done engineer-1 /api/v1/import/cancel',
         'import refused engineer-1 /api/v1/import/run: the request comes from a page of another site'];

@@ -90,10 +90,10 @@ test('what is damaged, missing or in the way is refused by name', { skip }, () =
     appendFileSync(join(folder('one'), damaged), 'x');
     const target = join(folder('elsewhere'), 'third.yaml');
     const refused = runProgram('plantcast', ['restore', folder('one'), target]);
-    const named = refused.err.includes(`${damaged}: was changed or damaged`);
+    const named = refused.err.includes(`${damaged}: this file was changed or damaged`);
     assert.deepEqual([refused.code, named, existsSync(target)], [1, true, false], refused.err);
     const drill = runProgram('plantcast', ['backup', '--verify', folder('one')]);
-    assert.deepEqual([drill.code, drill.err.includes(`${damaged}: was changed or damaged`)], [1, true], drill.err);
+    assert.deepEqual([drill.code, drill.err.includes(`${damaged}: this file was changed or damaged`)], [1, true], drill.err);
     const none = runProgram('plantcast', ['restore', folder('nothing'), target]);
     assert.deepEqual([none.code, /backup\.json/.test(none.err)], [1, true]);
     const list = join(folder('two'), 'backup.json');

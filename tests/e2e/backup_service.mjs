@@ -152,7 +152,7 @@ test('a wrong key, a damaged file and a newer version are refused by name, and n
         const bytes = readFileSync(third.path(`root/${name}/${name}`));
         bytes[bytes.length >> 1] ^= 1;
         writeFileSync(third.path(`root/${name}/${name}`), bytes);
-        refused(name, new RegExp(`${name.replaceAll('.', '\\.')}: was changed or damaged`), '--identity /root/key');
+        refused(name, new RegExp(`${name.replaceAll('.', '\\.')}: this file was changed or damaged`), '--identity /root/key');
     }
     copy('newer');
     const list = third.path('root/newer/backup.json'), text = readFileSync(list, 'utf8');

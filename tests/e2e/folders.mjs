@@ -119,7 +119,7 @@ test('token: neither through links, nor in a folder of somebody else', { skip },
     assert.match(token('list', file).err, /neither root nor you/);
     chownSync(file, 0, 0);
     chownSync(folder, NOBODY, NOBODY);
-    assert.match(token('revoke', file, 'wall').err, /folder belongs to another user/);
+    assert.match(token('revoke', file, 'wall').err, /of this token file belongs to another user/);
     chownSync(folder, 0, 0);
     chmodSync(folder, 0o777);
     assert.match(token('revoke', file, 'wall').err, /every user can write to the folder/);

@@ -130,13 +130,13 @@ test('a real export with broken attributes or numbers is one line, and leaves no
     for (let at = good.indexOf(id); at >= 0; at = good.indexOf(id, at + 4))
         notFinite.writeFloatBE(NaN, at + 32); // the first number of a primitive's transformation
     for (const [bytes, attributes, why] of [
-        [good, text.subarray(0, text.length >> 1), /a\.att: line \d+: the file ends within \d+ elements/],
+        [good, text.subarray(0, text.length >> 1), /a\.att: line \d+: the file ends before the END of \d+ elements/],
         [good, `${head}${'NEW A\r\n'.repeat(100000)}`, /a\.att: line \d+: elements are nested more than \d+ deep/],
         [good, `${head}${'END\r\n'.repeat(1000)}`, /a\.att: line \d+: END without NEW/],
         [good, Buffer.from(text.map((byte, i) => (i % 53 === 17 ? 255 - byte : byte))), /a\.att: line \d+: /],
         [good, '', /a\.att: .*no elements/], [good, 'hello', /a\.att: .*no elements/], [good, Buffer.alloc(5000), /a\.att: .*no elements/],
         [good.subarray(0, good.length >> 1), text, /byte \d+: the file ends within chunk/],
-        [notFinite, text, /none of its \d+ primitives can be shown: .*not finite/],
+        [notFinite, text, /none of the model's \d+ primitives can be shown: .*not finite/],
     ]) {
         writeFileSync(model, bytes);
         writeFileSync(join(folder, 'a.att'), attributes);
@@ -207,7 +207,7 @@ test('what cannot be read is one line, and leaves nothing behind', { skip: notBu
         ['cycle.gltf', gltf({ nodes: [{ children: [1] }, { children: [0] }] }), 'node 0 is part of a cycle or has two parents'],
         ['deep.gltf', gltf({ nodes: Array.from({ length: 100000 }, (_, i) => (i < 99999 ? { children: [i + 1] } : {})) }), 'nested deeper'],
         ['nested.gltf', `{"asset":${'['.repeat(200000)}${']'.repeat(200000)}}`, 'nested deeper'],
-        ['huge.gltf', corner(Buffer.alloc(36), 4000000000), '4000000000 elements are more'],
+        ['huge.gltf', corner(Buffer.alloc(36), 4000000000), '4000000000 elements do not fit'],
         ['nan.gltf', corner(notFinite, 3), 'element 1 is not finite'],
         ['wire.gltf', corner(Buffer.alloc(36), 3).replace('"POSITION":0}', '"POSITION":0},"mode":3'), 'has no triangles'],
         ['out.gltf', gltf({ scenes: [{ nodes: [] }], buffers: [{ byteLength: 4, uri: '../../../etc/passwd' }] }),
@@ -220,7 +220,7 @@ test('what cannot be read is one line, and leaves nothing behind', { skip: notBu
         assert.ok(said.stderr.includes(join(folder, name)) && said.stderr.includes(why), said.stderr);
     }
     const twice = run('plantcast', 'import', join(folder, 'empty.rvm'), join(folder, '../empty.rvm'), '-o', out);
-    assert.match(twice.stderr, /would both be empty\.glb; rename one of them/);
+    assert.match(twice.stderr, /would both be written as empty\.glb: rename one of these files/);
     assert.deepEqual(readdirSync(folder).sort(), cases.map(([name]) => name).sort());
     assert.equal(run('plantcast', 'import', '-o', out).status, 2);
 }));

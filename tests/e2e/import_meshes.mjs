@@ -139,7 +139,7 @@ test('glTF: names of files with percent signs and accents, required looks, missi
     const { status, stdout, stderr } = plantcast('import', join(folder, 'look.gltf'), '-o', join(folder, 'plant'));
     assert.equal(status, 0, stderr);
     assert.match(stdout, /left out: the file requires the extension KHR_texture_basisu, which affects only the look of the model/);
-    assert.match(stdout, /left out: material 0 'paint': its base colour texture: the texture's image is missing: 'none\.png'/);
+    assert.match(stdout, /left out: material 0 'paint': the base colour texture: the texture's image is missing: 'none\.png'/);
     const ran = (program, ...args) => spawnSync(join(BIN, program), [...args, join(folder, 'plant/plant.yaml')], { encoding: 'utf8' });
     assert.match(ran('plantcastd', '--check').stdout,
         /not prepared yet \(.*\)\. Not checked before plantcast-prep has run: textures and extensions that are not drawn, /);
@@ -148,7 +148,7 @@ test('glTF: names of files with percent signs and accents, required looks, missi
         assert.equal(ran('plantcast-prep').status, 0);
         const checked = ran('plantcastd', '--check').stdout;
         assert.match(checked, /plant\.yaml:\d+: warning: model .*look\.glb: left out: the file requires KHR_texture_basisu/);
-        assert.match(checked, /warning: model .*look\.glb: left out: material 0 'paint': its base colour texture/);
+        assert.match(checked, /warning: model .*look\.glb: left out: material 0 'paint': the base colour texture/);
     }
     writeFileSync(join(folder, 'r.gltf'), gltf('a.bin', { extensionsRequired: ['CESIUM_RTC'] }));
     assert.match(plantcast('import', join(folder, 'r.gltf'), '-o', join(folder, 'other')).stderr,
@@ -177,7 +177,7 @@ test('FBX: surfaces without place, with two places or without finite corners are
     assert.deepEqual(shared.errors[0], { count: 1, text: 'model Drum has 2 parents: the model is shown below each parent' });
     const twice = read(folder, 'twice.fbx', fbx().replace(/P: "Lcl Translation".*0,0,0/, (line) =>
         [5, 7].map((x) => line.replace('0,0,0', `${x},0,0`)).join('\n')));
-    assert.deepEqual(twice.errors[0], { count: 1, text: 'model Feed pump states Lcl Translation more than once: the last value is used' });
+    assert.deepEqual(twice.errors[0], { count: 1, text: 'model Feed pump states property Lcl Translation more than once: the last value is used' });
     assert.ok(twice.json.nodes.some(({ matrix }) => matrix?.[12] === 7), JSON.stringify(twice.json.nodes));
     for (const number of ['-1.#IND', '1.#INF', '1.#QNAN0', 'nan'])
         assert.match(read(folder, 'nan.fbx', fbx().replace('a: 0,', `a: ${number},`)).out,
@@ -241,7 +241,7 @@ test('glTF: nodes without triangles, and nodes in no scene, are named', { skip }
         nodes: [...['T-1', 'L-2', 'P-3', 'E-4'].map((name, i) => ({ name, mesh: i })), { name: 'S-5', mesh: 0 }] }));
     assert.deepEqual(lost, [{ id: '#3', name: 'E-4', class: 'node', guid: '', why: 'the node\'s mesh has no triangles' }]);
     assert.match(out, /not shown: 2 nodes that consist only of lines or points: L-2, P-3\n/);
-    assert.deepEqual(left_out, ['the file uses ACME_bent, which is not supported',
+    assert.deepEqual(left_out, ['the file uses the extension ACME_bent, which is not supported',
         "not in the file's default scene: 1 node with a mesh, node 4 'S-5'"]);
 }));
 

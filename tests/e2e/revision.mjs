@@ -102,7 +102,7 @@ test('a real plant: rename, move, delete, add; and back', { skip: noData }, () =
     assert.deepEqual({ ...after, 'export.csv': before['export.csv'] }, before);
     const twice = run('plantcast', 'import', '--undo', '-o', plant);
     assert.equal(twice.status, 1);
-    assert.match(twice.stderr, /there is nothing to undo/);
+    assert.match(twice.stderr, /this folder has no import to undo/);
     assert.ok(readdirSync(plant).every((name) => !name.startsWith('.')), readdirSync(plant).join(' '));
 }));
 

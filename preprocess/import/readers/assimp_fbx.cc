@@ -94,7 +94,7 @@ void keep_last(std::string *text, size_t at, std::string_view line, std::map<std
         (*text)[i] = ' ';
     first->second = at;
     if (say)
-        printf("error\t1\t%s: property %s is stated more than once: the last value is used\n", owner.c_str(), one_line(name).c_str());
+        printf("error\t1\t%s property %s more than once: the last value is used\n", owner.c_str(), one_line(name).c_str());
 }
 
 void say_graph(const fbx_graph &graph)
