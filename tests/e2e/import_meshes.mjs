@@ -147,7 +147,7 @@ test('glTF: names of files with percent signs and accents, required looks, missi
     for (let run = 0; run < 2; run++) {
         assert.equal(ran('plantcast-prep').status, 0);
         const checked = ran('plantcastd', '--check').stdout;
-        assert.match(checked, /plant\.yaml:\d+: warning: model .*look\.glb: left out: the file requires KHR_texture_basisu/);
+        assert.match(checked, /plant\.yaml:\d+: warning: model .*look\.glb: left out: the file requires the extension KHR_texture_basisu/);
         assert.match(checked, /warning: model .*look\.glb: left out: material 0 'paint': the base colour texture/);
     }
     writeFileSync(join(folder, 'r.gltf'), gltf('a.bin', { extensionsRequired: ['CESIUM_RTC'] }));
