@@ -125,7 +125,7 @@ test('on the command line: the same places, with a trial before and undo', optio
     assert.equal(trial.out.match(/^TA-/gm).length, sure);
     assert.equal(readFileSync(tagsFile, 'utf8'), original);
     const done = accept('--within', '0.1', '--confidence', '0.9');
-    assert.match(done.out, /written; the previous list is tags\.csv\.3/, done.err);
+    assert.match(done.out, /written; the previous tag list is kept as tags\.csv\.3/, done.err);
     assert.equal(assumed(), ASSUMED - sure);
     assert.equal(accept('--undo', 'tags.csv.3').code, 0);
     assert.equal(readFileSync(tagsFile, 'utf8'), original);
