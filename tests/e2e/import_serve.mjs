@@ -210,7 +210,7 @@ test('what goes wrong is one line, and the plant before stays', options, async (
         const before = served.read('plant.yaml');
         await put('plant.gltf', boxes(['E-1']));
         await put('plant.glb', 'glTF cut off');
-        await fails(/plant\.glb and .*plant\.gltf would both be plant\.glb; rename one of them/);
+        await fails(/plant\.glb and .*plant\.gltf would both be written as plant\.glb: rename one of these files/);
         await served.post('/remove?name=plant.gltf');
         await fails(/plant\.glb: /);
         await served.post('/remove?name=plant.glb');
