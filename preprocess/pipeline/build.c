@@ -524,7 +524,8 @@ static bool unpack(struct build *build)
                               &damaged))
         return true;
     char *path = build_cache_path(input->folder, damaged, input->geometry_key);
-    wrong(build->why, "the contents of cache file %.300s are damaged, or memory ran out: delete the file and run plantcast-prep again", path);
+    wrong(build->why, "the contents of cache file %.300s are damaged, or memory ran out: delete the file and run plantcast-prep again",
+          path);
     mem_free(path);
     return false;
 }

@@ -177,7 +177,8 @@ test('FBX: surfaces without place, with two places or without finite corners are
     assert.deepEqual(shared.errors[0], { count: 1, text: 'model Drum has 2 parents: the model is shown below each parent' });
     const twice = read(folder, 'twice.fbx', fbx().replace(/P: "Lcl Translation".*0,0,0/, (line) =>
         [5, 7].map((x) => line.replace('0,0,0', `${x},0,0`)).join('\n')));
-    assert.deepEqual(twice.errors[0], { count: 1, text: 'model Feed pump states property Lcl Translation more than once: the last value is used' });
+    assert.deepEqual(twice.errors[0], { count: 1,
+        text: 'model Feed pump states property Lcl Translation more than once: the last value is used' });
     assert.ok(twice.json.nodes.some(({ matrix }) => matrix?.[12] === 7), JSON.stringify(twice.json.nodes));
     for (const number of ['-1.#IND', '1.#INF', '1.#QNAN0', 'nan'])
         assert.match(read(folder, 'nan.fbx', fbx().replace('a: 0,', `a: ${number},`)).out,
