@@ -122,7 +122,7 @@ static void count_row(void *arg, const struct journal_row *r)
 /* Measures the query for all alarms' states at an instant and for a page of the journal from there. */
 static bool look_back(void)
 {
-    char *folder = temp_folder_create();
+    char *folder = temp_folder();
     struct log *log = log_create(LOG_WARN);
     bool renewed, good;
     int error, found = 0;
@@ -146,7 +146,6 @@ static bool look_back(void)
     }
     journal_file_close(&file);
     log_destroy(&log);
-    temp_folder_destroy(&folder);
     return good && found > INSTANTS * 1000;
 }
 
@@ -172,6 +171,5 @@ int main(void)
     snapshot_destroy(&bench.snapshot);
     mem_free(bench.events);
     alarms_destroy(&bench.alarms);
-    plant_by_hand_destroy(&plant);
     return look_back() ? 0 : 1;
 }

@@ -58,7 +58,7 @@ static double counted(struct counters *counters, const char *name)
 /* Measures 100,000 values per second into the store and onto the disk. */
 static void record(const char *name, double noise_size)
 {
-    char *folder = temp_folder_create();
+    char *folder = temp_folder();
     struct plant *plant = make_plant(TAGS);
     struct log *log = log_create(LOG_WARN);
     struct counters *counters = counters_create();
@@ -83,8 +83,6 @@ static void record(const char *name, double noise_size)
     store_destroy(&store);
     counters_destroy(&counters);
     log_destroy(&log);
-    plant_by_hand_destroy(&plant);
-    temp_folder_destroy(&folder);
 }
 
 /* --- disk of a plant ---------------------------------------------------------------------------------------------------------- */
@@ -135,7 +133,7 @@ static double kept_bytes(struct log *log, const char *folder, int month)
    those that the disk gets, which are whole pages of 4096 bytes. */
 static void measure_disk(struct log *log)
 {
-    char *folder = temp_folder_create();
+    char *folder = temp_folder();
     struct plant *plant = make_plant(PLANT_TAGS);
     struct history_tag *tags = history_tags(plant);
     struct recorder *recorder = recorder_create(plant);
@@ -168,8 +166,6 @@ static void measure_disk(struct log *log)
     mem_free(held.at);
     recorder_destroy(&recorder);
     mem_free(tags);
-    plant_by_hand_destroy(&plant);
-    temp_folder_destroy(&folder);
 }
 
 /* Writes samples that all exceed the deadband, so that none is dropped, and rollups for every minute. */
@@ -238,7 +234,7 @@ int main(void)
     record("history_100k_noisy_values_percent_of_core", 10);
     struct log *log = log_create(LOG_WARN);
     measure_disk(log);
-    char *folder = temp_folder_create();
+    char *folder = temp_folder();
     struct plant *plant = make_plant(ASKED);
     struct history_tag *tags = history_tags(plant);
     int64_t end_us = INT64_C(1795200000) * US_PER_S;
@@ -248,7 +244,5 @@ int main(void)
     look_back(log, folder, tags, end_us);
     log_destroy(&log);
     mem_free(tags);
-    plant_by_hand_destroy(&plant);
-    temp_folder_destroy(&folder);
     return 0;
 }

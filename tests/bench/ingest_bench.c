@@ -104,6 +104,5 @@ int main(void)
     store_destroy(&store);
     counters_destroy(&counters);
     log_destroy(&log);
-    plant_by_hand_destroy(&plant);
     return 0;
 }

@@ -41,7 +41,7 @@ static void write_plant(struct prep_case *c, int sensors, bool gp, struct cad_ra
     size_t size;
     cad_plate(&cad, random, ACROSS, ACROSS, WIDTH_M, WIDTH_M, 0);
     char *glb = maker_glb_of(&cad, "plate", &size);
-    mem_free(temp_write(c->folder, "model.glb", glb, size));
+    temp_write(c->folder, "model.glb", glb, size);
     mem_free(glb);
     cad_finish(&cad);
     char *yaml = mem_printf("plant: { name: Plate }\n"

@@ -68,6 +68,5 @@ int main(void)
     measure(&context, PAGE);
     measure(&context, LONGEST_PAGE);
     snapshot_destroy(&snapshot);
-    plant_by_hand_destroy(&plant);
     return 0;
 }

@@ -37,10 +37,7 @@ walls: [{ id: wall, tile: { columns: 2, rows: 1, views: all } }]
 `);
     writeFileSync(join(plant.folder, 'tags.csv'),
         'Tag Name,Address,Data Type,Group,Asset,X,Y,Z\nTI-1,400001,Float,temperature,L0,0.5,0,0\n');
-    const { code, err } = plant.prepare();
-    assert.equal(code, 0, err);
-    await plant.startSim();
-    await plant.startDaemon();
+    await plant.start();
     screens.push(await startDisplay(WIDTH, HEIGHT), await startDisplay(WIDTH, HEIGHT));
 });
 afterEach(async () => {

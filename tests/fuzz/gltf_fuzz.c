@@ -18,12 +18,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
 static char *folder; /* one folder for all inputs */
 
-static void remove_folder(void)
-{
-    if (folder)
-        temp_folder_destroy(&folder);
-}
-
 static void require_finite(const float *values, size_t count, const char *what)
 {
     for (size_t i = 0; i < count; i++)
@@ -119,10 +113,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     char why[MODEL_WHY_BYTES] = "";
     struct gltf_model model;
     if (!folder) {
-        atexit(remove_folder);
-        folder = temp_folder_create();
-        mem_free(temp_write_text(folder, "a picture.png", "no picture"));
-        mem_free(temp_write_text(folder, "buffer.bin", "000011112222333344445555666677778888"));
+        folder = temp_folder();
+        temp_write_text(folder, "a picture.png", "no picture");
+        temp_write_text(folder, "buffer.bin", "000011112222333344445555666677778888");
     }
     struct model_source source = { .folder = folder, .bytes = (unsigned char *)(uintptr_t)bytes, .size = count };
     if (!gltf_load(&model, &source, why)) {

@@ -10,6 +10,7 @@
 #include "base/mem.h"
 #include "plant/plant.h"
 #include "plant/sensors.h"
+#include "tests/support/owned.h"
 #include "tests/support/temp.h"
 #include "tests/fuzz/promise.h"
 
@@ -18,12 +19,6 @@
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
 static char *folder; /* one folder for all inputs */
-
-static void remove_folder(void)
-{
-    if (folder)
-        temp_folder_destroy(&folder);
-}
 
 static void check_tag(const struct plant *plant, const struct plant_tag *tag)
 {
@@ -66,12 +61,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     size_t csv_at = cut ? yaml_bytes + strlen(SEPARATOR) : count;
     struct diag diag = { 0 };
     if (!folder) {
-        atexit(remove_folder);
-        folder = temp_folder_create();
-        mem_free(temp_write_text(folder, "m.glb", "glTF"));
+        folder = temp_folder();
+        temp_write_text(folder, "m.glb", "glTF");
     }
+    size_t owned = owned_count();
     char *path = temp_write(folder, "plant.yaml", bytes, yaml_bytes);
-    mem_free(temp_write(folder, "tags.csv", bytes + csv_at, count - csv_at));
+    temp_write(folder, "tags.csv", bytes + csv_at, count - csv_at);
     struct plant *plant = plant_load(path, &diag);
     require((plant != NULL) == (diag.errors == 0), "loaded without errors, or not at all");
     if (plant)
@@ -83,6 +78,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     fclose(nowhere);
     plant_destroy(&plant);
     diag_finish(&diag);
-    mem_free(path);
+    owned_release(owned); /* otherwise a long run would keep the paths of all inputs */
     return 0;
 }

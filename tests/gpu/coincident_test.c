@@ -4,7 +4,6 @@
 
 #include "tests/support/test.h"
 
-
 #include "tests/support/rig.h"
 #include "value/quality.h"
 

@@ -2,14 +2,11 @@
 /* Depth grids of frames: points computed from the grid by the rule of PROTOCOL.md are those that a ray meets, in software and in GL. */
 #include "tests/support/test.h"
 
-#include <math.h>
-
 #include "render/pick/pick.h"
 #include "scene/camera.h"
 #include "tests/support/depth_reader.h"
 #include "tests/support/planned.h"
 #include "tests/support/rig.h"
-#include "tests/support/sweep.h"
 #include "value/quality.h"
 
 enum { WIDTH = 437, HEIGHT = 250 };

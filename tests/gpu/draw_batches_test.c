@@ -3,14 +3,11 @@
    calls. */
 #include "tests/support/test.h"
 #include <limits.h>
-#include <math.h>
-
 
 #include "tests/support/gl_calls.h"
 #include "tests/support/planned.h"
 #include "tests/support/renderer_compare.h"
 #include "tests/support/rig.h"
-#include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 #include "value/quality.h"
 

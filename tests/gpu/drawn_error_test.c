@@ -3,19 +3,14 @@
    within one colour step; each pixel must be within one step too, or be marked uncertain. By straight-line distance
    each pixel must be exact and unmarked. */
 #include "tests/support/test.h"
-#include <math.h>
-#include <string.h>
 #include <unistd.h>
 
-
-#include "base/mem.h"
 #include "render/pick/pick.h"
 #include "scene/scene_create.h"
 #include "tests/support/planned.h"
 #include "tests/support/prep_case.h"
 #include "tests/support/renderer_compare.h"
 #include "tests/support/rig.h"
-#include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 #include "value/quality.h"
 
@@ -469,17 +464,15 @@ static void long_part_init(struct long_part *part, struct prep_case *c, const ch
         print_message("# " FOUND " is not there\n");
         skip();
     }
-    char *copy = mem_printf("cp %s* %s && chmod -R u+w %s && sed -i 's/distance: euclidean/distance: %s/' %s", FOUND, c->folder, c->folder,
+    char *copy = test_printf("cp %s* %s && chmod -R u+w %s && sed -i 's/distance: euclidean/distance: %s/' %s", FOUND, c->folder, c->folder,
                             distance, c->plant);
     assert_int_equal(system(copy), 0);
-    mem_free(copy);
     prep_case_expect(c, "$PLANT", 0);
     struct diag diag = { 0 };
     part->plant = plant_load(c->plant, &diag);
     diag_finish(&diag);
-    char *prepared = mem_printf("%s/plant.prepared", c->folder);
+    char *prepared = test_printf("%s/plant.prepared", c->folder);
     struct scene *scene = part->plant ? scene_create(rig.log, part->plant, prepared) : NULL;
-    mem_free(prepared);
     assert_non_null(scene);
     part->site = (struct drawn_error_case){ .scene = scene,
                                             .field = field_create(rig.workers, scene),

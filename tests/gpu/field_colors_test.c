@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Field colours: on a flat plate every pixel shows the field's value by the legend's rule. */
 #include "tests/support/test.h"
-#include <math.h>
-
 
 #include "field/lab.h"
 #include "render/overlay/overlay.h"
 #include "render/shaded_colormap.h"
 #include "tests/support/planned.h"
 #include "tests/support/rig.h"
-#include "tests/support/temp.h"
 #include "value/alarm.h"
 #include "value/quality.h"
 
@@ -456,7 +453,7 @@ TEST_WITH(test_unproven_tags_are_marked, set_up, tear_down)
 {
     enum { WIDE_PX = 600 };
     struct view view;
-    char *folder = temp_folder_create();
+    char *folder = temp_folder();
     struct plant *plant = &stand.toy->plant;
     struct plant_source source = { .id = (char[]){ "plc" } };
     int by_name[PLATE_TAGS] = { 0, 1, 2 }, differ[PLATE_TAGS] = { 0 };
@@ -492,7 +489,6 @@ TEST_WITH(test_unproven_tags_are_marked, set_up, tear_down)
     plant->sources = NULL;
     for (int i = 0; i < PLATE_TAGS; i++)
         plant->tags[i].source = -1;
-    temp_folder_destroy(&folder);
 }
 
 TEST_WITH(test_default_look_keeps_to_the_palette, set_up, tear_down)

@@ -3,7 +3,6 @@
    mem_try_array and pool_take to this file. */
 #include "tests/support/test.h"
 
-
 #include "gpu/pool.h"
 #include "render/shaded_colormap.h"
 #include "render/renderer_impl.h"

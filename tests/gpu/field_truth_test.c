@@ -2,8 +2,6 @@
 /* The rules of truth in pixels: lost sensors, readings out of range, points out of reach, and absurd values. Five sensors on one plate,
    and a second plate of the same asset that is not connected. */
 #include "tests/support/test.h"
-#include <math.h>
-
 
 #include "protocol/asset_distance.h"
 #include "render/shaded_colormap.h"

@@ -7,7 +7,6 @@
 
 #include <png.h>
 
-#include "base/mem.h"
 #include "render/split_view.h"
 #include "render/overlay/overlay.h"
 #include "scene/framing.h"
@@ -47,26 +46,24 @@ static void save(const char *folder, const char *name, const char *what, const u
 {
     png_image image = { .version = PNG_IMAGE_VERSION, .width = WIDTH, .height = HEIGHT, .format = PNG_FORMAT_BGR };
     uint8_t *packed = mem_array(WIDTH * HEIGHT, 3);
-    char *path = mem_printf("%s/%s%s.png", folder, name, what);
+    char *path = test_printf("%s/%s%s.png", folder, name, what);
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         memcpy(packed + 3 * i, bgrx + 4 * i, 3);
     if (!png_image_write_to_file(&image, path, 0, packed, 0, NULL))
         fail_msg("%s: %s", path, image.message);
-    mem_free(path);
     mem_free(packed);
 }
 
 static uint8_t *load(const char *name)
 {
     png_image image = { .version = PNG_IMAGE_VERSION };
-    char *path = mem_printf("tests/golden/%s.png", name);
+    char *path = test_printf("tests/golden/%s.png", name);
     uint8_t *bgrx = mem_array(BYTES, 1);
     if (!png_image_begin_read_from_file(&image, path) || image.width != WIDTH || image.height != HEIGHT)
         fail_msg("%s: %s", path, image.message[0] ? image.message : "another size");
     image.format = PNG_FORMAT_BGRA;
     if (!png_image_finish_read(&image, NULL, bgrx, 0, NULL))
         fail_msg("%s: %s", path, image.message);
-    mem_free(path);
     return bgrx;
 }
 
@@ -89,7 +86,7 @@ static double compare(const uint8_t *got, const uint8_t *want, uint8_t *differen
 static void judge(const struct golden *golden, bool by_gl, const uint8_t *got)
 {
     const char *out = getenv("PLANTCAST_OUT");
-    char *folder = mem_printf("%s/golden-%s%s", out ? out : "build", gl_kind_name(rig.gl->kind), by_gl ? "-by-gl" : "");
+    char *folder = test_printf("%s/golden-%s%s", out ? out : "build", gl_kind_name(rig.gl->kind), by_gl ? "-by-gl" : "");
     uint8_t *want = load(golden->name), *differences = mem_array(BYTES, 1);
     double far = compare(got, want, differences);
     print_message("# %s%s: %.2f %% of the pixels differ by more than %d\n", golden->name, by_gl ? ", by GL" : "", 100 * far, FAR);
@@ -102,7 +99,6 @@ static void judge(const struct golden *golden, bool by_gl, const uint8_t *got)
                       100 * golden->far_part, folder);
     }
     assert_true(far <= golden->far_part);
-    mem_free(folder);
     mem_free(want);
     mem_free(differences);
 }

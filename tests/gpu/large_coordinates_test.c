@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A plant at survey coordinates, 5,500 km north of the origin (UTM), looks the same as at the origin. */
 #include "tests/support/test.h"
-#include <math.h>
 
-
-#include "base/mem.h"
 #include "render/pick/pick.h"
 #include "tests/support/rig.h"
 

@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lighting that is chosen while others watch: baked in small steps, within a memory limit, shown when ready. */
 #include "tests/support/test.h"
-#include <math.h>
 #include <unistd.h>
-
 
 #include "base/clock.h"
 #include "render/light/light.h"
 #include "tests/support/planned.h"
 #include "tests/support/rig.h"
-#include "tests/support/sweep.h"
-#include "tests/support/temp.h"
 #include "value/quality.h"
 
 static struct rig rig;
@@ -326,9 +322,8 @@ int main(void)
         toy_set(stand.snapshot, i, 20 + 7 * i, QUALITY_GOOD);
     if (!environments_init(&environments, rig.gl, &stand.toy->plant, rig.workers))
         return 1;
-    openness_folder = temp_folder_create();
+    openness_folder = temp_folder();
     int failed = tests_run(NULL);
-    temp_folder_destroy(&openness_folder);
     environments_finish(&environments);
     stand_finish(&stand);
     rig_finish(&rig);

@@ -2,13 +2,8 @@
 /* Materials compared with glTF's reflectance model, integrated in double precision: a grid of spheres from rough to smooth and from
    dielectric to metal, under surroundings from a file and under the sun; and white spheres in a white furnace, which must be invisible. */
 #include "tests/support/test.h"
-#include <math.h>
 
-
-#include "base/mem.h"
 #include "tests/support/rig.h"
-#include "tests/support/sweep.h"
-#include "tests/support/temp.h"
 
 enum { STEPS = 5, SPHERES = STEPS * STEPS, SIDE_PX = 64, /* steps: at most */
         WIDTH = 256, HEIGHT = 128, SAMPLES = 400 };
@@ -90,10 +85,9 @@ static void scene_init(struct scene_of *scene, double (*radiance)(const double[3
         shape_sphere(&shape, (uint32_t)i, place_of(i), 0.5, 64);
     }
     toy_add(toy, "spheres", &shape, (double[3]){ 0, 0, 0 }, NULL, 0);
-    scene->folder = temp_folder_create();
-    scene->path = mem_printf("%s/room.hdr", scene->folder);
-    write_hdr(scene->path, radiance);
-    toy->plant.display.environments[0] = (struct plant_environment){ .name = (char *)"room", .path = scene->path };
+    char *path = temp_path(temp_folder(), "room.hdr");
+    write_hdr(path, radiance);
+    toy->plant.display.environments[0] = (struct plant_environment){ .name = (char *)"room", .path = path };
     toy->plant.display.environment_count = 1;
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < WIDTH * HEIGHT; i++) {
@@ -107,8 +101,6 @@ static void scene_init(struct scene_of *scene, double (*radiance)(const double[3
 static void scene_finish(struct scene_of *scene)
 {
     stand_finish(&scene->stand);
-    mem_free(scene->path);
-    temp_folder_destroy(&scene->folder);
 }
 
 /* Draws one sphere from -y, so that a pixel's position gives x and z. */

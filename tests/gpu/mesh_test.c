@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Vertex data on the GPU: encoded normals as shaders decode them, and texture coordinates in few bits where they fit. */
 #include "tests/support/test.h"
-#include <math.h>
-
 
 #include "gpu/mesh.h"
 #include "gpu/program.h"

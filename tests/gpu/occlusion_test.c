@@ -2,14 +2,10 @@
 /* Occlusion culling: hidden geometry is not drawn, and no pixel changes, with cameras outside, among and inside the assets. */
 #include "tests/support/test.h"
 #include <limits.h>
-#include <math.h>
 
-
-#include "base/mem.h"
 #include "render/split_view.h"
 #include "tests/support/renderer_compare.h"
 #include "tests/support/site.h"
-#include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 
 enum { WIDTH_PX = 320, HEIGHT_PX = 180 };

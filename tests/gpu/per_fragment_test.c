@@ -2,15 +2,11 @@
 /* The field computed per fragment, with more sensors than the paper's 512, compared with plain loops in double precision: values and
    drawn colours. The plate is seen from straight above, so that each pixel's position is known. */
 #include "tests/support/test.h"
-#include <math.h>
 
-
-#include "base/mem.h"
 #include "protocol/asset_distance.h"
 #include "tests/support/cad.h"
 #include "tests/support/renderer_compare.h"
 #include "tests/support/rig.h"
-#include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 #include "value/quality.h"
 

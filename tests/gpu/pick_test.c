@@ -5,16 +5,12 @@
 
 #include "tests/support/renderer_compare.h"
 #include "tests/support/test.h"
-#include <math.h>
 #include <time.h>
 #include <unistd.h>
 
-
-#include "base/mem.h"
 #include "scene/framing.h"
 #include "scene/scene_create.h"
 #include "tests/support/rig.h"
-#include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 #include "value/quality.h"
 

@@ -2,10 +2,7 @@
 /* Nothing jumps from preview to refined: colours stay close, and holes cut by textures are the same. Every texture of a material has the
    effect that glTF specifies. */
 #include "tests/support/test.h"
-#include <math.h>
 
-
-#include "base/mem.h"
 #include "field/lab.h"
 #include "render/split_view.h"
 #include "scene/framing.h"

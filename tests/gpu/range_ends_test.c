@@ -3,9 +3,7 @@
    on thin triangles seen at a grazing angle. */
 #include "tests/support/test.h"
 
-
 #include "tests/support/rig.h"
-#include "tests/support/sweep.h"
 #include "value/quality.h"
 
 enum { WIDTH_PX = 480, HEIGHT_PX = 320, READING = 90 };

@@ -4,16 +4,12 @@
    with the finest level within a pixel, because a coarser level may move the surface that far. The second uses pixel centres first, and
    then many samples per pixel, because much of a distant plant is smaller than a pixel. */
 #include "tests/support/test.h"
-#include <math.h>
-
 
 #include "base/math/vec.h"
-#include "base/mem.h"
 #include "message/message.h"
 #include "plant/models/transform.h"
 #include "tests/support/renderer_compare.h"
 #include "tests/support/site.h"
-#include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 
 /* Image size: the default run uses a quarter of the pixels and compares as many points. */

@@ -7,12 +7,9 @@
 #include <time.h>
 #include <unistd.h>
 
-
 #include "base/clock.h"
-#include "base/mem.h"
 #include "service/render_service.h"
 #include "tests/support/sleep.h"
-#include "tests/support/sweep.h"
 #include "tests/support/toy.h"
 #include "value/quality.h"
 
@@ -639,11 +636,10 @@ static void write_readings(double value)
 /* Passes the store's readings to the service as the event loop does. ahead_ns: makes the snapshot younger than it is. */
 static void pass_readings(int64_t ahead_ns)
 {
-    struct snapshot *snapshot = snapshot_create(toy->plant.tag_count);
+    struct snapshot *snapshot = test_snapshot(toy->plant.tag_count);
     store_snapshot(store, clock_mono_ns(), clock_utc_ns(), snapshot);
     snapshot->taken_mono_ns += ahead_ns;
     render_service_set_readings(service, snapshot);
-    snapshot_destroy(&snapshot);
 }
 
 static void change_readings(double value)

@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Data that accompany a frame (content hash, markers, ages); culling; lights; difficult views. */
 #include "tests/support/test.h"
-#include <math.h>
-
 
 #include "render/memory.h"
 #include "tests/support/planned.h"
 #include "tests/support/renderer_compare.h"
 #include "tests/support/rig.h"
-#include "tests/support/sweep.h"
 #include "value/quality.h"
 
 static struct rig rig;

@@ -2,18 +2,15 @@
 /* Textures with two mappings, from a GLB to a frame: a material whose base colour uses TEXCOORD_0 and whose other four textures are
    mapped mirrored must look like one whose four images are mirrored instead. */
 #include "tests/support/test.h"
-#include <math.h>
 
 #include <png.h>
 
-#include "base/mem.h"
 #include "render/frame.h"
 #include "render/split_view.h"
 #include "tests/support/model_maker.h"
 #include "tests/support/model_seeds.h"
 #include "tests/support/prep_case.h"
 #include "tests/support/site.h"
-#include "tests/support/temp.h"
 
 enum { SIDE = 32, TEXELS = SIDE * SIDE, WIDTH = 320, HEIGHT = 180 };
 enum map { BASE, METAL, NORMAL, OCCLUSION, GLOW, MAPS };
@@ -125,7 +122,7 @@ static void write_model(const char *folder, enum way way)
     maker_init(&maker);
     maker_node(&maker, "sheet", add_mesh(&maker, &sheet, way), NULL);
     char *glb = maker_glb(&maker, &size);
-    mem_free(temp_write(folder, "sheet.glb", glb, size));
+    temp_write(folder, "sheet.glb", glb, size);
     mem_free(glb);
     maker_finish(&maker);
     sheet_finish(&sheet);
@@ -139,7 +136,7 @@ static void save(const struct frame *frame, enum way way)
     png_image image = { .version = PNG_IMAGE_VERSION, .width = WIDTH, .height = HEIGHT, .format = PNG_FORMAT_BGRA };
     if (!folder)
         return;
-    char *path = mem_printf("%s/second_texcoords-%d.png", folder, way);
+    char *path = test_printf("%s/second_texcoords-%d.png", folder, way);
     uint8_t *packed = mem_array((size_t)WIDTH * HEIGHT, 4);
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
         memcpy(packed + 4 * i, frame_pixel(frame, i % WIDTH, i / WIDTH), 3);
@@ -147,7 +144,6 @@ static void save(const struct frame *frame, enum way way)
     }
     png_image_write_to_file(&image, path, 0, packed, 0, NULL);
     mem_free(packed);
-    mem_free(path);
 }
 
 /* Draws the prepared model, with levels of detail and subdivision for its sensors. */

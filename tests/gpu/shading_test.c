@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shading must not be read as value: frames of a heat exchanger and a tank are read back by the nearest legend colour. */
 #include "tests/support/test.h"
-#include <math.h>
 
 #include <turbojpeg.h>
 
-#include "base/mem.h"
 #include "encode/encoder.h"
 #include "tests/support/measure.h"
 #include "tests/support/rig.h"
-#include "tests/support/sweep.h"
 #include "value/quality.h"
 
 enum { WIDTH = 1280, HEIGHT = 720 };

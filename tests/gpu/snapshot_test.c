@@ -6,10 +6,8 @@
 
 #include <png.h>
 
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "tests/support/rig.h"
-#include "tests/support/temp.h"
 
 static const char demo[] = "build/demo";
 static char *folder, *plant;
@@ -23,47 +21,41 @@ static const char *from_environment(const char *name, const char *otherwise)
 /* Returns the exit code of `plantcast snapshot ARGS`; its output goes to FOLDER/said. */
 static int snapshot(const char *args)
 {
-    char *command = mem_printf("'%s/plantcast' snapshot %s >'%s/said' 2>&1", from_environment("PLANTCAST_BIN", "build"), args, folder);
+    char *command = test_printf("'%s/plantcast' snapshot %s >'%s/said' 2>&1", from_environment("PLANTCAST_BIN", "build"), args, folder);
     int status = system(command);
-    mem_free(command);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 static bool said(const char *text)
 {
     size_t bytes;
-    char *path = mem_printf("%s/said", folder), *all = text_read_file(path, 1 << 20, &bytes);
+    char *path = test_printf("%s/said", folder), *all = text_read_file(path, 1 << 20, &bytes);
     bool found = all && strstr(all, text);
-    mem_free(path);
     mem_free(all);
     return found;
 }
 
 static int draw(const char *options)
 {
-    char *args = mem_printf("%s -o %s/out.png --size 320x180 --no-overlay --gl %s %s", plant, folder,
+    char *args = test_printf("%s -o %s/out.png --size 320x180 --no-overlay --gl %s %s", plant, folder,
                             from_environment("PLANTCAST_GL", "egl-surfaceless"), options);
     int code = snapshot(args);
-    mem_free(args);
     return code;
 }
 
 static char *read_demo(const char *name)
 {
     size_t bytes;
-    char *path = mem_printf("%s/%s", demo, name), *all = text_read_file(path, 1 << 20, &bytes);
-    mem_free(path);
+    char *path = test_printf("%s/%s", demo, name), *all = text_read_file(path, 1 << 20, &bytes);
     return all;
 }
 
 static void link_demo(const char *name)
 {
-    char *path = mem_printf("%s/%s", demo, name), *whole = realpath(path, NULL), *link = mem_printf("%s/%s", folder, name);
+    char *path = test_printf("%s/%s", demo, name), *whole = realpath(path, NULL), *link = test_printf("%s/%s", folder, name);
     assert_non_null(whole);
     assert_int_equal(symlink(whole, link), 0);
-    mem_free(path);
     free(whole);
-    mem_free(link);
 }
 
 /* Writes a plant with only the first asset and its tags, because each run bakes the light of the whole plant. */
@@ -79,7 +71,7 @@ static void write_plant(void)
         if (tags.length == 0 || strstr(line, ",E-101,"))
             text_add(&tags, "%s\n", line);
     plant = temp_write_text(folder, "plant.yaml", text);
-    mem_free(temp_write_text(folder, "tags.csv", tags.at));
+    temp_write_text(folder, "tags.csv", tags.at);
     link_demo("plant.glb");
     link_demo("plant.prepared");
     text_finish(&tags);
@@ -89,14 +81,14 @@ static void write_plant(void)
 
 static void write_values(const char *text)
 {
-    mem_free(temp_write_text(folder, "values.csv", text));
+    temp_write_text(folder, "values.csv", text);
 }
 
 /* Counts pixels that are noticeably coloured. */
 static int count_colored(void)
 {
     png_image image = { .version = PNG_IMAGE_VERSION };
-    char *path = mem_printf("%s/out.png", folder);
+    char *path = test_printf("%s/out.png", folder);
     int count = 0;
     assert_true(png_image_begin_read_from_file(&image, path));
     assert_true(image.width == 320 && image.height == 180);
@@ -106,7 +98,6 @@ static int count_colored(void)
     for (int i = 0; i < 320 * 180; i++)
         count += abs(rgb[3 * i] - rgb[3 * i + 1]) > 40 || abs(rgb[3 * i + 1] - rgb[3 * i + 2]) > 40;
     mem_free(rgb);
-    mem_free(path);
     return count;
 }
 
@@ -119,20 +110,18 @@ TEST(test_without_values_nothing_has_a_color)
 TEST(test_values_give_color)
 {
     write_values("tag,value,quality\nTE-101,90,good\nTE-102,120,\nTE-103,,bad\nTE-104,30,uncertain\n");
-    char *options = mem_printf("--values %s/values.csv --tier moving", folder);
+    char *options = test_printf("--values %s/values.csv --tier moving", folder);
     assert_int_equal(draw(options), 0);
     assert_true(count_colored() > 50);
-    mem_free(options);
 }
 
 TEST(test_wrong_values_are_named)
 {
     write_values("tag,value,quality\nTE-101,warm,good\nNO-SUCH,1,good\nTE-102,1,perhaps\n");
-    char *options = mem_printf("--values %s/values.csv", folder);
+    char *options = test_printf("--values %s/values.csv", folder);
     assert_int_equal(draw(options), 1);
     assert_true(said("values.csv:2:8: error: value 'warm'") && said("values.csv:3:1: error: tag 'NO-SUCH'"));
     assert_true(said("values.csv:4:10: error: quality 'perhaps'"));
-    mem_free(options);
 }
 
 TEST(test_images_are_colour_maps)
@@ -140,11 +129,9 @@ TEST(test_images_are_colour_maps)
     static const char ppm[] = "P6\n2 1\n255\n\xff\x00\x00\x00\x00\xff";
     char *image = temp_write(folder, "map.ppm", ppm, sizeof(ppm) - 1);
     write_values("tag,value,quality\nTE-101,90,good\nTE-102,120,\n");
-    char *options = mem_printf("--values %s/values.csv --tier moving --colormap %s", folder, image);
+    char *options = test_printf("--values %s/values.csv --tier moving --colormap %s", folder, image);
     assert_int_equal(draw(options), 0);
     assert_true(count_colored() > 50);
-    mem_free(options);
-    mem_free(image);
     assert_int_equal(draw("--colormap no-such.png"), 2);
     assert_true(said("no-such.png: No such file or directory"));
     assert_int_equal(draw("--colormap plaid"), 2);
@@ -153,10 +140,9 @@ TEST(test_images_are_colour_maps)
 TEST(test_split_and_bands)
 {
     write_values("tag,value,quality\nTE-101,90,good\nTE-102,120,\nPT-101,9,good\n");
-    char *options = mem_printf("--values %s/values.csv --breaks limits --isolines every:20 --split 'group=pressure;scale=linear'", folder);
+    char *options = test_printf("--values %s/values.csv --breaks limits --isolines every:20 --split 'group=pressure;scale=linear'", folder);
     assert_int_equal(draw(options), 0);
     assert_true(count_colored() > 50);
-    mem_free(options);
     assert_int_equal(draw("--split group=flow"), 2);
     assert_int_equal(draw("--group pressure --scale log"), 2);
     assert_true(said("scale: a logarithmic scale needs a range above 0"));
@@ -194,10 +180,7 @@ int main(void)
         printf("1..1\nok 1 - snapshot_test # SKIP no demo plant: make demo\n");
         return 0;
     }
-    folder = temp_folder_create();
+    folder = temp_folder();
     write_plant();
-    int failed = tests_run(NULL);
-    mem_free(plant);
-    temp_folder_destroy(&folder);
-    return failed;
+    return tests_run(NULL);
 }

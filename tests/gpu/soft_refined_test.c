@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Refined frames without a GPU: lines, slivers and poles compared with GL, and recoloured frames compared with newly drawn ones. */
 #include "tests/support/test.h"
-#include <math.h>
 
-#include "base/mem.h"
 #include "tests/support/planned.h"
 #include "tests/support/soft_case.h"
-#include "tests/support/sweep.h"
 #include "value/quality.h"
 
 static struct rig rig;

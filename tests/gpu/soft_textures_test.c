@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Materials with textures, holes and glass, drawn in software and compared with GL. */
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "tests/support/soft_case.h"
 #include "value/quality.h"

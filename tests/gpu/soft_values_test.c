@@ -3,14 +3,10 @@
    back as a value, in previews and in refined frames, on every drawn level. Values are equal where a pixel and its neighbours show one
    surface. Elsewhere rounding decides in a preview, and a refined frame antialiases rims and surfaces smaller than a pixel. */
 #include "tests/support/test.h"
-#include <math.h>
 
-
-#include "base/mem.h"
 #include "tests/support/planned.h"
 #include "tests/support/renderer_compare.h"
 #include "tests/support/site.h"
-#include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 
 enum { WIDTH_PX = 640, HEIGHT_PX = 360, PIXELS = WIDTH_PX * HEIGHT_PX };

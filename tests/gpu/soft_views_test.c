@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Frames of both tiers without a GPU compared with GL: every pixel and every marker. */
 #include "tests/support/test.h"
-#include <math.h>
 
-#include "base/mem.h"
 #include "render/soft/kernels.h"
 #include "render/renderer_impl.h"
 #include "tests/support/soft_case.h"

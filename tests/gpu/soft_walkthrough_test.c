@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A walk through a plant: frames without a GPU compared with GL, with surfaces in front of the eye, next to it and behind it. */
 #include "tests/support/test.h"
-#include <math.h>
-
 
 #include "render/split_view.h"
 #include "tests/support/site.h"
-#include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 
 enum { WIDTH_PX = 480, HEIGHT_PX = 270, PIXELS = WIDTH_PX * HEIGHT_PX };

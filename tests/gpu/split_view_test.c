@@ -3,7 +3,6 @@
    drawing at once. */
 #include "tests/support/test.h"
 
-
 #include "base/clock.h"
 #include "render/overlay/overlay.h"
 #include "tests/support/planned.h"

@@ -2,13 +2,10 @@
 /* Visibility: hidden, isolated, ghosted and clipped assets, their colours, markers and content hashes, and orthographic cameras. Runs as
    a session without a GPU does, where some views are left to GL and must match across that border, and then with GL only. */
 #include "tests/support/test.h"
-#include <math.h>
-
 
 #include "render/pick/pick.h"
 #include "tests/support/planned.h"
 #include "tests/support/rig.h"
-#include "tests/support/sweep.h"
 #include "value/quality.h"
 
 enum { EXCHANGER, TANK, PIPE, SLAB, PUMP };

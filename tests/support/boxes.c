@@ -31,7 +31,7 @@ void boxes_write(struct model_maker *maker, const char *folder, const char *name
 {
     size_t size;
     char *glb = maker_glb(maker, &size);
-    mem_free(temp_write(folder, name, glb, size));
+    temp_write(folder, name, glb, size);
     mem_free(glb);
     maker_finish(maker);
     maker_init(maker);

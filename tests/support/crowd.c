@@ -15,6 +15,7 @@
 #include "base/text/text.h"
 #include "preprocess/pipeline/prepare.h"
 #include "scene/scene_create.h"
+#include "tests/support/owned.h"
 #include "tests/support/synthetic.h"
 #include "value/quality.h"
 
@@ -60,7 +61,7 @@ static void add_instance(struct text *yaml, const struct crowd_params *params, c
 static bool write_files(const struct crowd_params *params, const struct places *places)
 {
     struct text yaml = { 0 }, tags = { 0 };
-    char *yaml_path = mem_printf("%s/plant.yaml", params->folder), *tags_path = mem_printf("%s/tags.csv", params->folder);
+    char *yaml_path = test_printf("%s/plant.yaml", params->folder), *tags_path = test_printf("%s/tags.csv", params->folder);
     text_add(&yaml, "plant: { name: Crowd, time_zone: UTC }\n"
                     "groups:\n  - { id: t, unit: K, min: 0, max: 100 }\n"
                     "tags: tags.csv\nassets:\n");
@@ -74,8 +75,6 @@ static bool write_files(const struct crowd_params *params, const struct places *
                 atomic_file_put(tags_path, tags.at, tags.length) == 0;
     text_finish(&yaml);
     text_finish(&tags);
-    mem_free(yaml_path);
-    mem_free(tags_path);
     return good;
 }
 
@@ -83,7 +82,7 @@ static bool prepare(struct sensor_crowd *crowd, struct log *log, struct workers 
 {
     struct diag diag = { 0 };
     struct prepare prepare;
-    char *path = mem_printf("%s/plant.yaml", folder);
+    char *path = test_printf("%s/plant.yaml", folder);
     crowd->plant = plant_load(path, &diag);
     bool good = crowd->plant != NULL;
     if (good) {
@@ -97,7 +96,6 @@ static bool prepare(struct sensor_crowd *crowd, struct log *log, struct workers 
     if (!good)
         diag_print(&diag, stderr);
     diag_finish(&diag);
-    mem_free(path);
     return good && crowd->scene;
 }
 
@@ -132,7 +130,7 @@ static void spread(struct places *places, const struct asset_view *view)
 static bool find_places(struct places *places, struct log *log, struct workers *workers, const struct crowd_params *params)
 {
     struct sensor_crowd bare = { 0 };
-    char *folder = mem_printf("%s-bare", params->folder);
+    char *folder = test_printf("%s-bare", params->folder);
     struct crowd_params one = { .folder = folder, .model = params->model, .nodes = params->nodes, .up = params->up, .instances = 1 };
     struct places none = { .size_m = { 1, 1, 1 } };
     *places = (struct places){ .count = params->sensors, .at_m = mem_array((size_t)params->sensors, sizeof(*places->at_m)) };
@@ -147,7 +145,6 @@ static bool find_places(struct places *places, struct log *log, struct workers *
         spread(places, view);
     }
     crowd_finish(&bare);
-    mem_free(folder);
     return good;
 }
 

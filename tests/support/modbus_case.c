@@ -11,6 +11,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "tests/support/owned.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/ports.h"
 #include "tests/support/sleep.h"
@@ -22,8 +23,8 @@ int modbus_case_set_up(void **state)
     c->plant = plant_by_hand_create(300);
     c->device.port = free_port();
     plant_by_hand_source(c->plant, "plc", c->device.port);
-    c->log = log_create(LOG_ERROR);
-    c->counters = counters_create();
+    c->log = test_log();
+    c->counters = test_counters();
     *state = c;
     return 0;
 }
@@ -34,11 +35,6 @@ int modbus_case_tear_down(void **state)
     source_stop(&c->source);
     if (c->device.thread)
         device_stop(&c->device);
-    snapshot_destroy(&c->snapshot);
-    store_destroy(&c->store);
-    counters_destroy(&c->counters);
-    log_destroy(&c->log);
-    plant_by_hand_destroy(&c->plant);
     mem_free(c);
     return 0;
 }
@@ -59,10 +55,16 @@ void modbus_case_add_registers(struct modbus_case *c, int count)
 
 void modbus_case_start(struct modbus_case *c)
 {
-    c->store = store_create(c->plant);
-    c->snapshot = snapshot_create(c->plant->tag_count);
+    c->store = test_store(c->plant);
+    c->snapshot = test_snapshot(c->plant->tag_count);
     c->source = source_start(c->log, c->plant, 0, c->store, c->counters);
     assert_non_null(c->source);
+}
+
+void modbus_case_serve(struct modbus_case *c)
+{
+    device_start(&c->device);
+    modbus_case_start(c);
 }
 
 const struct reading *modbus_case_look(struct modbus_case *c, int tag)

@@ -19,7 +19,8 @@ int modbus_case_set_up(void **state); /* the store has room for 300 tags */
 int modbus_case_tear_down(void **state);
 void modbus_case_be_impatient(struct modbus_case *c);              /* shortens timeouts, for devices that let the source wait */
 void modbus_case_add_registers(struct modbus_case *c, int count);  /* adds holding registers 0, 1, ... as INT16 tags */
-void modbus_case_start(struct modbus_case *c);
+void modbus_case_start(struct modbus_case *c); /* starts the source */
+void modbus_case_serve(struct modbus_case *c); /* starts the device, then the source */
 void modbus_case_assert_stops_soon(struct modbus_case *c);
 const struct reading *modbus_case_look(struct modbus_case *c, int tag);
 /* Waits until the tag has this quality. */

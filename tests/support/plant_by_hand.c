@@ -4,22 +4,16 @@
 
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 #include "base/mem.h"
+#include "tests/support/owned.h"
 
 enum { MAX_SOURCES = 16 };
 
-struct plant *plant_by_hand_create(size_t max_tags)
+static void release(void *resource)
 {
-    struct plant *plant = mem_new(sizeof(*plant));
-    plant->tags = mem_array(max_tags, sizeof(*plant->tags));
-    plant->sources = mem_array(MAX_SOURCES, sizeof(*plant->sources));
-    return plant;
-}
-
-void plant_by_hand_destroy(struct plant **plant_ptr)
-{
-    struct plant *plant = *plant_ptr;
+    struct plant *plant = resource;
     for (size_t i = 0; i < plant->tag_count; i++)
         mem_free(plant->tags[i].name);
     for (size_t i = 0; i < plant->source_count; i++) {
@@ -29,9 +23,19 @@ void plant_by_hand_destroy(struct plant **plant_ptr)
             mem_free(plant->sources[i].hosts[h]);
     }
     mem_free(plant->tags);
+    mem_free(plant->tags_by_name);
     mem_free(plant->sources);
     mem_free(plant);
-    *plant_ptr = NULL;
+}
+
+struct plant *plant_by_hand_create(size_t max_tags)
+{
+    struct plant *plant = mem_new(sizeof(*plant));
+    plant->tags = mem_array(max_tags, sizeof(*plant->tags));
+    plant->tags_by_name = mem_array(max_tags, sizeof(*plant->tags_by_name));
+    plant->sources = mem_array(MAX_SOURCES, sizeof(*plant->sources));
+    owned_add(release, plant);
+    return plant;
 }
 
 struct plant_source *plant_by_hand_source(struct plant *plant, const char *id, int port)
@@ -61,7 +65,11 @@ struct plant_tag *plant_by_hand_tag(struct plant *plant, const char *name, enum 
                                     enum data_type type)
 {
     bool one_register = type == DATA_BIT || type == DATA_INT16 || type == DATA_UINT16 || type == DATA_BCD;
-    struct plant_tag *tag = &plant->tags[plant->tag_count++];
+    size_t place = plant->tag_count++;
+    struct plant_tag *tag = &plant->tags[place];
+    for (; place > 0 && strcmp(plant->tags[plant->tags_by_name[place - 1]].name, name) > 0; place--)
+        plant->tags_by_name[place] = plant->tags_by_name[place - 1];
+    plant->tags_by_name[place] = (int)(tag - plant->tags);
     *tag = (struct plant_tag){
         .alarms.suppressed_by = -1,
         .alarms.mirror.tag = -1,

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A plant made in a test, without files. Pointers stay valid until plant_by_hand_destroy. */
+/* A plant made in a test, without files. It belongs to the test (tests/support/owned.h). */
 #ifndef TESTS_PLANT_BY_HAND_H
 #define TESTS_PLANT_BY_HAND_H
 #include "plant/plant.h"
 
 /* Returns an empty plant with room for max_tags tags and 16 sources. */
 struct plant *plant_by_hand_create(size_t max_tags);
-void plant_by_hand_destroy(struct plant **plant);
 /* Adds a Modbus source at 127.0.0.1:port, unit 1, polled every 100 ms, timeout 2 s. */
 struct plant_source *plant_by_hand_source(struct plant *plant, const char *id, int port);
 /* Adds a tag to the newest source: unscaled, stale after 5 s, byte order ABCD if it takes more than one register. */

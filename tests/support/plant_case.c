@@ -16,9 +16,9 @@
 int plant_case_set_up(void **state)
 {
     struct plant_case *c = mem_new(sizeof(*c));
-    c->folder = temp_folder_create();
+    c->folder = temp_folder();
     c->path = temp_path(c->folder, "plant.yaml");
-    mem_free(temp_write_text(c->folder, "m.glb", "glTF"));
+    temp_write_text(c->folder, "m.glb", "glTF");
     *state = c;
     return 0;
 }
@@ -33,8 +33,6 @@ int plant_case_tear_down(void **state)
 {
     struct plant_case *c = *state;
     plant_case_forget(c);
-    mem_free(c->path);
-    temp_folder_destroy(&c->folder);
     mem_free(c);
     return 0;
 }
@@ -42,8 +40,8 @@ int plant_case_tear_down(void **state)
 void plant_case_load(struct plant_case *c, const char *yaml, const char *csv)
 {
     plant_case_forget(c);
-    mem_free(temp_write_text(c->folder, "plant.yaml", yaml));
-    mem_free(temp_write_text(c->folder, "tags.csv", csv));
+    temp_write_text(c->folder, "plant.yaml", yaml);
+    temp_write_text(c->folder, "tags.csv", csv);
     c->plant = plant_load(c->path, &c->diag);
 }
 

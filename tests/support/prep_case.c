@@ -15,12 +15,13 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "tests/support/owned.h"
 #include "tests/support/temp.h"
 
 int prep_case_set_up(void **state)
 {
     struct prep_case *c = mem_new(sizeof(*c));
-    c->folder = temp_folder_create();
+    c->folder = temp_folder();
     c->plant = temp_path(c->folder, "plant.yaml");
     *state = c;
     return 0;
@@ -29,8 +30,6 @@ int prep_case_set_up(void **state)
 int prep_case_tear_down(void **state)
 {
     struct prep_case *c = *state;
-    temp_folder_destroy(&c->folder);
-    mem_free(c->plant);
     text_finish(&c->out);
     text_finish(&c->err);
     mem_free(c);
@@ -39,14 +38,13 @@ int prep_case_tear_down(void **state)
 
 void prep_case_plant(struct prep_case *c, const char *yaml)
 {
-    mem_free(temp_write_text(c->folder, "plant.yaml", yaml));
+    temp_write_text(c->folder, "plant.yaml", yaml);
 }
 
 void prep_case_tags(struct prep_case *c, const char *rows)
 {
-    char *text = mem_printf("Tag Name,Address,Data Type,Source,Group,Asset,Node,X,Y,Z\n%s", rows);
-    mem_free(temp_write_text(c->folder, "tags.csv", text));
-    mem_free(text);
+    char *text = test_printf("Tag Name,Address,Data Type,Source,Group,Asset,Node,X,Y,Z\n%s", rows);
+    temp_write_text(c->folder, "tags.csv", text);
 }
 
 void prep_case_read(struct prep_case *c, const char *name, struct text *to)
@@ -59,16 +57,14 @@ void prep_case_read(struct prep_case *c, const char *name, struct text *to)
     text_finish(to);
     text_add_bytes(to, bytes, size);
     mem_free(bytes);
-    mem_free(path);
 }
 
 char *prep_case_program(void)
 {
     const char *folder = getenv("PLANTCAST_BIN");
-    char *program = mem_printf("%s/plantcast-prep", folder ? folder : "build");
+    char *program = test_printf("%s/plantcast-prep", folder ? folder : "build");
     if (access(program, X_OK) != 0) {
         print_message("# %s is not there\n", program);
-        mem_free(program);
         skip();
     }
     return program;
@@ -81,7 +77,6 @@ int prep_case_run(struct prep_case *c, const char *arguments)
         mem_printf("PLANT='%s' FOLDER='%s'; '%s' %s >'%s/out' 2>'%s/err'", c->plant, c->folder, program, arguments, c->folder, c->folder);
     int status = system(command);
     mem_free(command);
-    mem_free(program);
     prep_case_read(c, "out", &c->out);
     prep_case_read(c, "err", &c->err);
     assert_true(WIFEXITED(status));
@@ -103,11 +98,10 @@ char *prep_case_file(const struct prep_case *c, const char *ending, uint64_t *ke
     for (const struct dirent *entry; (entry = readdir(dir)) != NULL;)
         if (strstr(entry->d_name, ending)) {
             assert_null(path);
-            path = mem_printf("%s/%s", folder, entry->d_name);
+            path = test_printf("%s/%s", folder, entry->d_name);
             *key = strtoull(entry->d_name, NULL, 16);
         }
     closedir(dir);
-    mem_free(folder);
     assert_non_null(path);
     return path;
 }
@@ -124,7 +118,7 @@ json_t *prep_case_json(const struct text *text)
     json_t *root = json_loads(text->at ? text->at : "", 0, &error);
     if (!root)
         fail_msg("%s: %s", error.text, text->at ? text->at : "(nothing)");
-    return root;
+    return test_json(root);
 }
 
 double prep_case_number(const json_t *root, const char *path)

@@ -25,13 +25,13 @@ void prep_case_tags(struct prep_case *c, const char *rows);
    returns the exit status. Skips the test if the program is not built. prep_case_expect() fails if the status differs. */
 int prep_case_run(struct prep_case *c, const char *arguments);
 void prep_case_expect(struct prep_case *c, const char *arguments, int status);
-char *prep_case_program(void); /* returns the program's path (mem_free); skips the test if it is not built */
+char *prep_case_program(void); /* returns the program's path; skips the test if it is not built */
 
 void prep_case_read(struct prep_case *c, const char *name, struct text *to);
-/* Returns the path (mem_free) of the only prepared file with that ending; *key: the key in its name. */
+/* Returns the path of the only prepared file with that ending; *key: the key in its name. */
 char *prep_case_file(const struct prep_case *c, const char *ending, uint64_t *key);
 void prep_case_says(const struct text *text, const char *words);
-json_t *prep_case_json(const struct text *text);
+json_t *prep_case_json(const struct text *text); /* belongs to the test */
 /* Returns the number at a path such as "assets.0.surface.bridges"; fails if there is none. */
 double prep_case_number(const json_t *root, const char *path);
 

@@ -68,7 +68,6 @@ int replay_folder(const char *folder, int rounds, int (*feed)(const uint8_t *byt
         char *path = temp_path(folder, entry->d_name);
         printf("# %s\n", path);
         replay(path, rounds, feed);
-        mem_free(path);
         files++;
     }
     closedir(dir);

@@ -11,23 +11,20 @@
 
 #include "base/mem.h"
 #include "scene/scene_create.h"
+#include "tests/support/owned.h"
 #include "tests/support/synthetic.h"
 
 bool site_is_there(const char *model)
 {
-    char *path = mem_printf("../shared/data/models/%s", model);
-    bool there = access(path, R_OK) == 0;
-    mem_free(path);
-    return there;
+    return access(test_printf("../shared/data/models/%s", model), R_OK) == 0;
 }
 
 static bool prepare(const char *plant, const char *folder)
 {
     const char *programs = getenv("PLANTCAST_BIN");
-    char *command = mem_printf("mkdir -p '%s' && '%s/plantcast-prep' %s --output '%s' >/dev/null 2>&1", folder,
+    char *command = test_printf("mkdir -p '%s' && '%s/plantcast-prep' %s --output '%s' >/dev/null 2>&1", folder,
                                programs ? programs : "build", plant, folder);
     int status = system(command);
-    mem_free(command);
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 

@@ -8,21 +8,12 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "base/mem.h"
+#include "tests/support/owned.h"
 
 static void give_up(const char *path)
 {
     perror(path);
     abort();
-}
-
-char *temp_folder_create(void)
-{
-    const char *parent = getenv("TMPDIR");
-    char *folder = mem_printf("%s/plantcast-test-XX" "XX" "XX", parent ? parent : "/tmp");
-    if (!mkdtemp(folder))
-        give_up(folder);
-    return folder;
 }
 
 static int remove_one(const char *path, const struct stat *st, int type, struct FTW *walk)
@@ -31,17 +22,25 @@ static int remove_one(const char *path, const struct stat *st, int type, struct 
     return remove(path);
 }
 
-void temp_folder_destroy(char **folder)
+static void remove_folder(void *folder)
 {
-    if (nftw(*folder, remove_one, 16, FTW_DEPTH | FTW_PHYS) != 0)
-        give_up(*folder);
-    mem_free(*folder);
-    *folder = NULL;
+    if (nftw(folder, remove_one, 16, FTW_DEPTH | FTW_PHYS) != 0)
+        give_up(folder);
+}
+
+char *temp_folder(void)
+{
+    const char *parent = getenv("TMPDIR");
+    char *folder = test_printf("%s/plantcast-test-XX" "XX" "XX", parent ? parent : "/tmp");
+    if (!mkdtemp(folder))
+        give_up(folder);
+    owned_add(remove_folder, folder);
+    return folder;
 }
 
 char *temp_path(const char *folder, const char *name)
 {
-    return mem_printf("%s/%s", folder, name);
+    return test_printf("%s/%s", folder, name);
 }
 
 char *temp_write(const char *folder, const char *name, const void *bytes, size_t count)

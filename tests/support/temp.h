@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files for one test, in a folder of its own under TMPDIR. Aborts if a file cannot be created. Thread: any. */
+/* Files for one test, in a folder of its own under TMPDIR. Folders and returned paths belong to the test (tests/support/owned.h). Aborts if
+   a file cannot be created. Thread: any. */
 #ifndef TESTS_TEMP_H
 #define TESTS_TEMP_H
 #include <stddef.h>
 
-char *temp_folder_create(void);
-void temp_folder_destroy(char **folder); /* deletes the folder with everything in it; sets *folder to NULL */
-/* Writes FOLDER/NAME, creates missing folders, and returns the path; the caller frees it with mem_free. */
+char *temp_folder(void); /* removed after the test with everything in it */
+/* Writes FOLDER/NAME, creates missing folders, and returns the path. */
 char *temp_write(const char *folder, const char *name, const void *bytes, size_t count);
 char *temp_write_text(const char *folder, const char *name, const char *text);
 char *temp_path(const char *folder, const char *name);

@@ -10,6 +10,7 @@ static struct {
     int lines[MOST]; /* ascending */
     size_t count;
     CMFixtureFunction set_up, tear_down;
+    size_t owned_by_group;
 } program;
 
 void test_add(const struct CMUnitTest *test, int line)
@@ -31,9 +32,23 @@ void test_group(CMFixtureFunction set_up, CMFixtureFunction tear_down)
     program.tear_down = tear_down;
 }
 
+int test_end(CMFixtureFunction tear_down, void **state)
+{
+    int status = tear_down ? tear_down(state) : 0;
+    owned_release(program.owned_by_group);
+    return status;
+}
+
+static int group_begin(void **state)
+{
+    int status = program.set_up ? program.set_up(state) : 0;
+    program.owned_by_group = owned_count();
+    return status;
+}
+
 int tests_run(const char *name)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
-    return _cmocka_run_group_tests(name ? name : program_invocation_short_name, program.tests, program.count, program.set_up,
+    return _cmocka_run_group_tests(name ? name : program_invocation_short_name, program.tests, program.count, group_begin,
                                    program.tear_down);
 }

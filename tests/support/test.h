@@ -2,6 +2,7 @@
 /* Declares the tests of a program. Each test registers itself, so that none can be forgotten; tests run in the order of the file. */
 #ifndef TESTS_SUPPORT_TEST_H
 #define TESTS_SUPPORT_TEST_H
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,15 +13,24 @@
 
 #include <cmocka.h> /* needs setjmp.h, stdarg.h, stddef.h and stdint.h before it */
 
+#include "base/mem.h"
+#include "tests/support/owned.h"
+#include "tests/support/sweep.h"
+#include "tests/support/temp.h"
+
 /* Defines a test: TEST(readings_age) { ... }. `state` is what its fixture made. */
 #define TEST(name) TEST_WITH(name, NULL, NULL)
 
 /* Defines a test with fixtures of its own: functions that run before and after it, or NULL. */
 #define TEST_WITH(name, set_up, tear_down)                                                                                                 \
     static void name(void **state);                                                                                                        \
+    static int name##_ends(void **state)                                                                                                   \
+    {                                                                                                                                      \
+        return test_end(tear_down, state);                                                                                                 \
+    }                                                                                                                                      \
     __attribute__((constructor)) static void name##_is_registered(void)                                                                    \
     {                                                                                                                                      \
-        test_add(&(struct CMUnitTest){ #name, name, set_up, tear_down, NULL }, __LINE__);                                                  \
+        test_add(&(struct CMUnitTest){ #name, name, set_up, name##_ends, NULL }, __LINE__);                                                \
     }                                                                                                                                      \
     static void name(__attribute__((unused)) void **state)
 
@@ -34,6 +44,25 @@
     }                                                                                                                                      \
     static void name##_on(__attribute__((unused)) argument)
 
+/* Defines set_up() and tear_down() of a fixture: a `type` that is zeroed before each test, then handed to begin(), to the test and to
+   end(). end: NULL if the fixture has only what the test owns (tests/support/owned.h). */
+#define TEST_FIXTURE(type, begin, end)                                                                                                     \
+    static int set_up(void **state)                                                                                                        \
+    {                                                                                                                                      \
+        static type fixture;                                                                                                               \
+        memset(&fixture, 0, sizeof(fixture));                                                                                              \
+        begin(&fixture);                                                                                                                   \
+        *state = &fixture;                                                                                                                 \
+        return 0;                                                                                                                          \
+    }                                                                                                                                      \
+    static int tear_down(void **state)                                                                                                     \
+    {                                                                                                                                      \
+        void (*finish)(type *) = end;                                                                                                      \
+        if (finish)                                                                                                                        \
+            finish(*state);                                                                                                                \
+        return 0;                                                                                                                          \
+    }
+
 /* Sets the fixtures of the whole program: functions that run before its first and after its last test, or NULL. */
 #define TEST_GROUP(set_up, tear_down)                                                                                                      \
     __attribute__((constructor)) static void group_is_registered(void)                                                                     \
@@ -44,6 +73,8 @@
 /* Called by the macros above, before main. */
 void test_add(const struct CMUnitTest *test, int line);
 void test_group(CMFixtureFunction set_up, CMFixtureFunction tear_down);
+/* Runs a test's tear-down, which may be NULL, and releases what the test owns. Returns what tear_down returned, or 0. */
+int test_end(CMFixtureFunction tear_down, void **state);
 
 /* Runs the tests of this program and prints TAP. Returns the number of failures. name: of the group, or NULL for the program's name. A
    program without main() gets one that calls this with NULL. */

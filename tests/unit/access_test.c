@@ -5,7 +5,6 @@
 
 #include "tests/support/test.h"
 
-#include "base/mem.h"
 #include "message/message_parse.h"
 #include "message/names.h"
 #include "tests/support/small_scene.h"

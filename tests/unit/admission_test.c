@@ -4,9 +4,7 @@
 
 #include "tests/support/test.h"
 
-
 #include "base/clock.h"
-#include "base/mem.h"
 #include "net/address_limits.h"
 
 static struct quotas quotas;

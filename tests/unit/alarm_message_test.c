@@ -2,61 +2,47 @@
 /* Alarm messages: what sessions receive, which alarm commands they may send, and what programs receive. */
 #include "tests/support/test.h"
 #include <jansson.h>
-#include <math.h>
 
 #include "base/clock.h"
-#include "base/mem.h"
 #include "message/message_parse.h"
 #include "access/access.h"
 #include "message/alarm_message.h"
 #include "message/alarm_text.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/sleep.h"
-#include "tests/support/temp.h"
 #include "value/quality.h"
 
 struct alarm_message_setup { /* a plant of two tags with limits H 80 and HH 90 */
-    struct log *log;
-    struct counters *counters;
     struct plant *plant;
     struct store *store;
     struct alarm_service *alarm_service;
+    struct log *log;
     char *folder;
 };
 
-static int set_up(void **state)
+static void begin(struct alarm_message_setup *s)
 {
-    static struct alarm_message_setup s;
-    static int sorted[] = { 0, 1 };
-    s = (struct alarm_message_setup){ .log = log_create(LOG_ERROR), .counters = counters_create(), .folder = temp_folder_create() };
-    s.plant = plant_by_hand_create(2);
-    s.plant->alarms = ALARMS_LOCAL;
-    s.plant->tags_by_name = sorted;
-    plant_by_hand_source(s.plant, "plc", 502);
+    s->plant = plant_by_hand_create(2);
+    s->plant->alarms = ALARMS_LOCAL;
+    plant_by_hand_source(s->plant, "plc", 502);
     for (int i = 0; i < 2; i++) {
-        struct plant_tag *tag = plant_by_hand_tag(s.plant, i ? "TT-2" : "TT-1", TABLE_HOLDING, i, DATA_INT16);
+        struct plant_tag *tag = plant_by_hand_tag(s->plant, i ? "TT-2" : "TT-1", TABLE_HOLDING, i, DATA_INT16);
         tag->alarms.limits[LIMIT_H] = 80;
         tag->alarms.limits[LIMIT_HH] = 90;
     }
-    s.store = store_create(s.plant);
-    s.alarm_service = alarm_service_start(&(struct alarm_service_params){
-        .log = s.log, .counters = s.counters, .plant = s.plant, .store = s.store, .folder = s.folder, .keep_days = 400 });
-    *state = &s;
-    return 0;
+    s->store = test_store(s->plant);
+    s->log = test_log();
+    s->folder = temp_folder();
+    s->alarm_service = alarm_service_start(&(struct alarm_service_params){
+        .log = s->log, .counters = test_counters(), .plant = s->plant, .store = s->store, .folder = s->folder, .keep_days = 400 });
 }
 
-static int tear_down(void **state)
+static void end(struct alarm_message_setup *s)
 {
-    struct alarm_message_setup *s = *state;
     alarm_service_stop(&s->alarm_service);
-    store_destroy(&s->store);
-    s->plant->tags_by_name = NULL;
-    plant_by_hand_destroy(&s->plant);
-    counters_destroy(&s->counters);
-    log_destroy(&s->log);
-    temp_folder_destroy(&s->folder);
-    return 0;
 }
+
+TEST_FIXTURE(struct alarm_message_setup, begin, end)
 
 #define CASE(name) TEST_ON(struct alarm_message_setup *s, name, set_up, tear_down)
 
@@ -73,7 +59,7 @@ static void give(struct alarm_message_setup *s, int tag, double value, uint32_t 
 /* Parses the text, and frees it. */
 static json_t *parse(char *text)
 {
-    json_t *o = json_loads(text, 0, NULL);
+    json_t *o = test_json(json_loads(text, 0, NULL));
     assert_non_null(o);
     mem_free(text);
     return o;
@@ -103,16 +89,14 @@ CASE(sessions_hear_what_changed)
     assert_true(json_is_true(json_object_get(all, "all")));
     assert_int_equal(json_array_size(json_object_get(all, "alarms")), 2);
     assert_string_equal(state_of(all, "HH"), "unacknowledged");
-    json_decref(all);
     /* the text that another session already got is reused */
-    json_decref(parse(alarms_text(&said, s->alarm_service, s->plant, 5000, &other)));
+    parse(alarms_text(&said, s->alarm_service, s->plant, 5000, &other));
     assert_int_equal(number, other);
     give(s, 0, 85, QUALITY_GOOD);
     json_t *changed = parse(alarms_text(&said, s->alarm_service, s->plant, 6000, &number));
     assert_true(json_is_false(json_object_get(changed, "all")));
     assert_int_equal(json_array_size(json_object_get(changed, "alarms")), 1);
     assert_string_equal(state_of(changed, "HH"), "returned");
-    json_decref(changed);
     alarm_text_cache_finish(&said);
 }
 
@@ -133,7 +117,6 @@ CASE(what_is_asked_is_done_or_refused)
     assert_string_equal(json_string_value(json_array_get(json_array_get(refused, 1), 2)), "its state has changed meanwhile");
     const json_t *refusal = json_array_get(json_array_get(refused, 0), 3);
     assert_string_equal(json_string_value(json_object_get(refusal, "code")), "quiet");
-    json_decref(answer);
     uint64_t number = 0;
     char *text = alarms_text(NULL, s->alarm_service, s->plant, 0, &number);
     assert_non_null(strstr(text, "null,\"Kim (panel)\",\"\"]"));
@@ -157,18 +140,15 @@ CASE(a_device_has_its_own)
     assert_int_equal(json_array_size(rows), 3);
     assert_string_equal(json_string_value(json_array_get(link, 0)), "plc");
     assert_string_equal(state_of(all, "BAD"), "suppressed");
-    json_decref(all);
     assert_true(ask(s, "{\"type\":\"alarm\",\"seq\":1,\"action\":\"acknowledge\",\"alarms\":[[\"plc\",\"LINK\"],[\"TT-1\",\"BAD\"]]}",
                     &message, &error));
     json_t *answer = parse(alarm_do(s->alarm_service, s->plant, &message, "local"));
     assert_int_equal(json_integer_value(json_object_get(answer, "done")), 1); /* an alarm carried by its device's alarm cannot be
                                                                                  acknowledged */
-    json_decref(answer);
     assert_false(ask(s, "{\"type\":\"alarm\",\"seq\":2,\"action\":\"acknowledge\",\"alarms\":[[\"TT-1\",\"LINK\"]]}", &message, &error));
     assert_non_null(strstr(error.text, "this plant has no device “TT-1”"));
     json_t *api = parse(alarms_api_text(s->alarm_service, s->plant, &(struct alarm_query){ .limit = 10 }, 5000));
     assert_int_equal(json_integer_value(json_object_get(json_object_get(api, "counts"), "active")), 1);
-    json_decref(api);
 }
 
 CASE(roles_are_kept)
@@ -181,13 +161,12 @@ CASE(roles_are_kept)
     for (size_t i = 0; i < sizeof(actions) / sizeof(actions[0]); i++) {
         struct message message;
         struct message_error error;
-        char *text = mem_printf("{\"type\":\"alarm\",\"seq\":1,\"action\":\"%s\",\"alarms\":[[\"TT-1\",\"H\"]],\"for_s\":60,"
+        char *text = test_printf("{\"type\":\"alarm\",\"seq\":1,\"action\":\"%s\",\"alarms\":[[\"TT-1\",\"H\"]],\"for_s\":60,"
                                 "\"reason\":\"r\"}",
                                 actions[i].action);
         assert_true(ask(s, text, &message, &error));
         for (int role = ROLE_OPEN; role <= ROLE_ENGINEER; role++)
             assert_int_equal(role_may_send((enum role)role, &message, &error), role >= (int)actions[i].least);
-        mem_free(text);
     }
 }
 
@@ -207,12 +186,10 @@ CASE(programs_get_pages)
     assert_int_equal(json_array_size(json_object_get(page, "alarms")), 3);
     assert_int_equal(json_integer_value(json_object_get(page, "next_offset")), 3);
     assert_int_equal(json_integer_value(json_object_get(json_object_get(page, "counts"), "active")), 4);
-    json_decref(page);
     assert_true(query(s, false, "offset=3", &q));
     page = parse(alarms_api_text(s->alarm_service, s->plant, &q, 0));
     assert_int_equal(json_array_size(json_object_get(page, "alarms")), 1);
     assert_true(json_is_null(json_object_get(page, "next_offset")));
-    json_decref(page);
     assert_true(query(s, false, "format=csv", &q));
     char *csv = alarms_api_text(s->alarm_service, s->plant, &q, 0);
     assert_non_null(strstr(csv, "\nTT-1,HH,unacknowledged,2,"));
@@ -236,12 +213,11 @@ CASE(the_journal_is_read_by_pages)
     alarm_service_stop(&s->alarm_service);
     assert_true(query(s, true, "limit=2", &q));
     assert_true(alarms_journal_text(s->log, s->folder, &q, &out));
-    json_t *page = json_loads(out.at, 0, NULL), *rows = json_object_get(page, "rows");
+    json_t *page = test_json(json_loads(out.at, 0, NULL)), *rows = json_object_get(page, "rows");
     assert_int_equal(json_array_size(rows), 2);
     assert_string_equal(json_string_value(json_object_get(json_array_get(rows, 0), "event")), "shelve");
     assert_string_equal(json_string_value(json_object_get(json_array_get(rows, 0), "who")), "Kim");
-    char *more = mem_printf("before=%lld", (long long)json_integer_value(json_object_get(page, "next_before")));
-    json_decref(page);
+    char *more = test_printf("before=%lld", (long long)json_integer_value(json_object_get(page, "next_before")));
     text_finish(&out);
     assert_true(query(s, true, more, &q));
     q.csv = true;
@@ -252,5 +228,4 @@ CASE(the_journal_is_read_by_pages)
     assert_true(alarms_journal_text(s->log, s->folder, &q, &out));
     assert_non_null(strstr(out.at, ",Kim,\"says \"\"now\"\", and means it\"\n"));
     text_finish(&out);
-    mem_free(more);
 }

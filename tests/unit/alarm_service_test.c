@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Alarms of a running store: written to the journal, and restored after kill -9 and from a damaged journal. */
 #include "tests/support/test.h"
-#include <math.h>
 #include <stdatomic.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -11,11 +10,9 @@
 #include "alarm/journal.h"
 #include "alarm/alarms_at_instant.h"
 #include "base/clock.h"
-#include "base/mem.h"
 #include "history/month.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/sleep.h"
-#include "tests/support/temp.h"
 #include "value/quality.h"
 
 enum { TAGS = 1000 };
@@ -29,23 +26,20 @@ struct alarm_service_setup {
     struct alarm_service *alarm_service;
 };
 
-static int set_up(void **state)
+static void begin(struct alarm_service_setup *s)
 {
-    static struct alarm_service_setup s;
-    s = (struct alarm_service_setup){ .folder = temp_folder_create(), .log = log_create(LOG_ERROR), .counters = counters_create() };
-    s.plant = plant_by_hand_create(TAGS);
-    s.plant->alarms = ALARMS_LOCAL;
-    s.plant->tags_by_name = mem_array(TAGS, sizeof(int));
-    plant_by_hand_source(s.plant, "plc", 502);
+    s->folder = temp_folder();
+    s->log = test_log();
+    s->counters = test_counters();
+    s->plant = plant_by_hand_create(TAGS);
+    s->plant->alarms = ALARMS_LOCAL;
+    plant_by_hand_source(s->plant, "plc", 502);
     for (int i = 0; i < TAGS; i++) {
         char name[16];
         snprintf(name, sizeof(name), "T-%04d", i);
-        plant_by_hand_tag(s.plant, name, TABLE_HOLDING, i, DATA_INT16)->alarms.limits[LIMIT_H] = 80;
-        s.plant->tags_by_name[i] = i;
+        plant_by_hand_tag(s->plant, name, TABLE_HOLDING, i, DATA_INT16)->alarms.limits[LIMIT_H] = 80;
     }
-    s.store = store_create(s.plant);
-    *state = &s;
-    return 0;
+    s->store = test_store(s->plant);
 }
 
 static void start(struct alarm_service_setup *s)
@@ -57,19 +51,12 @@ static void start(struct alarm_service_setup *s)
     assert_non_null(s->alarm_service);
 }
 
-static int tear_down(void **state)
+static void end(struct alarm_service_setup *s)
 {
-    struct alarm_service_setup *s = *state;
     alarm_service_stop(&s->alarm_service);
-    store_destroy(&s->store);
-    mem_free(s->plant->tags_by_name);
-    s->plant->tags_by_name = NULL;
-    plant_by_hand_destroy(&s->plant);
-    counters_destroy(&s->counters);
-    log_destroy(&s->log);
-    temp_folder_destroy(&s->folder);
-    return 0;
 }
+
+TEST_FIXTURE(struct alarm_service_setup, begin, end)
 
 #define CASE(name) TEST_ON(struct alarm_service_setup *s, name, set_up, tear_down)
 
@@ -131,12 +118,11 @@ CASE(a_thousand_at_once_are_all_written)
     assert_int_equal(alarm_service_act(s->alarm_service, "T-0007", ALARM_H, &shelve), REFUSAL_NONE);
     assert_int_equal(alarm_service_act(s->alarm_service, "T-0007", ALARM_LL, &shelve), REFUSAL_OTHERWISE);
     assert_int_equal(alarm_service_act(s->alarm_service, "nothing", ALARM_H, &shelve), REFUSAL_OTHERWISE);
-    struct snapshot *now = snapshot_create(TAGS);
+    struct snapshot *now = test_snapshot(TAGS);
     store_snapshot(s->store, clock_mono_ns(), clock_utc_ns(), now);
     assert_int_equal(now->readings[6].alarm, ALARM_H);
     assert_int_equal(now->readings[6].alarm_status, ALARM_UNACKNOWLEDGED);
     assert_int_equal(now->readings[7].alarm, ALARM_NONE);
-    snapshot_destroy(&now);
     int64_t between_us = clock_utc_ns() / 1000;
     give_all(s, 20);
     assert_int_equal(wait_for(s, ALARM_RETURNED, TAGS - 1), TAGS - 1);
@@ -155,13 +141,12 @@ CASE(a_thousand_at_once_are_all_written)
 
 static int alarms_of(struct alarm_service_setup *s, struct history_reader *reader, int64_t at_us)
 {
-    struct snapshot *then = snapshot_create(TAGS);
+    struct snapshot *then = test_snapshot(TAGS);
     int count = 0;
     then->taken_utc_ns = at_us * 1000;
     assert_int_equal(alarms_at_instant(s->log, reader, s->folder, s->plant, then), 0);
     for (int i = 0; i < TAGS; i++)
         count += then->readings[i].alarm != ALARM_NONE;
-    snapshot_destroy(&then);
     return count;
 }
 
@@ -227,8 +212,7 @@ CASE(a_lost_device_is_no_flood)
 {
     for (int i = 0; i < TAGS; i++)
         s->plant->tags[i].validity.stale_s = 600;
-    store_destroy(&s->store);
-    s->store = store_create(s->plant);
+    s->store = test_store(s->plant);
     start(s);
     store_link_lost(s->store, 0, clock_mono_ns());
     assert_int_equal(wait_for(s, ALARM_SUPPRESSED, TAGS), TAGS);
@@ -280,13 +264,12 @@ CASE(a_damaged_journal_is_set_aside)
 {
     char garbage[8192];
     memset(garbage, 'x', sizeof(garbage));
-    char *path = temp_write(s->folder, JOURNAL_FILE, garbage, sizeof(garbage));
+    temp_write(s->folder, JOURNAL_FILE, garbage, sizeof(garbage));
     start(s);
     give_all(s, 90);
     assert_int_equal(wait_for(s, ALARM_UNACKNOWLEDGED, TAGS), TAGS);
     alarm_service_stop(&s->alarm_service); /* stopping writes all pending rows */
     assert_int_equal(read_rows(s, NULL, 100000, INT64_MAX).count, TAGS);
-    mem_free(path);
 }
 
 static void mirror(void *arg, const struct journal_entry *row)
@@ -298,12 +281,12 @@ static void mirror(void *arg, const struct journal_entry *row)
 CASE(a_returning_standby_gets_each_row_that_it_lacks_once)
 {
     int64_t now_ns = clock_utc_ns() / 1000 * 1000;
-    char *leader_folder = s->folder, *folder = mem_printf("%s/standby", s->folder);
+    char *leader_folder = s->folder, *folder = test_printf("%s/standby", s->folder);
     start(s);
     struct alarm_service *leader = s->alarm_service;
     struct counters *counters = s->counters;
     s->folder = folder;
-    s->counters = counters_create();
+    s->counters = test_counters();
     start(s);
     for (int i = 0; i < 3; i++) {
         struct journal_entry row = { .alarm = { .kind = ALARM_H, .priority = 1, .limit = NAN }, .changed = true, .value = i / 3. };
@@ -321,9 +304,7 @@ CASE(a_returning_standby_gets_each_row_that_it_lacks_once)
     }
     alarm_service_stop(&s->alarm_service);
     assert_int_equal(read_rows(s, NULL, 100, INT64_MAX).count, 3);
-    counters_destroy(&s->counters);
     s->counters = counters;
     s->folder = leader_folder;
     s->alarm_service = leader;
-    mem_free(folder);
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Alarm states: a table gives the next state for every state and event; also limits, deadbands and delays. */
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "alarm/alarm_state.h"
 #include "alarm/condition.h"

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Alarms of a plant: driven by samples, time and operators; in all three alarm modes; after a restart and after a reload. */
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "alarm/alarms.h"
-#include "base/mem.h"
 #include "tests/support/plant_by_hand.h"
 #include "value/quality.h"
 
@@ -48,9 +46,6 @@ static void make_plant(struct stage *s, enum alarm_mode mode)
         tag->alarms.settings.on_delay_s = i == 1 ? 2 : 0;
     }
     s->plant->tags[1].alarms.suppressed_by = 2;
-    s->plant->tags_by_name = mem_array(5, sizeof(int));
-    static const int sorted[] = { 3, 4, 1, 2, 0 };
-    memcpy(s->plant->tags_by_name, sorted, sizeof(sorted));
     if (mode == ALARMS_MIRROR) {
         s->plant->tags[3].alarms.mirror = (struct plant_mirror){ 0, LIMIT_HH, false };
         s->plant->tags[4].alarms.mirror = (struct plant_mirror){ 0, LIMIT_HH, true };
@@ -63,17 +58,13 @@ static void begin(struct stage *s, enum alarm_mode mode)
     *s = (struct stage){ .plant = NULL };
     make_plant(s, mode);
     s->alarms = alarms_create(s->plant, &(struct alarms_listener){ on_change, on_tag, s });
-    s->snapshot = snapshot_create(5);
+    s->snapshot = test_snapshot(5);
 }
 
 static void end(struct stage *s)
 {
     alarms_destroy(&s->alarms);
     alarms_destroy(&s->alarms);
-    snapshot_destroy(&s->snapshot);
-    mem_free(s->plant->tags_by_name);
-    s->plant->tags_by_name = NULL;
-    plant_by_hand_destroy(&s->plant);
 }
 
 static void hear(struct stage *s, int second, int tag, double value, uint32_t quality)
@@ -516,7 +507,7 @@ TEST(units_are_devices_of_their_own)
     s.plant->tags[1].alarms.settings.on_delay_s = 0;
     s.plant->tags[1].alarms.suppressed_by = -1;
     s.alarms = alarms_create(s.plant, &(struct alarms_listener){ on_change, on_tag, &s });
-    s.snapshot = snapshot_create(5);
+    s.snapshot = test_snapshot(5);
     hear_all(&s, 1, 3, QUALITY_GOOD);
     s.log[0] = 0;
     hear(&s, 2, 1, 0, QUALITY_BAD_COMMUNICATION_ERROR);
@@ -569,7 +560,7 @@ TEST(a_device_without_limits_has_an_alarm)
         for (int i = 0; i < LIMIT_COUNT; i++)
             s.plant->tags[tag].alarms.limits[i] = NAN;
     s.alarms = alarms_create(s.plant, &(struct alarms_listener){ on_change, on_tag, &s });
-    s.snapshot = snapshot_create(5);
+    s.snapshot = test_snapshot(5);
     hear_all(&s, 1, 50, QUALITY_GOOD);
     hear_all(&s, 10, 50, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE); /* the reading after one missed poll */
     tick(&s, 14);
@@ -595,7 +586,7 @@ TEST(a_lost_source_that_never_gets_stale_has_an_alarm)
     for (int tag = 0; tag < 5; tag++)
         s.plant->tags[tag].validity.stale_s = PLANT_NEVER_STALE_S;
     s.alarms = alarms_create(s.plant, &(struct alarms_listener){ on_change, on_tag, &s });
-    s.snapshot = snapshot_create(5);
+    s.snapshot = test_snapshot(5);
     hear_all(&s, 1, 50, QUALITY_GOOD);
     s.log[0] = 0;
     hear_all(&s, 10, 50, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);

@@ -5,9 +5,7 @@
 
 #include "tests/support/test.h"
 
-#include "base/mem.h"
 #include "tests/support/replay.h"
-#include "tests/support/temp.h"
 
 #define SEEDS "tests/fuzz/asset"
 
@@ -72,7 +70,7 @@ static void write_seed(const char *folder, const char *name, const struct asset_
 {
     size_t size;
     void *bytes = asset_build(parts, &size);
-    mem_free(temp_write(folder, name, bytes, size));
+    temp_write(folder, name, bytes, size);
     free(bytes);
 }
 

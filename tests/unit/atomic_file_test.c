@@ -11,31 +11,19 @@
 #include <unistd.h>
 
 #include "base/files/file_writer.h"
-#include "base/mem.h"
 #include "base/text/text.h"
-#include "tests/support/temp.h"
 
 struct atomic_file_fixture {
     char *folder, *path;
 };
 
-static int set_up(void **state)
+static void begin(struct atomic_file_fixture *f)
 {
-    struct atomic_file_fixture *f = mem_new(sizeof(*f));
-    f->folder = temp_folder_create();
+    f->folder = temp_folder();
     f->path = temp_write_text(f->folder, "f", "old");
-    *state = f;
-    return 0;
 }
 
-static int tear_down(void **state)
-{
-    struct atomic_file_fixture *f = *state;
-    temp_folder_destroy(&f->folder);
-    mem_free(f->path);
-    mem_free(f);
-    return 0;
-}
+TEST_FIXTURE(struct atomic_file_fixture, begin, NULL)
 
 #define CASE(name) TEST_ON(struct atomic_file_fixture *f, name, set_up, tear_down)
 
@@ -49,9 +37,8 @@ static void assert_text(const char *path, const char *want)
 
 static void assert_nothing_beside(const struct atomic_file_fixture *f)
 {
-    char *look = mem_printf("test -z \"$(ls '%s' | grep new)\"", f->folder);
+    char *look = test_printf("test -z \"$(ls '%s' | grep new)\"", f->folder);
     assert_int_equal(system(look), 0);
-    mem_free(look);
 }
 
 CASE(the_old_file_stays_until_the_new_one_is_whole)
@@ -85,7 +72,7 @@ CASE(one_that_is_given_up_leaves_nothing)
 /* An attacker puts a link at the temporary file's path, pointing to a file that only this program may write. */
 CASE(links_and_files_beside_are_not_written_through)
 {
-    char *secret = temp_write_text(f->folder, "secret", "secret"), *link = mem_printf("%s.%ld.new", f->path, (long)getpid());
+    char *secret = temp_write_text(f->folder, "secret", "secret"), *link = test_printf("%s.%ld.new", f->path, (long)getpid());
     assert_int_equal(symlink(secret, link), 0);
     assert_int_equal(atomic_file_put(f->path, "new", 3), 0);
     assert_text(f->path, "new");
@@ -95,8 +82,6 @@ CASE(links_and_files_beside_are_not_written_through)
     assert_true(S_ISREG(st.st_mode));
     assert_int_equal(unlink(link), 0);
     assert_nothing_beside(f);
-    mem_free(secret);
-    mem_free(link);
 }
 
 /* --- file_writer.c: the thread that writes such files for the event loop --------------------------------------------------------- */
@@ -139,7 +124,7 @@ static void on_written(void *arg)
 
 TEST(a_failed_write_fails_those_that_build_on_it)
 {
-    struct log *log = log_create(LOG_ERROR);
+    struct log *log = test_log();
     pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
     atomic_int written = 0;
     struct file_writer *writer = file_writer_start(log, on_written, &written);
@@ -173,12 +158,11 @@ TEST(a_failed_write_fails_those_that_build_on_it)
     file_writer_destroy(&writer);
     assert_int_equal(late, 0);
     assert_int_equal(atomic_load(&written), 3); /* the job that followed the failed one was not written */
-    log_destroy(&log);
 }
 
 TEST(a_disk_that_hangs_fills_the_queue_and_owners_may_leave)
 {
-    struct log *log = log_create(LOG_ERROR);
+    struct log *log = test_log();
     pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
     atomic_int written = 0;
     struct file_writer *writer = file_writer_start(log, on_written, &written);
@@ -196,5 +180,4 @@ TEST(a_disk_that_hangs_fills_the_queue_and_owners_may_leave)
     assert_int_equal(left, -ECANCELED);
     for (int i = 0; i < count; i++)
         assert_int_equal(results[i], 0);
-    log_destroy(&log);
 }

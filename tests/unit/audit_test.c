@@ -10,25 +10,9 @@
 #include "audit/audit_file.h"
 #include "audit/audit_head.h"
 #include "audit/audit_syslog.h"
-#include "base/mem.h"
 
 static const int64_t AT_US = INT64_C(1795000000000000);
 static const struct audit_entry ENTRY = { .event = "alarm", .result = "done", .who = "Kim \"A\"", .what = "acknowledge TT-101 HH" };
-
-static char *folder(void)
-{
-    char *path = mem_strdup("/tmp/plantcast-audit-XXXXXX");
-    assert_non_null(mkdtemp(path));
-    return path;
-}
-
-static void clean(char *path)
-{
-    char *command = mem_printf("rm -r %s", path);
-    assert_int_equal(system(command), 0);
-    mem_free(command);
-    mem_free(path);
-}
 
 /* Appends `count` lines as one run of a daemon does. Returns the finding about the existing file, or NULL; free with mem_free. */
 static char *write_lines(const char *path, int count, size_t most_bytes)
@@ -83,7 +67,7 @@ static void put(const char *path, const char *bytes, size_t count)
 
 TEST(test_any_changed_byte)
 {
-    char *dir = folder(), *path = mem_printf("%s/a", dir);
+    char *dir = temp_folder(), *path = test_printf("%s/a", dir);
     size_t count;
     struct audit_chain none;
     assert_null(write_lines(path, 5, 1 << 20));
@@ -104,8 +88,6 @@ TEST(test_any_changed_byte)
     put(path, bytes, count);
     expect_good(path, 1, 5);
     mem_free(bytes);
-    mem_free(path);
-    clean(dir);
 }
 
 /* starts[] receives the offset at which each line begins; the last entry is the end of the file. */
@@ -121,7 +103,7 @@ static size_t starts_of(const char *bytes, size_t count, size_t starts[])
 
 TEST(test_lines_removed_and_moved)
 {
-    char *dir = folder(), *path = mem_printf("%s/a", dir), *head_path = mem_printf("%s.head", path);
+    char *dir = temp_folder(), *path = test_printf("%s/a", dir), *head_path = test_printf("%s.head", path);
     size_t count, starts[8];
     mem_free(write_lines(path, 5, 1 << 20));
     char *bytes = text_read_file(path, 1 << 20, &count), *copy = mem_array(count, 1);
@@ -161,15 +143,12 @@ TEST(test_lines_removed_and_moved)
     expect_fault(path, &third, "line 3 differs from the line recorded in --known");
     mem_free(copy);
     mem_free(bytes);
-    mem_free(head_path);
-    mem_free(path);
-    clean(dir);
 }
 
 /* A daemon that starts with a truncated trail reports the gap, and the gap stays visible in the chain. */
 TEST(test_next_start)
 {
-    char *dir = folder(), *path = mem_printf("%s/a", dir), *finding;
+    char *dir = temp_folder(), *path = test_printf("%s/a", dir), *finding;
     size_t count, starts[8];
     mem_free(write_lines(path, 3, 1 << 20));
     assert_null(write_lines(path, 2, 1 << 20));
@@ -183,7 +162,7 @@ TEST(test_next_start)
     expect_fault(path, NULL, ":4: lines before this line are missing");
     /* an incomplete last line at the end, as a crash leaves it */
     put(path, bytes, count - 10);
-    char *head_path = mem_printf("%s.head", path);
+    char *head_path = test_printf("%s.head", path);
     struct audit_chain fourth;
     const char *why;
     audit_chain_init(&fourth);
@@ -193,15 +172,12 @@ TEST(test_next_start)
     assert_non_null(strstr(finding, "an incomplete last line"));
     mem_free(finding);
     expect_good(path, 1, 5);
-    mem_free(head_path);
     mem_free(bytes);
-    mem_free(path);
-    clean(dir);
 }
 
 TEST(test_rotation)
 {
-    char *dir = folder(), *path = mem_printf("%s/a", dir), *full = mem_printf("%s.000000000004", path), *later;
+    char *dir = temp_folder(), *path = test_printf("%s/a", dir), *full = test_printf("%s.000000000004", path), *later;
     struct text lines = { 0 };
     struct audit_file file;
     assert_null(write_lines(path, 10, 1000)); /* each line has some 280 bytes */
@@ -210,7 +186,7 @@ TEST(test_rotation)
     assert_null(write_lines(path, 1, 1000));
     expect_good(path, 3, 11);
     /* another program moves the file away while it is open */
-    char *moved = mem_printf("%s.000000000012", path);
+    char *moved = test_printf("%s.000000000012", path);
     assert_int_equal(audit_file_open(&file, path, 1 << 20, &later), 0);
     assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
     assert_int_equal(rename(path, moved), 0);
@@ -234,16 +210,12 @@ TEST(test_rotation)
     unlink(moved);
     expect_fault(path, NULL, "lines before this line are missing");
     text_finish(&lines);
-    mem_free(moved);
-    mem_free(full);
-    mem_free(path);
-    clean(dir);
 }
 
 /* If the file may not grow, no part of a line is written; once it may grow again, no line is missing. */
 TEST(test_full_disk)
 {
-    char *dir = folder(), *path = mem_printf("%s/a", dir), *later;
+    char *dir = temp_folder(), *path = test_printf("%s/a", dir), *later;
     struct rlimit before, less;
     struct text lines = { 0 };
     struct audit_file file;
@@ -265,8 +237,6 @@ TEST(test_full_disk)
     expect_good(path, 1, 2);
     audit_file_close(&file);
     text_finish(&lines);
-    mem_free(path);
-    clean(dir);
 }
 
 /* Writing a row fails and the next succeeds, as on a disk that is full for a moment: the caller waiting for the second row must still
@@ -320,9 +290,9 @@ TEST(test_syslog_frame)
 /* Several threads record at once; every entry is in the file, in order. */
 TEST(test_daemon)
 {
-    char *dir = folder(), *path = mem_printf("%s/a", dir);
-    struct log *log = log_create(LOG_ERROR);
-    struct counters *counters = counters_create();
+    char *dir = temp_folder(), *path = test_printf("%s/a", dir);
+    struct log *log = test_log();
+    struct counters *counters = test_counters();
     struct audit *audit = audit_start(&(struct audit_params){ .log = log, .counters = counters, .path = path });
     assert_non_null(audit);
     for (int i = 0; i < 200; i++)
@@ -335,8 +305,4 @@ TEST(test_daemon)
     counters_print(counters, &metrics);
     assert_non_null(strstr(metrics.at, "plantcast_audit_lines_total 200"));
     text_finish(&metrics);
-    counters_destroy(&counters);
-    log_destroy(&log);
-    mem_free(path);
-    clean(dir);
 }

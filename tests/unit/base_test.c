@@ -10,9 +10,7 @@
 #include "base/metrics/histogram.h"
 #include "base/text/diag.h"
 #include "base/log/log.h"
-#include "base/mem.h"
 #include "base/text/text.h"
-#include "tests/support/temp.h"
 
 TEST(text_grows)
 {
@@ -54,7 +52,7 @@ TEST(cells_are_no_formulas)
 
 TEST(files_are_read_whole_and_replaced_at_once)
 {
-    char *folder = temp_folder_create(), *path = temp_path(folder, "f"), *nowhere = temp_path(folder, "no/f");
+    char *folder = temp_folder(), *path = temp_path(folder, "f"), *nowhere = temp_path(folder, "no/f");
     size_t bytes = 99;
     assert_int_equal(atomic_file_put(path, "one\0two", 7), 0);
     assert_int_equal(atomic_file_put(path,
@@ -79,9 +77,6 @@ TEST(files_are_read_whole_and_replaced_at_once)
     assert_int_equal(atomic_file_put(nowhere, "x", 1), -ENOENT);
     assert_int_equal(atomic_file_put(folder, "x", 1), -EISDIR);
     assert_int_equal(unlink(path), 0);
-    temp_folder_destroy(&folder);
-    mem_free(path);
-    mem_free(nowhere);
 }
 
 TEST(memory_is_zeroed_and_checked)
@@ -100,9 +95,8 @@ TEST(memory_is_zeroed_and_checked)
     char *none = mem_try_array(0, 0);
     assert_non_null(none);
     mem_free(none);
-    char *text = mem_printf("%s-%d", "a", 5);
+    char *text = test_printf("%s-%d", "a", 5);
     assert_string_equal(text, "a-5");
-    mem_free(text);
 }
 
 TEST(findings_come_in_the_order_of_the_text)
@@ -181,7 +175,7 @@ TEST(of_many_errors_alike_the_first_are_printed)
 
 TEST(counters_are_printed_by_family)
 {
-    struct counters *counters = counters_create();
+    struct counters *counters = test_counters();
     struct text text = { 0 };
     counter *a = counters_add(counters, "reads_total{source=\"a\"}", "counter", "Reads.");
     counter_set(counters_add(counters, "sessions", "gauge", "Sessions."), 3);
@@ -194,8 +188,6 @@ TEST(counters_are_printed_by_family)
                                  "reads_total{source=\"a\"} 42\nreads_total{source=\"b\"} 2\n"
                                  "# HELP sessions Sessions.\n# TYPE sessions gauge\nsessions 3\n");
     text_finish(&text);
-    counters_destroy(&counters);
-    assert_null(counters);
 }
 
 static int lines_with(const char *text, const char *words)
@@ -208,7 +200,7 @@ static int lines_with(const char *text, const char *words)
 
 TEST(repeats_in_the_log_are_counted)
 {
-    char *folder = temp_folder_create(), *path = temp_path(folder, "log");
+    char *folder = temp_folder(), *path = temp_path(folder, "log");
     size_t bytes;
     fflush(stderr);
     int kept = dup(STDERR_FILENO);
@@ -233,13 +225,11 @@ TEST(repeats_in_the_log_are_counted)
     assert_int_equal(lines_with(text, "error other\n"), 1);
     assert_int_equal(lines_with(text, "\n"), 5);
     mem_free(text);
-    mem_free(path);
-    temp_folder_destroy(&folder);
 }
 
 TEST(durations_are_counted_by_bucket)
 {
-    struct counters *counters = counters_create();
+    struct counters *counters = test_counters();
     struct text text = { 0 };
     struct histogram *plain = counters_add_histogram(counters, "plain_seconds", "Plain.");
     struct histogram *labelled = counters_add_histogram(counters, "stage_seconds{stage=\"a\"}", "Stages.");
@@ -263,16 +253,14 @@ TEST(durations_are_counted_by_bucket)
     for (size_t i = 0; i < sizeof(wanted) / sizeof(wanted[0]); i++)
         assert_non_null(strstr(text.at, wanted[i]));
     text_finish(&text);
-    counters_destroy(&counters);
 }
 
 TEST(numbers_of_microseconds_are_printed_in_seconds)
 {
-    struct counters *counters = counters_create();
+    struct counters *counters = test_counters();
     struct text text = { 0 };
     counter_set(counters_add_seconds(counters, "spent_seconds_total", "counter", "Time."), 12345678);
     counters_print(counters, &text);
     assert_string_equal(text.at, "# HELP spent_seconds_total Time.\n# TYPE spent_seconds_total counter\nspent_seconds_total 12.345678\n");
     text_finish(&text);
-    counters_destroy(&counters);
 }

@@ -5,7 +5,6 @@
 #include "tests/support/test.h"
 #include <pthread.h>
 
-
 static struct snapshot *readings(double value, int64_t taken_utc_ns)
 {
     struct snapshot *snapshot = snapshot_create(3);

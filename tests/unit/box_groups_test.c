@@ -3,10 +3,8 @@
 #include "preprocess/levels/box_groups.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 #include <time.h>
 
-#include "base/mem.h"
 #include "surface/mesh/trimesh.h"
 #include "tests/support/cad.h"
 

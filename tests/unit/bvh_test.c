@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* BVH queries compared with trying every triangle; equally near triangles are ordered by their numbers. */
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "base/math/vec.h"
-#include "base/mem.h"
 #include "surface/mesh/bvh.h"
 #include "tests/support/surface_case.h"
 

@@ -3,7 +3,6 @@
 #include "scene/camera.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 
 static const struct camera good = { .eye_m = { 10, -20, 5 }, .target_m = { 1, 2, 3 }, .up = { 0, 0, 1 }, .fov_deg = 45 };
 

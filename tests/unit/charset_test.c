@@ -4,8 +4,6 @@
 
 #include "tests/support/test.h"
 
-#include "base/mem.h"
-
 enum { MOST = 24 };
 
 static const struct encoded_sample {

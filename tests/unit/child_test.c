@@ -11,12 +11,9 @@
 #include <time.h>
 #include <unistd.h>
 
-
 #include "base/system/cgroup.h"
-#include "base/mem.h"
 #include "preprocess/child/child.h"
 #include "preprocess/child/work_folder.h"
-#include "tests/support/temp.h"
 
 /* Sanitizers need more memory than the limits that some cases test. */
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -302,7 +299,7 @@ static void lay_out(const char *folder)
  * more. */
 TEST(test_each_abi_of_landlock_holds_or_the_log_names_what_it_leaves_open)
 {
-    char lacks[CONFINE_LACKS_BYTES], *folder = temp_folder_create();
+    char lacks[CONFINE_LACKS_BYTES], *folder = temp_folder();
     int newest = (int)syscall(444, NULL, 0, 1); /* landlock_create_ruleset: asks for the ABI */
     for (int abi = 1; abi <= newest; abi++) {
         lay_out(folder);
@@ -315,7 +312,6 @@ TEST(test_each_abi_of_landlock_holds_or_the_log_names_what_it_leaves_open)
         assert_true(!(open & SIGNAL) == !strstr(lacks, "signal other processes"));
         print_message("Landlock ABI %d: %s\n", abi, *lacks ? lacks : "nothing is left open");
     }
-    temp_folder_destroy(&folder);
     if (newest < 1)
         skip();
 }

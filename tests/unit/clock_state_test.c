@@ -4,7 +4,6 @@
 
 #include "tests/support/test.h"
 
-
 #include "base/clock.h"
 
 TEST(what_keeps_it_right_is_believed)

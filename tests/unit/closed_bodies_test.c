@@ -4,7 +4,6 @@
 
 #include "tests/support/test.h"
 
-
 #include "tests/support/shape.h"
 #include "tests/support/toy.h"
 

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Distances by the heat method on a point cloud, compared with formulas for spheres, tubes and plates; also shows where the method errs. */
 #include "tests/support/test.h"
-#include <math.h>
 
-#include "base/mem.h"
 #include "preprocess/influence/cloud_heat.h"
 #include "tests/support/cad.h"
 #include "tests/support/surface_case.h"

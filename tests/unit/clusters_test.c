@@ -4,9 +4,6 @@
 #include "preprocess/levels/clusters.h"
 
 #include "tests/support/test.h"
-#include <math.h>
-
-#include "base/mem.h"
 
 #define AROUND 120u
 #define ALONG 60u
@@ -69,7 +66,7 @@ static uint32_t *in_order(const struct geometry *g, const struct asset_primitive
 
 TEST(no_triangle_is_lost)
 {
-    struct workers *workers = workers_create(2);
+    struct workers *workers = test_workers(2);
     for (int threaded = 0; threaded < 2; threaded++) {
         struct geometry g;
         struct clusters clusters;
@@ -93,7 +90,6 @@ TEST(no_triangle_is_lost)
         clusters_finish(&clusters);
         geometry_finish(&g);
     }
-    workers_destroy(&workers);
 }
 
 /* The camera is 20 m away from a torus 8 m wide. */

@@ -4,7 +4,6 @@
 
 #include "tests/support/test.h"
 
-
 #include "scene/raycast.h"
 #include "tests/support/toy.h"
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tests of the colour maps as tables and as colours. */
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "field/colormap.h"
 

@@ -4,12 +4,9 @@
 #include "surface/surface.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 
-#include "base/mem.h"
 #include "tests/oracle/geodesic.h"
 #include "tests/support/surface_case.h"
-#include "tests/support/sweep.h"
 
 #define MEAN_MAX 0.006 /* of the largest distance */
 #define WORST_MAX 0.03

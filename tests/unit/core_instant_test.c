@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Historical readings sent from a core to a renderer: exact to the bit; invalid messages are refused. */
 #include "tests/support/test.h"
-#include <math.h>
 
-#include "base/mem.h"
 #include "corelink/core_instant.h"
-#include "tests/support/sweep.h"
 #include "value/alarm.h"
 #include "value/quality.h"
 
@@ -28,7 +25,7 @@ static struct text make_message(struct snapshot *snapshot)
 
 TEST(each_comes_to_the_bit)
 {
-    struct snapshot *sent = snapshot_create(TAGS), *got = snapshot_create(TAGS);
+    struct snapshot *sent = test_snapshot(TAGS), *got = test_snapshot(TAGS);
     struct text text = make_message(sent);
     int64_t first_us = 0;
     assert_null(core_instant_read(text.at, text.length, &first_us, got));
@@ -49,13 +46,11 @@ TEST(each_comes_to_the_bit)
     assert_string_equal(core_instant_read(text.at, text.length, &first_us, got),
                         "the core's answer has another number of readings than this plant has tags");
     text_finish(&text);
-    snapshot_destroy(&sent);
-    snapshot_destroy(&got);
 }
 
 TEST(any_bytes_are_read_or_refused)
 {
-    struct snapshot *snapshot = snapshot_create(TAGS), *got = snapshot_create(TAGS);
+    struct snapshot *snapshot = test_snapshot(TAGS), *got = test_snapshot(TAGS);
     struct text text = make_message(snapshot);
     unsigned seed = (unsigned)sweep_seed();
     int refused = 0;
@@ -81,6 +76,4 @@ TEST(any_bytes_are_read_or_refused)
     }
     assert_true(refused > ROUNDS / 10 && refused < ROUNDS);
     text_finish(&text);
-    snapshot_destroy(&snapshot);
-    snapshot_destroy(&got);
 }

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Live readings sent from a core to a renderer: only changes are sent, exact to the bit; invalid messages are refused. */
 #include "tests/support/test.h"
-#include <math.h>
 
-#include "base/mem.h"
 #include "corelink/core_identity.h"
 #include "corelink/core_readings.h"
 #include "tests/support/plant_by_hand.h"
@@ -139,8 +137,8 @@ TEST(a_store_shows_what_the_other_shows)
     struct plant *plant = plant_by_hand_create(2);
     plant_by_hand_source(plant, "a", 1);
     plant_by_hand_tag(plant, "TT", TABLE_HOLDING, 0, DATA_INT16);
-    struct store *store = store_create(plant);
-    struct snapshot *snapshot = snapshot_create(1);
+    struct store *store = test_store(plant);
+    struct snapshot *snapshot = test_snapshot(1);
     struct mirrored one = { .value = 4, .has_value = true, .received_mono_ns = 10 * S, .received_utc_ns = 7 };
     store_mirror(store, &one, 1, 10 * S);
     store_snapshot(store, 100000 * S, 0, snapshot);
@@ -154,9 +152,6 @@ TEST(a_store_shows_what_the_other_shows)
     store_mirror(store, &one, 1, 100002 * S);
     store_snapshot(store, 100002 * S, 0, snapshot);
     assert_int_equal(snapshot->readings[0].quality, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
-    snapshot_destroy(&snapshot);
-    store_destroy(&store);
-    plant_by_hand_destroy(&plant);
 }
 
 TEST(differences_have_names)

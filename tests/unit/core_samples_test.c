@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Samples sent from a core to its standby: every one, in order, exact to the bit; invalid messages are refused. */
 #include "tests/support/test.h"
-#include <math.h>
 
-#include "base/mem.h"
 #include "corelink/core_samples.h"
 #include "tests/support/plant_by_hand.h"
-#include "tests/support/sweep.h"
 #include "value/quality.h"
 
 #define S INT64_C(1000000000)
@@ -35,7 +32,6 @@ static struct text make_message(void)
     core_samples_end(&samples);
     store_write(store, &(struct sample){ .tag = 0, .value = 1 }, 1, 3 * S, 5002 * S); /* the store calls no listener any more */
     store_destroy(&store);
-    plant_by_hand_destroy(&plant);
     return text;
 }
 

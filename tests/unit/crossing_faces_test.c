@@ -3,13 +3,10 @@
 #include "surface/repair/crossing_faces.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "base/math/vec.h"
-#include "base/mem.h"
 #include "surface/mesh/bvh.h"
 #include "tests/support/surface_case.h"
-#include "tests/support/sweep.h"
 
 #define AROUND 12
 #define RINGS 24

@@ -6,8 +6,6 @@
 #include <dirent.h>
 #include <jansson.h>
 
-
-#include "base/mem.h"
 #include "tests/support/synthetic.h"
 
 #define FOLDER "protocol/vectors/markers"
@@ -19,8 +17,8 @@ static double at(const json_t *array, size_t i)
 
 static void check_vector(const char *name)
 {
-    char *path = mem_printf("%s/%s", FOLDER, name);
-    json_t *vector = json_load_file(path, 0, NULL);
+    char *path = test_printf("%s/%s", FOLDER, name);
+    json_t *vector = test_json(json_load_file(path, 0, NULL));
     assert_non_null(vector);
     const json_t *list = json_object_get(vector, "items"), *expected = json_object_get(vector, "drawn");
     size_t count = json_array_size(list), next = 0;
@@ -40,8 +38,6 @@ static void check_vector(const char *name)
     assert_int_equal(next, json_array_size(expected));
     mem_free(items);
     mem_free(drawn);
-    mem_free(path);
-    json_decref(vector);
 }
 
 TEST(draws_what_the_vectors_say)

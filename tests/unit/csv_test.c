@@ -4,9 +4,7 @@
 
 #include "tests/support/test.h"
 
-#include "base/mem.h"
 #include "base/text/text.h"
-#include "tests/support/temp.h"
 
 struct csv_fixture {
     char *folder, *path;
@@ -14,13 +12,10 @@ struct csv_fixture {
     struct csv csv;
 };
 
-static int set_up(void **state)
+static void begin(struct csv_fixture *f)
 {
-    struct csv_fixture *f = mem_new(sizeof(*f));
-    f->folder = temp_folder_create();
+    f->folder = temp_folder();
     f->path = temp_path(f->folder, "t.csv");
-    *state = f;
-    return 0;
 }
 
 static void forget(struct csv_fixture *f)
@@ -29,22 +24,19 @@ static void forget(struct csv_fixture *f)
     diag_finish(&f->diag);
 }
 
-static int tear_down(void **state)
+static void end(struct csv_fixture *f)
 {
-    struct csv_fixture *f = *state;
     forget(f);
-    mem_free(f->path);
-    temp_folder_destroy(&f->folder);
-    mem_free(f);
-    return 0;
 }
+
+TEST_FIXTURE(struct csv_fixture, begin, end)
 
 #define CASE(name) TEST_ON(struct csv_fixture *f, name, set_up, tear_down)
 
 static void open_bytes(struct csv_fixture *f, const char *text, size_t bytes)
 {
     forget(f);
-    mem_free(temp_write(f->folder, "t.csv", text, bytes));
+    temp_write(f->folder, "t.csv", text, bytes);
     assert_true(csv_open(&f->csv, f->path, &f->diag));
 }
 
@@ -174,7 +166,6 @@ CASE(what_is_no_table_is_said_once)
         assert_int_equal(diag.errors, 1);
         assert_non_null(strstr(diag.items[0].text, others[i].says));
         diag_finish(&diag);
-        mem_free(path);
     }
     struct text latin = { 0 };
     struct csv csv;
@@ -189,7 +180,6 @@ CASE(what_is_no_table_is_said_once)
     csv_close(&csv);
     diag_finish(&diag);
     text_finish(&latin);
-    mem_free(path);
 }
 
 CASE(reading_goes_on_after_a_mistake)
@@ -205,7 +195,7 @@ CASE(files_without_a_header_are_refused)
 {
     static const char *const texts[] = { "", "\n \r\n", ",,,\n", "\xEF\xBB\xBF" };
     for (size_t i = 0; i < 4; i++) {
-        mem_free(temp_write_text(f->folder, "t.csv", texts[i]));
+        temp_write_text(f->folder, "t.csv", texts[i]);
         assert_false(csv_open(&f->csv, f->path, &f->diag));
         assert_int_equal(f->diag.errors, i + 1);
     }

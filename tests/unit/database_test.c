@@ -3,13 +3,10 @@
 #include "tests/support/test.h"
 
 #include <errno.h>
-#include <math.h>
 #include <unistd.h>
 
 #include "base/files/database.h"
-#include "base/mem.h"
 #include "base/text/text.h"
-#include "tests/support/temp.h"
 
 enum { ADD, ALL, WRONG, STATEMENTS };
 static const char *const schemas[] = { "CREATE TABLE a(v REAL, s TEXT)", "CREATE TABLE b(x INTEGER); INSERT INTO b VALUES(7)" };
@@ -25,30 +22,20 @@ struct database_setup {
     char *folder;
 };
 
-static int set_up(void **state)
+static void begin(struct database_setup *s)
 {
-    struct database_setup *s = mem_new(sizeof(*s));
-    s->log = log_create(LOG_ERROR);
-    s->folder = temp_folder_create();
-    *state = s;
-    return 0;
+    s->log = test_log();
+    s->folder = temp_folder();
 }
 
-static int tear_down(void **state)
-{
-    struct database_setup *s = *state;
-    temp_folder_destroy(&s->folder);
-    log_destroy(&s->log);
-    mem_free(s);
-    return 0;
-}
+TEST_FIXTURE(struct database_setup, begin, NULL)
 
 #define CASE(name) TEST_ON(struct database_setup *s, name, set_up, tear_down)
 
 static struct database make(struct database_setup *s, const struct database_format *format)
 {
     struct database db;
-    database_init(&db, s->log, temp_path(s->folder, "x.sqlite"), format);
+    database_init(&db, s->log, mem_printf("%s/x.sqlite", s->folder), format);
     return db;
 }
 
@@ -105,7 +92,7 @@ CASE(an_older_version_is_converted_and_a_newer_one_left_alone)
 
 CASE(a_file_without_anything_in_it_is_none)
 {
-    mem_free(temp_write(s->folder, "x.sqlite", "", 0));
+    temp_write(s->folder, "x.sqlite", "", 0);
     assert_int_equal(version_read(s, &first), -ENOENT);
 }
 
@@ -113,16 +100,15 @@ CASE(a_damaged_file_is_set_aside)
 {
     char rubbish[4096];
     memset(rubbish, 'z', sizeof(rubbish));
-    mem_free(temp_write(s->folder, "x.sqlite", rubbish, sizeof(rubbish)));
+    temp_write(s->folder, "x.sqlite", rubbish, sizeof(rubbish));
     assert_int_equal(version_read(s, &first), -EBADMSG);
     struct database db = make(s, &first);
     bool renewed;
     assert_int_equal(database_open(&db, &renewed), 0);
     assert_true(renewed);
     database_finish(&db);
-    char *look = mem_printf("test -e '%s'/x.damaged-*.sqlite", s->folder);
+    char *look = test_printf("test -e '%s'/x.damaged-*.sqlite", s->folder);
     assert_int_equal(system(look), 0);
-    mem_free(look);
 }
 
 /* A statement that cannot be prepared accepts binding like any other; stepping it returns the error. */

@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Debug views: the GLB files follow the rules of glTF 2.0 and show what the report counts. */
 #include "tests/support/test.h"
-#include <math.h>
 #include <sys/stat.h>
 
-#include "base/mem.h"
 #include "preprocess/model/gltf_shim.h"
 #include "tests/support/boxes.h"
 #include "tests/support/prep_case.h"
-#include "tests/support/temp.h"
 
 static const char plant_text[] = "plant: { name: Boxes }\n"
                                  "assets:\n"
@@ -197,7 +194,6 @@ CASE(views_follow_the_rules)
         assert_true(model.skipped_points == 2 || model.skipped_points == 1);
         gltf_free(&model);
         model_source_finish(&source);
-        mem_free(path);
     }
 }
 
@@ -220,7 +216,6 @@ CASE(bridges_and_points_are_those_of_the_report)
     assert_null(node_shape(&glb, "unreachable"));
     assert_non_null(node_shape(&glb, "hidden")); /* faces where the two boxes cover each other are hidden */
     glb_close(&glb);
-    json_decref(report);
 }
 
 CASE(what_cannot_be_reached_is_shown)
@@ -271,7 +266,6 @@ CASE(colors_follow_the_distance)
     char *other = temp_path(c->folder, "plant.debug/APART.glb"); /* a sensor names its asset */
     struct stat st;
     assert_int_not_equal(stat(other, &st), 0);
-    mem_free(other);
     prep_case_expect(c, "$PLANT --debug-view --sensor T-NONE", 1);
     prep_case_says(&c->err, "tag T-NONE is not a sensor");
     prep_case_expect(c, "$PLANT --debug-view=/proc/no/such --asset APART", 1);

@@ -3,9 +3,7 @@
 #include "surface/mesh/decimate.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 
-#include "base/mem.h"
 #include "tests/support/surface_case.h"
 
 #define ADDED 300

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Decoding of register values: every data type in every byte order from bytes written by hand, and every scaling. */
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "value/decode.h"
 #include "value/quality.h"

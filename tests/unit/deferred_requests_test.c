@@ -2,7 +2,6 @@
 /* Deferred requests come back in order, none is lost, and other requests get every second turn. */
 #include "tests/support/test.h"
 
-
 #include "service/deferred_requests.h"
 
 static void fill(struct request_group *group, uint64_t first, int count)

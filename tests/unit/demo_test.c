@@ -2,10 +2,8 @@
 /* The demo plant: no findings in its plant file, the heat exchanger has the paper's size, sensors lie on surfaces, the model has its
    deliberate faults, and limits fit the simulated process. */
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "base/math/vec.h"
-#include "base/mem.h"
 #include "deploy/demo/sim_values.h"
 #include "plant/plant.h"
 #include "plant/sensors.h"

@@ -2,12 +2,8 @@
 /* Depth grids: cells against a plain search, also at sizes that are no multiple of a cell, and codes after a round trip. */
 #include "tests/support/test.h"
 
-#include <math.h>
-
-#include "base/mem.h"
 #include "render/soft/depth_cells.h"
 #include "tests/support/depth_reader.h"
-#include "tests/support/sweep.h"
 
 static const struct depth_lens perspective = { .offset = -0.01, .factor = 2, .step = 0.01f, .least_step = 1e-4f };
 

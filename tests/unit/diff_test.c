@@ -2,11 +2,9 @@
 /* plantcast-prep --diff: what a new revision of the model changes, and which tags lose their position. */
 #include "tests/support/test.h"
 
-#include "base/mem.h"
 #include "tests/support/boxes.h"
 #include "tests/support/cad.h"
 #include "tests/support/prep_case.h"
-#include "tests/support/temp.h"
 
 static const char plant_format[] = "plant: { name: Boxes }\n"
                                    "assets:\n"
@@ -20,14 +18,10 @@ static const char tags_head[] = "Tag Name,Address,Data Type,Source,Group,Asset,N
 
 static void write_plant(struct prep_case *c, const char *name, const char *assets, const char *tags)
 {
-    char *yaml = mem_printf("%s.yaml", name), *csv = mem_printf("%s.csv", name), *list = mem_printf("%s%s", tags_head, tags);
-    char *text = mem_printf(plant_format, assets, csv);
-    mem_free(temp_write_text(c->folder, yaml, text));
-    mem_free(temp_write_text(c->folder, csv, list));
-    mem_free(yaml);
-    mem_free(csv);
-    mem_free(list);
-    mem_free(text);
+    char *yaml = test_printf("%s.yaml", name), *csv = test_printf("%s.csv", name), *list = test_printf("%s%s", tags_head, tags);
+    char *text = test_printf(plant_format, assets, csv);
+    temp_write_text(c->folder, yaml, text);
+    temp_write_text(c->folder, csv, list);
 }
 
 #define ASSET(id, model, more) "  - { id: " id ", model: " model ", nodes: " id ", up: z" more " }\n"
@@ -79,12 +73,11 @@ static int set_up(void **state)
 {
     prep_case_set_up(state);
     struct prep_case *c = *state;
-    char *rows = mem_printf("%s%s", tags_rows, lost_rows);
+    char *rows = test_printf("%s%s", tags_rows, lost_rows);
     write_model(c, false);
     write_model(c, true);
     write_plant(c, "old", OLD_ASSETS, rows);
     write_plant(c, "new", NEW_ASSETS, rows);
-    mem_free(rows);
     return 0;
 }
 
@@ -116,9 +109,8 @@ static void assert_orphan(const json_t *root, const char *tag, const char *why)
 
 static json_t *compare(struct prep_case *c, const char *arguments, int status)
 {
-    char *all = mem_printf("--report json --diff %s", arguments);
+    char *all = test_printf("--report json --diff %s", arguments);
     prep_case_expect(c, all, status);
-    mem_free(all);
     return prep_case_json(&c->out);
 }
 
@@ -169,7 +161,6 @@ CASE(a_revision_is_compared)
     json_t *root = compare(c, "$FOLDER/old.yaml $FOLDER/new.yaml", 1);
     check_assets(root, true);
     check_tags(root);
-    json_decref(root);
     prep_case_expect(c, "--diff $FOLDER/old.yaml $FOLDER/new.yaml", 1);
     prep_case_says(&c->out, "! T-NODE: position lost: the model has no node 'TT-2'");
     prep_case_says(&c->out, "1 assets added, 2 removed, 3 moved, 1 changed, 1 unchanged; "
@@ -182,11 +173,9 @@ CASE(a_prepared_folder_stands_for_the_old_plant)
     prep_case_expect(c, "$FOLDER/old.yaml", 0);
     char *model = temp_path(c->folder, "old.glb");
     assert_int_equal(remove(model), 0);
-    mem_free(model);
     json_t *root = compare(c, "$FOLDER/old.prepared $FOLDER/new.yaml", 1);
     check_assets(root, false);
     check_tags(root);
-    json_decref(root);
 }
 
 CASE(nothing_lost_is_no_error)
@@ -197,15 +186,12 @@ CASE(nothing_lost_is_no_error)
     assert_int_equal(json_array_size(json_object_get(root, "orphans")), 0);
     assert_int_equal(json_array_size(json_object_get(root, "tags_added")), 1);
     assert_int_equal(json_array_size(json_object_get(root, "tags_removed")), 8);
-    json_decref(root);
     root = compare(c, "$FOLDER/old.yaml $FOLDER/old.yaml", 0);
     assert_int_equal((int)prep_case_number(root, "counts.same"), 7);
-    json_decref(root);
     prep_case_expect(c, "$FOLDER/old.yaml", 0);
     /* no difference is reported: subdivided triangles are the same surface */
     root = compare(c, "$FOLDER/old.prepared $FOLDER/old.yaml", 0);
     assert_int_equal((int)prep_case_number(root, "counts.same"), 7);
-    json_decref(root);
 }
 
 /* Vertices that only coarser levels have lie off the surface and must not count as a change. */
@@ -227,10 +213,8 @@ CASE(levels_are_no_change)
     json_t *report = prep_case_json(&c->out);
     const json_t *levels = json_object_get(json_array_get(json_object_get(report, "assets"), 0), "levels");
     assert_true(prep_case_number(json_array_get(levels, json_array_size(levels) - 1), "error_m") > 0.02); /* the tolerance is 0.01 */
-    json_decref(report);
     json_t *root = compare(c, "$FOLDER/ball.prepared $FOLDER/ball.yaml", 0);
     asset_of(root, "BALL", "same");
-    json_decref(root);
 }
 
 CASE(the_tolerance_decides)
@@ -239,7 +223,6 @@ CASE(the_tolerance_decides)
     asset_of(root, "CHANGED", "same");
     assert_true(json_is_false(json_object_get(named(root, "sensors", "tag", "T-CHANGED"), "moved")));
     asset_of(root, "PLACED", "moved");
-    json_decref(root);
 }
 
 CASE(wrong_use_and_wrong_input_are_told_apart)

@@ -4,10 +4,6 @@
 
 #include "tests/support/test.h"
 
-
-#include "base/mem.h"
-#include "tests/support/sweep.h"
-
 static struct frame *grey(int width_px, int height_px)
 {
     struct frame *frame = frame_create(width_px, height_px);

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `plantcast-prep distances` from a CAD file to its printed output: distances around a cylinder compared with the formula. */
 #include "tests/support/test.h"
-#include <math.h>
 
-
-#include "base/mem.h"
 #include "tests/support/cad.h"
 #include "tests/support/model_maker.h"
 #include "tests/support/prep_case.h"
-#include "tests/support/temp.h"
 
 enum { AROUND = 160, ALONG = 130 };
 static const double LENGTH_M = 3, MOVED_M[3] = { 10, -20, 5 };
@@ -26,7 +22,7 @@ static size_t write_cylinder(struct prep_case *c, struct cad_random *random)
     maker_node(&maker, "cylinder",
                maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions, "indices", indices)), NULL);
     char *glb = maker_glb(&maker, &size);
-    mem_free(temp_write(c->folder, "model.glb", glb, size));
+    temp_write(c->folder, "model.glb", glb, size);
     mem_free(glb);
     maker_finish(&maker);
     size_t vertices = cad.vertex_count;
@@ -43,7 +39,7 @@ static double along_surface(const double a[2], const double b[2]) /* a and b: tu
 /* Checks the printed distance from a sensor to every vertex. */
 static void check(struct prep_case *c, const char *tag, const double sensor[2], size_t vertices)
 {
-    char *arguments = mem_printf("distances $PLANT --asset A --sensor %s", tag);
+    char *arguments = test_printf("distances $PLANT --asset A --sensor %s", tag);
     double sum_m = 0, worst_m = 0, worst_straight_m = 0, longest_m = 0;
     size_t lines = 0;
     prep_case_expect(c, arguments, 0);
@@ -66,7 +62,6 @@ static void check(struct prep_case *c, const char *tag, const double sensor[2], 
     assert_int_equal(lines, vertices);
     assert_true(sum_m / (double)lines <= 0.006 * longest_m && worst_m <= 0.03 * longest_m);
     assert_true(worst_straight_m < 0.002); /* deviation from the cylinder: the sensor is projected onto a flat triangle */
-    mem_free(arguments);
 }
 
 TEST_WITH(round_a_cylinder, prep_case_set_up, prep_case_tear_down)

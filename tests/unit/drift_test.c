@@ -2,17 +2,14 @@
 /* Drift of sensors: the fit compared with plain least squares, and on real series (../shared/data/sensors) stretched over a week,
    unchanged and with a drift added to one sensor. The alarm limit lies a tenth of the group's range beyond all readings. */
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "base/log/log.h"
-#include "base/mem.h"
 #include "field/drift.h"
 #include "scene/scene_create.h"
 #include "tests/support/cad.h"
 #include "tests/support/measure.h"
 #include "tests/support/model_maker.h"
 #include "tests/support/prep_case.h"
-#include "tests/support/temp.h"
 
 #define SERIES "../shared/data/sensors/"
 enum { SENSORS = 5 };
@@ -210,11 +207,10 @@ struct recorded_series {
 
 static void read_series(struct recorded_series *s)
 {
-    char *path = mem_printf(SERIES "%s", s->file), *line = NULL;
+    char *path = test_printf(SERIES "%s", s->file), *line = NULL;
     FILE *file = fopen(path, "r");
     size_t room = 0, rows = 0, row = 0;
     int column[SENSORS];
-    mem_free(path);
     if (!file)
         skip();
     assert_true(getline(&line, &room, file) > 0);
@@ -255,7 +251,6 @@ static void read_series(struct recorded_series *s)
 }
 
 struct row_of_sensors {
-    struct log *log;
     struct plant *plant;
     struct scene *scene;
     struct neighbours *neighbours;
@@ -271,7 +266,7 @@ static void stand_sensors(struct prep_case *c, int count, struct row_of_sensors 
     cad_random_start(&random);
     cad_plate(&cad, &random, 24, 3, 2.4, 0.3, 0);
     char *glb = maker_glb_of(&cad, "strip", &size);
-    mem_free(temp_write(c->folder, "model.glb", glb, size));
+    temp_write(c->folder, "model.glb", glb, size);
     mem_free(glb);
     cad_finish(&cad);
     prep_case_plant(c, "plant: { name: Strip }\n"
@@ -287,11 +282,10 @@ static void stand_sensors(struct prep_case *c, int count, struct row_of_sensors 
     prep_case_tags(c, rows.at);
     text_finish(&rows);
     prep_case_expect(c, "$PLANT", 0);
-    out->log = log_create(LOG_ERROR);
     out->plant = plant_load_or_print(c->plant);
     assert_non_null(out->plant);
     char *prepared = plant_prepared_folder(out->plant);
-    out->scene = scene_create(out->log, out->plant, prepared);
+    out->scene = scene_create(test_log(), out->plant, prepared);
     mem_free(prepared);
     assert_non_null(out->scene);
     out->neighbours = neighbours_create(out->scene, 0, 0);
@@ -306,7 +300,6 @@ static void leave(struct row_of_sensors *row)
     neighbours_destroy(&row->neighbours);
     scene_destroy(&row->scene);
     plant_destroy(&row->plant);
-    log_destroy(&row->log);
 }
 
 /* Fits the first `hours` of the week after adding to one sensor a linear drift that reaches `change` at their end. */

@@ -5,11 +5,8 @@
 
 #include "tests/support/test.h"
 
-
 #include "base/clock.h"
-#include "base/mem.h"
 #include "render/depth_grid.h"
-#include "tests/support/sweep.h"
 
 enum { CLIENTS = 12, WIDTH = 64, HEIGHT = 36 };
 static const int64_t MS = NS_PER_MS;
@@ -36,13 +33,10 @@ struct chain_head { /* decoder state of the clients that share a stream */
     uint64_t state;
 };
 
-static int set_up(void **state)
+static void begin(struct encode_streams_fixture *f)
 {
-    struct encode_streams_fixture *f = mem_new(sizeof(*f));
     f->now_ns = 1000 * NS_PER_S;
     f->codec = WIRE_CODEC_H264;
-    *state = f;
-    return 0;
 }
 
 static bool never_busy(const struct encode_stream *stream)
@@ -59,9 +53,8 @@ static void destroy_empty(struct encode_streams_fixture *f)
     }
 }
 
-static int tear_down(void **state)
+static void end(struct encode_streams_fixture *f)
 {
-    struct encode_streams_fixture *f = *state;
     for (uint64_t client = 0; client < CLIENTS; client++)
         encode_streams_forget(&f->streams, client);
     destroy_empty(f);
@@ -69,9 +62,9 @@ static int tear_down(void **state)
     mem_free(f->streams.links);
     mem_free(f->plan.from);
     request_group_finish(&f->rest);
-    mem_free(f);
-    return 0;
 }
+
+TEST_FIXTURE(struct encode_streams_fixture, begin, end)
 
 #define CASE(name) TEST_ON(struct encode_streams_fixture *f, name, set_up, tear_down)
 

@@ -7,9 +7,6 @@
 #include <png.h>
 #include <turbojpeg.h>
 
-
-#include "base/mem.h"
-
 static struct frame *gradient(int w, int h)
 {
     struct frame *frame = frame_create(w, h);
@@ -29,7 +26,7 @@ static struct frame *gradient(int w, int h)
 
 static struct packet *encode(const char *name, struct frame *frame, int quality, bool full_chroma)
 {
-    struct log *log = log_create(LOG_ERROR);
+    struct log *log = test_log();
     struct encoder *encoder = encoder_create(log, name, ENCODER_H264_LIBRARY);
     struct packet *packet = NULL, *none = NULL;
     assert_non_null(encoder);
@@ -40,7 +37,6 @@ static struct packet *encode(const char *name, struct frame *frame, int quality,
     assert_int_equal(encoder_receive(encoder, &none), -EAGAIN);
     encoder_destroy(&encoder);
     assert_null(encoder);
-    log_destroy(&log);
     return packet;
 }
 
@@ -171,7 +167,7 @@ static void decode_parts(const struct packet *packet, uint8_t *bgr)
 
 TEST(jpeg_sends_only_what_changed)
 {
-    struct log *log = log_create(LOG_ERROR);
+    struct log *log = test_log();
     struct encoder *encoder = encoder_create(log, "jpeg", NULL);
     struct frame *before = gradient(640, 360), *now = gradient(640, 360);
     struct encoder_params params = { .quality = 95, .full_chroma = true };
@@ -208,7 +204,6 @@ TEST(jpeg_sends_only_what_changed)
     frame_unref(&before);
     frame_unref(&now);
     encoder_destroy(&encoder);
-    log_destroy(&log);
     mem_free(bgr);
 }
 
@@ -245,7 +240,6 @@ TEST(packets_outlive_frames_without_their_pixels)
 
 TEST(unknown_codecs_are_refused)
 {
-    struct log *log = log_create(LOG_ERROR);
+    struct log *log = test_log();
     assert_null(encoder_create(log, "gif", NULL));
-    log_destroy(&log);
 }

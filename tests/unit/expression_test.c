@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Expressions: their values, their syntax errors with positions, and derived tags that pass quality and age on. */
 #include "tests/support/test.h"
-#include <math.h>
 
-#include "base/mem.h"
 #include "plant/tags/expression.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/plant_case.h"
@@ -124,8 +122,8 @@ TEST_WITH(quality_and_age_are_carried_through, plant_case_set_up, plant_case_tea
     assert_true(plant->tags[0].source == -1 && plant->derived_count == 2 && plant->derived[0] == 3 && plant->derived[1] == 0);
     assert_true(plant->tags[3].validity.stale_s == 60 &&
                 plant->tags[0].validity.stale_s == 60); /* a derived tag's stale time is that of its inputs */
-    struct store *store = store_create(plant);
-    struct snapshot *snapshot = snapshot_create(plant->tag_count);
+    struct store *store = test_store(plant);
+    struct snapshot *snapshot = test_snapshot(plant->tag_count);
     struct derived_state *derived = derived_create(plant);
     const struct {
         int64_t at_s;
@@ -157,8 +155,6 @@ TEST_WITH(quality_and_age_are_carried_through, plant_case_set_up, plant_case_tea
             assert_true(d->value == steps[i].d && mean->value == steps[i].mean && d->age_ns == steps[i].age_s * S);
     }
     derived_destroy(&derived);
-    snapshot_destroy(&snapshot);
-    store_destroy(&store);
 }
 
 TEST_WITH(rows_are_checked, plant_case_set_up, plant_case_tear_down)

@@ -3,12 +3,9 @@
 #include "tests/support/test.h"
 #include <float.h>
 #include <malloc.h>
-#include <math.h>
 
-#include "base/mem.h"
 #include "field/field.h"
 #include "protocol/asset_distance.h"
-#include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 #include "value/quality.h"
 
@@ -841,7 +838,7 @@ TEST(test_cut_of_the_work_does_not_matter)
 {
     uint64_t random = sweep_seed();
     struct field_rig rig = rig_create(synthetic_create(.vertices = 70000, .sensors = 9, .seed = random));
-    struct workers *one = workers_create(1), *many = workers_create(5);
+    struct workers *one = test_workers(1), *many = test_workers(5);
     struct field *alone = field_create(one, &rig.plant->scene), *crowd = field_create(many, &rig.plant->scene);
     for (int tick = 0; tick < 12; tick++) {
         rig.params.interpolation = tick % 6 < 3 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
@@ -854,8 +851,6 @@ TEST(test_cut_of_the_work_does_not_matter)
     }
     field_destroy(&alone);
     field_destroy(&crowd);
-    workers_destroy(&one);
-    workers_destroy(&many);
     rig_finish(&rig);
 }
 

@@ -2,8 +2,6 @@
 /* Marker texts equal the values that the frame shows at their positions. */
 #include "tests/support/test.h"
 
-
-#include "base/mem.h"
 #include "render/frame.h"
 #include "value/quality.h"
 

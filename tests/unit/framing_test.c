@@ -3,8 +3,6 @@
 #include "scene/framing.h"
 
 #include "tests/support/test.h"
-#include <math.h>
-
 
 #include "scene/extremes.h"
 #include "scene/main_part.h"

@@ -2,16 +2,13 @@
 /* The Gaussian process compared with dense algebra: the kernel by inverting the system, weights by ordinary kriging with one mean per
    body (Cressie, Statistics for Spatial Data, 3.2), lost sensors by omission; also difficult positions and numbers. */
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "base/math/vec.h"
-#include "base/mem.h"
 #include "field/influence_fill.h"
 #include "preprocess/influence/gaussian_covariance.h"
 #include "preprocess/influence/gaussian_fit.h"
 #include "surface/geodesic/laplacian.h"
 #include "tests/support/surface_case.h"
-#include "tests/support/temp.h"
 
 struct gaussian_case {
     struct cad shape;
@@ -535,12 +532,11 @@ static void expect_table(const char *folder, const char *text, const char *wrong
     } else if (!strstr(why, wrong))
         fail_msg("%s", why);
     readings_table_finish(&table);
-    mem_free(path);
 }
 
 TEST(test_tables)
 {
-    char *folder = temp_folder_create();
+    char *folder = temp_folder();
     expect_table(folder,
                  "\xef\xbb\xbf"
                  "time,\"TI-2\",other, TI-1\r\n"
@@ -551,7 +547,6 @@ TEST(test_tables)
     expect_table(folder, "TI-1;TI-2\n1,5;2,5\n2,5;3\n", "0 lines have numbers of all 2 sensors, 2 lines do not; a fit needs at least 8");
     expect_table(folder, "TI-1,TI-2\n1,2\n1,5,2,5\n", "line 3: cell 3, but the header has only 2 columns");
     expect_table(folder, "", "is empty");
-    temp_folder_destroy(&folder);
 }
 
 TEST_GROUP(surface_case_set_up, surface_case_tear_down)

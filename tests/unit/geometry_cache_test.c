@@ -4,7 +4,6 @@
 #include "tests/support/test.h"
 #include <fcntl.h>
 #include <jansson.h>
-#include <math.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -12,7 +11,6 @@
 #include <unistd.h>
 
 #include "base/files/atomic_file.h"
-#include "base/mem.h"
 #include "preprocess/cache/folder.h"
 #include "preprocess/pipeline/geometry_cache.h"
 #include "protocol/asset_distance.h"
@@ -21,8 +19,6 @@
 #include "tests/support/cad.h"
 #include "tests/support/model_maker.h"
 #include "tests/support/prep_case.h"
-#include "tests/support/sweep.h"
-#include "tests/support/temp.h"
 
 #define AROUND 104 /* enough triangles to be kept */
 #define TUBE 50
@@ -65,7 +61,7 @@ static int make_plant(void **state)
     maker_node(&maker, "TT-1", -1, json_pack("{s:[f,f,f]}", "translation", 0.0, -1.3, 0.0));
     maker_node(&maker, "TT-2", -1, json_pack("{s:[f,f,f]}", "translation", 0.9, -0.9, 0.1));
     char *glb = maker_glb(&maker, &size);
-    mem_free(temp_write(c->folder, "model.glb", glb, size));
+    temp_write(c->folder, "model.glb", glb, size);
     mem_free(glb);
     maker_finish(&maker);
     cad_finish(&torus);
@@ -85,9 +81,8 @@ static int remove_plant(void **state)
 
 static void in_folder(const struct prep_case *c, const char *command)
 {
-    char *whole = mem_printf("cd '%s' && %s", c->folder, command);
+    char *whole = test_printf("cd '%s' && %s", c->folder, command);
     assert_int_equal(system(whole), 0);
-    mem_free(whole);
 }
 
 /* Makes the plant of a test; nothing is prepared yet. */
@@ -104,14 +99,12 @@ static int set_up(void **state)
 /* Prepares with these tags into FOLDER/`into`. Returns the asset's report; *model_read receives whether the model was read. */
 static json_t *prepare(struct prep_case *c, const char *tags, const char *into, bool *model_read)
 {
-    char *arguments = mem_printf("$PLANT --report json --output $FOLDER/%s", into);
+    char *arguments = test_printf("$PLANT --report json --output $FOLDER/%s", into);
     prep_case_tags(c, tags);
     prep_case_expect(c, arguments, 0);
-    mem_free(arguments);
-    json_t *report = prep_case_json(&c->out), *asset = json_incref(json_array_get(json_object_get(report, "assets"), 0));
+    json_t *report = prep_case_json(&c->out), *asset = json_array_get(json_object_get(report, "assets"), 0);
     *model_read = json_is_true(json_object_get(json_array_get(json_object_get(report, "models"), 0), "read"));
     assert_string_equal(json_string_value(json_object_get(asset, "state")), "built");
-    json_decref(report);
     return asset;
 }
 
@@ -125,12 +118,12 @@ static json_t *prepare_first(struct prep_case *c)
 {
     bool model_read;
     if (!made.first) {
-        made.first = prepare(c, first_tags, "first", &model_read);
+        made.first = json_deep_copy(prepare(c, first_tags, "first", &model_read));
         assert_true(model_read);
     }
     prep_case_tags(c, first_tags);
     in_folder(c, "rm -rf kept && cp -a first kept");
-    return json_incref(made.first);
+    return made.first;
 }
 
 /* Prepares `tags` into an empty folder, once. Returns the index in made.fresh. */
@@ -148,11 +141,10 @@ static size_t prepare_fresh(struct prep_case *c, const char *tags)
     char *path = path_of(c, "fresh", fresh);
     made.fresh[i].tags = mem_strdup(tags);
     made.fresh[i].bytes = text_read_file(path, (size_t)1 << 30, &made.fresh[i].size);
-    made.fresh[i].levels = json_incref(json_object_get(fresh, "levels"));
+    made.fresh[i].levels = json_deep_copy(json_object_get(fresh, "levels"));
     assert_non_null(made.fresh[i].bytes);
     made.fresh_count++;
     mem_free(path);
-    json_decref(fresh);
     in_folder(c, "rm -r fresh");
     return i;
 }
@@ -181,7 +173,6 @@ CASE(what_was_not_checked_is_checked_once_it_shows)
         assert_true(model_read == (i == 0));
         assert_int_equal(json_is_number(json_object_get(surface, "heat_disagreement")), i);
         assert_int_equal(json_is_number(json_object_get(surface, "time_m2")), i);
-        json_decref(asset);
     }
 }
 
@@ -215,7 +206,6 @@ CASE(a_changed_sensor_costs_its_own_distances)
         assert_true(model_read == changes[i].model_read);
         if (i % 2 || i == 6)
             assert_as_fresh(c, changes[i].tags, asset);
-        json_decref(asset);
     }
 }
 
@@ -248,9 +238,9 @@ static void damage(const char *path, bool cut)
 CASE(what_is_damaged_is_made_anew)
 {
     for (int cut = 0; cut < 2; cut++) {
-        char *tags = mem_printf("a,,,,t,A,,1.3,0,0.0%d\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", cut ? 5 : 2);
+        char *tags = test_printf("a,,,,t,A,,1.3,0,0.0%d\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", cut ? 5 : 2);
         bool model_read;
-        json_decref(prepare_first(c));
+        prepare_first(c);
         char *stock = kept_file(c, cut ? ".surface" : ".stock"), *columns = kept_file(c, ".columns");
         damage(stock, cut);
         damage(columns, cut);
@@ -262,10 +252,8 @@ CASE(what_is_damaged_is_made_anew)
         assert_int_equal(number(asset, "stocked"), 0);
         assert_in_range(number(asset, "kept_sensors"), 0, cut ? 1 : 0);
         assert_as_fresh(c, tags, asset);
-        json_decref(asset);
         mem_free(stock);
         mem_free(columns);
-        mem_free(tags);
     }
 }
 
@@ -281,10 +269,10 @@ CASE(points_are_found_once)
 {
     static const char *const places[] = { "1.3,0,0.02", "1.3,0,0.05", "0.8,0.8,0" };
     bool model_read;
-    json_decref(prepare_first(c));
+    prepare_first(c);
     char *spots = kept_file(c, ".spots");
     for (int i = 0; i < 3; i++) {
-        char *tags = mem_printf("a,,,,t,A,,%s\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", places[i]);
+        char *tags = test_printf("a,,,,t,A,,%s\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", places[i]);
         if (i)
             damage(spots, i == 2);
         ino_t before = file_number(spots); /* inode of the existing file while another one is written */
@@ -294,8 +282,6 @@ CASE(points_are_found_once)
             prep_case_says(&c->err, spots);
         assert_true((file_number(spots) == before) == (i == 0));
         assert_as_fresh(c, tags, asset);
-        json_decref(asset);
-        mem_free(tags);
     }
     mem_free(spots);
 }
@@ -323,9 +309,6 @@ static int prepare_limited(struct prep_case *c, const char *tags, size_t bytes, 
     }
     assert_true(pid > 0);
     assert_int_equal(waitpid(pid, &status, 0), pid);
-    mem_free(program);
-    mem_free(folder);
-    mem_free(said);
     return status;
 }
 
@@ -356,9 +339,9 @@ CASE(killed_midway_it_goes_on)
     assert_true(limits[1] > bytes_of(columns));
     assert_int_equal(folder_open(&mapped, folder, key, why), 1);
     for (int i = 0; i < 2; i++) {
-        char *tags = mem_printf("a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,,0.%d,-1.2,0\n", 1 + i);
+        char *tags = test_printf("a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,,0.%d,-1.2,0\n", 1 + i);
         if (i)
-            json_decref(prepare(c, first_tags, "kept", &model_read));
+            prepare(c, first_tags, "kept", &model_read);
         prepare_killed_at(c, tags, limits[i]);
         struct folder_file old;
         assert_int_equal(folder_open(&old, folder, key, why), 1);
@@ -369,14 +352,10 @@ CASE(killed_midway_it_goes_on)
         assert_int_equal(number(asset, "kept_sensors"), i ? 4 : 3);
         assert_as_fresh(c, tags, asset);
         assert_true(asset_view_init(&view, mapped.bytes, mapped.size, why));
-        json_decref(asset);
-        mem_free(tags);
     }
     folder_close(&mapped);
-    json_decref(first);
     mem_free(before);
     mem_free(columns);
-    mem_free(folder);
 }
 
 /* A file that does not fit on the disk is not begun: the old one stays, no temporary file remains, and with room it is written. */
@@ -386,8 +365,8 @@ CASE(without_room_the_old_file_stays)
     bool model_read;
     json_t *first = prepare_first(c);
     char *before = path_of(c, "kept", first), *columns = kept_file(c, ".columns");
-    char *drafts = mem_printf("ls '%s'/kept | grep -q asset.*new", c->folder);
-    char *names_folder = mem_printf("grep -q 'cannot be written to %s/kept: File too large' '%s'/said", c->folder, c->folder);
+    char *drafts = test_printf("ls '%s'/kept | grep -q asset.*new", c->folder);
+    char *names_folder = test_printf("grep -q 'cannot be written to %s/kept: File too large' '%s'/said", c->folder, c->folder);
     size_t size = bytes_of(before);
     assert_true(size / 2 > bytes_of(columns));
     int status = prepare_limited(c, tags, size / 2, true);
@@ -397,24 +376,20 @@ CASE(without_room_the_old_file_stays)
     assert_int_equal(system(names_folder), 0);
     json_t *asset = prepare(c, tags, "kept", &model_read);
     assert_as_fresh(c, tags, asset);
-    json_decref(asset);
-    json_decref(first);
     mem_free(before);
     mem_free(columns);
-    mem_free(drafts);
-    mem_free(names_folder);
 }
 
 CASE(what_nothing_needs_any_more_is_removed)
 {
     bool model_read;
-    json_decref(prepare_first(c));
+    prepare_first(c);
     char *stock = kept_file(c, ".stock"), *surface = kept_file(c, ".surface"), *columns = kept_file(c, ".columns");
     char *spots = kept_file(c, ".spots");
     char *other = mem_strdup(plant_text);
     memcpy(strstr(other, "up: z"), "up: y", 5);
     prep_case_plant(c, other);
-    json_decref(prepare(c, "a,,,,t,A,,1.3,0,0\n", "kept", &model_read));
+    prepare(c, "a,,,,t,A,,1.3,0,0\n", "kept", &model_read);
     assert_true(model_read);
     assert_int_not_equal(access(stock, F_OK), 0);
     assert_int_not_equal(access(surface, F_OK), 0);
@@ -438,9 +413,8 @@ static char *many_tags(int first)
     struct text rows = { 0 };
     for (int i = 0; i < MANY; i++) {
         double a = 2.4 * (i ? i : MANY + first), b = 1.7 * (i ? i : first), r = 1 + 0.4 * cos(b);
-        char *row = mem_printf("s%d,,,,t,A,,%.4f,%.4f,%.4f\n", i, r * cos(a), r * sin(a), 0.4 * sin(b));
+        char *row = test_printf("s%d,,,,t,A,,%.4f,%.4f,%.4f\n", i, r * cos(a), r * sin(a), 0.4 * sin(b));
         text_add_bytes(&rows, row, strlen(row));
-        mem_free(row);
     }
     text_add_bytes(&rows, "", 1);
     return rows.at;
@@ -484,7 +458,6 @@ static void open_prepared(struct prepared *at, const struct prep_case *c, const 
             trimesh_add_tri(&at->mesh, v[0], v[1], v[2], 0);
         }
     at->bvh = bvh_create(&at->mesh);
-    mem_free(folder);
 }
 
 static void close_prepared(struct prepared *at)
@@ -554,7 +527,6 @@ static void assert_shows_as_anew(struct prep_case *c, const struct prepared *mov
     assert_shows(moved, &anew, "moved");
     assert_true(moved->mesh.tri_count < anew.mesh.tri_count * 11 / 10);
     close_prepared(&anew);
-    json_decref(found);
 }
 
 CASE(one_of_many_sensors_is_split_for_alone)
@@ -586,7 +558,6 @@ CASE(one_of_many_sensors_is_split_for_alone)
                 assert_shows_as_anew(c, &moved, tags, "fresh");
             close_prepared(&moved);
         }
-        json_decref(found);
         mem_free(tags);
     }
 }

@@ -22,7 +22,7 @@ static int write_seeds(const char *to)
     for (int i = 0; i < SEED_COUNT; i++) {
         struct seed seed;
         seed_make(&seed, i, &sheet);
-        mem_free(temp_write(to, seed.name, seed.bytes, seed.size));
+        temp_write(to, seed.name, seed.bytes, seed.size);
         mem_free(seed.bytes);
     }
     sheet_finish(&sheet);

@@ -3,13 +3,10 @@
 #include "preprocess/geometry/geometry.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 #include <unistd.h>
 
-#include "base/mem.h"
 #include "tests/support/glb.h"
 #include "tests/support/gltf_case.h"
-#include "tests/support/temp.h"
 
 #define CASE(name) TEST_ON(struct gltf_case *l, name, gltf_case_set_up, gltf_case_tear_down)
 
@@ -265,33 +262,27 @@ CASE(files_outside_the_folder_are_refused)
     const char *json = "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"%s\",\"byteLength\":308}],\"bufferViews\":[{\"buffer\":0,"
                        "\"byteLength\":308},"
                        "{\"buffer\":0,\"byteOffset\":80,\"byteLength\":32,\"byteStride\":8}]," PLAIN_NODES MESH(SQUARE) ACCESSORS "}";
-    char *inside = temp_write(l->folder, "inner/with space.bin", &bin, sizeof(bin)),
-         *outside = temp_write(l->folder, "outside.bin", &bin, sizeof(bin));
+    temp_write(l->folder, "inner/with space.bin", &bin, sizeof(bin));
+    char *outside = temp_write(l->folder, "outside.bin", &bin, sizeof(bin));
     const char *const bad[] = { "../outside.bin", "%2e%2e/outside.bin", outside, "link.bin", "missing.bin", "http://localhost/x.bin", "." };
     char *link = temp_path(l->folder, "inner/link.bin");
     assert_int_equal(symlink(outside, link), 0);
     for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
-        char *text = mem_printf(json, bad[i]);
+        char *text = test_printf(json, bad[i]);
         gltf_case_load(l, "inner/model.gltf", text, strlen(text));
         if (l->good || !strstr(l->why, "is not a readable file inside the model's folder"))
             fail_msg("%s: %s", bad[i], l->good ? "accepted" : l->why);
-        mem_free(text);
     }
-    char *encoded = temp_write(l->folder, "inner/w\303\244rme 100%.bin", &bin, sizeof(bin));
+    temp_write(l->folder, "inner/w\303\244rme 100%.bin", &bin, sizeof(bin));
     const char *const right[] = { "with%20space.bin", "with space.bin", "./with%20space.bin", "w%C3%A4rme%20100%25.bin",
                                   "w%c3%a4rme 100%.bin" };
     for (size_t i = 0; i < sizeof(right) / sizeof(right[0]); i++) {
-        char *text = mem_printf(json, right[i]);
+        char *text = test_printf(json, right[i]);
         gltf_case_load(l, "inner/model.gltf", text, strlen(text));
         if (!l->good)
             fail_msg("%s", l->why);
         assert_square(&l->model.primitives[0]);
-        mem_free(text);
     }
-    mem_free(encoded);
-    mem_free(inside);
-    mem_free(outside);
-    mem_free(link);
 }
 
 /* --- cutting assets ------------------------------------------------------------------------------------------------------- */
@@ -454,11 +445,10 @@ CASE(wrong_instances_and_sparse_elements_are_refused)
         { "\"TRANSLATION\":6", "TRANSLATION: element 1 is not finite" },
     };
     for (size_t i = 0; i < sizeof(instances) / sizeof(instances[0]); i++) {
-        char *json = mem_printf(HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"i\",\"mesh\":0,\"extensions\":"
+        char *json = test_printf(HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"i\",\"mesh\":0,\"extensions\":"
                                      "{\"EXT_mesh_gpu_instancing\":{\"attributes\":{%s}}}}]," MESH(SQUARE) ACCESSORS "}",
                                 instances[i].attributes);
         refused(l, json, instances[i].reason);
-        mem_free(json);
     }
     static const struct {
         int count, type, at;
@@ -470,14 +460,13 @@ CASE(wrong_instances_and_sparse_elements_are_refused)
         { 1, 5123, 307, "do not fit into bufferView 0" },
     };
     for (size_t i = 0; i < sizeof(sparse) / sizeof(sparse[0]); i++) {
-        char *json = mem_printf(HEAD PLAIN_NODES MESH(
+        char *json = test_printf(HEAD PLAIN_NODES MESH(
                                     SQUARE) "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,"
                                             "\"type\":\"VEC3\",\"sparse\":{\"count\":%d,\"indices\":{\"bufferView\":0,\"byteOffset\":%d,"
                                             "\"componentType\":%d},\"values\":{\"bufferView\":0,\"byteOffset\":116}}},"
                                             "{\"bufferView\":0,\"byteOffset\":48,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"}]}",
                                 sparse[i].count, sparse[i].at, sparse[i].type);
         refused(l, json, sparse[i].reason);
-        mem_free(json);
     }
 }
 
@@ -506,7 +495,7 @@ CASE(real_models_go_through)
         skip();
     }
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
-        char *path = mem_printf("../shared/data/models/%s.glb", names[i]);
+        char *path = test_printf("../shared/data/models/%s.glb", names[i]);
         gltf_case_read(l, path);
         if (!l->good)
             fail_msg("%s: %s", path, l->why);
@@ -520,6 +509,5 @@ CASE(real_models_go_through)
         for (uint32_t t = 0; t < g.index_count / 3; t++)
             assert_true(faces_outward(&g, t));
         geometry_finish(&g);
-        mem_free(path);
     }
 }

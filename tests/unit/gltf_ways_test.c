@@ -4,20 +4,17 @@
 #include "preprocess/geometry/geometry.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 #include <unistd.h>
 
-#include "base/mem.h"
 #include "plant/models/transform.h"
 #include "tests/support/gltf_case.h"
 #include "tests/support/model_maker.h"
 #include "tests/support/model_seeds.h"
-#include "tests/support/temp.h"
 
 static int set_up(void **state)
 {
     gltf_case_set_up(state);
-    mem_free(temp_write_text(((struct gltf_case *)*state)->folder, "a picture.png", "no picture, and never looked at"));
+    temp_write_text(((struct gltf_case *)*state)->folder, "a picture.png", "no picture, and never looked at");
     return 0;
 }
 
@@ -175,9 +172,8 @@ CASE(great_meshes_are_decompressed)
 
 static bool has_program(const char *name)
 {
-    char *command = mem_printf("command -v %s >/dev/null", name);
+    char *command = test_printf("command -v %s >/dev/null", name);
     int status = system(command);
-    mem_free(command);
     return status == 0;
 }
 
@@ -199,7 +195,7 @@ static size_t write_plain(struct gltf_case *l, const struct wavy_sheet *sheet)
     json_object_set_new(maker.root, "scene", json_integer(0)); /* without, draco_transcoder finds nothing */
     char *bytes = maker_glb(&maker, &size);
     maker_finish(&maker);
-    mem_free(temp_write(l->folder, "plain.glb", bytes, size));
+    temp_write(l->folder, "plain.glb", bytes, size);
     mem_free(bytes);
     return size;
 }
@@ -211,7 +207,7 @@ static void try_packed(struct gltf_case *l, const char *program, const char *opt
     size_t size;
     sheet_init(&sheet, 24, 10);
     size_t before = write_plain(l, &sheet);
-    char *command = mem_printf("cd '%s' && %s %s -i plain.glb -o packed.glb >said 2>&1", l->folder, program, options);
+    char *command = test_printf("cd '%s' && %s %s -i plain.glb -o packed.glb >said 2>&1", l->folder, program, options);
     char *path = temp_path(l->folder, "packed.glb");
     assert_int_equal(system(command), 0);
     char *bytes = text_read_file(path, (size_t)1 << 20, &size);
@@ -223,8 +219,6 @@ static void try_packed(struct gltf_case *l, const char *program, const char *opt
     assert_int_equal(drawn_triangles(&l->model), sheet.index_count / 3);
     assert_sheet(&l->model, first_drawn(&l->model), &sheet, tolerance_m);
     mem_free(bytes);
-    mem_free(path);
-    mem_free(command);
     sheet_finish(&sheet);
 }
 
@@ -859,9 +853,8 @@ CASE(real_models_have_the_triangles_that_they_are_known_to_have)
         skip();
     }
     for (size_t i = 0; i < sizeof(models) / sizeof(models[0]); i++) {
-        char *path = mem_printf("../shared/data/models/%s.glb", models[i].name);
+        char *path = test_printf("../shared/data/models/%s.glb", models[i].name);
         gltf_case_read(l, path);
-        mem_free(path);
         assert_good(l);
         struct geometry g = cut(l, NULL, 1, AXIS_Y);
         print_message("# %-28s %6u triangles, %4u without area, %u primitives of lines, %u textures left out\n", models[i].name,

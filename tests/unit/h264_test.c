@@ -3,14 +3,11 @@
 #include "tests/support/test.h"
 #include <errno.h>
 
-
 #include "encode/encoder.h"
 
 #ifdef PLANTCAST_H264
 #include <libavcodec/avcodec.h>
 #include <libyuv.h>
-
-#include "base/mem.h"
 
 struct h264_fixture {
     struct log *log;
@@ -23,30 +20,26 @@ struct h264_fixture {
     bool key;
 };
 
-static int set_up(void **state)
+static void begin(struct h264_fixture *f)
 {
-    struct h264_fixture *f = mem_new(sizeof(*f));
-    f->log = log_create(LOG_ERROR);
+    f->log = test_log();
     f->encoder = encoder_create(f->log, "h264", ENCODER_H264_LIBRARY);
     f->decoder = avcodec_alloc_context3(avcodec_find_decoder(AV_CODEC_ID_H264));
     f->decoder->flags |= AV_CODEC_FLAG_LOW_DELAY;
     f->decoder->thread_count = 1;
     f->picture = av_frame_alloc();
-    *state = f;
-    return f->encoder && avcodec_open2(f->decoder, NULL, NULL) == 0 ? 0 : -1;
+    assert_true(f->encoder && avcodec_open2(f->decoder, NULL, NULL) == 0);
 }
 
-static int tear_down(void **state)
+static void end(struct h264_fixture *f)
 {
-    struct h264_fixture *f = *state;
     encoder_destroy(&f->encoder);
     avcodec_free_context(&f->decoder);
     av_frame_free(&f->picture);
     mem_free(f->bgrx);
-    log_destroy(&f->log);
-    mem_free(f);
-    return 0;
 }
+
+TEST_FIXTURE(struct h264_fixture, begin, end)
 
 #define CASE(name) TEST_ON(struct h264_fixture *f, name, set_up, tear_down)
 
@@ -262,8 +255,7 @@ CASE(encoders_that_do_not_work_here_are_known)
 #else
 TEST(there_is_none)
 {
-    struct log *log = log_create(LOG_ERROR);
+    struct log *log = test_log();
     assert_false(encoder_works(log, "h264", ENCODER_H264_LIBRARY));
-    log_destroy(&log);
 }
 #endif

@@ -6,13 +6,10 @@
 #include <jansson.h>
 #include <sys/stat.h>
 
-
 #include "base/clock.h"
 #include "base/files/atomic_file.h"
-#include "base/mem.h"
 #include "session/view/resume.h"
 #include "tests/support/small_scene.h"
-#include "tests/support/temp.h"
 
 #define SIZE "\"width\":640,\"height\":360,\"codecs\":[\"jpeg\"]"
 #define HELLO "{\"type\":\"hello\"," SIZE "}"
@@ -44,12 +41,11 @@ static void write_tokens(struct hello_fixture *f, bool with_bob)
     text_finish(&text);
 }
 
-static int set_up(void **state)
+static void begin(struct hello_fixture *f)
 {
-    struct hello_fixture *f = mem_new(sizeof(*f));
-    f->folder = temp_folder_create();
+    f->folder = temp_folder();
     f->path = temp_path(f->folder, "tokens");
-    f->log = log_create(LOG_ERROR);
+    f->log = test_log();
     write_tokens(f, true);
     f->tokens = tokens_create(f->log, f->path);
     assert_non_null(f->tokens);
@@ -59,32 +55,24 @@ static int set_up(void **state)
     f->services = (struct plant_services){ .scene = (struct scene *)small_scene(), .baselines = baselines_create() };
     f->context = (struct session_context){ .plant = small_scene()->plant,
                                            .services = &f->services,
-                                           .snapshot = snapshot_create(small_scene()->plant->tag_count),
+                                           .snapshot = test_snapshot(small_scene()->plant->tag_count),
                                            .links_up = (const bool[]){ true },
                                            .version = "1.2.3",
                                            .quotas = &f->quotas,
                                            .tokens = f->tokens,
                                            .resumes = resumes_create(),
                                            .admission = &f->admission };
-    *state = f;
-    return 0;
 }
 
-static int tear_down(void **state)
+static void end(struct hello_fixture *f)
 {
-    struct hello_fixture *f = *state;
-    struct snapshot *snapshot = (struct snapshot *)f->context.snapshot;
     assert_int_equal(f->admission.pixels, 0);
-    snapshot_destroy(&snapshot);
     baselines_destroy(&f->services.baselines);
     resumes_destroy(&f->context.resumes);
     tokens_destroy(&f->tokens);
-    log_destroy(&f->log);
-    temp_folder_destroy(&f->folder);
-    mem_free(f->path);
-    mem_free(f);
-    return 0;
 }
+
+TEST_FIXTURE(struct hello_fixture, begin, end)
 
 #define CASE(name) TEST_ON(struct hello_fixture *f, name, set_up, tear_down)
 
@@ -112,7 +100,7 @@ static json_t *hear(struct hello_fixture *f, struct session *session)
 {
     struct text text = { 0 };
     assert_true(session_next_text(session, f->now_ns, f->now_ns, &text));
-    json_t *message = json_loads(text.at, 0, NULL);
+    json_t *message = test_json(json_loads(text.at, 0, NULL));
     text_finish(&text);
     return message;
 }
@@ -124,7 +112,6 @@ static void expect_error(struct hello_fixture *f, struct session *session, const
     assert_string_equal(json_string_value(json_object_get(message, "code")), code);
     assert_int_equal(json_integer_value(json_object_get(message, "retry_after_s")) > 0, close_code == 1013);
     assert_int_equal(session->close.code, close_code);
-    json_decref(message);
 }
 
 static void expect_welcome(struct hello_fixture *f, struct session *session, const char *role, bool resumed)
@@ -134,7 +121,6 @@ static void expect_welcome(struct hello_fixture *f, struct session *session, con
     assert_string_equal(json_string_value(json_object_get(message, "role")), role);
     assert_int_equal(strlen(json_string_value(json_object_get(message, "resume"))), RESUME_CHARS);
     assert_int_equal(json_is_true(json_object_get(message, "resumed")), resumed);
-    json_decref(message);
 }
 
 CASE(who_needs_a_token_is_told_and_sent_away)

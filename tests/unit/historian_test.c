@@ -18,7 +18,6 @@
 
 #include "base/clock.h"
 #include "base/files/atomic_file.h"
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "corelink/core_samples.h"
 #include "history/historian.h"
@@ -26,8 +25,6 @@
 #include "history/month.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/sleep.h"
-#include "tests/support/sweep.h"
-#include "tests/support/temp.h"
 #include "value/quality.h"
 
 enum { TAGS = 50 };
@@ -53,27 +50,22 @@ struct historian_setup {
     struct history_tag *tags;
 };
 
-static int set_up(void **state)
+static void begin(struct historian_setup *s)
 {
-    static struct historian_setup s;
     atomic_store(&clock_off_ns, MID_MONTH_S * NS_PER_S - __real_clock_utc_ns());
-    s.folder = temp_folder_create();
-    s.log = log_create(LOG_ERROR);
-    s.counters = counters_create();
-    s.plant = plant_by_hand_create(TAGS);
-    s.plant->history = (struct plant_history){ .override_s = 600 };
-    s.plant->tags_by_name = mem_array(TAGS, sizeof(int));
-    plant_by_hand_source(s.plant, "plc", 502);
+    s->folder = temp_folder();
+    s->log = test_log();
+    s->counters = test_counters();
+    s->plant = plant_by_hand_create(TAGS);
+    s->plant->history = (struct plant_history){ .override_s = 600 };
+    plant_by_hand_source(s->plant, "plc", 502);
     for (int i = 0; i < TAGS; i++) {
         char name[16];
         snprintf(name, sizeof(name), "T-%02d", i);
-        plant_by_hand_tag(s.plant, name, TABLE_HOLDING, 2 * i, DATA_FLOAT32)->deadband = 0;
-        s.plant->tags_by_name[i] = i;
+        plant_by_hand_tag(s->plant, name, TABLE_HOLDING, 2 * i, DATA_FLOAT32)->deadband = 0;
     }
-    s.store = store_create(s.plant);
-    s.tags = history_tags(s.plant);
-    *state = &s;
-    return 0;
+    s->store = test_store(s->plant);
+    s->tags = history_tags(s->plant);
 }
 
 static void start(struct historian_setup *s)
@@ -84,26 +76,17 @@ static void start(struct historian_setup *s)
     };
     s->historian = historian_start(&params);
     assert_non_null(s->historian);
-    mem_free(folder);
 }
 
-static int tear_down(void **state)
+static void end(struct historian_setup *s)
 {
-    struct historian_setup *s = *state;
     historian_stop(&s->historian);
     mem_free(s->tags);
-    store_destroy(&s->store);
-    mem_free(s->plant->tags_by_name);
-    s->plant->tags_by_name = NULL;
-    plant_by_hand_destroy(&s->plant);
-    counters_destroy(&s->counters);
-    log_destroy(&s->log);
     char *disk = temp_path(s->folder, "history"); /* a failed test leaves this disk mounted */
     (void)umount2(disk, MNT_DETACH);
-    mem_free(disk);
-    temp_folder_destroy(&s->folder);
-    return 0;
 }
+
+TEST_FIXTURE(struct historian_setup, begin, end)
 
 #define CASE(name) TEST_ON(struct historian_setup *s, name, set_up, tear_down)
 
@@ -128,10 +111,9 @@ static double counted(struct historian_setup *s, const char *name)
 {
     struct text text = { 0 };
     counters_print(s->counters, &text);
-    char *line = mem_printf("\n%s ", name);
+    char *line = test_printf("\n%s ", name);
     const char *found = strstr(text.at, line);
     double value = found ? strtod(found + strlen(line), NULL) : NAN;
-    mem_free(line);
     text_finish(&text);
     return value;
 }
@@ -142,7 +124,6 @@ static void look(struct historian_setup *s, int64_t utc_ns, struct snapshot *int
     struct history_reader *reader = history_reader_create(s->log, folder);
     assert_int_equal(history_at(reader, s->tags, utc_ns / 1000, into), 0);
     history_reader_destroy(&reader);
-    mem_free(folder);
 }
 
 static size_t points_around(struct historian_setup *s, int tag, int64_t around_us, struct history_series *series)
@@ -152,7 +133,6 @@ static size_t points_around(struct historian_setup *s, int tag, int64_t around_u
     int64_t from_us = around_us - 7200 * US_PER_S, to_us = around_us + 7200 * US_PER_S;
     assert_int_equal(history_series(reader, s->tags[tag].name, from_us, to_us, 1000000, series), 0);
     history_reader_destroy(&reader);
-    mem_free(folder);
     return series->points.count;
 }
 
@@ -166,7 +146,7 @@ static int events_of(struct historian_setup *s, const char *kind, int64_t utc_ns
 {
     char name[MONTH_NAME_BYTES], *query = mem_printf("SELECT count(*) FROM event WHERE kind = '%s'", kind);
     month_name(month_of(utc_ns / 1000), name);
-    char *path = mem_printf("%s/history/%s", s->folder, name);
+    char *path = test_printf("%s/history/%s", s->folder, name);
     sqlite3 *db;
     sqlite3_stmt *statement;
     assert_int_equal(sqlite3_open_v2(path, &db, SQLITE_OPEN_READONLY, NULL), SQLITE_OK);
@@ -175,7 +155,6 @@ static int events_of(struct historian_setup *s, const char *kind, int64_t utc_ns
     int count = sqlite3_column_int(statement, 0);
     sqlite3_finalize(statement);
     sqlite3_close(db);
-    mem_free(path);
     mem_free(query);
     return count;
 }
@@ -192,7 +171,7 @@ static void wait_until_counted(struct historian_setup *s, const char *name, doub
 CASE(all_that_was_told_is_there)
 {
     int64_t times_ns[40], lost_ns = 0;
-    struct snapshot *snapshot = snapshot_create(TAGS);
+    struct snapshot *snapshot = test_snapshot(TAGS);
     start(s);
     for (int i = 0; i < 40; i++) {
         times_ns[i] = write_all(s, i * i % 17);
@@ -210,7 +189,6 @@ CASE(all_that_was_told_is_there)
     }
     look(s, lost_ns + 10 * NS_PER_MS, snapshot);
     assert_int_equal(snapshot->readings[3].quality, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
-    snapshot_destroy(&snapshot);
 }
 
 /* Passes the samples of a leader to its standby, as the link between two cores does. */
@@ -237,7 +215,6 @@ static void read_series(struct historian_setup *s, const char *name, int tag, st
     int error = history_series(reader, s->tags[tag].name, now_us - 7200 * US_PER_S, now_us + 7200 * US_PER_S, 10000, series);
     assert_int_equal(error, 0);
     history_reader_destroy(&reader);
-    mem_free(folder);
 }
 
 static bool has_quality(const struct history_series *series, uint32_t quality)
@@ -255,9 +232,8 @@ CASE(a_standby_records_what_time_alone_changes)
     char *folder = temp_path(s->folder, "standby");
     for (int i = 0; i < TAGS; i++)
         s->plant->tags[i].validity.stale_s = i < TAGS / 2 ? 0.5 : 3600;
-    store_destroy(&s->store);
-    s->store = store_create(s->plant);
-    struct store *mirror = store_create(s->plant);
+    s->store = test_store(s->plant);
+    struct store *mirror = test_store(s->plant);
     struct historian *standby = historian_start(&(struct historian_params){
         .log = s->log, .counters = s->counters, .plant = s->plant, .store = mirror, .folder = folder, .stands_by = true });
     struct core_samples *link = core_samples_listen(s->store);
@@ -288,20 +264,17 @@ CASE(a_standby_records_what_time_alone_changes)
     history_series_finish(&here);
     history_series_finish(&there);
     core_samples_end(&link);
-    store_destroy(&mirror);
-    mem_free(folder);
 }
 
 CASE(quiet_readers_see_the_last_second)
 {
-    struct snapshot *snapshot = snapshot_create(TAGS);
+    struct snapshot *snapshot = test_snapshot(TAGS);
     start(s);
     write_all(s, 42);
     sleep_ns(2200 * NS_PER_MS); /* two ticks */
     look(s, clock_utc_ns(), snapshot);
     assert_int_equal(snapshot->readings[7].quality, QUALITY_GOOD);
     assert_true(snapshot->readings[7].value == 49);
-    snapshot_destroy(&snapshot);
 }
 
 /* Records until the process is killed; *told receives the time of the last sample given to the store (shared memory). */
@@ -391,7 +364,6 @@ CASE(a_folder_that_comes_later_is_used)
     assert_true(points_of(s, 0, &series) > 0);
     assert_true(series.points.at[0].value == 5);
     history_series_finish(&series);
-    mem_free(path);
 }
 
 static bool has_point(const struct history_series *series, int64_t utc_ns, double value)
@@ -412,10 +384,9 @@ static void expect_spooled_run(struct historian_setup *s, int64_t first_ns, int6
     assert_true(points_of(s, 3, &series) >= 2);
     assert_true(has_point(&series, first_ns, 5 + 3) && has_point(&series, last_ns, 7 + 3));
     history_series_finish(&series);
-    struct snapshot *snapshot = snapshot_create(TAGS);
+    struct snapshot *snapshot = test_snapshot(TAGS);
     look(s, last_ns, snapshot);
     assert_true(snapshot->readings[3].value == 10);
-    snapshot_destroy(&snapshot);
     assert_true(events_of(s, "gap", last_ns) >= 1); /* the gap begins at the end of the previous run */
 }
 
@@ -439,8 +410,6 @@ CASE(what_waits_at_the_end_comes_with_the_next_start)
     expect_spooled_run(s, first_ns, last_ns);
     assert_int_not_equal(access(spool, R_OK), 0);
     unsetenv("RUNTIME_DIRECTORY");
-    mem_free(path);
-    mem_free(spool);
 }
 
 /* --- clocks ------------------------------------------------------------------------------------------------------------------- */
@@ -448,7 +417,7 @@ CASE(what_waits_at_the_end_comes_with_the_next_start)
 /* The clock is set forward by an hour: samples from before and after are recorded, and no line spans the skipped hour. */
 CASE(a_clock_set_forward_leaves_its_hour_empty)
 {
-    struct snapshot *snapshot = snapshot_create(TAGS);
+    struct snapshot *snapshot = test_snapshot(TAGS);
     struct history_series series;
     start(s);
     int64_t before_ns = write_all(s, 1);
@@ -471,7 +440,6 @@ CASE(a_clock_set_forward_leaves_its_hour_empty)
     look(s, after_ns, snapshot);
     assert_true(snapshot->readings[3].value == 12 && snapshot->readings[3].quality == QUALITY_GOOD);
     assert_int_equal(events_of(s, "clock", after_ns), 1);
-    snapshot_destroy(&snapshot);
 }
 
 /* The clock is set back by an hour: no sample of either pass is lost. */
@@ -559,7 +527,6 @@ CASE(a_full_disk_has_room_for_a_spool)
     char *folder = temp_path(s->folder, "history");
     if (!mount_disk(folder)) {
         print_message("# no file system can be mounted here\n");
-        mem_free(folder);
         skip();
     }
     /* a reserve without its size, as a process leaves it that is killed while it makes it */
@@ -594,10 +561,6 @@ CASE(a_full_disk_has_room_for_a_spool)
     history_series_finish(&series);
     assert_true(counted(s, "plantcast_history_lost_total") == 0);
     assert_int_equal(umount2(folder, MNT_DETACH), 0);
-    mem_free(filler);
-    mem_free(reserve);
-    mem_free(spool);
-    mem_free(folder);
 }
 
 CASE(a_read_only_disk_loses_nothing)
@@ -607,7 +570,6 @@ CASE(a_read_only_disk_loses_nothing)
     int64_t times_ns[3];
     if (!mount_disk(folder)) {
         print_message("# no file system can be mounted here\n");
-        mem_free(folder);
         skip();
     }
     start(s);
@@ -629,7 +591,6 @@ CASE(a_read_only_disk_loses_nothing)
     history_series_finish(&series);
     assert_true(counted(s, "plantcast_history_lost_total") == 0);
     assert_int_equal(umount2(folder, MNT_DETACH), 0);
-    mem_free(folder);
 }
 
 static void month_path(struct historian_setup *s, char *path, size_t bytes)
@@ -642,11 +603,10 @@ static void month_path(struct historian_setup *s, char *path, size_t bytes)
 static size_t count_set_aside(struct historian_setup *s)
 {
     glob_t found;
-    char *pattern = mem_printf("%s/history/history-*.damaged-*.sqlite", s->folder);
+    char *pattern = test_printf("%s/history/history-*.damaged-*.sqlite", s->folder);
     size_t count = glob(pattern, 0, NULL, &found) == 0 ? found.gl_pathc : 0;
     if (count)
         globfree(&found);
-    mem_free(pattern);
     return count;
 }
 
@@ -670,7 +630,6 @@ CASE(a_corrupt_month_is_set_aside_and_recording_goes_on)
     points_of(s, 3, &series);
     assert_true(has_point(&series, first_ns, 4) && has_point(&series, second_ns, 5));
     history_series_finish(&series);
-    mem_free(folder);
 }
 
 /* Another process locks the database for more than a second: threads that write to the store or read it are not delayed. */
@@ -678,7 +637,7 @@ CASE(a_disk_that_hangs_holds_up_nobody)
 {
     char path[300];
     sqlite3 *db;
-    struct snapshot *snapshot = snapshot_create(TAGS);
+    struct snapshot *snapshot = test_snapshot(TAGS);
     struct history_series series;
     start(s);
     write_all(s, 1);
@@ -707,5 +666,4 @@ CASE(a_disk_that_hangs_holds_up_nobody)
     for (int i = 0; i < 50; i++)
         assert_true(has_point(&series, times_ns[i], bent(i) + 3));
     history_series_finish(&series);
-    snapshot_destroy(&snapshot);
 }

@@ -4,14 +4,11 @@
 
 #include "tests/support/test.h"
 
-
 #include "base/clock.h"
-#include "base/mem.h"
 #include "history/history.h"
 #include "history/month.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/sleep.h"
-#include "tests/support/temp.h"
 #include "value/quality.h"
 
 static const int64_t BEGIN = INT64_C(1793500000) * US_PER_S;
@@ -46,35 +43,31 @@ static void record(struct history_loader_setup *s)
     mem_free(tags);
 }
 
-static int set_up(void **state)
+static void begin(struct history_loader_setup *s)
 {
-    static struct history_loader_setup s;
-    s = (struct history_loader_setup){ .folder = temp_folder_create(), .log = log_create(LOG_ERROR), .plant = plant_by_hand_create(1) };
-    plant_by_hand_source(s.plant, "plc", 502);
-    plant_by_hand_tag(s.plant, "A", TABLE_HOLDING, 0, DATA_FLOAT32)->deadband = 0;
-    record(&s);
-    s.snapshot_cache = snapshot_cache_create();
-    const struct history_loader_params params = { .log = s.log,
-                                                  .plant = s.plant,
-                                                  .folder = s.folder,
-                                                  .snapshot_cache = s.snapshot_cache,
+    s->folder = temp_folder();
+    s->log = test_log();
+    s->plant = plant_by_hand_create(1);
+    plant_by_hand_source(s->plant, "plc", 502);
+    plant_by_hand_tag(s->plant, "A", TABLE_HOLDING, 0, DATA_FLOAT32)->deadband = 0;
+    record(s);
+    s->snapshot_cache = snapshot_cache_create();
+    const struct history_loader_params params = { .log = s->log,
+                                                  .plant = s->plant,
+                                                  .folder = s->folder,
+                                                  .snapshot_cache = s->snapshot_cache,
                                                   .notify = on_answer,
-                                                  .notify_arg = &s };
-    s.loader = history_loader_create(&params);
-    *state = &s;
-    return 0;
+                                                  .notify_arg = s };
+    s->loader = history_loader_create(&params);
 }
 
-static int tear_down(void **state)
+static void end(struct history_loader_setup *s)
 {
-    struct history_loader_setup *s = *state;
     history_loader_destroy(&s->loader);
     snapshot_cache_destroy(&s->snapshot_cache);
-    plant_by_hand_destroy(&s->plant);
-    log_destroy(&s->log);
-    temp_folder_destroy(&s->folder);
-    return 0;
 }
+
+TEST_FIXTURE(struct history_loader_setup, begin, end)
 
 /* Asks the loader for the instant and returns the tag's reading at that time. */
 static struct reading read_at(struct history_loader_setup *s, int64_t at_us)

@@ -4,14 +4,12 @@
 #include <jansson.h>
 
 #include "base/clock.h"
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "history/history.h"
 #include "history/month.h"
 #include "service/history_queries.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/sleep.h"
-#include "tests/support/temp.h"
 
 static const int64_t NOW = INT64_C(1793500000) * US_PER_S;
 
@@ -29,40 +27,30 @@ static void on_answer(void *arg)
     s->notified++;
 }
 
-static int set_up(void **state)
+static void begin(struct history_queries_setup *s)
 {
-    static struct history_queries_setup s;
-    static int query[2] = { 0, 1 };
-    s.folder = temp_folder_create();
-    s.log = log_create(LOG_ERROR);
-    s.plant = plant_by_hand_create(2);
-    s.notified = 0;
-    plant_by_hand_source(s.plant, "plc", 502);
-    plant_by_hand_tag(s.plant, "A \"1\"", TABLE_HOLDING, 0, DATA_FLOAT32)->deadband = 0;
-    plant_by_hand_tag(s.plant, "B,2", TABLE_HOLDING, 2, DATA_FLOAT32)->deadband = 0;
-    s.plant->tags_by_name = query;
-    struct history_tag *tags = history_tags(s.plant);
+    s->folder = temp_folder();
+    s->log = test_log();
+    s->plant = plant_by_hand_create(2);
+    plant_by_hand_source(s->plant, "plc", 502);
+    plant_by_hand_tag(s->plant, "A \"1\"", TABLE_HOLDING, 0, DATA_FLOAT32)->deadband = 0;
+    plant_by_hand_tag(s->plant, "B,2", TABLE_HOLDING, 2, DATA_FLOAT32)->deadband = 0;
+    struct history_tag *tags = history_tags(s->plant);
     int error;
-    struct month_file *file = month_file_open(s.log, s.folder, month_of(NOW), tags, 2, &error);
+    struct month_file *file = month_file_open(s->log, s->folder, month_of(NOW), tags, 2, &error);
     for (int i = 0; i < 50; i++)
         assert_int_equal(month_file_import(file, 0, &(struct history_point){ NOW - (50 - i) * US_PER_S, i, 0 }, 1), 0);
     month_file_close(&file);
     mem_free(tags);
-    s.queries = history_queries_create(s.log, s.plant, NULL, s.folder, NULL, on_answer, &s);
-    *state = &s;
-    return 0;
+    s->queries = history_queries_create(s->log, s->plant, NULL, s->folder, NULL, on_answer, s);
 }
 
-static int tear_down(void **state)
+static void end(struct history_queries_setup *s)
 {
-    struct history_queries_setup *s = *state;
     history_queries_destroy(&s->queries);
-    s->plant->tags_by_name = NULL;
-    plant_by_hand_destroy(&s->plant);
-    log_destroy(&s->log);
-    temp_folder_destroy(&s->folder);
-    return 0;
 }
+
+TEST_FIXTURE(struct history_queries_setup, begin, end)
 
 #define CASE(name) TEST_ON(struct history_queries_setup *s, name, set_up, tear_down)
 
@@ -133,7 +121,7 @@ CASE(answers_hold_what_was_recorded)
     assert_true(history_queries_ask(s->queries, &query));
     struct history_answer *answer = wait_for(s, 1);
     assert_int_equal(answer->client, 7);
-    json_t *root = json_loads(answer->text, 0, NULL);
+    json_t *root = test_json(json_loads(answer->text, 0, NULL));
     assert_non_null(root);
     json_t *series = json_object_get(root, "series"), *first = json_array_get(series, 0);
     assert_int_equal(json_array_size(series), 2);
@@ -145,7 +133,6 @@ CASE(answers_hold_what_was_recorded)
         assert_true(json_number_value(json_array_get(json_array_get(points, i), 1)) == 30.0 + (double)i);
     }
     assert_int_equal(json_array_size(json_object_get(json_array_get(series, 1), "points")), 0);
-    json_decref(root);
     assert_true(answer->first && answer->last);
     history_answer_free(&answer);
 }
@@ -203,10 +190,9 @@ CASE(long_answers_come_in_pieces)
         answer = wait_for(s, ++pieces);
         assert_false(answer->first);
     }
-    json_t *root = json_loads(all.at, 0, NULL);
+    json_t *root = test_json(json_loads(all.at, 0, NULL));
     assert_int_equal(json_array_size(json_object_get(json_array_get(json_object_get(root, "series"), 1), "points")), 20000);
     assert_int_equal(pieces, 2);
-    json_decref(root);
     text_finish(&all);
 }
 

@@ -9,7 +9,6 @@
 #include <sqlite3.h>
 
 #include "base/files/atomic_file.h"
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "history/history.h"
 #include "history/retention.h"
@@ -17,7 +16,6 @@
 #include "history/month_outbox.h"
 #include "history/recorder.h"
 #include "tests/support/plant_by_hand.h"
-#include "tests/support/temp.h"
 #include "value/quality.h"
 
 #define S US_PER_S
@@ -32,33 +30,27 @@ struct history_setup {
     struct history_reader *reader;
 };
 
-static int set_up(void **state)
+static void begin(struct history_setup *s)
 {
-    static struct history_setup s;
-    s.folder = temp_folder_create();
-    s.log = log_create(LOG_ERROR);
-    s.plant = plant_by_hand_create(TAGS);
-    s.plant->history = (struct plant_history){ .override_s = 600 };
-    plant_by_hand_source(s.plant, "plc", 502);
-    plant_by_hand_tag(s.plant, "TT-1", TABLE_HOLDING, 0, DATA_FLOAT32)->deadband = 0.4;
-    plant_by_hand_tag(s.plant, "TT-2", TABLE_HOLDING, 2, DATA_FLOAT32)->deadband = 1;
-    plant_by_hand_tag(s.plant, "XS-1", TABLE_COIL, 0, DATA_BIT);
-    s.tags = history_tags(s.plant);
-    s.reader = history_reader_create(s.log, s.folder);
-    *state = &s;
-    return 0;
+    s->folder = temp_folder();
+    s->log = test_log();
+    s->plant = plant_by_hand_create(TAGS);
+    s->plant->history = (struct plant_history){ .override_s = 600 };
+    plant_by_hand_source(s->plant, "plc", 502);
+    plant_by_hand_tag(s->plant, "TT-1", TABLE_HOLDING, 0, DATA_FLOAT32)->deadband = 0.4;
+    plant_by_hand_tag(s->plant, "TT-2", TABLE_HOLDING, 2, DATA_FLOAT32)->deadband = 1;
+    plant_by_hand_tag(s->plant, "XS-1", TABLE_COIL, 0, DATA_BIT);
+    s->tags = history_tags(s->plant);
+    s->reader = history_reader_create(s->log, s->folder);
 }
 
-static int tear_down(void **state)
+static void end(struct history_setup *s)
 {
-    struct history_setup *s = *state;
     history_reader_destroy(&s->reader);
     mem_free(s->tags);
-    plant_by_hand_destroy(&s->plant);
-    log_destroy(&s->log);
-    temp_folder_destroy(&s->folder);
-    return 0;
 }
+
+TEST_FIXTURE(struct history_setup, begin, end)
 
 #define CASE(name) TEST_ON(struct history_setup *s, name, set_up, tear_down)
 
@@ -138,7 +130,7 @@ CASE(what_was_recorded_comes_back)
 
 CASE(one_instant_is_as_it_was)
 {
-    struct snapshot *snapshot = snapshot_create(TAGS);
+    struct snapshot *snapshot = test_snapshot(TAGS);
     record(s, NOVEMBER, 20000);
     for (int i = 7; i < 20000; i += 997) {
         assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + i * S, snapshot), 0);
@@ -150,7 +142,6 @@ CASE(one_instant_is_as_it_was)
     }
     assert_int_equal(history_at(s->reader, s->tags, NOVEMBER - S, snapshot), 0);
     assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_WAITING);
-    snapshot_destroy(&snapshot);
 }
 
 /* A spike of one second and a gap are visible in queries of every length. */
@@ -196,7 +187,7 @@ CASE(long_times_keep_spikes_and_gaps)
 CASE(lines_cross_the_border_of_a_month)
 {
     struct history_series series;
-    struct snapshot *snapshot = snapshot_create(TAGS);
+    struct snapshot *snapshot = test_snapshot(TAGS);
     struct history_point before = { NOVEMBER - 10 * S, 10, 0 }, after = { NOVEMBER + 10 * S, 30, 0 };
     struct month_file *file = open_file(s, before.t_us);
     assert_int_equal(month_file_import(file, 0, &before, 1), 0);
@@ -211,7 +202,6 @@ CASE(lines_cross_the_border_of_a_month)
     assert_int_equal(history_series(s->reader, "TT-1", NOVEMBER - 5 * S, NOVEMBER - 1 * S, 100, &series), 0);
     assert_int_equal(series.points.count, 2);
     history_series_finish(&series);
-    snapshot_destroy(&snapshot);
 }
 
 static void set_zone(const char *zone)
@@ -391,7 +381,7 @@ CASE(a_span_between_sparse_points_begins_with_the_bucket_before)
 /* No line spans the time between two runs. */
 CASE(a_restart_leaves_a_gap)
 {
-    struct snapshot *snapshot = snapshot_create(TAGS);
+    struct snapshot *snapshot = test_snapshot(TAGS);
     int64_t ended_us;
     record(s, NOVEMBER, 100);
     struct month_file *file = open_file(s, NOVEMBER);
@@ -406,7 +396,6 @@ CASE(a_restart_leaves_a_gap)
     assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_NO_COMMUNICATION);
     assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + 500 * S, snapshot), 0);
     assert_int_equal(snapshot->readings[0].quality, QUALITY_GOOD);
-    snapshot_destroy(&snapshot);
 }
 
 /* In October recording paused for ten seconds and across the turn of the month; in November the clock was set forward. */
@@ -438,12 +427,11 @@ CASE(gaps_are_told_in_order_and_joined)
 
 static size_t count_damaged(const char *folder)
 {
-    char *command = mem_printf("ls '%s' | grep -c 'damaged-.*sqlite$'", folder);
+    char *command = test_printf("ls '%s' | grep -c 'damaged-.*sqlite$'", folder);
     FILE *pipe = popen(command, "r");
     int count = -1;
     assert_int_equal(fscanf(pipe, "%d", &count), 1);
     pclose(pipe);
-    mem_free(command);
     return (size_t)count;
 }
 
@@ -454,11 +442,9 @@ CASE(a_damaged_file_is_set_aside)
     assert_int_equal(atomic_file_put(path, rubbish, sizeof(rubbish)), 0);
     record(s, NOVEMBER, 100);
     assert_int_equal(count_damaged(s->folder), 1);
-    struct snapshot *snapshot = snapshot_create(TAGS);
+    struct snapshot *snapshot = test_snapshot(TAGS);
     assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + 50 * S, snapshot), 0);
     assert_int_equal(snapshot->readings[0].quality, QUALITY_GOOD);
-    snapshot_destroy(&snapshot);
-    mem_free(path);
 }
 
 /* A damaged page in the middle of a file is noticed when a query reads it. */
@@ -486,21 +472,18 @@ CASE(damage_inside_is_noticed)
     }
     assert_int_equal(count_damaged(s->folder), 1);
     record(s, NOVEMBER + 50000 * S, 100);
-    mem_free(path);
 }
 
 CASE(a_newer_version_is_left_alone)
 {
     char *path = temp_path(s->folder, "history-2026-11.sqlite"), *command;
     record(s, NOVEMBER, 10);
-    command = mem_printf("/usr/bin/python3 -c \"import sqlite3; sqlite3.connect('%s').execute('PRAGMA user_version = 99')\"", path);
+    command = test_printf("/usr/bin/python3 -c \"import sqlite3; sqlite3.connect('%s').execute('PRAGMA user_version = 99')\"", path);
     assert_int_equal(system(command), 0);
     int error;
     assert_null(month_file_open(s->log, s->folder, month_of(NOVEMBER), s->tags, TAGS, &error));
     assert_int_equal(error, -EACCES);
     assert_int_equal(count_damaged(s->folder), 0);
-    mem_free(command);
-    mem_free(path);
 }
 
 /* The exact statements that version 1 of the month file used to create its tables. */
@@ -561,7 +544,7 @@ static void check_contents(sqlite3 *db)
 CASE(an_older_version_is_read_and_brought_up)
 {
     char *path = temp_path(s->folder, "history-2026-11.sqlite");
-    struct snapshot *snapshot = snapshot_create(TAGS);
+    struct snapshot *snapshot = test_snapshot(TAGS);
     sqlite3 *db = open_database(path);
     assert_int_equal(sqlite3_exec(db, version_1, NULL, NULL, NULL), SQLITE_OK);
     assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + 5 * S, snapshot), 0);
@@ -584,8 +567,6 @@ CASE(an_older_version_is_read_and_brought_up)
     }
     assert_int_equal(count_damaged(s->folder), 0);
     sqlite3_close(db);
-    snapshot_destroy(&snapshot);
-    mem_free(path);
 }
 
 static int refuse_views(void *arg, int action, const char *a, const char *b, const char *c, const char *d)
@@ -614,13 +595,12 @@ CASE(what_cannot_be_brought_up_stays_as_it_was)
     assert_rows(db, "SELECT count(*) FROM history WHERE tag = 'TT-1'", "6; ");
     check_contents(db);
     sqlite3_close(db);
-    mem_free(path);
 }
 
 static void make_month(const struct history_setup *s, const char *name, size_t bytes)
 {
-    char *content = mem_array(bytes, 1), *path = temp_write(s->folder, name, content, bytes);
-    mem_free(path);
+    char *content = mem_array(bytes, 1);
+    temp_write(s->folder, name, content, bytes);
     mem_free(content);
 }
 
@@ -628,9 +608,8 @@ CASE(old_and_large_months_go)
 {
     size_t count;
     for (int m = 1; m <= 9; m++) {
-        char *name = mem_printf("history-2026-%02d.sqlite", m);
+        char *name = test_printf("history-2026-%02d.sqlite", m);
         make_month(s, name, 1000);
-        mem_free(name);
     }
     /* 100 days before November is 24 July */
     int64_t unsent;
@@ -677,7 +656,6 @@ static int64_t size_of_month(const struct history_setup *s, int64_t t_us)
     month_name(month_of(t_us), name);
     char *path = temp_path(s->folder, name);
     int64_t size = stat(path, &st) == 0 ? st.st_size : 0;
-    mem_free(path);
     return size;
 }
 
@@ -847,7 +825,6 @@ CASE(months_that_cannot_be_read_are_not_too_old)
     retention_apply(s->log, s->folder, &(struct retention_limits){ .days = 30, .bytes = 1e9 }, march_us, &unsent);
     mem_free(month_list(s->folder, &count));
     assert_int_equal(count, 1);
-    mem_free(path);
 }
 
 /* Unsent points are converted too, even through a handle that sends nothing: an import, or a daemon whose plant file no longer names a

@@ -3,12 +3,8 @@
 #include "base/image/image.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 #include <png.h>
 #include <turbojpeg.h>
-
-#include "base/mem.h"
-#include "tests/support/temp.h"
 
 struct encoded {
     unsigned char *bytes;
@@ -220,7 +216,7 @@ TEST(false_claims_are_refused)
 
 TEST(files_are_told_by_their_bytes)
 {
-    char *folder = temp_folder_create();
+    char *folder = temp_folder();
     struct encoded png = png_of(300, 20, 3);
     char *path = temp_write(folder, "a.jpg", png.bytes, png.size), why[IMAGE_WHY_BYTES] = "";
     struct image image;
@@ -234,22 +230,18 @@ TEST(files_are_told_by_their_bytes)
     assert_true(last[0] == 1 && last[3] == 1 && fabsf(last[2] - powf((242 / 255.0f + 0.055f) / 1.055f, 2.4f)) < 1e-4f);
     mem_free(image.rgba);
     mem_free(linear.rgba);
-    mem_free(path);
     free(png.bytes);
     path = temp_write(folder, "no.png", "GIF98", 5);
     assert_false(image_load(&image, path, 100, why));
     assert_true(why[0] != 0);
-    mem_free(path);
     path = temp_path(folder, "missing.png");
     assert_false(image_load_float(&linear, path, 100, why));
-    mem_free(path);
-    temp_folder_destroy(&folder);
 }
 
 TEST(radiance_files_keep_their_light)
 {
     static const char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x40\x20\x84\x80\x80\x80\x80";
-    char *folder = temp_folder_create(), *path = temp_write(folder, "sky.hdr", hdr, sizeof(hdr) - 1), why[IMAGE_WHY_BYTES] = "";
+    char *folder = temp_folder(), *path = temp_write(folder, "sky.hdr", hdr, sizeof(hdr) - 1), why[IMAGE_WHY_BYTES] = "";
     struct image_float image;
     if (!image_load_float(&image, path, 4096, why))
         fail_msg("%s", why);
@@ -257,6 +249,4 @@ TEST(radiance_files_keep_their_light)
     assert_true(fabsf(image.rgba[0] - 8) < 0.1f && fabsf(image.rgba[1] - 4) < 0.1f && fabsf(image.rgba[4] - 0.5f) < 0.01f);
     assert_true(image.rgba[3] == 1);
     mem_free(image.rgba);
-    mem_free(path);
-    temp_folder_destroy(&folder);
 }

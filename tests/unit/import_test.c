@@ -2,7 +2,6 @@
 /* Import of series from CSV files: both layouts, all errors, and that an export can be imported again. */
 #include "tests/support/test.h"
 
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "base/text/timestamp.h"
 #include "history/history.h"
@@ -10,7 +9,6 @@
 #include "history/month.h"
 #include "history/series_text.h"
 #include "tests/support/plant_by_hand.h"
-#include "tests/support/temp.h"
 #include "value/quality.h"
 
 static const int64_t OCTOBER_25 = INT64_C(1792886400) * US_PER_S; /* 2026-10-25T00:00:00Z */
@@ -24,34 +22,23 @@ struct import_setup {
     int64_t longest_gap_us;
 };
 
-static int set_up(void **state)
+static void begin(struct import_setup *s)
 {
-    static struct import_setup s;
-    static int order[2] = { 0, 1 };
-    s.folder = temp_folder_create();
-    s.log = log_create(LOG_ERROR);
-    s.plant = plant_by_hand_create(2);
-    plant_by_hand_source(s.plant, "plc", 502);
-    plant_by_hand_tag(s.plant, "FT-1", TABLE_HOLDING, 0, DATA_FLOAT32)->deadband = 0;
-    plant_by_hand_tag(s.plant, "TT-1", TABLE_HOLDING, 2, DATA_FLOAT32)->deadband = 0.5;
-    s.plant->tags_by_name = order;
-    s.plant->history.override_s = 600;
-    s.diag = (struct diag){ 0 };
-    s.longest_gap_us = 0;
-    *state = &s;
-    return 0;
+    s->folder = temp_folder();
+    s->log = test_log();
+    s->plant = plant_by_hand_create(2);
+    plant_by_hand_source(s->plant, "plc", 502);
+    plant_by_hand_tag(s->plant, "FT-1", TABLE_HOLDING, 0, DATA_FLOAT32)->deadband = 0;
+    plant_by_hand_tag(s->plant, "TT-1", TABLE_HOLDING, 2, DATA_FLOAT32)->deadband = 0.5;
+    s->plant->history.override_s = 600;
 }
 
-static int tear_down(void **state)
+static void end(struct import_setup *s)
 {
-    struct import_setup *s = *state;
     diag_finish(&s->diag);
-    s->plant->tags_by_name = NULL;
-    plant_by_hand_destroy(&s->plant);
-    log_destroy(&s->log);
-    temp_folder_destroy(&s->folder);
-    return 0;
 }
+
+TEST_FIXTURE(struct import_setup, begin, end)
 
 #define CASE(name) TEST_ON(struct import_setup *s, name, set_up, tear_down)
 
@@ -63,8 +50,6 @@ static bool import(struct import_setup *s, const char *folder_name, const char *
         .longest_gap_us = s->longest_gap_us
     };
     bool good = history_import(&params, &s->diag, &s->counts);
-    mem_free(path);
-    mem_free(folder);
     return good;
 }
 
@@ -75,7 +60,6 @@ static struct history_series read_series(struct import_setup *s, const char *fol
     struct history_series series;
     assert_int_equal(history_series(reader, tag, OCTOBER_25 - 3600 * US_PER_S, OCTOBER_25 + 86400 * US_PER_S, 100000, &series), 0);
     history_reader_destroy(&reader);
-    mem_free(folder);
     return series;
 }
 
@@ -100,13 +84,11 @@ static struct reading read_at(struct import_setup *s, const char *folder_name, i
     char *folder = temp_path(s->folder, folder_name);
     struct history_reader *reader = history_reader_create(s->log, folder);
     struct history_tag *tags = history_tags(s->plant);
-    struct snapshot *snapshot = snapshot_create(s->plant->tag_count);
+    struct snapshot *snapshot = test_snapshot(s->plant->tag_count);
     assert_int_equal(history_at(reader, tags, OCTOBER_25 + t_us, snapshot), 0);
     struct reading reading = snapshot->readings[tag];
-    snapshot_destroy(&snapshot);
     mem_free(tags);
     history_reader_destroy(&reader);
-    mem_free(folder);
     return reading;
 }
 
@@ -170,7 +152,6 @@ CASE(everything_wrong_is_said_and_nothing_is_taken)
     char *folder = temp_path(s->folder, "h");
     mem_free(month_list(folder, &months));
     assert_int_equal(months, 0);
-    mem_free(folder);
 }
 
 /* Local times: in the night that repeats an hour rows continue, and an hour that does not exist is refused. */
@@ -289,7 +270,6 @@ CASE(a_gap_is_no_data_in_rollups)
         history_series_finish(&series);
     }
     history_reader_destroy(&reader);
-    mem_free(folder);
 }
 
 /* The longest gap comes from --longest-gap, else from the tag's Stale s, else from the sample spacing; a Stale s below the spacing is
@@ -349,13 +329,12 @@ CASE(words_and_blanks_are_bad_samples)
     text_finish(&csv);
     static const char *const garbage[] = { "12,5", "1.2.3", "hot", "badge", "0x10", "12 °C", "5%", "1e" };
     for (size_t i = 0; i < sizeof(garbage) / sizeof(garbage[0]); i++) {
-        char *rows = mem_printf("Time;FT-1\n0;1\n10;%s\n", garbage[i]);
+        char *rows = test_printf("Time;FT-1\n0;1\n10;%s\n", garbage[i]);
         int errors = s->diag.errors;
         assert_false(import(s, "g", rows, OCTOBER_25, US_PER_S));
         assert_int_equal(s->diag.errors, errors + 1);
         assert_int_equal(s->diag.items[errors].line, 3);
         assert_int_equal(s->diag.items[errors].column, 4);
-        mem_free(rows);
     }
 }
 

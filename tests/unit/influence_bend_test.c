@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The error bound of fields inside drawn triangles holds at random points for the worst possible readings. */
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "base/math/vec.h"
-#include "base/mem.h"
 #include "preprocess/influence/gaussian.h"
 #include "preprocess/influence/influence_bend.h"
 #include "tests/support/surface_case.h"

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Prepared interpolations from the plant file to the drawn field: what is written, refused, summed up and left unknown. */
 #include "tests/support/test.h"
-#include <math.h>
 #include <unistd.h>
 
-#include "base/mem.h"
 #include "field/directions.h"
 #include "field/field.h"
 #include "field/neighbours.h"
@@ -13,7 +11,6 @@
 #include "tests/support/surface_case.h"
 #include "tests/support/model_maker.h"
 #include "tests/support/prep_case.h"
-#include "tests/support/temp.h"
 #include "value/quality.h"
 
 #define STRIP_M 10.0
@@ -30,7 +27,7 @@ static void write_model(const struct prep_case *c)
     cad_random_start(&random);
     cad_plate(&cad, &random, 100, 3, STRIP_M, WIDTH_M, 0);
     char *glb = maker_glb_of(&cad, "strip", &size);
-    mem_free(temp_write(c->folder, "model.glb", glb, size));
+    temp_write(c->folder, "model.glb", glb, size);
     mem_free(glb);
     cad_finish(&cad);
 }
@@ -43,7 +40,7 @@ static double place_of(size_t sensor)
 
 static void write_plant(struct prep_case *c, const char *wall, const char *group, size_t sensors)
 {
-    char *yaml = mem_printf("plant: { name: Strip }\n"
+    char *yaml = test_printf("plant: { name: Strip }\n"
                             "assets:\n"
                             "  - { id: S, model: model.glb, up: z%s }\n"
                             "groups:\n"
@@ -58,7 +55,6 @@ static void write_plant(struct prep_case *c, const char *wall, const char *group
     prep_case_plant(c, yaml);
     prep_case_tags(c, rows.at);
     text_finish(&rows);
-    mem_free(yaml);
 }
 
 struct plant_in_use {
@@ -305,7 +301,7 @@ static void write_directions(struct prep_case *c, bool bearings)
     for (size_t i = 0; i < 4; i++)
         for (size_t k = 0; k < 4; k++)
             text_add(&rows, "%c%zu,%zu,Float,plc,,,,,,\n", "UVWB"[k], i, 400101 + 8 * i + 2 * k);
-    mem_free(temp_write(c->folder, "tags.csv", rows.at, rows.length));
+    temp_write(c->folder, "tags.csv", rows.at, rows.length);
     text_finish(&rows);
 }
 
@@ -643,7 +639,7 @@ CASE(test_gp_fitted_to_readings)
     for (int t = 0; t < 40; t++)
         text_add(&rows, "%d,%g,%g,%g,%g\n", t, 20 + 9 * sin(t), 20 + 8 * sin(t + 0.2), 20 + 8 * sin(t + 0.5), 20 + 9 * sin(t + 0.8));
     write_model(c);
-    mem_free(temp_write_text(c->folder, "readings.csv", rows.at));
+    temp_write_text(c->folder, "readings.csv", rows.at);
     write_plant(c, "", ", interpolation: gp, gp: { fit: readings.csv }", 4);
     prep_case_expect(c, "$PLANT", 0);
     assert_true(use(&u, c));
@@ -653,7 +649,7 @@ CASE(test_gp_fitted_to_readings)
     look(&u, place_of(0));
     finish(&u);
     text_add(&rows, "40,1,2\n");
-    mem_free(temp_write_text(c->folder, "readings.csv", "T0,T1\n"));
+    temp_write_text(c->folder, "readings.csv", "T0,T1\n");
     prep_case_expect(c, "$PLANT", 1);
     prep_case_says(&c->err, "line 1: no column 'T2'");
     text_finish(&rows);
@@ -664,7 +660,7 @@ CASE(test_gp_of_few_sensors_takes_defaults)
 {
     struct plant_in_use u;
     write_model(c);
-    mem_free(temp_write_text(c->folder, "readings.csv", "T0,T1\n"));
+    temp_write_text(c->folder, "readings.csv", "T0,T1\n");
     for (int sensors = 1; sensors <= 2; sensors++) {
         write_plant(c, "", ", prepare: [gp], gp: { fit: readings.csv }", sensors);
         prep_case_expect(c, "$PLANT", 0);
@@ -759,7 +755,6 @@ CASE(test_damaged_file)
     write_plant(c, "", "", 2); /* the plant file no longer asks for the prepared interpolation */
     prep_case_expect(c, "$PLANT", 0);
     assert_int_not_equal(access(path, F_OK), 0);
-    mem_free(path);
 }
 
 TEST_GROUP(surface_case_set_up, surface_case_tear_down)

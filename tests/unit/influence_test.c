@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Influence by conduction compared with formulas: a rod, a fin, a sphere; lost sensors; difficult positions. */
 #include "tests/support/test.h"
-#include <math.h>
 
-#include "base/mem.h"
 #include "field/influence_fill.h"
 #include "preprocess/influence/influence.h"
 #include "tests/support/surface_case.h"

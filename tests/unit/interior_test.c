@@ -3,7 +3,6 @@
 #include "surface/repair/interior.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 
 /* A ring of four quadrangles. One stands across a thin part: the others stay connected without it, so it is interior. Of two that face
    each other, each connects what would otherwise be apart, so both are visible. */

@@ -3,7 +3,6 @@
 #include "preprocess/subdivision/interp_weights.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "tests/support/surface_case.h"
 

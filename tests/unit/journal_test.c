@@ -2,12 +2,8 @@
 /* Queries of the alarm journal: pages, and each alarm's state at an instant, compared with a plain loop over all rows. */
 #include "tests/support/test.h"
 #include <inttypes.h>
-#include <math.h>
 
 #include "alarm/journal_file.h"
-#include "base/mem.h"
-#include "tests/support/sweep.h"
-#include "tests/support/temp.h"
 
 enum { ROWS = 3000, TAGS = 7, KINDS = 3, BEGIN_US = 1000000 };
 
@@ -44,34 +40,30 @@ static void write_rows(struct journal_setup *s)
 }
 
 /* Writes rows, many of them at the same time as in an alarm flood, and some gaps. */
-static int set_up(void **state)
+static void begin(struct journal_setup *s)
 {
-    static struct journal_setup s;
     bool renewed;
     int error;
     unsigned seed = (unsigned)sweep_seed();
     int64_t t_us = BEGIN_US;
-    s = (struct journal_setup){ .folder = temp_folder_create(), .log = log_create(LOG_ERROR) };
-    s.file = journal_file_open(s.log, s.folder, &renewed, &error);
-    assert_non_null(s.file);
+    s->folder = temp_folder();
+    s->log = test_log();
+    s->file = journal_file_open(s->log, s->folder, &renewed, &error);
+    assert_non_null(s->file);
     for (int i = 0; i < ROWS; i++) {
         t_us += rand_r(&seed) % 3 ? 0 : rand_r(&seed) % 1000;
-        s.rows[i] = (struct expected_row){ rand_r(&seed) % TAGS, rand_r(&seed) % KINDS, t_us,
+        s->rows[i] = (struct expected_row){ rand_r(&seed) % TAGS, rand_r(&seed) % KINDS, t_us,
                                            rand_r(&seed) % 2 ? ALARM_NORMAL : ALARM_UNACKNOWLEDGED };
     }
-    write_rows(&s);
-    *state = &s;
-    return 0;
+    write_rows(s);
 }
 
-static int tear_down(void **state)
+static void end(struct journal_setup *s)
 {
-    struct journal_setup *s = *state;
     journal_file_close(&s->file);
-    log_destroy(&s->log);
-    temp_folder_destroy(&s->folder);
-    return 0;
 }
+
+TEST_FIXTURE(struct journal_setup, begin, end)
 
 #define CASE(name) TEST_ON(struct journal_setup *s, name, set_up, tear_down)
 

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shaded colours: only lightness changes, by no more than allowed, and never outside sRGB. */
 #include "tests/support/test.h"
-#include <math.h>
-
 
 #include "field/colormap.h"
 #include "field/lab.h"

@@ -6,8 +6,6 @@
 #include <dirent.h>
 #include <jansson.h>
 
-
-#include "base/mem.h"
 #include "tests/support/synthetic.h"
 
 #define FOLDER "protocol/vectors/labels"
@@ -33,8 +31,8 @@ static void measure(void *arg, const int *members, size_t count, double size[2])
 
 static void check_vector(const char *name)
 {
-    char *path = mem_printf("%s/%s", FOLDER, name);
-    json_t *vector = json_load_file(path, 0, NULL);
+    char *path = test_printf("%s/%s", FOLDER, name);
+    json_t *vector = test_json(json_load_file(path, 0, NULL));
     assert_non_null(vector);
     const json_t *list = json_object_get(vector, "items"), *blocked = json_object_get(vector, "blocked");
     size_t count = json_array_size(list), blocked_count = json_array_size(blocked);
@@ -67,8 +65,6 @@ static void check_vector(const char *name)
     mem_free(items);
     mem_free(boxes);
     mem_free(places);
-    mem_free(path);
-    json_decref(vector);
 }
 
 TEST(places_labels_as_the_vectors_say)

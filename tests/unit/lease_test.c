@@ -4,7 +4,6 @@
 #include "tests/support/test.h"
 
 #include "corelink/lease.h"
-#include "tests/support/sweep.h"
 
 #define MS INT64_C(1000000)
 #define S (1000 * MS)

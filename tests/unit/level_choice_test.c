@@ -3,7 +3,6 @@
    is lower when the frame has room for more triangles. */
 #include "tests/support/test.h"
 
-#include "base/mem.h"
 #include "render/plan/lod_selection.h"
 #include "render/gl/gpu_scene.h"
 

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Edge collapses within an error bound: few triangles remain, none deviates by more than the bound, and borders and seams stay in place. */
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "base/math/vec.h"
-#include "base/mem.h"
 #include "preprocess/levels/levels_bounded.h"
 
 #define ROUND 96u /* corners of a circle */

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Levels of detail: nested, without cracks, within their stated error, with vertices in the order that the asset file requires. */
 #include "tests/support/test.h"
-#include <math.h>
 
-#include "base/mem.h"
 #include "base/math/vec.h"
 #include "preprocess/levels/vertex_order.h"
 #include "preprocess/geometry/welded_positions.h"
@@ -53,9 +51,8 @@ static void add_part(struct geometry *g, uint32_t first, uint32_t end, uint32_t 
 }
 
 /* Makes a closed torus of two materials. */
-static int set_up(void **state)
+static void begin(struct set_of *s)
 {
-    struct set_of *s = mem_new(sizeof(*s));
     struct geometry *g = &s->g;
     size_t most = 2 * (AROUND + 2) * (TUBE + 1);
     g->positions_m = mem_array(most, sizeof(*g->positions_m));
@@ -71,19 +68,16 @@ static int set_up(void **state)
     add_part(g, AROUND / 3, AROUND, 1);
     assert_true(levels_make(&s->levels, g, NULL));
     assert_true(welded_init(&s->places, (const float(*)[3])g->positions_m, g->vertex_count));
-    *state = s;
-    return 0;
 }
 
-static int tear_down(void **state)
+static void end(struct set_of *s)
 {
-    struct set_of *s = *state;
     levels_finish(&s->levels);
     welded_finish(&s->places);
     geometry_finish(&s->g);
-    mem_free(s);
-    return 0;
 }
+
+TEST_FIXTURE(struct set_of, begin, end)
 
 TEST_WITH(levels_grow_coarser, set_up, tear_down)
 {

@@ -3,9 +3,7 @@
 #include "surface/repair/line_of_sight.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 
-#include "base/mem.h"
 #include "surface/surface.h"
 #include "tests/support/surface_case.h"
 

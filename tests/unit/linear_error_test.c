@@ -4,11 +4,9 @@
 #include "surface/surface.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 #include <unistd.h>
 
 #include "base/math/vec.h"
-#include "base/mem.h"
 #include "preprocess/geometry/geometry.h"
 #include "preprocess/model/model_source.h"
 #include "tests/support/surface_case.h"
@@ -83,10 +81,9 @@ static void check_shape(const char *name, struct cad *clean, int faults)
                 sources_m[s][axis] = 0.5 * (double)broken.positions[tri[0]][axis] + 0.3 * (double)broken.positions[tri[1]][axis] +
                                      0.2 * (double)broken.positions[tri[2]][axis];
         }
-        char *what = mem_printf("%s, %s", name, cad_fault_names[fault]);
+        char *what = test_printf("%s, %s", name, cad_fault_names[fault]);
         check_sources(what, surface, (const float(*)[3])broken.positions, broken.vertex_count, (const double(*)[3])sources_m, SOURCES);
         check_edges(what, surface);
-        mem_free(what);
         surface_destroy(&surface);
         cad_finish(&broken);
     }

@@ -11,38 +11,30 @@
 #include <jansson.h>
 
 #include "base/clock.h"
-#include "base/mem.h"
 #include "base/system/service_manager.h"
-#include "tests/support/temp.h"
 
 struct socket_place {
-    char *folder, *path;
+    char *path;
     int fd; /* a datagram socket bound to `path` */
 };
 
-static int set_up(void **state)
+static void begin(struct socket_place *place)
 {
-    struct socket_place *place = mem_new(sizeof(*place));
     struct sockaddr_un here = { .sun_family = AF_UNIX };
-    place->folder = temp_folder_create();
-    place->path = temp_path(place->folder, "socket");
+    place->path = temp_path(temp_folder(), "socket");
     snprintf(here.sun_path, sizeof(here.sun_path), "%s", place->path);
     place->fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-    *state = place;
-    return bind(place->fd, (struct sockaddr *)&here, sizeof(here));
+    assert_int_equal(bind(place->fd, (struct sockaddr *)&here, sizeof(here)), 0);
 }
 
-static int tear_down(void **state)
+static void end(struct socket_place *place)
 {
-    struct socket_place *place = *state;
     close(place->fd);
-    temp_folder_destroy(&place->folder);
-    mem_free(place->path);
-    mem_free(place);
     unsetenv("NOTIFY_SOCKET");
     unsetenv("JOURNAL_STREAM");
-    return 0;
 }
+
+TEST_FIXTURE(struct socket_place, begin, end)
 
 static size_t receive(const struct socket_place *place, char *out, size_t size)
 {
@@ -111,7 +103,7 @@ TEST(a_line_of_json_is_one_object_whatever_the_text)
 {
     char *text = written(LOG_JSON, NULL, LOG_WARN, EVENT_CERTIFICATE_EXPIRES, "\"a\"\n\xff\xc3\xa4\x01");
     assert_ptr_equal(strchr(text, '\n'), text + strlen(text) - 1);
-    json_t *object = json_loads(text, 0, NULL);
+    json_t *object = test_json(json_loads(text, 0, NULL));
     assert_non_null(object);
     assert_string_equal(json_string_value(json_object_get(object, "level")), "warn");
     assert_string_equal(json_string_value(json_object_get(object, "message")), "\"a\"\n?\xc3\xa4\x01");
@@ -119,7 +111,6 @@ TEST(a_line_of_json_is_one_object_whatever_the_text)
     assert_string_equal(json_string_value(json_object_get(object, "event")), "certificate-expires");
     assert_string_equal(json_string_value(json_object_get(object, "message_id")), log_event_id(EVENT_CERTIFICATE_EXPIRES));
     assert_int_equal(strlen(json_string_value(json_object_get(object, "time"))), strlen("2026-01-01T00:00:00.000Z"));
-    json_decref(object);
     free(text);
 }
 

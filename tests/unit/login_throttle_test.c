@@ -4,7 +4,6 @@
 
 #include "tests/support/test.h"
 
-
 #include "base/clock.h"
 
 static const uint8_t HERE[16] = { [10] = 0xff, 0xff, 203, 0, 113, 7 }, THERE[16] = { [10] = 0xff, 0xff, 203, 0, 113, 8 };

@@ -3,14 +3,10 @@
 #include "loopcheck/loop_checks.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-
-#include "base/mem.h"
 #include "tests/support/plant_by_hand.h"
-#include "tests/support/temp.h"
 
 enum { TAGS = 3, COMPUTED = 2, NOBODY = 65534 };
 struct loop_checks_fixture {
@@ -20,36 +16,24 @@ struct loop_checks_fixture {
     struct loop_checks *loop_checks;
 };
 
-static int set_up(void **state)
+static void begin(struct loop_checks_fixture *f)
 {
-    struct loop_checks_fixture *f = mem_new(sizeof(*f));
-    f->log = log_create(LOG_ERROR);
+    f->log = test_log();
     f->plant = plant_by_hand_create(TAGS);
     plant_by_hand_source(f->plant, "plc", 502);
     plant_by_hand_tag(f->plant, "TI-1", TABLE_HOLDING, 0, DATA_FLOAT32);
     plant_by_hand_tag(f->plant, "TI-2", TABLE_HOLDING, 2, DATA_FLOAT32);
     plant_by_hand_tag(f->plant, "SUM", TABLE_HOLDING, 4, DATA_FLOAT32)->source = -1;
-    for (int i = 0; i < TAGS; i++)
-        f->plant->tags[i].asset = -1;
-    f->plant->tags_by_name = mem_array(TAGS, sizeof(*f->plant->tags_by_name));
-    memcpy(f->plant->tags_by_name, (int[TAGS]){ COMPUTED, 0, 1 }, TAGS * sizeof(int));
-    f->folder = temp_folder_create();
+    f->folder = temp_folder();
     f->loop_checks = loop_checks_open(f->log, f->plant, f->folder, NULL);
-    *state = f;
-    return 0;
 }
 
-static int tear_down(void **state)
+static void end(struct loop_checks_fixture *f)
 {
-    struct loop_checks_fixture *f = *state;
     loop_checks_close(&f->loop_checks);
-    temp_folder_destroy(&f->folder);
-    mem_free(f->plant->tags_by_name);
-    plant_by_hand_destroy(&f->plant);
-    log_destroy(&f->log);
-    mem_free(f);
-    return 0;
 }
+
+TEST_FIXTURE(struct loop_checks_fixture, begin, end)
 
 static void open_again(struct loop_checks_fixture *f)
 {
@@ -137,7 +121,6 @@ static char *read_file(const struct loop_checks_fixture *f)
     size_t bytes;
     char *text = text_read_file(path, 1 << 20, &bytes);
     assert_non_null(text);
-    mem_free(path);
     return text;
 }
 
@@ -162,7 +145,6 @@ TEST_WITH(test_a_line_that_was_cut_off_spoils_no_other, set_up, tear_down)
     }
     mem_free(both);
     mem_free(whole);
-    mem_free(path);
 }
 
 TEST_WITH(test_what_cannot_be_kept_is_refused_and_counts_for_nothing, set_up, tear_down)

@@ -4,11 +4,9 @@
 
 #include "tests/support/test.h"
 
-#include "base/mem.h"
 #include "preprocess/match/isa.h"
 #include "preprocess/match/plant_edit.h"
 #include "preprocess/match/quantities.h"
-#include "tests/support/temp.h"
 
 static const char model[] = "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":["
                             "{\"name\":\"plant\",\"children\":[1,2,3,4,5,6,7,8]},{\"name\":\"/"
@@ -32,33 +30,26 @@ struct match_fixture {
     struct matcher matcher;
 };
 
-static int set_up(void **state)
+static void begin(struct match_fixture *f)
 {
-    struct match_fixture *f = mem_new(sizeof(*f));
     char why[MODEL_INDEX_WHY_BYTES] = "";
-    f->folder = temp_folder_create();
-    mem_free(temp_write_text(f->folder, "m.gltf", model));
-    mem_free(temp_write_text(f->folder, "tags.csv", "Tag Name\n"));
+    f->folder = temp_folder();
+    temp_write_text(f->folder, "m.gltf", model);
+    temp_write_text(f->folder, "tags.csv", "Tag Name\n");
     char *path = temp_write_text(f->folder, "plant.yaml", plant_text);
     f->plant = plant_load_or_print(path);
-    mem_free(path);
-    if (!f->plant || !model_index_read(&f->site, f->plant, why))
-        return -1;
+    assert_true(f->plant && model_index_read(&f->site, f->plant, why));
     f->matcher.site = &f->site;
-    *state = f;
-    return 0;
 }
 
-static int tear_down(void **state)
+static void end(struct match_fixture *f)
 {
-    struct match_fixture *f = *state;
     matcher_finish(&f->matcher);
     model_index_finish(&f->site);
     plant_destroy(&f->plant);
-    temp_folder_destroy(&f->folder);
-    mem_free(f);
-    return 0;
 }
+
+TEST_FIXTURE(struct match_fixture, begin, end)
 
 #define CASE(name) TEST_ON(struct match_fixture *f, name, set_up, tear_down)
 
@@ -120,14 +111,11 @@ CASE(test_by_text)
     path = temp_write_text(f->folder, "aliases.csv", "Alias;Equipment\nThe big one;V-330\n");
     assert_false(matcher_read_aliases(&f->matcher, path, why));
     assert_string_equal(why, "line 2: no asset is called 'V-330'");
-    mem_free(path);
     path = temp_write_text(f->folder, "aliases.csv", "Alias;Equipment\nThe big one;20-V-330\n");
     assert_true(matcher_read_aliases(&f->matcher, path, why));
-    mem_free(path);
     expect(f, "XT_9", "top of the big one", MATCH_SURE, "20-V-330", "alias 'The big one'");
     path = temp_write_text(f->folder, "rules.csv", "Tag,Equipment\n^XT_([0-9])$,P-20\\1A\n^XT_.*,E-101\n");
     assert_true(matcher_read_rules(&f->matcher, path, why));
-    mem_free(path);
     expect(f, "xt_5", "", MATCH_SURE, "P-205A", "rule 1 maps the tag to 'P-205A'");
     expect(f, "XT_77", "", MATCH_SURE, "E-101", "rule 2");
 }

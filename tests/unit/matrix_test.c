@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Matrices of the renderer compared with their definitions. */
 #include "tests/support/test.h"
-#include <math.h>
-
 
 #include "render/matrix.h"
 

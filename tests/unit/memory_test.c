@@ -2,8 +2,6 @@
 /* Memory use of this process is measured, and freed memory returns to the system. */
 #include "tests/support/test.h"
 
-
-#include "base/mem.h"
 #include "base/system/memory.h"
 
 enum { PIECES = 4096, PIECE_BYTES = 16 * 1024 };

@@ -2,18 +2,15 @@
 /* Mending of faults in CAD exports that leave holes in the picture: hairline gaps and flipped faces. Subdivision must open nothing
    either: in the demo plant every open edge belongs to the model. */
 #include "tests/support/test.h"
-#include <math.h>
 #include <unistd.h>
 
 #include "base/math/vec.h"
-#include "base/mem.h"
 #include "preprocess/geometry/gaps.h"
 #include "preprocess/geometry/welded_positions.h"
 #include "preprocess/geometry/winding.h"
 #include "scene/scene_create.h"
 #include "surface/mesh/trimesh.h"
 #include "tests/support/gltf_case.h"
-#include "tests/support/sweep.h"
 
 #define PLATE 12 /* number of squares along a side of 4 m */
 
@@ -270,7 +267,7 @@ TEST_WITH(splitting_opens_nothing, gltf_case_set_up, gltf_case_tear_down)
     struct diag diag = { 0 };
     if (access(DEMO ".prepared/manifest.json", R_OK) != 0)
         skip();
-    struct log *log = log_create(LOG_ERROR);
+    struct log *log = test_log();
     struct plant *plant = plant_load(DEMO ".yaml", &diag);
     struct scene *scene = scene_create(log, plant, DEMO ".prepared");
     assert_non_null(scene);
@@ -301,5 +298,4 @@ TEST_WITH(splitting_opens_nothing, gltf_case_set_up, gltf_case_tear_down)
     scene_destroy(&scene);
     plant_destroy(&plant);
     diag_finish(&diag);
-    log_destroy(&log);
 }

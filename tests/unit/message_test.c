@@ -4,10 +4,7 @@
 
 #include "tests/support/test.h"
 #include <dirent.h>
-#include <math.h>
 
-
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "field/colormap.h"
 #include "message/json_fields.h"
@@ -16,7 +13,6 @@
 #include "session/reply/reply.h"
 #include "message/visibility.h"
 #include "tests/support/small_scene.h"
-#include "tests/support/sweep.h"
 
 #define FOLDER "protocol/vectors/client"
 
@@ -61,7 +57,7 @@ static void check_vector(const char *file, int *accepted, int *refused)
 {
     size_t count, n = strcspn(file, "-");
     struct message_error error = { 0 };
-    char *path = mem_printf("%s/%s", FOLDER, file), *text = text_read_file(path, 1 << 20, &count);
+    char *path = test_printf("%s/%s", FOLDER, file), *text = text_read_file(path, 1 << 20, &count);
     assert_non_null(text);
     bool good = take(text, count, &error);
     if (!strncmp(file, "accepted--", 10)) {
@@ -77,7 +73,6 @@ static void check_vector(const char *file, int *accepted, int *refused)
         ++*refused;
     }
     mem_free(text);
-    mem_free(path);
 }
 
 TEST(vectors_are_taken_or_refused)
@@ -586,10 +581,9 @@ TEST(a_refused_number_is_told_why)
     };
     for (size_t i = 0; i < sizeof(said) / sizeof(said[0]); i++) {
         struct message_error error = { 0 };
-        char *text = mem_printf("{\"type\":\"params\",\"seq\":1,%s}", said[i][0]);
+        char *text = test_printf("{\"type\":\"params\",\"seq\":1,%s}", said[i][0]);
         assert_false(take(text, strlen(text), &error));
         assert_string_equal(error.text, said[i][1]);
-        mem_free(text);
     }
 }
 
@@ -636,24 +630,15 @@ enum { MANY_ASSETS = ASSET_SET_MAX };
 
 static struct plant *load_many(void)
 {
-    char folder[] = "/tmp/plantcast-message-XXXXXX";
     struct text yaml = { 0 };
-    char *model = realpath("tests/fuzz/gltf/data_uri.gltf", NULL);
-    assert_true(model && mkdtemp(folder));
-    char *path = mem_printf("%s/plant.yaml", folder), *tags = mem_printf("%s/tags.csv", folder);
+    char *folder = temp_folder(), *model = realpath("tests/fuzz/gltf/data_uri.gltf", NULL);
+    assert_non_null(model);
     text_add(&yaml, "plant: { name: Many }\ngroups:\n  - { id: t, unit: K, min: 0, max: 1 }\ntags: tags.csv\nassets:\n");
     for (int i = MANY_ASSETS - 1; i >= 0; i--)
         text_add(&yaml, "  - { id: EQUIP-%06d, model: %s }\n", i, model);
-    FILE *file = fopen(path, "w");
-    assert_int_equal(fwrite(yaml.at, 1, yaml.length, file), yaml.length);
-    assert_int_equal(fclose(file), 0);
-    file = fopen(tags, "w");
-    assert_true(fputs("Tag Name,Address,Data Type\n", file) >= 0 && fclose(file) == 0);
-    struct plant *many = plant_load_or_print(path);
+    temp_write_text(folder, "tags.csv", "Tag Name,Address,Data Type\n");
+    struct plant *many = plant_load_or_print(temp_write_text(folder, "plant.yaml", yaml.at));
     assert_non_null(many);
-    assert_int_equal(remove(path) | remove(tags) | remove(folder), 0);
-    mem_free(path);
-    mem_free(tags);
     text_finish(&yaml);
     free(model);
     return many;
@@ -675,11 +660,10 @@ static double time_message(const struct plant *many, const struct text *said, st
         struct message_error error;
         double began_ms = thread_ms();
         bool good = message_parse(many, said->at, said->length, message, &error);
-        json_t *answer = json_object();
+        json_t *answer = test_json(json_object());
         if (good)
             visibility_print(many, &message->params.visibility, answer);
         least_ms = fmin(least_ms, thread_ms() - began_ms);
-        json_decref(answer);
     }
     return least_ms;
 }

@@ -2,21 +2,18 @@
 /* A recorded series, sent sixty times as fast through Modbus into the history and compared with what the history returns: spikes, gaps
    and quality. REPLAY_S sets the seconds; `make test-long` runs an hour. */
 #include "tests/support/test.h"
-#include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "base/mem.h"
 #include "deploy/demo/sim.h"
 #include "history/historian.h"
 #include "history/history.h"
 #include "tests/support/modbus_device.h"
 #include "tests/support/ports.h"
 #include "tests/support/sleep.h"
-#include "tests/support/temp.h"
 #include "value/quality.h"
 #include "value/source.h"
 
@@ -154,7 +151,7 @@ static void check_history(const struct modbus_replay *r, struct history_reader *
 /* Keeps the device silent until every tag in the store has lost its device. */
 static void outage(struct modbus_replay *r, struct store *store)
 {
-    struct snapshot *snapshot = snapshot_create(r->plant->tag_count);
+    struct snapshot *snapshot = test_snapshot(r->plant->tag_count);
     size_t lost = 0;
     r->deaf = true;
     sleep_ns(OUTAGE_MS * NS_PER_MS);
@@ -166,7 +163,6 @@ static void outage(struct modbus_replay *r, struct store *store)
     }
     assert_int_equal(lost, r->mapped_count);
     r->deaf = false;
-    snapshot_destroy(&snapshot);
 }
 
 static void run(struct modbus_replay *r, struct store *store, double seconds)
@@ -230,10 +226,10 @@ TEST(history_gives_back_what_the_device_held)
     make_plant(&r);
     const char *asked = getenv("REPLAY_S");
     pthread_t device;
-    char *folder = temp_folder_create();
-    struct log *log = log_create(LOG_ERROR);
-    struct counters *counters = counters_create();
-    struct store *store = store_create(r.plant);
+    char *folder = temp_folder();
+    struct log *log = test_log();
+    struct counters *counters = test_counters();
+    struct store *store = test_store(r.plant);
     const struct historian_params params = { .log = log, .counters = counters, .plant = r.plant, .store = store, .folder = folder };
     store_listen(store, on_sample_event, &r);
     struct historian *historian = historian_start(&params);
@@ -258,9 +254,5 @@ TEST(history_gives_back_what_the_device_held)
                   (long long)*counters_add(counters, "plantcast_history_points_total", "counter", ""), worst);
     mem_free(tags);
     history_reader_destroy(&reader);
-    store_destroy(&store);
-    counters_destroy(&counters);
-    log_destroy(&log);
-    temp_folder_destroy(&folder);
     free_replay(&r);
 }

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "base/mem.h"
 #include "tests/support/modbus_case.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/sleep.h"
@@ -21,7 +20,6 @@ static int set_up(void **state)
 {
     int status = modbus_case_set_up(state);
     struct modbus_case *s = *state;
-    log_destroy(&s->log);
     s->log = log_create(LOG_INFO);
     said = tmpfile();
     fflush(stderr);
@@ -32,7 +30,9 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
+    struct log *log = ((struct modbus_case *)*state)->log;
     int status = modbus_case_tear_down(state);
+    log_destroy(&log);
     dup2(kept_stderr, 2);
     close(kept_stderr);
     fclose(said);
@@ -76,8 +76,7 @@ static void add_blocks(struct modbus_case *s)
 static void start(struct modbus_case *s)
 {
     add_blocks(s);
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
 }
 
 static bool all_good(struct modbus_case *s)
@@ -191,8 +190,7 @@ CASE(one_request_per_connection_by_key)
 {
     add_blocks(s);
     s->plant->sources[0].close_between_polls = true;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     expect_steady(s, 5, 10);
     source_stop(&s->source);
     int unused = s->device.connections - s->device.requests; /* 1 if the source was stopped after connecting and before its request */
@@ -215,8 +213,7 @@ CASE(a_delay_by_key)
     add_blocks(s);
     s->device.deaf_ms = 400;
     s->plant->sources[0].connect_delay_ms = 500;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     expect_steady(s, 5, 15);
     assert_int_equal(lines_with(" from the start"), 0);
     assert_int_equal(s->device.connections, 1);
@@ -254,8 +251,7 @@ CASE(unit_0_is_nobody_s_where_several_units_are_read)
     s->device.manner = DEVICE_RENAMED;
     add_blocks(s);
     s->plant->tags[2].signal.modbus_unit = 7;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     while (s->device.requests < 8)
         sleep_ns(10 * NS_PER_MS);
     for (int i = 0; i < BLOCKS; i++)
@@ -268,8 +264,7 @@ CASE(an_address_that_is_never_answered_leaves_the_others_alone)
     add_blocks(s);
     plant_by_hand_tag(s->plant, "mute neighbour", TABLE_HOLDING, 501, DATA_INT16);
     s->device.mute_register = 501;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     await_line("mute neighbour (1 from 501): the device does not answer, although it answers for other addresses", 30);
     expect_steady(s, 10, 40);
     assert_true(quality_is_bad(modbus_case_look(s, BLOCKS)->quality));
@@ -299,8 +294,7 @@ CASE(a_dead_unit_at_a_closing_gateway)
     s->device.silent_unit = 7;
     add_blocks(s);
     s->plant->tags[2].signal.modbus_unit = 7;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     await_line("unit 7 does not answer", 10);
     expect_two_units_live(s);
 }
@@ -326,8 +320,7 @@ CASE(a_dead_unit_that_blocks_its_gateway)
     s->device.dead_unit = 7;
     s->device.dead_late_ms = 3 * s->plant->sources[0].timeout_ms;
     s->plant->tags[2].signal.modbus_unit = 7;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     await_line("unit 7 does not answer", 20);
     expect_two_units_live(s);
     assert_int_equal(lines_with("no readings"), 0);
@@ -349,8 +342,7 @@ static void start_gateway(struct modbus_case *s)
     }
     s->plant->sources[0].poll_ms = POLL_MS;
     modbus_case_be_impatient(s);
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     for (int i = 0; i < UNITS; i++)
         modbus_case_expect(s, i, QUALITY_GOOD, 10);
 }

@@ -7,13 +7,11 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "tests/support/modbus_case.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/ports.h"
 #include "tests/support/sleep.h"
-#include "tests/support/temp.h"
 #include "value/quality.h"
 
 static char *program(const char *name)
@@ -125,8 +123,6 @@ static pid_t simulate(const char *folder, int port)
     snprintf(number, sizeof(number), "%d", port);
     pid_t pid = spawn(path, (char *[]){ path, paths[4], "--port", number, NULL });
     mem_free(path);
-    for (size_t i = 0; i < sizeof(paths) / sizeof(*paths); i++)
-        mem_free(paths[i]);
     return pid;
 }
 
@@ -147,11 +143,10 @@ static char *ask_until_answered(const char *command)
 
 static void assert_prints(const char *words, const char *fmt, int port)
 {
-    char *command = mem_printf(fmt, port), *out = ask_until_answered(command);
+    char *command = test_printf(fmt, port), *out = ask_until_answered(command);
     if (!strstr(out, words))
         print_message("# %s\n%s\n", command, out);
     assert_non_null(strstr(out, words));
-    mem_free(command);
     mem_free(out);
 }
 
@@ -162,40 +157,36 @@ TEST(mbpoll_reads_the_simulator)
         print_message("# mbpoll is not installed\n");
         skip();
     }
-    char *folder = temp_folder_create();
+    char *folder = temp_folder();
     pid_t pid = simulate(folder, port);
     assert_prints("[1]: \t1234", "mbpoll -m tcp -t 4 -r 1 -c 1 -1 -p %d 127.0.0.1 2>&1", port);
     assert_prints("[3]: \t-118.625", "mbpoll -m tcp -t 4:float -r 3 -c 1 -1 -p %d 127.0.0.1 2>&1", port);
     assert_prints("[1]: \t65534 (-2)", "mbpoll -m tcp -t 3 -r 1 -c 1 -1 -p %d 127.0.0.1 2>&1", port);
     assert_prints("[1]: \t1", "mbpoll -m tcp -t 0 -r 1 -c 1 -1 -p %d 127.0.0.1 2>&1", port);
     end(pid);
-    temp_folder_destroy(&folder);
 }
 
 TEST(a_probe_shows_every_type_and_order)
 {
     int port = free_port();
-    char *folder = temp_folder_create(), *path = program("plantcast");
+    char *folder = temp_folder(), *path = program("plantcast");
     pid_t pid = simulate(folder, port);
-    char *command = mem_printf("%s tags --probe 127.0.0.1:%d hr:2 2>&1", path, port), *out = ask_until_answered(command);
+    char *command = test_printf("%s tags --probe 127.0.0.1:%d hr:2 2>&1", path, port), *out = ask_until_answered(command);
     /* the device has only two registers from here: both are shown */
     assert_non_null(strstr(out, "registers 4000 C2ED\nbits 15-0 0100 0000 0000 0000"));
     assert_non_null(strstr(out, "               -118.625 "));
     assert_null(strstr(out, "float64"));
-    mem_free(command);
     mem_free(out);
     const char *const wrong[] = { "400001", "hr:9999", "pr:1", "--address-base 2 400001", "hr:0 hr:1" };
     const int statuses[] = { 2, 1, 2, 2, 2 };
     for (int i = 0; i < 5; i++) {
         int status;
-        command = mem_printf("%s tags --probe 127.0.0.1:%d %s 2>&1", path, port, wrong[i]);
+        command = test_printf("%s tags --probe 127.0.0.1:%d %s 2>&1", path, port, wrong[i]);
         mem_free(output_of(command, &status));
         assert_int_equal(WEXITSTATUS(status), statuses[i]);
-        mem_free(command);
     }
     end(pid);
     mem_free(path);
-    temp_folder_destroy(&folder);
 }
 
 /* All functions of libmodbus that write or send raw data. A program that does not import them cannot call them. */
@@ -205,13 +196,12 @@ TEST(programs_import_nothing_that_writes)
     static const char *const writers[] = { "modbus_write", "modbus_mask_write", "modbus_send_raw", "modbus_report_slave_id" };
     for (size_t i = 0; i < sizeof(programs) / sizeof(*programs); i++) {
         int status;
-        char *path = program(programs[i]), *command = mem_printf("nm -D --undefined-only %s", path), *out = output_of(command, &status);
+        char *path = program(programs[i]), *command = test_printf("nm -D --undefined-only %s", path), *out = output_of(command, &status);
         assert_int_equal(status, 0);
         assert_true(i == 2 || strstr(out, "modbus_read_registers"));
         for (size_t k = 0; k < sizeof(writers) / sizeof(*writers); k++)
             assert_null(strstr(out, writers[k]));
         mem_free(path);
-        mem_free(command);
         mem_free(out);
     }
 }

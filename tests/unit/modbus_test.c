@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "tests/support/modbus_case.h"
 #include "tests/support/plant_by_hand.h"
@@ -37,8 +36,7 @@ CASE(values_arrive)
     plant_by_hand_tag(s->plant, "contact", TABLE_DISCRETE, 4, DATA_BIT);
     plant_by_hand_tag(s->plant, "wide", TABLE_HOLDING, 100, DATA_UINT32);
     plant_by_hand_tag(s->plant, "other unit", TABLE_HOLDING, 5, DATA_UINT16)->signal.modbus_unit = 9;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     const double wanted[] = { 0, 1, 2, 10007, 1, 0, 1, 100 * 65536.0 + 101, 5 };
     for (int i = 0; i < 9; i++) {
         modbus_case_expect(s, i, QUALITY_GOOD, 3);
@@ -56,8 +54,7 @@ CASE(many_tags_take_few_requests)
 {
     modbus_case_add_registers(s, 300);
     s->plant->sources[0].poll_ms = 60000;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     for (int i = 0; i < 300; i++) {
         modbus_case_expect(s, i, QUALITY_GOOD, 3);
         assert_true(modbus_case_look(s, i)->value == i);
@@ -68,8 +65,7 @@ CASE(many_tags_take_few_requests)
 CASE(is_asked_at_its_scan_time)
 {
     modbus_case_add_registers(s, 1); /* each 100 ms */
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     modbus_case_expect(s, 0, QUALITY_GOOD, 3);
     int before = s->device.requests;
     int64_t began_ns = clock_mono_ns();
@@ -93,8 +89,7 @@ CASE(dies_and_returns)
 {
     modbus_case_add_registers(s, 2);
     s->plant->tags[0].validity.stale_s = s->plant->tags[1].validity.stale_s = 1.0;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     modbus_case_expect(s, 1, QUALITY_GOOD, 3);
     device_stop(&s->device);
     modbus_case_expect(s, 1, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, 2);
@@ -111,8 +106,7 @@ CASE(silent_device_loses_the_link_though_it_accepts)
 {
     modbus_case_be_impatient(s);
     modbus_case_add_registers(s, 2);
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     modbus_case_expect(s, 1, QUALITY_GOOD, 3);
     s->device.manner = DEVICE_SILENT;
     modbus_case_expect(s, 1, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, 3);
@@ -127,8 +121,7 @@ CASE(resets_do_no_harm)
 {
     modbus_case_add_registers(s, 2);
     s->device.manner = DEVICE_RESETTING;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     modbus_case_expect(s, 1, QUALITY_BAD_NO_COMMUNICATION, 3);
     sleep_ns(NS_PER_S);
     assert_in_range(s->device.connections, 1, 5); /* reconnecting backs off */
@@ -157,8 +150,7 @@ CASE(late_reply_does_not_poison)
     /* a second block, so that there are two requests of the same shape */
     plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16);
     s->device.late_ms = 400;                                            /* the timeout is 300 */
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     modbus_case_expect(s, 1, QUALITY_GOOD, 3);
     for (int round = 0; round < 2; round++) {
         s->device.manner = DEVICE_LATE;
@@ -176,8 +168,7 @@ CASE(reply_sent_twice_does_not_poison)
     modbus_case_add_registers(s, 1);
     plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16);
     s->device.manner = DEVICE_TWICE;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     modbus_case_expect(s, 1, QUALITY_GOOD, 3);
     int before = s->device.requests;
     while (s->device.requests < before + 12) {
@@ -195,8 +186,7 @@ CASE(late_twin_of_a_reply_does_not_disconnect)
     plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16);
     s->device.manner = DEVICE_TWICE;
     s->device.late_ms = 10;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     modbus_case_expect(s, 1, QUALITY_GOOD, 3);
     assert_true(modbus_case_look(s, 0)->value == 0 && modbus_case_look(s, 1)->value == 500);
     assert_int_equal(count_of(s, "plantcast_source_connects_total{source=\"plc\"} "), 1);
@@ -206,8 +196,7 @@ CASE(reply_to_an_older_request_is_never_taken)
 {
     modbus_case_add_registers(s, 1);
     s->device.manner = DEVICE_BEHIND;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     modbus_case_expect(s, 0, QUALITY_BAD_NO_COMMUNICATION, 3);
     while (s->device.requests < 3) {
         assert_true(quality_is_bad(modbus_case_look(s, 0)->quality));
@@ -223,8 +212,7 @@ CASE(one_bad_register_does_not_lose_the_rest)
     modbus_case_add_registers(s, 120);
     s->device.bad_register = 57;
     s->device.bad_code = 2;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     modbus_case_expect(s, 57, QUALITY_BAD_CONFIGURATION, 3);
     for (int i = 0; i < 120; i++)
         if (i != 57) {
@@ -245,8 +233,7 @@ CASE(what_was_refused_is_asked_anew_when_the_link_is_back)
     modbus_case_add_registers(s, 20);
     s->device.bad_register = 7;
     s->device.bad_code = 2;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     modbus_case_expect(s, 7, QUALITY_BAD_CONFIGURATION, 3);
     device_stop(&s->device);
     modbus_case_expect(s, 7, QUALITY_BAD_NO_COMMUNICATION, 3);
@@ -277,8 +264,6 @@ CASE(exceptions_become_qualities)
         modbus_case_expect(s, 0, cases[i].quality, 3);
         assert_false(store_link_is_up(s->store, 0));
         source_stop(&s->source);
-        snapshot_destroy(&s->snapshot);
-        store_destroy(&s->store);
     }
 }
 
@@ -286,8 +271,7 @@ CASE(exceptions_become_qualities)
 CASE(one_refusal_loses_nothing)
 {
     modbus_case_add_registers(s, 10);
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     for (int code = 1; code <= 4; code++) {
         modbus_case_expect(s, 9, QUALITY_GOOD, 3);
         s->device.bad_times = 1;
@@ -306,8 +290,7 @@ CASE(what_was_refused_is_asked_again_after_seconds)
 {
     modbus_case_add_registers(s, 10);
     s->device.bad_code = 1;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     modbus_case_expect(s, 9, QUALITY_BAD_CONFIGURATION, 3);
     s->device.bad_code = 0;
     modbus_case_expect(s, 9, QUALITY_GOOD, 4);
@@ -318,8 +301,7 @@ CASE(device_failure_is_asked_again)
     modbus_case_add_registers(s, 10);
     s->device.bad_register = 4;
     s->device.bad_code = 4;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     modbus_case_expect(s, 4, QUALITY_BAD_DEVICE_FAILURE, 3);
     modbus_case_expect(s, 3, QUALITY_GOOD, 3);
     s->device.bad_code = 0;
@@ -330,8 +312,7 @@ CASE(busy_is_no_verdict)
 {
     modbus_case_add_registers(s, 2);
     s->plant->tags[0].validity.stale_s = s->plant->tags[1].validity.stale_s = 0.6;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     modbus_case_expect(s, 0, QUALITY_GOOD, 3);
     for (int code = 5; code <= 6; code++) { /* acknowledge, busy */
         s->device.bad_code = code;
@@ -363,8 +344,7 @@ CASE(dead_unit_behind_a_gateway_leaves_the_others_alone)
     modbus_case_add_registers(s, 2);
     s->plant->tags[1].signal.modbus_unit = 7;
     s->device.dead_unit = 7;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     check_other_unit_lives(s);
 }
 
@@ -374,8 +354,7 @@ CASE(silent_unit_behind_a_gateway_leaves_the_others_alone)
     modbus_case_add_registers(s, 2);
     s->plant->tags[1].signal.modbus_unit = 7;
     s->device.silent_unit = 7;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     check_other_unit_lives(s);
 }
 
@@ -384,8 +363,7 @@ CASE(stops_while_the_device_hangs)
     modbus_case_add_registers(s, 2);
     s->plant->sources[0].timeout_ms = 20000;
     s->device.manner = DEVICE_SILENT;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     while (s->device.requests == 0)
         sleep_ns(5 * NS_PER_MS);
     modbus_case_assert_stops_soon(s);
@@ -445,8 +423,7 @@ CASE(names_are_looked_up)
     modbus_case_add_registers(s, 1);
     mem_free(s->plant->sources[0].hosts[0]);
     s->plant->sources[0].hosts[0] = mem_strdup("localhost");
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     modbus_case_expect(s, 0, QUALITY_GOOD, 5);
 }
 
@@ -455,8 +432,7 @@ CASE(two_sources_may_name_one_device)
     modbus_case_add_registers(s, 1);
     plant_by_hand_source(s->plant, "again", s->device.port);
     plant_by_hand_tag(s->plant, "second", TABLE_HOLDING, 11, DATA_INT16);
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     struct source *second = source_start(s->log, s->plant, 1, s->store, s->counters);
     modbus_case_expect(s, 0, QUALITY_GOOD, 3);
     modbus_case_expect(s, 1, QUALITY_GOOD, 3);
@@ -494,7 +470,7 @@ CASE(unknown_kind_is_refused)
 {
     mem_free(s->plant->sources[0].kind);
     s->plant->sources[0].kind = mem_strdup("telepathy");
-    s->store = store_create(s->plant);
+    s->store = test_store(s->plant);
     assert_null(source_start(s->log, s->plant, 0, s->store, s->counters));
 }
 
@@ -504,15 +480,13 @@ TEST(calls_nothing_that_writes)
     static const char *const writers[] = { "modbus_write", "modbus_mask_write", "modbus_send_raw" };
     const char *folder = getenv("PLANTCAST_OUT");
     size_t bytes;
-    char *path = mem_printf("%s/lib/value.a", folder ? folder : "build/release"), *archive = text_read_file(path, 64 << 20, &bytes);
+    char *path = test_printf("%s/lib/value.a", folder ? folder : "build/release"), *archive = text_read_file(path, 64 << 20, &bytes);
     if (!archive) {
         print_message("# %s is not there\n", path);
-        mem_free(path);
         skip();
     }
     assert_non_null(memmem(archive, bytes, "modbus_read_registers", 21));
     for (int i = 0; i < 3; i++)
         assert_null(memmem(archive, bytes, writers[i], strlen(writers[i])));
     mem_free(archive);
-    mem_free(path);
 }

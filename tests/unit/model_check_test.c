@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Findings of --check in the headers of models and of recorded series. */
 #include "tests/support/test.h"
-#include <math.h>
 
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "plant/models/asset_size.h"
 #include "plant/models/model_check.h"
 #include "plant/models/model_header.h"
 #include "tests/support/plant_case.h"
-#include "tests/support/temp.h"
 #include "value/series_check.h"
 
 #define CASE(name) TEST_ON(struct plant_case *c, name, plant_case_set_up, plant_case_tear_down)
@@ -28,14 +25,13 @@ static size_t memory_bytes; /* 0: this machine's */
 
 static void check(struct plant_case *c, const char *assets, const char *sources, const char *tags, char **printed)
 {
-    char *yaml = mem_printf("plant: { name: P }\nassets:\n%sgroups: [{ id: g, unit: K, min: 0, max: 9 }]\nsources: %s\ntags: tags.csv\n",
+    char *yaml = test_printf("plant: { name: P }\nassets:\n%sgroups: [{ id: g, unit: K, min: 0, max: 9 }]\nsources: %s\ntags: tags.csv\n",
                             assets, sources);
     size_t bytes;
     char *text = NULL;
     FILE *out = open_memstream(&text, &bytes);
-    mem_free(temp_write_text(c->folder, "m.gltf", model));
+    temp_write_text(c->folder, "m.gltf", model);
     plant_case_load(c, yaml, tags);
-    mem_free(yaml);
     plant_case_assert_loaded(c, c->diag.warnings);
     models_check(c->plant, memory_bytes, &c->diag, out);
     series_check(c->plant, &c->diag);
@@ -65,9 +61,9 @@ CASE(sizes_are_printed_and_doubted)
 
 CASE(what_is_no_model_is_said_so)
 {
-    mem_free(temp_write_text(c->folder, "s.step", "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\n"));
-    mem_free(temp_write_text(c->folder, "o.obj", "v 0 0 0\nv 1 0 0\n"));
-    mem_free(temp_write(c->folder, "cut.glb", "glTF\2\0\0\0\0\1\0\0\0\1\0\0JSON{", 21));
+    temp_write_text(c->folder, "s.step", "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\n");
+    temp_write_text(c->folder, "o.obj", "v 0 0 0\nv 1 0 0\n");
+    temp_write(c->folder, "cut.glb", "glTF\2\0\0\0\0\1\0\0\0\1\0\0JSON{", 21);
     check(c, "  - { id: A, model: s.step }\n  - { id: B, model: o.obj }\n  - { id: C, model: cut.glb }\n", "[]", "Tag Name\n", NULL);
     FOUND(c, { "plant.yaml", 3, 0, "s.step' is a STEP file; expected glTF 2.0 (.glb or .gltf): export it as such, or convert it" },
           { "plant.yaml", 4, 0, "o.obj' is not a glTF model; expected glTF 2.0 (.glb or .gltf)" },
@@ -79,21 +75,20 @@ TEST_WITH(what_no_memory_holds_is_refused, plant_case_set_up, plant_case_tear_do
     struct plant_case *c = *state;
     char *more = mem_strdup(model), *count = strstr(more, "\"count\":3,");
     memcpy(count, "\"count\":9", 9);
-    char *huge = mem_printf("%.*s000000000000000%s", (int)(count + 9 - more), more, count + 9);
-    mem_free(temp_write_text(c->folder, "h.gltf", huge));
+    char *huge = test_printf("%.*s000000000000000%s", (int)(count + 9 - more), more, count + 9);
+    temp_write_text(c->folder, "h.gltf", huge);
     check(c, "  - { id: A, model: h.gltf, nodes: '#1', units: mm }\n  - { id: B, model: h.gltf, nodes: '#1', units: mm }\n", "[]",
           "Tag Name\n", NULL);
     FOUND(c, { "plant.yaml", 0, 0, "3000000000.00 million triangles are too many: " }); /* in memory once */
-    mem_free(huge);
     /* a model of 4.67 million triangles; measured: 1.03 GB of memory */
-    huge = mem_printf("%.*s00000000%s", (int)(count + 8 - more), more, count + 9);
+    huge = test_printf("%.*s00000000%s", (int)(count + 8 - more), more, count + 9);
     memcpy(strstr(huge, "\"count\":") + 8, "14000000", 8);
-    mem_free(temp_write_text(c->folder, "h.gltf", huge));
+    temp_write_text(c->folder, "h.gltf", huge);
     for (memory_bytes = 1100000000; memory_bytes >= 1000000000; memory_bytes -= 100000000) {
         plant_case_tear_down(state);
         plant_case_set_up(state);
         c = *state;
-        mem_free(temp_write_text(c->folder, "h.gltf", huge));
+        temp_write_text(c->folder, "h.gltf", huge);
         check(c, "  - { id: A, model: h.gltf, nodes: '#1', units: mm }\n", "[]", "Tag Name\n", NULL);
         if (memory_bytes > 1000000000)
             assert_int_equal(c->diag.errors, 0);
@@ -102,7 +97,6 @@ TEST_WITH(what_no_memory_holds_is_refused, plant_case_set_up, plant_case_tear_do
     }
     memory_bytes = 0;
     mem_free(more);
-    mem_free(huge);
 }
 
 CASE(nodes_are_looked_up)
@@ -118,13 +112,13 @@ CASE(nodes_are_looked_up)
 /* A node without triangles has its place at the origin of its frame, as in plantcast-prep. */
 CASE(nodes_without_triangles_are_compared)
 {
-    mem_free(temp_write_text(c->folder, "n.gltf",
-                             "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0,1,2,3,4,5,6]}],"
-                             "\"nodes\":[{\"name\":\"P\",\"mesh\":0},{\"name\":\"S\"},{\"name\":\"S\",\"translation\":[5,0,0]},"
-                             "{\"name\":\"T\"},{\"name\":\"T\",\"mesh\":0},{\"name\":\"U\",\"translation\":[1,2,3]},"
-                             "{\"name\":\"U\",\"translation\":[1,2,3]}],"
-                             "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
-                             "\"accessors\":[{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,1,1]}]}"));
+    temp_write_text(c->folder, "n.gltf",
+                    "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0,1,2,3,4,5,6]}],"
+                    "\"nodes\":[{\"name\":\"P\",\"mesh\":0},{\"name\":\"S\"},{\"name\":\"S\",\"translation\":[5,0,0]},"
+                    "{\"name\":\"T\"},{\"name\":\"T\",\"mesh\":0},{\"name\":\"U\",\"translation\":[1,2,3]},"
+                    "{\"name\":\"U\",\"translation\":[1,2,3]}],"
+                    "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+                    "\"accessors\":[{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,1,1]}]}");
     check(c, "  - { id: A, model: n.gltf }\n", "[]", "Tag Name,Group,Asset,Node\nT1,g,A,S\nT2,g,A,T\nT3,g,A,U\n", NULL);
     FOUND(c, { "tags.csv", 2, 1, "tag T1: asset A: the model has 2 nodes 'S', in different places (#1, #2)" },
           { "tags.csv", 3, 1, "tag T2: asset A: the model has 2 nodes 'T', in different places (#3, #4)" });
@@ -136,12 +130,10 @@ CASE(nodes_that_are_nowhere_are_refused)
                                               "\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,-1e300,0,1]" };
     for (size_t i = 0; i < sizeof(transforms) / sizeof(*transforms); i++) {
         struct model_header header;
-        char why[300] = "", *text = mem_printf("{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"name\":\"P\"},{%s}]}", transforms[i]);
+        char why[300] = "", *text = test_printf("{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"name\":\"P\"},{%s}]}", transforms[i]);
         char *path = temp_write_text(c->folder, "far.gltf", text);
         assert_false(model_header_read(&header, path, why, sizeof(why)));
         assert_string_equal(why, "has node 1 with a position that is not finite or exceeds 1e15");
-        mem_free(path);
-        mem_free(text);
     }
 }
 
@@ -159,9 +151,8 @@ CASE(sensors_tell_units_and_axes)
           "check units, up, placement and sensor_frame" },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
-        char *assets = mem_printf("  - %s\n", cases[i].asset);
+        char *assets = test_printf("  - %s\n", cases[i].asset);
         check(c, assets, "[]", "Tag Name,Group,Asset,X,Y,Z\nT1,g,A,1,-3.9,0.1\nT2,g,A,7,-3.8,0.2\nT3,g,A,3,-3.7,1.9\n", NULL);
-        mem_free(assets);
         size_t found = 0;
         for (size_t k = 0; k < c->diag.count; k++)
             found += cases[i].says && strstr(c->diag.items[k].text, cases[i].says) != NULL;
@@ -173,10 +164,10 @@ CASE(sensors_tell_units_and_axes)
 CASE(series_are_looked_up)
 {
     static const char assets[] = "  - { id: A, model: m.gltf, units: mm }\n";
-    mem_free(temp_write_text(c->folder, "wide.csv", "Time,TI_101,TI_102\n2026-10-25T00:00:00Z,1,2\n"));
-    mem_free(temp_write_text(c->folder, "long.csv", "1000,x,pump,flow,7,,\n1000,x,pump,temp,70,,\n"));
-    mem_free(temp_write_text(c->folder, "values.csv", "Tag,Time,Value\nT5,2026-10-25T00:00:00Z,1\n"));
-    mem_free(temp_write_text(c->folder, "none.csv", "a,b\n1,2\n"));
+    temp_write_text(c->folder, "wide.csv", "Time,TI_101,TI_102\n2026-10-25T00:00:00Z,1,2\n");
+    temp_write_text(c->folder, "long.csv", "1000,x,pump,flow,7,,\n1000,x,pump,temp,70,,\n");
+    temp_write_text(c->folder, "values.csv", "Tag,Time,Value\nT5,2026-10-25T00:00:00Z,1\n");
+    temp_write_text(c->folder, "none.csv", "a,b\n1,2\n");
     check(c, assets, "[{ id: w, type: replay, file: wide.csv }, { id: l, type: replay, file: long.csv },\n"
                      "  { id: v, type: replay, file: values.csv }, { id: n, type: replay, file: none.csv }]",
           "Tag Name,Source,Address\nT1,w,TI_101\nT2,w,TI_103\nT3,l,pump/temp\nT4,l,pump/tmp\nT5,v,\nT6,v,\nT7,n,a\n", NULL);
@@ -200,7 +191,7 @@ CASE(broken_models_are_refused)
         memcpy(text, model, length);
         for (int i = rand_r(&seed) % 4; i >= 0; i--)
             text[(size_t)rand_r(&seed) % length] = signs[(size_t)rand_r(&seed) % (sizeof(signs) - 1)];
-        mem_free(temp_write_text(c->folder, "m.gltf", text));
+        temp_write_text(c->folder, "m.gltf", text);
         if (model_header_read(&header, path, why, sizeof(why))) {
             read++;
             model_header_finish(&header);
@@ -210,5 +201,4 @@ CASE(broken_models_are_refused)
     }
     assert_true(read > 100 && read < 1900);
     mem_free(text);
-    mem_free(path);
 }

@@ -3,9 +3,7 @@
 #include "tests/support/test.h"
 #include <unistd.h>
 
-#include "base/mem.h"
 #include "tests/support/prep_case.h"
-#include "tests/support/sweep.h"
 
 /* triangles: number in the model's own description, and degenerate ones among them; -1: not stated. pieces: separate surfaces at the
    end; 0: several, because the model itself is in pieces. */
@@ -101,9 +99,8 @@ static json_t *prepare(struct prep_case *c, const char *plant)
         print_message("# ../shared/data/models is not there\n");
         skip();
     }
-    char *arguments = mem_printf("tests/plants/models/%s.yaml --output $FOLDER/prepared --report json", plant);
+    char *arguments = test_printf("tests/plants/models/%s.yaml --output $FOLDER/prepared --report json", plant);
     prep_case_expect(c, arguments, 0);
-    mem_free(arguments);
     json_t *report = prep_case_json(&c->out);
     for (size_t i = 0; i < json_array_size(json_object_get(report, "assets")); i++)
         check_asset(json_array_get(json_object_get(report, "assets"), i), plant);
@@ -115,12 +112,11 @@ static void tanker(void **state)
 {
     json_t *report = prepare(*state, "industrial_tanker");
     assert_int_equal((int)prep_case_number(report, "assets.0.surface.components_after"), 1); /* shell, saddles, manways, bolts */
-    json_decref(report);
 }
 
 static void platform(void **state)
 {
-    json_decref(prepare(*state, "offshore_platform_overview"));
+    prepare(*state, "offshore_platform_overview");
 }
 
 static void plant_in_five_parts(void **state)
@@ -129,7 +125,6 @@ static void plant_in_five_parts(void **state)
     assert_int_equal((int)prep_case_number(report, "models.0.skipped_lines"), 1);
     /* the model's flanges are thinner than the tolerance, but stay connected */
     assert_int_equal((int)prep_case_number(report, "assets.1.surface.components_after"), 1);
-    json_decref(report);
 }
 
 static void plant_with_its_tree(void **state)
@@ -138,14 +133,12 @@ static void plant_with_its_tree(void **state)
     /* In V-1105 distances jump at walls, and thin triangles lie next to others: neither may be subdivided without benefit. */
     assert_true(prep_case_number(report, "assets.0.levels.0.limited_by_triangles") < 10);
     assert_true(prep_case_number(report, "assets.0.levels.0.triangles") < 40000);
-    json_decref(report);
 }
 
 static void weather_deck(void **state)
 {
     json_t *report = prepare(*state, "huldra_wd1_psup");
     assert_true(prep_case_number(report, "assets.3.surface.components_after") > 50); /* supports stand apart */
-    json_decref(report);
 }
 
 /* In this model, by far the largest, every elbow and tee has each face twice. */
@@ -154,7 +147,6 @@ static void building_services(void **state)
     json_t *report = prepare(*state, "duplex_mep");
     double repeated = prep_case_number(report, "assets.4.surface.repeated_triangles");
     assert_true(repeated > 113000 && repeated <= 113821);
-    json_decref(report);
 }
 
 static void equipment(void **state)
@@ -167,7 +159,6 @@ static void equipment(void **state)
     }
     assert_true(triangles == 79103); /* the assets together have all triangles of the model */
     assert_true(prep_case_number(report, "assets.4.repeated_triangles") == 192);
-    json_decref(report);
 }
 
 /* The six mixers share one asset file. */
@@ -176,10 +167,14 @@ static void mixers_and_water_tank(void **state)
     json_t *report = prepare(*state, "../cookie_line");
     assert_int_equal(json_array_size(json_object_get(report, "assets")), 7);
     assert_string_equal(json_string_value(json_object_get(json_array_get(json_object_get(report, "assets"), 5), "state")), "shared");
-    json_decref(report);
 }
 
-#define WITH_FOLDER(test) cmocka_unit_test_setup_teardown(test, prep_case_set_up, prep_case_tear_down)
+static int tear_down(void **state)
+{
+    return test_end(prep_case_tear_down, state);
+}
+
+#define WITH_FOLDER(test) cmocka_unit_test_setup_teardown(test, prep_case_set_up, tear_down)
 
 int main(void)
 {

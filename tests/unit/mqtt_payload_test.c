@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Payloads of MQTT messages: which texts are numbers, JSON paths, timestamps and qualities. */
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "plant/sources/json_path.h"
 #include "value/mqtt/mqtt_payload.h"

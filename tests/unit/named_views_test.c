@@ -5,8 +5,6 @@
 
 #include <jansson.h>
 
-#include "base/mem.h"
-#include "tests/support/temp.h"
 #include "views/named_views.h"
 #include "views/short_links.h"
 
@@ -18,29 +16,22 @@ struct named_views_fixture {
     struct named_views *views;
 };
 
-static int set_up(void **state)
+static void begin(struct named_views_fixture *f)
 {
     static struct named_view fixed = { .id = "all", .title = "All", .address = "group=t" };
-    struct named_views_fixture *f = mem_new(sizeof(*f));
-    f->log = log_create(LOG_ERROR);
+    f->log = test_log();
     f->plant = (struct plant){ .screens.views = &fixed, .screens.view_count = 1 };
-    f->folder = temp_folder_create();
-    f->history = mem_printf("%s/history", f->folder);
+    f->folder = temp_folder();
+    f->history = temp_path(f->folder, "history");
     f->views = named_views_open(f->log, &f->plant, f->history, NULL);
-    *state = f;
-    return 0;
 }
 
-static int tear_down(void **state)
+static void end(struct named_views_fixture *f)
 {
-    struct named_views_fixture *f = *state;
     named_views_close(&f->views);
-    temp_folder_destroy(&f->folder);
-    mem_free(f->history);
-    log_destroy(&f->log);
-    mem_free(f);
-    return 0;
 }
+
+TEST_FIXTURE(struct named_views_fixture, begin, end)
 
 #define CASE(name) TEST_ON(struct named_views_fixture *f, name, set_up, tear_down)
 
@@ -152,7 +143,6 @@ CASE(what_cannot_be_read_is_not_written_over)
         text[fread(text, 1, sizeof(text) - 1, file)] = 0;
         fclose(file);
         assert_string_equal(text, files[i]);
-        mem_free(path);
     }
 }
 
@@ -192,15 +182,14 @@ CASE(a_short_link_depends_on_its_view_and_survives_a_restart)
 
 CASE(an_id_that_another_view_has_gets_longer)
 {
-    char id[SHORT_LINK_ID_BYTES], *path = temp_write_text(f->folder, "history/" SHORT_LINKS_FILE,
-                                                          "{\"links\":[{\"id\":\"vyj5ny9g\",\"view\":\"group=t\",\"time_us\":1}]}");
+    char id[SHORT_LINK_ID_BYTES];
+    temp_write_text(f->folder, "history/" SHORT_LINKS_FILE, "{\"links\":[{\"id\":\"vyj5ny9g\",\"view\":\"group=t\",\"time_us\":1}]}");
     struct short_links *links = short_links_open(f->log, f->history, NULL);
     assert_int_equal(short_links_share(links, "asset=P-101A", NOON_US, id, NULL), REFUSAL_NONE);
     assert_int_equal(strlen(id), 9);
     assert_string_equal(short_links_find(links, id), "asset=P-101A");
     assert_string_equal(short_links_find(links, "vyj5ny9g"), "group=t");
     short_links_close(&links);
-    mem_free(path);
 }
 
 /* Shares that many views, which nobody shares again. */
@@ -268,12 +257,10 @@ CASE(a_mirror_takes_only_valid_short_links)
     char id[SHORT_LINK_ID_BYTES];
     struct short_links *links = short_links_open(f->log, NULL, NULL);
     assert_int_equal(short_links_share(links, "asset=first", NOON_US, id, NULL), REFUSAL_UNRECORDED);
-    json_t *good = json_loads("[{\"id\":\"abcdefgh\",\"view\":\"group=t\",\"time_us\":1}]", 0, NULL);
-    json_t *bad = json_loads("[{\"id\":\"abcdefgh\",\"view\":\"a blank\",\"time_us\":1}]", 0, NULL);
+    json_t *good = test_json(json_loads("[{\"id\":\"abcdefgh\",\"view\":\"group=t\",\"time_us\":1}]", 0, NULL));
+    json_t *bad = test_json(json_loads("[{\"id\":\"abcdefgh\",\"view\":\"a blank\",\"time_us\":1}]", 0, NULL));
     assert_true(short_links_mirror(links, good));
     assert_false(short_links_mirror(links, bad));
     assert_string_equal(short_links_find(links, "abcdefgh"), "group=t");
     short_links_close(&links);
-    json_decref(good);
-    json_decref(bad);
 }

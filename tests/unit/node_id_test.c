@@ -3,12 +3,9 @@
 #include "tests/support/test.h"
 #include <unistd.h>
 
-#include "base/mem.h"
 #include "corelink/node_id.h"
 
-static char folder[] = "/tmp/seat_test.XXXXXX";
-
-static void take(struct node_id *node, char id[9])
+static void take(struct node_id *node, const char *folder, char id[9])
 {
     char *why = node_id_take(node, folder);
     assert_null(why);
@@ -19,15 +16,15 @@ static void take(struct node_id *node, char id[9])
 TEST(it_is_kept_and_never_shared)
 {
     struct node_id node = { 0 }, other = { 0 };
-    char first[9], again[9];
-    take(&node, first);
+    char first[9], again[9], *folder = temp_folder();
+    take(&node, folder, first);
     char *why = node_id_take(&other, folder);
     assert_non_null(why);
     assert_non_null(strstr(why, folder));
     assert_non_null(strstr(why, "another core"));
     mem_free(why);
     node_id_release(&node);
-    take(&node, again);
+    take(&node, folder, again);
     assert_string_equal(again, first);
     node_id_release(&node);
 }
@@ -36,9 +33,9 @@ TEST(it_is_kept_and_never_shared)
 TEST(a_copy_is_another)
 {
     struct node_id node = { 0 };
-    char first[9], again[9], line[128];
-    take(&node, first);
-    char *path = mem_printf("%s/node", folder), *copy = mem_printf("%s/copy", folder);
+    char first[9], again[9], line[128], *folder = temp_folder();
+    take(&node, folder, first);
+    char *path = test_printf("%s/node", folder), *copy = test_printf("%s/copy", folder);
     FILE *in = fopen(path, "r"), *out = fopen(copy, "w");
     assert_non_null(fgets(line, sizeof(line), in));
     fputs(line, out);
@@ -46,38 +43,23 @@ TEST(a_copy_is_another)
     fclose(out);
     node_id_release(&node);
     assert_int_equal(rename(copy, path), 0);
-    take(&node, again);
+    take(&node, folder, again);
     assert_string_not_equal(again, first);
     node_id_release(&node);
-    take(&node, first);
+    take(&node, folder, first);
     assert_string_equal(again, first);
     node_id_release(&node);
-    mem_free(path);
-    mem_free(copy);
 }
 
 TEST(what_it_cannot_read_is_made_anew_and_no_folder_is_said)
 {
     struct node_id node = { 0 };
-    char id[9], *path = mem_printf("%s/node", folder);
-    FILE *file = fopen(path, "w");
-    fputs("no seat at all, and much longer than what stands here is ever going to be, by a good deal", file);
-    fclose(file);
-    take(&node, id);
+    char id[9], *folder = temp_folder();
+    temp_write_text(folder, "node", "no seat at all, and much longer than what stands here is ever going to be, by a good deal");
+    take(&node, folder, id);
     node_id_release(&node);
     char *why = node_id_take(&node, "/dev/null/none");
     assert_non_null(why);
     assert_non_null(strstr(why, "/dev/null/none/node"));
     mem_free(why);
-    unlink(path);
-    mem_free(path);
-}
-
-int main(void)
-{
-    if (!mkdtemp(folder))
-        return 1;
-    int failed = tests_run(NULL);
-    rmdir(folder);
-    return failed;
 }

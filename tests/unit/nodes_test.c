@@ -2,7 +2,6 @@
 /* Patterns of model nodes: which nodes they select and name. */
 #include "tests/support/test.h"
 
-
 #include "plant/models/nodes.h"
 
 /* The tree: site / area1 / (P-1 / motor, P-2 / motor), area2 / (unnamed with mesh "vessel", "#0", "a/b", "P-3" with two instances) */

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Normals at points where many faces meet: equal to the plain sum over all pairs, in a time that grows little faster than their number. */
 #include "tests/support/test.h"
-#include <math.h>
 #include <time.h>
 
-
-#include "base/mem.h"
 #include "preprocess/geometry/normals.h"
 
 #define CREASE_COSINE 0.766

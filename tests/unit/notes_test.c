@@ -5,8 +5,6 @@
 #include <errno.h>
 #include <jansson.h>
 
-#include "base/mem.h"
-#include "tests/support/temp.h"
 #include "views/notes.h"
 
 #define S INT64_C(1000000)
@@ -18,27 +16,20 @@ struct notes_fixture {
     struct notes *notes;
 };
 
-static int set_up(void **state)
+static void begin(struct notes_fixture *f)
 {
-    struct notes_fixture *f = mem_new(sizeof(*f));
-    f->log = log_create(LOG_ERROR);
-    f->folder = temp_folder_create();
-    f->history = mem_printf("%s/history", f->folder);
+    f->log = test_log();
+    f->folder = temp_folder();
+    f->history = test_printf("%s/history", f->folder);
     f->notes = notes_open(f->log, f->history, NULL);
-    *state = f;
-    return 0;
 }
 
-static int tear_down(void **state)
+static void end(struct notes_fixture *f)
 {
-    struct notes_fixture *f = *state;
     notes_close(&f->notes);
-    temp_folder_destroy(&f->folder);
-    mem_free(f->history);
-    log_destroy(&f->log);
-    mem_free(f);
-    return 0;
 }
+
+TEST_FIXTURE(struct notes_fixture, begin, end)
 
 #define CASE(name) TEST_ON(struct notes_fixture *f, name, set_up, tear_down)
 
@@ -57,11 +48,10 @@ static enum refusal_code add(struct notes_fixture *f, const char *text, int64_t 
 static void assert_notes(char *text, const char *expected)
 {
     char found[400] = "";
-    json_t *message = json_loads(text, 0, NULL), *list = json_object_get(message, "list");
+    json_t *message = test_json(json_loads(text, 0, NULL)), *list = json_object_get(message, "list");
     for (size_t i = 0; i < json_array_size(list); i++)
         snprintf(found + strlen(found), sizeof(found) - strlen(found), "%s%s", i ? " " : "",
                  json_string_value(json_object_get(json_array_get(list, i), "text")));
-    json_decref(message);
     mem_free(text);
     assert_string_equal(found, expected);
 }
@@ -117,9 +107,8 @@ CASE(there_is_a_limit)
     assert_int_equal(add(f, "last", NOON + 1000 * S, 0), REFUSAL_NONE);
     open_again(f); /* the file holds the maximum number of notes when it is opened again */
     char *text = notes_text_between(f->notes, 0, INT64_MAX);
-    json_t *message = json_loads(text, 0, NULL);
+    json_t *message = test_json(json_loads(text, 0, NULL));
     assert_int_equal(json_array_size(json_object_get(message, "list")), NOTES_ENDED + 1);
-    json_decref(message);
     mem_free(text);
 }
 
@@ -176,7 +165,6 @@ CASE(what_cannot_be_read_is_not_written_over)
         text[fread(text, 1, sizeof(text) - 1, file)] = 0;
         fclose(file);
         assert_string_equal(text, files[i]);
-        mem_free(path);
     }
     assert_int_not_equal(notes_add(f->notes, &(struct note){ .text = "\xff", .tag = "t" }, "kim", NOON, f->id), REFUSAL_NONE);
 }
@@ -205,7 +193,7 @@ CASE(a_note_is_shown_once_it_is_on_disk)
     collect(writer);
     assert_notes(notes_text(notes, NOON), "one two");
     assert_int_equal(notes_number(notes), 2);
-    char *spoiled = mem_printf("rm -r '%s' && : > '%s'", f->history, f->history), *mended = mem_printf("rm '%s'", f->history);
+    char *spoiled = test_printf("rm -r '%s' && : > '%s'", f->history, f->history), *mended = test_printf("rm '%s'", f->history);
     assert_int_equal(system(spoiled), 0);
     struct settling_ticket ticket = file_writer_begin(writer);
     assert_int_equal(notes_end(notes, f->id, "kim", false, NOON + S), REFUSAL_NONE);
@@ -223,8 +211,6 @@ CASE(a_note_is_shown_once_it_is_on_disk)
     notes = notes_open(f->log, f->history, writer);
     notes_close(&notes); /* the daemon ends: the writer has stopped, and is destroyed after its owners */
     file_writer_destroy(&writer);
-    mem_free(spoiled);
-    mem_free(mended);
 }
 
 CASE(without_a_folder_none_is_made)

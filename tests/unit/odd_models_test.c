@@ -3,18 +3,14 @@
 #include "tests/support/test.h"
 #include <fcntl.h>
 #include <jansson.h>
-#include <math.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "tests/support/model_maker.h"
 #include "tests/support/prep_case.h"
-#include "tests/support/sweep.h"
-#include "tests/support/temp.h"
 
 #define CASE(name) TEST_ON(struct prep_case *c, name, prep_case_set_up, prep_case_tear_down)
 
@@ -78,7 +74,7 @@ static void write_plates_and(struct prep_case *c, uint32_t across, uint32_t up, 
         add_stray(&maker, stray, at_m);
     size_t size;
     char *glb = maker_glb(&maker, &size);
-    mem_free(temp_write(c->folder, "model.glb", glb, size));
+    temp_write(c->folder, "model.glb", glb, size);
     mem_free(glb);
     maker_finish(&maker);
     text_finish(&places);
@@ -209,12 +205,10 @@ CASE(copies_in_one_place_are_counted_and_measured_once)
     assert_true(prep_case_number(report, "assets.0.model_triangles") == 400 * 32);
     assert_true(prep_case_number(report, "assets.0.repeated_triangles") == 399 * 32);
     assert_true(prep_case_number(report, "assets.0.stage_seconds.levels") < LEVELS_S); /* measured: 4 ms; before, minutes */
-    json_decref(report);
     write_plates(c, 4, 4, (double[]){ 1, 1 }, 1, here);
     prep_case_expect(c, "$PLANT --report json", 0);
     report = prep_case_json(&c->out);
     assert_true(prep_case_number(report, "assets.0.repeated_triangles") == 0);
-    json_decref(report);
 }
 
 /* --- told to end ------------------------------------------------------------------------------------------------------------ */
@@ -229,8 +223,6 @@ static pid_t start(struct prep_case *c)
         execl(program, program, c->plant, (char *)NULL);
         _exit(99);
     }
-    mem_free(program);
-    mem_free(err);
     return child;
 }
 
@@ -280,7 +272,6 @@ CASE(what_is_told_to_end_ends)
     }
     write_plates(c, 10, 10, (double[]){ 1, 1 }, 1, here);
     prep_case_expect(c, "$PLANT", 0); /* leftovers of the stopped run do not disturb the next */
-    char *drafts = mem_printf("ls '%s'/plant.prepared/*.new 2>/dev/null", c->folder);
+    char *drafts = test_printf("ls '%s'/plant.prepared/*.new 2>/dev/null", c->folder);
     assert_int_not_equal(system(drafts), 0);
-    mem_free(drafts);
 }

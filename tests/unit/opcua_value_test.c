@@ -2,9 +2,7 @@
 /* OPC UA: node addresses, and conversion of values to readings: every numeric type, status codes and timestamps bit by bit, and values
    that are not numbers. */
 #include "tests/support/test.h"
-#include <math.h>
 
-#include "base/mem.h"
 #include "plant/sources/opcua_address.h"
 #include "tests/support/plant_by_hand.h"
 #include "value/quality.h"
@@ -115,8 +113,8 @@ TEST(status_codes_and_times_stay_as_they_are)
     struct plant *plant = plant_by_hand_create(1);
     plant_by_hand_source(plant, "plc", 4840);
     plant_by_hand_tag(plant, "A", TABLE_HOLDING, 0, DATA_FLOAT64)->validity.stale_s = PLANT_NEVER_STALE_S;
-    struct store *store = store_create(plant);
-    struct snapshot *snapshot = snapshot_create(1);
+    struct store *store = test_store(plant);
+    struct snapshot *snapshot = test_snapshot(1);
     struct stamped_writer writer;
     UA_Double number = 4;
     char why[200];
@@ -136,9 +134,6 @@ TEST(status_codes_and_times_stay_as_they_are)
         assert_int_equal(snapshot->readings[0].quality, codes[i]);
     }
     stamped_writer_finish(&writer);
-    snapshot_destroy(&snapshot);
-    store_destroy(&store);
-    plant_by_hand_destroy(&plant);
 }
 
 /* Readings older than the machine's boot: a machine started a minute ago receives readings of an hour ago. */
@@ -148,8 +143,8 @@ TEST(what_is_older_than_the_machine_s_start_is_as_old_as_it_is)
     struct plant *plant = plant_by_hand_create(1);
     plant_by_hand_source(plant, "plc", 4840);
     plant_by_hand_tag(plant, "A", TABLE_HOLDING, 0, DATA_FLOAT64)->validity.stale_s = 600;
-    struct store *store = store_create(plant);
-    struct snapshot *snapshot = snapshot_create(1);
+    struct store *store = test_store(plant);
+    struct snapshot *snapshot = test_snapshot(1);
     struct stamped_writer writer;
     stamped_writer_init(&writer, plant, store);
     for (int minutes = 60; minutes > 57; minutes--) {
@@ -162,8 +157,5 @@ TEST(what_is_older_than_the_machine_s_start_is_as_old_as_it_is)
         assert_false(quality_is_good(snapshot->readings[0].quality)); /* stale */
     }
     stamped_writer_finish(&writer);
-    snapshot_destroy(&snapshot);
-    store_destroy(&store);
-    plant_by_hand_destroy(&plant);
 }
 #endif

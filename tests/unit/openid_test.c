@@ -8,7 +8,6 @@
 #include "access/openid/openid_config.h"
 #include "access/openid/sign_ins.h"
 #include "base/clock.h"
-#include "base/mem.h"
 
 #define NOW_S INT64_C(1795000000)
 static const char CLAIMS[] = "{\"iss\":\"https://id.example\",\"aud\":\"plant\",\"sub\":\"s1\",\"exp\":1795000300,\"iat\":1794999990,"
@@ -37,9 +36,8 @@ static cjose_jwk_t *make_key(const char *kid)
     return key;
 }
 
-static int set_up(void **state)
+static void begin(struct openid_fixture *f)
 {
-    struct openid_fixture *f = mem_new(sizeof(*f));
     f->key = make_key("k1");
     f->other = make_key("k2");
     f->jwks = json_pack("{s:[o]}", "keys", public_part(f->key));
@@ -51,19 +49,16 @@ static int set_up(void **state)
                                         .groups_claim = (char *)(uintptr_t) "groups",
                                         .groups = f->groups,
                                         .group_count = 2 };
-    *state = f;
-    return 0;
 }
 
-static int tear_down(void **state)
+static void end(struct openid_fixture *f)
 {
-    struct openid_fixture *f = *state;
     cjose_jwk_release(f->key);
     cjose_jwk_release(f->other);
     json_decref(f->jwks);
-    mem_free(f);
-    return 0;
 }
+
+TEST_FIXTURE(struct openid_fixture, begin, end)
 
 #define CASE(name) TEST_ON(struct openid_fixture *f, name, set_up, tear_down)
 
@@ -330,13 +325,12 @@ TEST(test_people)
 static struct openid_config *read_config(const char *text)
 {
     char path[] = "/tmp/plantcast-openid-XXXXXX";
-    struct log *log = log_create(LOG_ERROR);
+    struct log *log = test_log();
     FILE *out = fdopen(mkstemp(path), "w");
     fputs(text, out);
     fclose(out);
     assert_non_null(freopen("/dev/null", "w", stderr));
     struct openid_config *config = openid_config_read(log, path);
-    log_destroy(&log);
     unlink(path);
     return config;
 }
@@ -360,8 +354,7 @@ TEST(test_file)
                                           { "roles: [", "roles: [] #" } };
     for (size_t i = 0; i < sizeof(bad) / sizeof(*bad); i++) {
         const char *at = strstr(good, bad[i][0]);
-        char *text = mem_printf("%.*s%s%s", (int)(at - good), good, bad[i][1], at + strlen(bad[i][0]));
+        char *text = test_printf("%.*s%s%s", (int)(at - good), good, bad[i][1], at + strlen(bad[i][0]));
         assert_null(read_config(text));
-        mem_free(text);
     }
 }

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The operator's view: positions of readings between their limits, the field of these positions, tags without limits, and alarms. */
 #include "tests/support/test.h"
-#include <math.h>
-
 
 #include "field/field.h"
 #include "field/limits.h"
@@ -159,7 +157,7 @@ TEST(test_places_are_interpolated_with_the_same_weights)
 TEST(test_tags_without_limits_have_no_place)
 {
     struct synthetic *plant = synthetic_create(.vertices = VERTICES, .sensors = 3, .max = 100);
-    struct workers *workers = workers_create(1);
+    struct workers *workers = test_workers(1);
     struct field *field = field_create(workers, &plant->scene);
     for (size_t i = 0; i < 3; i++)
         set_limits(plant, i, 40, 60);
@@ -187,6 +185,5 @@ TEST(test_tags_without_limits_have_no_place)
     scalars = field_scalars(field, 0, &params, plant->snapshot);
     assert_true(!scalars->at[1].no_limits && fabsf(scalars->at[1].value - 1e6f) < 1);
     field_destroy(&field);
-    workers_destroy(&workers);
     synthetic_destroy(&plant);
 }

@@ -5,7 +5,6 @@
 #include "tests/support/test.h"
 #include <zlib.h>
 
-#include "base/mem.h"
 #include "base/text/text.h"
 
 TEST(headers_are_read)

@@ -2,10 +2,8 @@
 /* Alarm notifications: which recipients get which alarms, with floods, shifts and areas, escalation, outages and restarts; and the text
    of messages. */
 #include "tests/support/test.h"
-#include <math.h>
 #include <time.h>
 
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "notify/notify_text.h"
 #include "notify/outbox.h"
@@ -313,7 +311,7 @@ CASE(alertmanager_hears_what_stands_and_what_has_ended)
     put(f, 1, LOCAL, false, false, T0, T0 + 20 * S);
     assert_true(outbox_next(f->outbox, AM, T0 + 23 * S, &message));
     char *text = notify_alerts_text(f->c->plant, &message, T0 + 23 * S);
-    json_t *alerts = json_loads(text, 0, NULL);
+    json_t *alerts = test_json(json_loads(text, 0, NULL));
     assert_int_equal(json_array_size(alerts), 2);
     const json_t *one = json_array_get(alerts, 0), *two = json_array_get(alerts, 1);
     assert_string_equal(json_string_value(json_object_get(json_object_get(one, "labels"), "tag")), "T0000");
@@ -322,7 +320,6 @@ CASE(alertmanager_hears_what_stands_and_what_has_ended)
     /* Alertmanager ends the alert then, unless it gets an update */
     assert_string_equal(json_string_value(json_object_get(one, "endsAt")), "2026-11-18T11:12:03.000Z");
     assert_string_equal(json_string_value(json_object_get(two, "endsAt")), "2026-11-18T11:07:00.000Z");
-    json_decref(alerts);
     mem_free(text);
     outbox_sent(f->outbox, AM, T0 + 23 * S);
     assert_int_equal(deliver(f, AM, T0 + 60 * S), 0);
@@ -424,10 +421,9 @@ CASE(a_damaged_file_is_refused)
                                          "\"HH\",\"priority\":99,\"steps\":{\"all\":-7}}],\"recipients\":{\"ops\":{\"waiting\":[{}],"
                                          "\"message\":[[]],\"last_priority\":-5}}}" };
     for (int i = 0; i < 4; i++) {
-        json_t *saved = json_loads(texts[i], 0, NULL);
+        json_t *saved = test_json(json_loads(texts[i], 0, NULL));
         assert_non_null(saved);
         assert_int_equal(outbox_restore(f->outbox, saved), i == 3);
-        json_decref(saved);
     }
     put(f, 0, LOCAL, true, true, T0, T0);
     deliver(f, OPS, T0 + 4 * S);

@@ -3,10 +3,7 @@
 #include "render/overlay/overlay.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 
-
-#include "base/mem.h"
 #include "render/overlay/overlay_pen.h"
 #include "render/overlay/overlay_words.h"
 #include "tests/support/toy.h"

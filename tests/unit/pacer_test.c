@@ -5,9 +5,7 @@
 
 #include "tests/support/test.h"
 
-
 #include "base/clock.h"
-#include "tests/support/sweep.h"
 
 static const int64_t MS = NS_PER_MS;
 

@@ -5,11 +5,8 @@
 #include "tests/support/test.h"
 #include <sys/stat.h>
 
-
 #include "base/clock.h"
 #include "base/files/atomic_file.h"
-#include "base/mem.h"
-#include "tests/support/temp.h"
 
 static const struct wall_place ROOM = { "room", "", 2 };
 
@@ -19,25 +16,19 @@ struct pairings_fixture {
     struct pairings *pairings;
 };
 
-static int set_up(void **state)
+static void begin(struct pairings_fixture *f)
 {
-    struct pairings_fixture *f = mem_new(sizeof(*f));
-    f->log = log_create(LOG_ERROR);
-    f->folder = temp_folder_create();
+    f->log = test_log();
+    f->folder = temp_folder();
     f->pairings = pairings_open(f->log, f->folder, NULL);
-    *state = f;
-    return 0;
 }
 
-static int tear_down(void **state)
+static void end(struct pairings_fixture *f)
 {
-    struct pairings_fixture *f = *state;
     pairings_close(&f->pairings);
-    temp_folder_destroy(&f->folder);
-    log_destroy(&f->log);
-    mem_free(f);
-    return 0;
 }
+
+TEST_FIXTURE(struct pairings_fixture, begin, end)
 
 #define CASE(name) TEST_ON(struct pairings_fixture *f, name, set_up, tear_down)
 
@@ -189,7 +180,7 @@ CASE(a_renderer_asks_its_core)
     assert_string_equal(there, "");
     char *text = pairings_request_text(&(struct pairing_request){ secret, ROOM, (const uint8_t[16]){ 7 }, "10.0.0.5" });
     assert_null(strstr(text, secret));
-    json_t *request = json_loads(text, 0, NULL);
+    json_t *request = test_json(json_loads(text, 0, NULL));
     uint64_t before = pairings_number(f->pairings);
     pairings_ask_for(f->pairings, request, NS_PER_S);
     assert_true(pairings_number(f->pairings) > before);
@@ -211,10 +202,8 @@ CASE(a_renderer_asks_its_core)
     before = pairings_number(f->pairings);
     pairings_ask_for(f->pairings, request, NS_PER_S);
     assert_int_equal(pairings_number(f->pairings), before);
-    json_t *wrong = json_pack("{s:[],s:[{s:s}]}", "devices", "waiting", "digits", "123456");
+    json_t *wrong = test_json(json_pack("{s:[],s:[{s:s}]}", "devices", "waiting", "digits", "123456"));
     assert_false(pairings_mirror(renderer, wrong, 0) || pairings_mirror(renderer, request, 0));
-    json_decref(wrong);
-    json_decref(request);
     mem_free(text);
     pairings_close(&renderer);
 }

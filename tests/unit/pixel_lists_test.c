@@ -3,14 +3,8 @@
    flags against pixel_field_at(). */
 #include "tests/support/test.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/clock.h"
-#include "base/mem.h"
 #include "render/soft/pixel_lanes.h"
-#include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 
 enum { MOST_SENSORS = 4096, PLACES = 8 };

@@ -4,12 +4,8 @@
 #include "placing/placing.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 #include <pthread.h>
 
-
-#include "base/mem.h"
-#include "tests/support/temp.h"
 #include "tests/support/toy.h"
 #include "value/quality.h"
 
@@ -36,43 +32,36 @@ static void notify(void *arg)
     pthread_mutex_unlock(&f->lock);
 }
 
-static int set_up(void **state)
+static void begin(struct placing_fixture *f)
 {
-    struct placing_fixture *f = mem_new(sizeof(*f));
     struct test_shape shape = { 0 };
     pthread_mutex_init(&f->lock, NULL);
     pthread_cond_init(&f->came, NULL);
-    f->log = log_create(LOG_ERROR);
-    f->workers = workers_create(2);
+    f->log = test_log();
+    f->workers = test_workers(2);
     f->toy = toy_create();
     shape_box(&shape, TOY_STEEL, (double[3]){ 0, 0, 0 }, (double[3]){ 1, 1, 1 });
     toy_add(f->toy, "BOX", &shape, (double[3]){ 10, 0, 0 }, (const double[TAGS][3]){ { 0, 0.5, 0.5 }, { 1, 0.5, 0.5 } }, TAGS);
     f->snapshot = toy_snapshot(f->toy);
     for (int i = 0; i < TAGS; i++)
         toy_set(f->snapshot, i, 50, QUALITY_GOOD);
-    f->folder = temp_folder_create(); /* nothing is prepared there */
+    f->folder = temp_folder(); /* nothing is prepared there */
     f->placing = placing_create(&(struct placing_params){
         .log = f->log, .workers = f->workers, .scene = &f->toy->scene, .folder = f->folder, .notify = notify, .notify_arg = f });
     f->set = place_set_create(f->placing);
-    *state = f;
-    return 0;
 }
 
-static int tear_down(void **state)
+static void end(struct placing_fixture *f)
 {
-    struct placing_fixture *f = *state;
     place_set_destroy(&f->set);
     placing_destroy(&f->placing);
-    workers_destroy(&f->workers);
     snapshot_destroy(&f->snapshot);
     toy_destroy(&f->toy);
-    temp_folder_destroy(&f->folder);
-    log_destroy(&f->log);
     pthread_cond_destroy(&f->came);
     pthread_mutex_destroy(&f->lock);
-    mem_free(f);
-    return 0;
 }
+
+TEST_FIXTURE(struct placing_fixture, begin, end)
 
 #define CASE(name) TEST_ON(struct placing_fixture *f, name, set_up, tear_down)
 

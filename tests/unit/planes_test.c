@@ -3,11 +3,8 @@
 #include "encode/planes.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 
 #include <libyuv.h>
-
-#include "base/mem.h"
 
 static const uint8_t GREY[3] = { 232, 231, 230 }, BLUE[3] = { 230, 130, 69 }; /* b, g, r */
 

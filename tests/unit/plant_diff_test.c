@@ -2,11 +2,9 @@
 /* Comparison of two plants: which items were added, removed and changed, and which changes make a different configuration. */
 #include "tests/support/test.h"
 
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "plant/plant_diff.h"
 #include "tests/support/plant_case.h"
-#include "tests/support/temp.h"
 
 #define CASE(name) TEST_ON(struct plant_case *c, name, plant_case_set_up, plant_case_tear_down)
 

@@ -63,7 +63,6 @@ TEST(seeds_and_their_changes_keep_the_promises)
         char *path = temp_path(SEEDS, entry->d_name);
         print_message("# %s\n", path);
         replay(path, 1);
-        mem_free(path);
         seeds++;
     }
     closedir(seed_folder);

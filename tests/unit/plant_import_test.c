@@ -9,45 +9,34 @@
 #include <jansson.h>
 
 #include "base/files/atomic_file.h"
-#include "base/mem.h"
 #include "importing/export_folder.h"
 
 struct plant_import_fixture {
-    char root[64], *plant, *exports;
+    char *root, *plant, *exports;
     struct plant_import *import;
 };
 
-static int set_up(void **state)
+static void begin(struct plant_import_fixture *f)
 {
-    struct plant_import_fixture *f = mem_new(sizeof(*f));
-    strcpy(f->root, "/tmp/plantcast-import-XXXXXX");
-    assert_non_null(mkdtemp(f->root));
-    f->plant = mem_printf("%s/plant.yaml", f->root);
+    f->root = temp_folder();
+    f->plant = test_printf("%s/plant.yaml", f->root);
     f->exports = export_folder_of(f->root);
     assert_int_equal(mkdir(f->exports, 0700), 0);
-    char *left = mem_printf("%s/.upload.abc", f->exports);
+    char *left = test_printf("%s/.upload.abc", f->exports);
     assert_int_equal(atomic_file_put(left, "x", 1), 0);
     f->import = plant_import_create(f->plant);
     assert_non_null(f->import);
     assert_int_not_equal(access(left, F_OK), 0); /* an upload that never finished leaves no file */
-    mem_free(left);
-    *state = f;
-    return 0;
 }
 
-static int tear_down(void **state)
+static void end(struct plant_import_fixture *f)
 {
-    struct plant_import_fixture *f = *state;
-    char *command = mem_printf("rm -rf '%s'", f->root);
     plant_import_destroy(&f->import);
     plant_import_destroy(&f->import);
-    assert_int_equal(system(command), 0);
-    mem_free(command);
-    mem_free(f->plant);
     mem_free(f->exports);
-    mem_free(f);
-    return 0;
 }
+
+TEST_FIXTURE(struct plant_import_fixture, begin, end)
 
 TEST(test_names)
 {
@@ -119,7 +108,7 @@ TEST_WITH(test_uploads, set_up, tear_down)
 static json_t *told(const struct plant_import_fixture *f)
 {
     char *text = plant_import_text(f->import, &(struct import_source){ .host = "" });
-    json_t *object = json_loads(text, 0, NULL);
+    json_t *object = test_json(json_loads(text, 0, NULL));
     mem_free(text);
     assert_non_null(object);
     return object;
@@ -134,7 +123,6 @@ static void check_told(const struct plant_import_fixture *f, const char *phase, 
         assert_string_equal(json_string_value(json_object_get(object, "failed")), failed);
     else
         assert_true(json_is_null(json_object_get(object, "failed")));
-    json_decref(object);
 }
 
 TEST_WITH(test_orders, set_up, tear_down)
@@ -174,7 +162,6 @@ static const char *units_told(const struct plant_import_fixture *f, char out[8])
 {
     json_t *object = told(f);
     snprintf(out, 8, "%s/%s", json_string_value(json_object_get(object, "units")), json_string_value(json_object_get(object, "up")));
-    json_decref(object);
     return out;
 }
 

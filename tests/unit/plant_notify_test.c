@@ -2,7 +2,6 @@
 /* The plant file's `notify` section: parsing, and errors reported with their position. */
 #include "tests/support/test.h"
 
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "plant/sections/notification.h"
 #include "tests/support/plant_case.h"
@@ -35,9 +34,8 @@ CASE(all_keys_are_read)
             "  mail: { server: \"smtps://m.example\", from: p@p.example, user: p, password_file: pw, ca_file: ca.pem }");
     plant_case_assert_loaded(c, 0);
     const struct plant_notify *notify = c->plant->notify;
-    char *password = mem_printf("%s/pw", c->plant->files.folder);
+    char *password = test_printf("%s/pw", c->plant->files.folder);
     assert_string_equal(notify->mail.password_file, password);
-    mem_free(password);
     assert_int_equal(notify->recipient_count, 4);
     assert_int_equal(notify->recipients[1].addresses.count, 2);
     assert_int_equal(notify->recipients[2].kind, NOTIFY_WEBHOOK);

@@ -4,14 +4,11 @@
 
 #include "tests/support/test.h"
 #include <locale.h>
-#include <math.h>
 #include <unistd.h>
 
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "plant/sensors.h"
 #include "tests/support/plant_case.h"
-#include "tests/support/temp.h"
 
 #define CASE(name) TEST_ON(struct plant_case *f, name, plant_case_set_up, plant_case_tear_down)
 
@@ -61,7 +58,6 @@ CASE(defaults_are_as_documented)
     char *folder = plant_prepared_folder(p), *expected = temp_path(f->folder, "plant.prepared");
     assert_string_equal(folder, expected);
     mem_free(folder);
-    mem_free(expected);
 }
 
 CASE(everything_is_read)
@@ -141,26 +137,23 @@ CASE(names_of_a_long_list_are_found)
 CASE(nodes_are_a_pattern_or_a_list)
 {
     static const char rest[] = "plant: { name: P }\ngroups: [{ id: g, unit: K, min: 0, max: 1 }]\ntags: tags.csv\nassets:\n";
-    char *good = mem_printf("%s- { id: A, model: m.glb, nodes: [P-1, '!motor', '#12', 'mesh:cap*', north/P-2] }\n"
+    char *good = test_printf("%s- { id: A, model: m.glb, nodes: [P-1, '!motor', '#12', 'mesh:cap*', north/P-2] }\n"
                             "- { id: B, model: m.glb, nodes: 'P*' }\n",
                             rest);
     plant_case_load(f, good, "Tag Name\n");
     plant_case_assert_loaded(f, 0);
     assert_string_equal(f->plant->assets[0].nodes, "P-1\n!motor\n#12\nmesh:cap*\nnorth/P-2");
     assert_string_equal(f->plant->assets[1].nodes, "P*");
-    mem_free(good);
-    char *unquoted = mem_printf("%s- id: A\n  model: m.glb\n  nodes: #12\n- id: B\n  model: m.glb\n  nodes: !motor\n", rest);
+    char *unquoted = test_printf("%s- id: A\n  model: m.glb\n  nodes: #12\n- id: B\n  model: m.glb\n  nodes: !motor\n", rest);
     plant_case_load(f, unquoted, "Tag Name\n");
     plant_case_assert_loaded(f, 2);
     FOUND(f, { "plant.yaml", 7, 9, "nodes: has no value, so the whole model is used" }, { "plant.yaml", 10, 10, "in quotes" });
-    mem_free(unquoted);
-    char *bad = mem_printf("%s- { id: A, model: m.glb, nodes: [] }\n- { id: B, model: m.glb, nodes: [P, ~] }\n"
+    char *bad = test_printf("%s- { id: A, model: m.glb, nodes: [] }\n- { id: B, model: m.glb, nodes: [P, ~] }\n"
                            "- { id: C, model: m.glb, nodes: { P: 1 } }\n- { id: D, model: m.glb, nodes: \"a\\nb\" }\n",
                            rest);
     plant_case_load(f, bad, "Tag Name\n");
     FOUND(f, { "plant.yaml", 5, 33, "expected at least one pattern" }, { "plant.yaml", 6, 37, "a node's name or a pattern" },
           { "plant.yaml", 7, 33, "found a mapping" }, { "plant.yaml", 8, 33, "contains a line break" });
-    mem_free(bad);
 }
 
 static void assert_point(const double point[3], double x, double y, double z)
@@ -243,10 +236,9 @@ CASE(an_asset_stands_upright_in_a_plant_that_is_y_up)
 
 CASE(the_locale_changes_nothing)
 {
-    char *command = mem_printf("localedef -i de_DE -f UTF-8 %s/de_DE.UTF-8 2>&1", f->folder);
+    char *command = test_printf("localedef -i de_DE -f UTF-8 %s/de_DE.UTF-8 2>&1", f->folder);
     setenv("LOCPATH", f->folder, 1);
     bool german = system(command) == 0 && setlocale(LC_NUMERIC, "de_DE.UTF-8");
-    mem_free(command);
     if (!german) {
         print_message("# a locale with a decimal comma cannot be made: the package locales is missing\n");
         skip();
@@ -303,8 +295,9 @@ CASE(unknown_keys_are_named)
 CASE(surroundings_are_read)
 {
     static const char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x80\x80\x81\x80\x80\x80\x81";
-    char *one = temp_write(f->folder, "hall.hdr", hdr, sizeof(hdr) - 1), *two = temp_write(f->folder, "sky.hdr", hdr, sizeof(hdr) - 1);
-    char *text = temp_write_text(f->folder, "yard.exr", "no picture");
+    temp_write(f->folder, "hall.hdr", hdr, sizeof(hdr) - 1);
+    temp_write(f->folder, "sky.hdr", hdr, sizeof(hdr) - 1);
+    temp_write_text(f->folder, "yard.exr", "no picture");
     plant_case_load(f,
                     "plant: { name: P }\nassets: [{ id: E-1, model: m.glb }]\ngroups: [{ id: g, unit: K, min: 0, max: 1 }]\n"
                     "sources: [{ id: plc, type: modbus, host: h }]\ntags: tags.csv\nenvironment: hall.hdr\n",
@@ -319,9 +312,6 @@ CASE(surroundings_are_read)
     FOUND(f, { "plant.yaml", 2, 25, "none.hdr" }, { "plant.yaml", 2, 35, "the name 'hall' is already used" },
           { "plant.yaml", 2, 47, "the name 'sky' is already used" }, { "plant.yaml", 2, 56, "yard.exr" }, { "plant.yaml", 2, 66, "3.5" },
           { "plant.yaml", 2, 71, "environment: expected the path of a picture, found" });
-    mem_free(one);
-    mem_free(two);
-    mem_free(text);
 }
 
 CASE(links_are_templates_of_addresses)
@@ -615,7 +605,7 @@ CASE(what_is_not_utf8_text_has_a_place)
                     "C, min: 1, max: 0 }]");
     FOUND(f, { "plant.yaml", 3, 25, "byte 0xB0 is not UTF-8 text" }, { "plant.yaml", 3, 34, "min: expected less than max" });
     const char utf16[] = "\xFF\xFEp\0l\0a\0n\0t\0";
-    mem_free(temp_write(f->folder, "plant.yaml", utf16, sizeof(utf16)));
+    temp_write(f->folder, "plant.yaml", utf16, sizeof(utf16));
     plant_case_forget(f);
     f->plant = plant_load(f->path, &f->diag);
     FOUND(f, { "plant.yaml", 1, 1, "is UTF-16" });
@@ -658,10 +648,9 @@ CASE(files_that_cannot_be_read_are_named)
     plant_case_forget(f);
     f->plant = plant_load(f->path, &f->diag);
     FOUND(f, { "plant.yaml", 0, 0, "larger than the limit of 64 MiB" });
-    mem_free(path);
 }
 
-static char *write_image(struct plant_case *f, const char *name, int width, int height, const uint8_t *rgb)
+static void write_image(struct plant_case *f, const char *name, int width, int height, const uint8_t *rgb)
 {
     char header[32];
     int n = snprintf(header, sizeof(header), "P6\n%d %d\n255\n", width, height);
@@ -669,16 +658,15 @@ static char *write_image(struct plant_case *f, const char *name, int width, int 
     uint8_t *all = mem_array(1, (size_t)n + bytes);
     memcpy(all, header, (size_t)n);
     memcpy(all + n, rgb, bytes);
-    char *path = temp_write(f->folder, name, all, (size_t)n + bytes);
+    temp_write(f->folder, name, all, (size_t)n + bytes);
     mem_free(all);
-    return path;
 }
 
 CASE(colour_maps_come_from_images)
 {
     static const uint8_t lying[3 * 3] = { 0, 0, 0, 200, 100, 0, 200, 200, 200 }, standing[2 * 3] = { 255, 0, 0, 0, 0, 255 };
-    mem_free(write_image(f, "lying.ppm", 3, 1, lying));
-    mem_free(write_image(f, "standing.ppm", 1, 2, standing));
+    write_image(f, "lying.ppm", 3, 1, lying);
+    write_image(f, "standing.ppm", 1, 2, standing);
     struct text yaml = { 0 };
     text_add(&yaml, "%scolormaps:\n  - { name: a, image: lying.ppm }\n  - { name: b, image: standing.ppm }\n", small_yaml);
     plant_case_load(f, yaml.at, small_csv);
@@ -695,8 +683,8 @@ CASE(colour_maps_come_from_images)
 CASE(bad_colour_maps_are_named)
 {
     static const uint8_t dot[3] = { 1, 2, 3 };
-    mem_free(write_image(f, "dot.ppm", 1, 1, dot));
-    mem_free(temp_write_text(f->folder, "text.png", "no image"));
+    write_image(f, "dot.ppm", 1, 1, dot);
+    temp_write_text(f->folder, "text.png", "no image");
     load_with(f, 5, "tags: tags.csv\n"
                     "colormaps: [{ name: viridis, image: none.png }, { name: b, image: dot.ppm },\n"
                     "  { name: b, image: text.png }, { name: c }, { name: d, image: . }]");

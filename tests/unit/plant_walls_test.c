@@ -2,7 +2,6 @@
 /* The plant file's `views` and `walls` sections: parsing, and errors reported with their position. */
 #include "tests/support/test.h"
 
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "message/views_message.h"
 #include "plant/walls/wall.h"

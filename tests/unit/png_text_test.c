@@ -3,7 +3,6 @@
 #include "tests/support/test.h"
 #include <png.h>
 
-#include "base/mem.h"
 #include "provenance/png_text.h"
 
 struct png_bytes {

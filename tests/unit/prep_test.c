@@ -3,21 +3,18 @@
 #include "tests/support/test.h"
 #include <fcntl.h>
 #include <jansson.h>
-#include <math.h>
 #include <signal.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "base/files/atomic_file.h"
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "preprocess/cache/folder.h"
 #include "protocol/asset_distance.h"
 #include "tests/support/glb.h"
 #include "tests/support/model_seeds.h"
 #include "tests/support/prep_case.h"
-#include "tests/support/temp.h"
 
 /* A plate of 2 m x 1 m in 40 x 20 squares, and an instrument node next to it. */
 #define ACROSS 40u
@@ -63,7 +60,7 @@ static void write_model(struct prep_case *s, const char *nodes)
             const uint32_t six[6] = { a, a + 1, c, c, a + 1, c + 1 };
             text_add_bytes(&bin, six, sizeof(six));
         }
-    char *json = mem_printf(
+    char *json = test_printf(
         "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":%u}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":%u}],"
         "%s\"meshes\":[{\"primitives\":[{\"attributes\":"
         "{\"POSITION\":0},\"indices\":1}]}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":%u,\"type\":\"VEC3\"},"
@@ -71,9 +68,8 @@ static void write_model(struct prep_case *s, const char *nodes)
         (unsigned)bin.length, (unsigned)bin.length, nodes, vertices, 12 * vertices, indices);
     size_t size;
     char *glb = glb_build(json, bin.at, bin.length, &size);
-    mem_free(temp_write(s->folder, "model.glb", glb, size));
+    temp_write(s->folder, "model.glb", glb, size);
     mem_free(glb);
-    mem_free(json);
     text_finish(&bin);
 }
 
@@ -106,7 +102,6 @@ static void assert_states(struct prep_case *s, const char *a, const char *b, con
     assert_string_equal(state_of(report, 0), a);
     assert_string_equal(state_of(report, 1), b);
     assert_string_equal(state_of(report, 2), c);
-    json_decref(report);
 }
 
 static char *file_of(struct prep_case *s, size_t asset)
@@ -116,7 +111,6 @@ static char *file_of(struct prep_case *s, size_t asset)
     json_t *manifest = prep_case_json(&text);
     char *name = mem_printf("%s/plant.prepared/%s", s->folder, json_string_value(json_object_get(asset_of(manifest, asset), "file")));
     assert_int_equal(json_integer_value(json_object_get(manifest, "format")), 2);
-    json_decref(manifest);
     text_finish(&text);
     return name;
 }
@@ -148,7 +142,6 @@ CASE(a_plant_is_prepared)
         assert_float_equal(asset_distance_m(v, 1, i), hypotf(2 - x, 1 - y), 1e-3);
     }
     folder_close(&file);
-    mem_free(folder);
     mem_free(a);
     mem_free(b);
     mem_free(c);
@@ -197,9 +190,8 @@ CASE(only_what_changed_is_made_anew)
 static void group_says(struct prep_case *s, const char *more)
 {
     const char *at = strstr(plant_text, "max: 1 }");
-    char *text = mem_printf("%.*smax: 1%s%s", (int)(at - plant_text), plant_text, more, at + strlen("max: 1"));
+    char *text = test_printf("%.*smax: 1%s%s", (int)(at - plant_text), plant_text, more, at + strlen("max: 1"));
     prep_case_plant(s, text);
-    mem_free(text);
 }
 
 /* Returns the number of triangles in the finest level of the first asset. */
@@ -214,7 +206,6 @@ static size_t triangles_of_first(struct prep_case *s)
         indices += v->primitives[v->levels[0].first_primitive + p].index_count;
     folder_close(&file);
     mem_free(name);
-    mem_free(folder);
     return indices / 3;
 }
 
@@ -249,7 +240,7 @@ CASE(straight_distances_of_few_sensors_cut_nothing)
 CASE(two_at_a_time_take_turns)
 {
     char *program = prep_case_program();
-    char *both = mem_printf("'%s' '%s' --report json >'%s/first' & '%s' '%s' --report json >'%s/second' && wait $!", program, s->plant,
+    char *both = test_printf("'%s' '%s' --report json >'%s/first' & '%s' '%s' --report json >'%s/second' && wait $!", program, s->plant,
                             s->folder, program, s->plant, s->folder);
     int built[2];
     assert_int_equal(system(both), 0);
@@ -258,21 +249,18 @@ CASE(two_at_a_time_take_turns)
         json_t *report = prep_case_json(&s->out);
         built[i] = strcmp(state_of(report, 2), "built") == 0;
         assert_string_equal(state_of(report, 2), built[i] ? "built" : "unchanged");
-        json_decref(report);
     }
     assert_int_equal(built[0] + built[1], 1);
-    mem_free(program);
-    mem_free(both);
 }
 
 CASE(who_waits_says_for_whom_and_can_be_stopped)
 {
     char *program = prep_case_program(), *folder = temp_path(s->folder, "plant.prepared"), words[100];
     assert_int_equal(mkdir(folder, 0777), 0);
-    struct log *log = log_create(LOG_ERROR);
+    struct log *log = test_log();
     int lock = folder_lock(folder, log, NULL), status;
     assert_true(lock >= 0);
-    mem_free(temp_write_text(s->folder, "err", ""));
+    temp_write_text(s->folder, "err", "");
     pid_t child = fork();
     if (child == 0) {
         char *err = temp_path(s->folder, "err");
@@ -292,9 +280,6 @@ CASE(who_waits_says_for_whom_and_can_be_stopped)
     assert_int_equal(WEXITSTATUS(status), 1);
     close(lock);
     prep_case_expect(s, "$PLANT", 0);
-    log_destroy(&log);
-    mem_free(folder);
-    mem_free(program);
 }
 
 CASE(distances_are_printed)
@@ -328,7 +313,7 @@ CASE(textures_are_read)
         seed_make(&seed, i, &sheet);
     }
     assert_string_equal(seed.name, "textured.glb");
-    mem_free(temp_write(c->folder, "model.glb", seed.bytes, seed.size));
+    temp_write(c->folder, "model.glb", seed.bytes, seed.size);
     const char *plant = "plant: { name: Textured }\nassets: [{ id: A, model: model.glb }]\n"
                         "groups: [{ id: temperature, unit: K, min: 0, max: 1 }]\ntags: tags.csv\n";
     prep_case_plant(c, plant);
@@ -336,25 +321,21 @@ CASE(textures_are_read)
     char *bin = mem_strdup(getenv("PLANTCAST_BIN") ? getenv("PLANTCAST_BIN") : "build"), *installed = temp_path(c->folder, "bin");
     char *copy =
         mem_printf("mkdir -p '%s'/bin '%s'/lib/plantcast && cp '%s'/plantcast-prep '%s'/bin", c->folder, c->folder, bin, c->folder);
-    char *module = mem_printf("cp '%s'/plantcast-images.so '%s'/lib/plantcast", bin, c->folder);
+    char *module = test_printf("cp '%s'/plantcast-images.so '%s'/lib/plantcast", bin, c->folder);
     assert_int_equal(system(copy), 0);
     setenv("PLANTCAST_BIN", installed, 1);
     prep_case_expect(c, "$PLANT --report json", 0);
     json_t *report = prep_case_json(&c->out);
     assert_true(prep_case_number(report, "assets.0.textures") == 1);
-    json_decref(report);
     static const char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x40\x20\x84\x80\x80\x80\x80";
-    char *lit = mem_printf("%senvironment: sky1.hdr\n", plant);
-    mem_free(temp_write(c->folder, "sky1.hdr", hdr, sizeof(hdr) - 1));
+    char *lit = test_printf("%senvironment: sky1.hdr\n", plant);
+    temp_write(c->folder, "sky1.hdr", hdr, sizeof(hdr) - 1);
     prep_case_plant(c, lit);
     prep_case_expect(c, "$PLANT", 1);
     prep_case_says(&c->err, "sky1.hdr': neither PNG nor JPEG: plantcast-images.so is missing: install the package plantcast-images (");
     assert_int_equal(system(module), 0);
     prep_case_expect(c, "$PLANT", 0);
     setenv("PLANTCAST_BIN", bin, 1);
-    mem_free(lit);
-    mem_free(installed);
-    mem_free(module);
     mem_free(copy);
     mem_free(bin);
     mem_free(seed.bytes);
@@ -372,16 +353,14 @@ CASE(a_field_that_is_constant_needs_no_triangles)
     double triangles[3];
     prep_case_tags(c, "T1,400001,Float,plc,t,A,,0.31,0.42,0\nT2,400003,Float,plc,p,A,,1.63,0.57,0\n");
     for (int more = 0; more < 3; more++) {
-        char *yaml = mem_printf(plant, mores[more]);
+        char *yaml = test_printf(plant, mores[more]);
         prep_case_plant(c, yaml);
-        mem_free(yaml);
         prep_case_expect(c, "$PLANT --report json", 0);
         json_t *report = prep_case_json(&c->out);
         triangles[more] = prep_case_number(report, "assets.0.levels.0.triangles");
         const json_t *surface = json_object_get(json_array_get(json_object_get(report, "assets"), 0), "surface");
         for (int n = 0; n < 2; n++) /* distances are checked by a second method only if the field depends on them */
             assert_int_equal(json_is_null(json_object_get(surface, n ? "heat_disagreement" : "time_m2")), more == 0);
-        json_decref(report);
     }
     assert_in_range((int)triangles[0], 2 * ACROSS * UP, 2 * ACROSS * UP + 8); /* a vertex for each sensor */
     /* paper's field peaks at the sensor, so triangles are subdivided */
@@ -398,9 +377,8 @@ CASE(assumed_places_need_no_surface)
                                "T1,400001,Float,plc,temperature,A,,0.31,0.42,0.1,equipment\n"
                                "T2,400003,Float,plc,temperature,A,,1.63,0.57,0,%s\n";
     for (int known = 0; known < 2; known++) {
-        char *tags = mem_printf(rows, known ? "position" : "equipment");
-        mem_free(temp_write_text(c->folder, "tags.csv", tags));
-        mem_free(tags);
+        char *tags = test_printf(rows, known ? "position" : "equipment");
+        temp_write_text(c->folder, "tags.csv", tags);
         prep_case_plant(c, "plant: { name: Assumed }\nassets: [{ id: A, model: model.glb, nodes: plate-1, up: z }]\n"
                            "groups: [{ id: temperature, unit: K, min: 0, max: 1 }]\n"
                            "sources: [{ id: plc, type: modbus, host: h, byte_order: CDAB, address_base: 1 }]\ntags: tags.csv\n");
@@ -411,10 +389,10 @@ CASE(assumed_places_need_no_surface)
         assert_int_equal(prep_case_number(report, "assets.0.vertices_added") > 0, known);
         assert_float_equal(prep_case_number(report, "assets.0.sensors.0.surface_distance_m"), 0.1, 1e-6);
         assert_float_equal(prep_case_number(report, "assets.0.sensors.1.surface_distance_m"), 0, 1e-6);
-        json_decref(report);
         uint64_t key;
         struct folder_file file;
-        char *path = prep_case_file(c, ".asset", &key), *folder = temp_path(c->folder, "plant.prepared"), why[200];
+        char *folder = temp_path(c->folder, "plant.prepared"), why[200];
+        prep_case_file(c, ".asset", &key);
         assert_int_equal(folder_open(&file, folder, key, why), 1);
         const struct asset_view *view = &file.view;
         assert_int_equal(view->header->sensor_count, 2);
@@ -425,8 +403,6 @@ CASE(assumed_places_need_no_surface)
         const float *nearest = view->positions_m[view->sensors[0].nearest_vertex], *at = view->sensors[0].surface_m;
         assert_true(hypot((double)(nearest[0] - at[0]), (double)(nearest[1] - at[1])) < (known ? 1e-6 : 0.036)); /* squares of 5 cm */
         folder_close(&file);
-        mem_free(folder);
-        mem_free(path);
         prep_case_expect(c, "distances $PLANT --asset A --sensor T1", !known);
         if (!known)
             prep_case_says(&c->err, "tags.csv:2: error: tag T1: the position on asset A is only assumed");
@@ -451,11 +427,10 @@ CASE(what_is_wrong_is_said_with_its_place)
     prep_case_expect(s, "$PLANT", 1);
     prep_case_says(&s->err, "tags.csv:3: error: tag T2: asset A: the model has no node 'TT-99'");
     prep_case_tags(s, tags_text);
-    char *text = mem_printf("%.*s  - { id: D, model: model.glb, nodes: 'tank*' }\n  - { id: E, model: bad.glb }\n%s",
+    char *text = test_printf("%.*s  - { id: D, model: model.glb, nodes: 'tank*' }\n  - { id: E, model: bad.glb }\n%s",
                             (int)(strstr(plant_text, "groups:") - plant_text), plant_text, strstr(plant_text, "groups:"));
-    mem_free(temp_write_text(s->folder, "plant.yaml", text));
-    mem_free(text);
-    mem_free(temp_write(s->folder, "bad.glb", "glTF", 4));
+    temp_write_text(s->folder, "plant.yaml", text);
+    temp_write(s->folder, "bad.glb", "glTF", 4);
     prep_case_expect(s, "$PLANT", 1);
     prep_case_says(&s->err, "plant.yaml:6: error: asset D:");
     prep_case_says(&s->err, "no node's name matches 'tank*'");
@@ -467,13 +442,11 @@ CASE(what_is_wrong_is_said_with_its_place)
     for (size_t i = 0; i < 5; i++)
         assert_int_equal(json_object_get(asset_of(root, i), "missing") != NULL, i > 2);
     assert_non_null(strstr(json_string_value(json_object_get(asset_of(root, 3), "missing")), "no node's name matches 'tank*'"));
-    json_decref(root);
     text_finish(&manifest);
     prep_case_expect(s, "$PLANT --report json", 1); /* the valid assets are built */
     json_t *report = prep_case_json(&s->out);
     assert_string_equal(state_of(report, 0), "unchanged");
     assert_string_equal(state_of(report, 3), "failed");
-    json_decref(report);
     prep_case_expect(s, "$PLANT --memory 100", 1);
     prep_case_says(&s->err, "plant.yaml: error: 0.00 million triangles are too many: 0.10 GB of memory hold 0.00 million.");
     prep_case_expect(s, "$PLANT --output /proc/no/such/place", 1);

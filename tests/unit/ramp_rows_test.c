@@ -2,7 +2,6 @@
 /* Colour ramps that previews look up: equal rows are shared, and their number is limited. */
 #include "tests/support/test.h"
 
-#include "base/mem.h"
 #include "render/soft/ramp_rows.h"
 
 enum { STEPS = 4, MOST = 100 };

@@ -3,8 +3,6 @@
 #include "scene/raycast.h"
 
 #include "tests/support/test.h"
-#include <math.h>
-
 
 #include "tests/support/synthetic.h"
 #include "tests/support/toy.h"

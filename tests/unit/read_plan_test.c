@@ -2,7 +2,6 @@
 /* Read plans of Modbus: which registers are read together, on random tag lists compared with the rules applied one by one. */
 #include "tests/support/test.h"
 
-#include "base/mem.h"
 #include "tests/support/plant_by_hand.h"
 #include "value/backoff.h"
 #include "value/decode.h"
@@ -40,7 +39,6 @@ TEST(neighbours_go_together_and_gaps_part)
     assert_int_equal(plan.tags[0], 1); /* plan.tags is sorted by register and holds tag indices */
     assert_int_equal(plan.tags[5], 4);
     read_plan_finish(&plan);
-    plant_by_hand_destroy(&plant);
 }
 
 TEST(units_tables_scans_and_sources_part)
@@ -63,7 +61,6 @@ TEST(units_tables_scans_and_sources_part)
     assert_int_equal(plan.block_count, 1);
     assert_block(&plan, 0, 4, 1, 1);
     read_plan_finish(&plan);
-    plant_by_hand_destroy(&plant);
 }
 
 static void many(enum register_table table, enum data_type type, int width, int count, const int *block_counts, size_t blocks)
@@ -78,7 +75,6 @@ static void many(enum register_table table, enum data_type type, int width, int 
     for (size_t i = 0; i < blocks; i++)
         assert_int_equal(plan.blocks[i].count, block_counts[i]);
     read_plan_finish(&plan);
-    plant_by_hand_destroy(&plant);
     mem_free(registers);
 }
 
@@ -111,7 +107,6 @@ TEST(gaps_are_bridged_up_to_the_device_s_limit)
     assert_block(&plan, 1, 13, 2, 1);
     assert_block(&plan, 2, 23, 2, 1);
     read_plan_finish(&plan);
-    plant_by_hand_destroy(&plant);
 }
 
 TEST(two_tags_may_share_registers)
@@ -129,7 +124,6 @@ TEST(two_tags_may_share_registers)
     assert_block(&plan, 0, 10, 1, 2);
     assert_block(&plan, 1, 10, 3, 2);
     read_plan_finish(&plan);
-    plant_by_hand_destroy(&plant);
 }
 
 TEST(splitting_ends_at_single_tags)
@@ -150,7 +144,6 @@ TEST(splitting_ends_at_single_tags)
         assert_true(plan.blocks[i].due_ns == 77);
     }
     read_plan_finish(&plan);
-    plant_by_hand_destroy(&plant);
 }
 
 enum { REGISTERS = 1000 };
@@ -215,7 +208,6 @@ TEST(random_tag_lists_obey_the_rules)
         }
         check_rules(plant, &plan);
         read_plan_finish(&plan);
-        plant_by_hand_destroy(&plant);
     }
 }
 
@@ -250,7 +242,6 @@ TEST(a_plan_is_put_in_words)
     assert_non_null(strstr(text.at, "106 bytes in a second; the pauses take 6 % of the time; 123 % of what the line can carry: TOO MUCH"));
     text_finish(&text);
     mem_free(plant->sources[0].hosts[0]);
-    plant_by_hand_destroy(&plant);
 }
 
 TEST(backoff_grows_from_half_a_second_to_ten)

@@ -4,21 +4,18 @@
 #include "surface/relocation.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <unistd.h>
 
 #include "base/clock.h"
 #include "base/files/cache_file.h"
-#include "base/mem.h"
 #include "protocol/asset_distance.h"
 #include "scene/asset.h"
 #include "surface/surface_store.h"
 #include "tests/support/cad.h"
 #include "tests/support/prep_case.h"
 #include "tests/support/sleep.h"
-#include "tests/support/temp.h"
 
 #define FAR 3e-3  /* of the largest distance */
 #define ON 1e-3   /* metres; points closer than this are on the surface (bridging moves it by less) */
@@ -95,7 +92,7 @@ static struct asset *prepared(struct prep_case *c)
         print_message("# skipped: there is no build/demo/plant.glb\n");
         skip();
     }
-    char *yaml = mem_printf("plant: { name: Moved }\n"
+    char *yaml = test_printf("plant: { name: Moved }\n"
                             "assets: [{ id: E-101, model: %s, nodes: E-101, up: y }]\n"
                             "groups: [{ id: t, unit: K, min: 0, max: 1 }]\n"
                             "tags: tags.csv\n",
@@ -108,12 +105,9 @@ static struct asset *prepared(struct prep_case *c)
     json_t *report = prep_case_json(&c->out);
     const char *file = json_string_value(json_object_get(json_array_get(json_object_get(report, "assets"), 0), "file"));
     assert_non_null(file);
-    char *path = mem_printf("%s/plant.prepared/%s", c->folder, file);
+    char *path = test_printf("%s/plant.prepared/%s", c->folder, file);
     struct asset *asset = asset_open(the_log, path);
     assert_non_null(asset);
-    json_decref(report);
-    mem_free(path);
-    mem_free(yaml);
     free(model);
     return asset;
 }
@@ -240,7 +234,6 @@ TEST(a_moved_sensor_has_the_distances_that_would_be_stored)
     shape.surface_key++; /* the key of another asset's file, so the file is not used */
     try_sensors(asset, &shape, sights, as_made_anew);
     mem_free(sights);
-    mem_free(path);
     asset_unref(&asset);
 }
 
@@ -390,7 +383,6 @@ TEST(without_memory_it_says_so_and_goes_on)
     }
     surface_destroy(&surface);
     text_finish(&packed);
-    mem_free(path);
     cad_finish(&plate);
     log_destroy(&quiet);
 }
@@ -412,7 +404,7 @@ TEST(what_waits_is_cancelled)
     box_init(&dropped);
     cad_plate(&plate, &chance, 40, 40, 1, 1, 0);
     struct relocation_shape shape = shape_of(&plate);
-    struct workers *one = workers_create(1);
+    struct workers *one = test_workers(1);
     pthread_mutex_lock(&gate);
     workers_submit(one, hold, &gate); /* the worker is blocked, so nothing becomes warm until the gate opens */
     struct relocation *relocation = relocation_create(the_log, one, &shape);
@@ -437,7 +429,6 @@ TEST(what_waits_is_cancelled)
     relocation_destroy(&relocation); /* destroying answers every pending request before it returns */
     assert_int_equal(dropped.count, 1);
     assert_int_equal(cancelled.count, 1);
-    workers_destroy(&one);
     mem_free(kept.result.geodesic_m);
     mem_free(dropped.result.geodesic_m);
     cad_finish(&plate);

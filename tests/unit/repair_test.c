@@ -4,8 +4,6 @@
 
 #include "tests/support/test.h"
 
-#include "base/mem.h"
-
 #define GAP_M 0.0002f
 #define TOLERANCE_M 0.001
 

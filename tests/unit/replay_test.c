@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Replays: every recorded sample reaches the store in its order and at its time, once or in a loop. */
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "base/clock.h"
-#include "base/mem.h"
 #include "base/text/timestamp.h"
 #include "tests/support/plant_case.h"
 #include "tests/support/sleep.h"
-#include "tests/support/temp.h"
 #include "value/quality.h"
 #include "value/series.h"
 #include "value/source.h"
@@ -35,8 +32,8 @@ static int set_up(void **state)
     void *c;
     plant_case_set_up(&c);
     s->c = c;
-    s->log = log_create(LOG_ERROR);
-    s->counters = counters_create();
+    s->log = test_log();
+    s->counters = test_counters();
     *state = s;
     return 0;
 }
@@ -46,9 +43,6 @@ static int tear_down(void **state)
     struct replay_setup *s = *state;
     void *c = s->c;
     source_stop(&s->source);
-    store_destroy(&s->store);
-    counters_destroy(&s->counters);
-    log_destroy(&s->log);
     mem_free(s);
     return plant_case_tear_down(&c);
 }
@@ -66,14 +60,13 @@ static void on_sample_event(void *arg, const struct sample_event *event)
 
 static void play(struct replay_setup *s, const char *keys, const char *csv, const char *tags)
 {
-    char *yaml = mem_printf("plant: { name: P }\nassets: [{ id: A, model: m.glb }]\ngroups: [{ id: g, unit: K, min: 0, max: 9 }]\n"
+    char *yaml = test_printf("plant: { name: P }\nassets: [{ id: A, model: m.glb }]\ngroups: [{ id: g, unit: K, min: 0, max: 9 }]\n"
                             "sources: [{ id: r, type: replay, file: series.csv, %s }]\ntags: tags.csv\n",
                             keys);
-    mem_free(temp_write_text(s->c->folder, "series.csv", csv));
+    temp_write_text(s->c->folder, "series.csv", csv);
     plant_case_load(s->c, yaml, tags);
-    mem_free(yaml);
     plant_case_assert_loaded(s->c, 0);
-    s->store = store_create(s->c->plant);
+    s->store = test_store(s->c->plant);
     store_listen(s->store, on_sample_event, &s->events);
     s->source = source_start(s->log, s->c->plant, 0, s->store, s->counters);
     assert_non_null(s->source);
@@ -190,22 +183,20 @@ CASE(times_may_be_instants)
     for (size_t i = 0; i < 3; i++) {
         char *path = temp_write_text(s->c->folder, "series.csv", wide[i]);
         check_series(path, "a", 2, i < 2 ? 3600.5 : 0.5, 2);
-        mem_free(path);
     }
     char *path = temp_write_text(s->c->folder, "series.csv", "time,a\n2026-10-25 02:30,1\n2026-10-25 02:10,2\n");
     check_series(path, "a", 2, 2400, 2);
-    mem_free(temp_write_text(s->c->folder, "series.csv",
+    temp_write_text(s->c->folder, "series.csv",
                              "Tag,Time,Value,Quality,Unit\nb,2026-10-25T00:00:10Z,3,0,K\n"
-                             "b,2026-10-25T00:00:20Z,4,0,K\na,2026-10-25T00:00:00Z,1,0,\na,2026-10-25T00:00:07Z,,0x80050000,\n"));
+                             "b,2026-10-25T00:00:20Z,4,0,K\na,2026-10-25T00:00:00Z,1,0,\na,2026-10-25T00:00:07Z,,0x80050000,\n");
     check_series(path, "b", 2, 20, 4);
     check_series(path, "a", 2, 7, NAN);
-    mem_free(temp_write_text(s->c->folder, "series.csv", "Time,a\n25.10.2026 02:30,1\n"));
+    temp_write_text(s->c->folder, "series.csv", "Time,a\n25.10.2026 02:30,1\n");
     struct series series;
     char why[200];
     bool found;
     assert_false(series_read(&series, path, "a", &found, why));
     assert_non_null(strstr(why, "series.csv:1: no time column: expected a name that ends in _ms, _s, _min or _h, or instants"));
-    mem_free(path);
     timestamp_use_zone("UTC");
 }
 

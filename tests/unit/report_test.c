@@ -3,7 +3,6 @@
 #include "tests/support/test.h"
 #include <unistd.h>
 
-#include "base/mem.h"
 #include "preprocess/pipeline/progress.h"
 #include "preprocess/report/text_table.h"
 #include "tests/support/boxes.h"
@@ -117,7 +116,6 @@ TEST_WITH(numbers_are_those_of_the_model, set_up, prep_case_tear_down)
         assert_true(asset == 3 ? added == 0 : added >= 1);
     }
     assert_true(json_is_null(json_object_get(json_array_get(json_object_get(report, "assets"), 3), "surface")));
-    json_decref(report);
 }
 
 TEST_WITH(what_is_wrong_comes_first, set_up, prep_case_tear_down)
@@ -131,7 +129,6 @@ TEST_WITH(what_is_wrong_comes_first, set_up, prep_case_tear_down)
     assert_non_null(strstr(json_string_value(json_object_get(json_array_get(look_at, 0), "text")),
                            "sensor T-APART is 0.500 m from the surface of the asset"));
     assert_non_null(strstr(json_string_value(json_object_get(json_array_get(look_at, 1), "text")), "no sensor reaches 24 of the asset's"));
-    json_decref(report);
     prep_case_expect(c, "$PLANT --report text", 0);
     const char *apart = strstr(c->out.at, "!  APART"), *gap = strstr(c->out.at, "   GAP");
     assert_true(apart && gap && apart < gap);
@@ -162,17 +159,14 @@ TEST_WITH(an_unchanged_asset_keeps_its_report, set_up, prep_case_tear_down)
             free(q);
         }
     }
-    json_decref(first);
-    json_decref(second);
     prep_case_expect(c, "$PLANT", 0);
     assert_null(strstr(c->out.at, "Surfaces")); /* no asset was built */
     prep_case_says(&c->out, "4 unchanged");
     prep_case_tags(c, "T-GAP,400001,Float,plc,temperature,GAP,,0.5,0.5,1\n");
     prep_case_expect(c, "$PLANT", 0); /* files and reports of assets that are no longer in the plant are deleted */
-    char *command = mem_printf("test $(ls '%s/plant.prepared' | grep -c report.json) = $(ls '%s/plant.prepared' | grep -c 'asset$')",
+    char *command = test_printf("test $(ls '%s/plant.prepared' | grep -c report.json) = $(ls '%s/plant.prepared' | grep -c 'asset$')",
                                c->folder, c->folder);
     assert_int_equal(system(command), 0);
-    mem_free(command);
 }
 
 /* Whether half a metre counts as a gap depends on the tolerance in the plant file; changing it rebuilds only that asset. */
@@ -181,9 +175,8 @@ TEST_WITH(the_plant_file_sets_the_tolerance, set_up, prep_case_tear_down)
     struct prep_case *c = *state;
     prep_case_expect(c, "$PLANT", 0);
     const char *after = strstr(plant_text, "nodes: 'apart-*', up: z") + strlen("nodes: 'apart-*', up: z");
-    char *text = mem_printf("%.*s, tolerance_m: 0.501%s", (int)(after - plant_text), plant_text, after);
+    char *text = test_printf("%.*s, tolerance_m: 0.501%s", (int)(after - plant_text), plant_text, after);
     prep_case_plant(c, text);
-    mem_free(text);
     prep_case_expect(c, "$PLANT --report json", 0);
     json_t *report = prep_case_json(&c->out);
     assert_string_equal(json_string_value(json_object_get(json_array_get(json_object_get(report, "assets"), 0), "state")), "unchanged");
@@ -192,7 +185,6 @@ TEST_WITH(the_plant_file_sets_the_tolerance, set_up, prep_case_tear_down)
     assert_int_equal((int)prep_case_number(report, "assets.1.surface.components_after"), 1);
     assert_int_equal((int)prep_case_number(report, "assets.1.surface.unreachable_vertices"), 0);
     assert_float_equal(prep_case_number(report, "assets.1.surface.longest_bridge_m"), 0.5, 1e-6);
-    json_decref(report);
 }
 
 TEST(tables_fit_what_is_in_them)

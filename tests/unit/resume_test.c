@@ -10,10 +10,8 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "base/mem.h"
 #include "tests/support/prep_case.h"
 #include "tests/support/sleep.h"
-#include "tests/support/temp.h"
 
 #define ASSETS 40
 #define PATIENCE_NS (120 * NS_PER_S)
@@ -23,14 +21,11 @@ static int set_up(void **state)
     const char *out = getenv("PLANTCAST_OUT");
     prep_case_set_up(state);
     struct prep_case *c = *state;
-    char *tool = mem_printf("%s/tests/scale/facility", out ? out : "build/release");
-    char *command = mem_printf("'%s' --output '%s' --assets %d --triangles 120000 --sensors 20 >/dev/null", tool, c->folder, ASSETS);
+    char *tool = test_printf("%s/tests/scale/facility", out ? out : "build/release");
+    char *command = test_printf("'%s' --output '%s' --assets %d --triangles 120000 --sensors 20 >/dev/null", tool, c->folder, ASSETS);
     int status = access(tool, X_OK) == 0 ? system(command) : -1;
     if (status != 0)
         print_message("# %s: %d\n", tool, status);
-    mem_free(command);
-    mem_free(tool);
-    mem_free(c->plant);
     c->plant = temp_path(c->folder, "facility.yaml");
     return status;
 }
@@ -49,7 +44,6 @@ static size_t count_files(const struct prep_case *c, const char *ending)
     }
     if (dir)
         closedir(dir);
-    mem_free(folder);
     return count;
 }
 
@@ -66,8 +60,6 @@ static pid_t start(const struct prep_case *c, int terminal)
         _exit(127);
     }
     assert_true(pid > 0);
-    mem_free(program);
-    mem_free(out);
     return pid;
 }
 
@@ -98,7 +90,6 @@ static void assert_continued(struct prep_case *c, size_t there)
     assert_int_equal(count_files(c, ".asset"), ASSETS);
     assert_int_equal(count_files(c, ".new"), 0); /* half-written files are deleted */
     assert_int_equal(count_files(c, "manifest.json"), 1);
-    json_decref(report);
 }
 
 CASE(killed_at_once_it_goes_on)
@@ -114,7 +105,7 @@ CASE(killed_at_once_it_goes_on)
     }
     size_t there = count_files(c, ".asset");
     assert_true(there >= 15 && there < ASSETS);
-    mem_free(temp_write_text(c->folder, "facility.prepared/0123456789abcdef.asset.1.new", "half"));
+    temp_write_text(c->folder, "facility.prepared/0123456789abcdef.asset.1.new", "half");
     assert_continued(c, there);
 }
 
@@ -139,7 +130,6 @@ CASE(interrupted_it_finishes_what_it_has_begun)
         assert_int_equal(count_files(c, ".asset"), there);
         assert_int_equal(count_files(c, ".new"), 0);
         assert_int_equal(count_files(c, "manifest.json"), 0);
-        json_decref(report);
     }
     assert_continued(c, there);
 }

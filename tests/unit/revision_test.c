@@ -11,11 +11,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-
-#include "base/mem.h"
 #include "plant/plant_folder.h"
 #include "preprocess/import/revision/asset_edit.h"
-#include "tests/support/temp.h"
 
 /* --- a file system whose renames fail ---------------------------------------------------------------------------------------- */
 
@@ -43,12 +40,11 @@ enum { FILES = 4, PLANT = 2, WERE = 3 };
 static void begin(const char *folder)
 {
     for (int i = 0; i < WERE; i++)
-        mem_free(temp_write_text(folder, names[i], "old"));
-    char *lists = mem_printf("%s/lists", folder);
+        temp_write_text(folder, names[i], "old");
+    char *lists = test_printf("%s/lists", folder);
     mkdir(lists, 0777);
-    mem_free(temp_write_text(lists, "tags.csv", "old"));
-    mem_free(lists);
-    mem_free(temp_write_text(folder, "matches.csv", "old"));
+    temp_write_text(lists, "tags.csv", "old");
+    temp_write_text(folder, "matches.csv", "old");
 }
 
 static int take(const char *folder, const char *own)
@@ -62,7 +58,7 @@ static int take(const char *folder, const char *own)
 /* Applies a revision that also replaces a list in a subfolder and records one list that stays unchanged. */
 static int apply_to(const char *folder, const char *plant_as_read)
 {
-    char *own = mem_printf("%s/.import-1", folder), *list = mem_printf("%s/lists/tags.csv", folder);
+    char *own = test_printf("%s/.import-1", folder), *list = test_printf("%s/lists/tags.csv", folder);
     struct revision_file files[FILES + 2];
     const char *changed = NULL;
     mkdir(own, 0777);
@@ -74,12 +70,8 @@ static int apply_to(const char *folder, const char *plant_as_read)
     int status = lock < 0 ? lock : revision_files_apply(folder, own, files, FILES + 2, &changed);
     if (status == -ESTALE)
         assert_string_equal(changed, "plant.yaml");
-    for (int i = 0; i <= FILES; i++)
-        mem_free(files[i].made);
     if (lock >= 0)
         close(lock);
-    mem_free(list);
-    mem_free(own);
     return status;
 }
 
@@ -102,9 +94,8 @@ static int undo(const char *folder, bool forced)
 static bool says(const char *folder, const char *name, const char *text)
 {
     size_t bytes;
-    char *path = mem_printf("%s/%s", folder, name), *now = text_read_file(path, 100, &bytes);
+    char *path = test_printf("%s/%s", folder, name), *now = text_read_file(path, 100, &bytes);
     bool same = text ? now && !strcmp(now, text) : !now;
-    mem_free(path);
     mem_free(now);
     return same;
 }
@@ -121,7 +112,7 @@ static bool all(const char *folder, bool new)
 
 TEST(all_files_come_and_go_together)
 {
-    char *folder = temp_folder_create();
+    char *folder = temp_folder();
     begin(folder);
     assert_int_equal(apply(folder), 0);
     assert_true(all(folder, true));
@@ -129,59 +120,53 @@ TEST(all_files_come_and_go_together)
     assert_true(all(folder, false));
     assert_int_equal(undo(folder, false), -ENOENT);
     assert_true(all(folder, false));
-    temp_folder_destroy(&folder);
 }
 
 TEST(what_people_changed_since_is_not_undone_unless_forced)
 {
-    char *folder = temp_folder_create();
+    char *folder = temp_folder();
     begin(folder);
     assert_int_equal(apply(folder), 0);
-    mem_free(temp_write_text(folder, "tags.csv", "mine"));
+    temp_write_text(folder, "tags.csv", "mine");
     assert_int_equal(undo(folder, false), -EBUSY);
     assert_true(says(folder, "tags.csv", "mine") && says(folder, "plant.yaml", "new"));
     assert_int_equal(undo(folder, true), 0);
     assert_true(all(folder, false));
     assert_true(says(folder, "tags.csv.undone", "mine"));
-    temp_folder_destroy(&folder);
 }
 
 TEST(what_was_saved_meanwhile_is_not_replaced)
 {
-    char *folder = temp_folder_create();
+    char *folder = temp_folder();
     begin(folder);
-    mem_free(temp_write_text(folder, "plant.yaml", "mine"));
+    temp_write_text(folder, "plant.yaml", "mine");
     assert_int_equal(apply_to(folder, "old"), -ESTALE);
     assert_true(says(folder, "plant.yaml", "mine") && says(folder, "model.glb", "old") && says(folder, "lists/tags.csv", "old"));
     assert_int_equal(undo(folder, false), -ENOENT);
-    temp_folder_destroy(&folder);
 }
 
 TEST(what_only_was_remembered_comes_back_too)
 {
-    char *folder = temp_folder_create();
+    char *folder = temp_folder();
     begin(folder);
     assert_int_equal(apply(folder), 0);
-    mem_free(temp_write_text(folder, "matches.csv", "others'"));
+    temp_write_text(folder, "matches.csv", "others'");
     assert_int_equal(undo(folder, false), -EBUSY);
     assert_int_equal(undo(folder, true), 0);
     assert_true(all(folder, false));
     assert_true(says(folder, "matches.csv.undone", "others'"));
-    temp_folder_destroy(&folder);
 }
 
 TEST(rights_of_a_file_stay)
 {
-    char *folder = temp_folder_create(), *path;
+    char *folder = temp_folder(), *path;
     struct stat st;
     begin(folder);
-    path = mem_printf("%s/plant.yaml", folder);
+    path = test_printf("%s/plant.yaml", folder);
     assert_int_equal(chmod(path, 0640), 0);
     assert_int_equal(apply(folder), 0);
     assert_int_equal(stat(path, &st), 0);
     assert_int_equal(st.st_mode & 0777, 0640);
-    mem_free(path);
-    temp_folder_destroy(&folder);
 }
 
 /* Applies or undoes a revision in a child process in which the step-th rename fails or kills the process. Returns true if all steps
@@ -199,13 +184,13 @@ static bool run_until(const char *folder, bool undoing, int step, bool killed)
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-static void sweep(bool killed)
+static void fail_each_step(bool killed)
 {
     for (int undoing = 0; undoing < 2; undoing++) {
         bool ended = false;
         int step = 0;
         for (; !ended; step++) {
-            char *folder = temp_folder_create();
+            char *folder = temp_folder();
             begin(folder);
             if (undoing)
                 assert_int_equal(apply(folder), 0);
@@ -220,7 +205,6 @@ static void sweep(bool killed)
                 assert_int_equal(undo(folder, false), 0);
                 assert_true(all(folder, false));
             }
-            temp_folder_destroy(&folder);
         }
         assert_true(step >= 5);
     }
@@ -228,36 +212,32 @@ static void sweep(bool killed)
 
 TEST(killed_at_any_step_it_is_all_or_nothing)
 {
-    sweep(true);
+    fail_each_step(true);
 }
 
 TEST(out_of_disk_at_any_step_it_is_all_or_nothing)
 {
-    sweep(false);
+    fail_each_step(false);
 }
 
 TEST(an_undoing_that_was_killed_while_tidying_up_is_done)
 {
-    char *folder = temp_folder_create(), *left = mem_printf("%s/.revision.undoing", folder), *old = mem_printf("%s/old", left);
+    char *folder = temp_folder(), *left = test_printf("%s/.revision.undoing", folder), *old = test_printf("%s/old", left);
     assert_int_equal(mkdir(left, 0777), 0);
     assert_int_equal(mkdir(old, 0777), 0);
     int lock = take(folder, NULL);
     assert_true(lock >= 0);
     close(lock);
     assert_int_not_equal(access(left, F_OK), 0);
-    mem_free(left);
-    mem_free(old);
-    temp_folder_destroy(&folder);
 }
 
 TEST(one_program_at_a_time)
 {
-    char *folder = temp_folder_create();
+    char *folder = temp_folder();
     int lock = take(folder, NULL);
     assert_true(lock >= 0);
     assert_int_equal(take(folder, NULL), -EWOULDBLOCK);
     close(lock);
-    temp_folder_destroy(&folder);
 }
 
 TEST(the_plant_file_stays_as_people_wrote_it)

@@ -3,10 +3,8 @@
 #include "preprocess/import/rvm.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "base/math/vec.h"
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "preprocess/import/rvm_shape.h"
 

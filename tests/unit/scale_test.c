@@ -3,8 +3,6 @@
 #include "field/scale.h"
 
 #include "tests/support/test.h"
-#include <math.h>
-
 
 static struct scale linear(double min, double max, double interval)
 {

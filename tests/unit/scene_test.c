@@ -4,15 +4,12 @@
 
 #include "tests/support/test.h"
 #include <inttypes.h>
-#include <math.h>
 #include <unistd.h>
 #include <xxhash.h>
 
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "plant/recipe.h"
 #include "plant/sensors.h"
-#include "tests/support/temp.h"
 
 static const char plant_text[] =
     "plant: { name: Test%s }\n"
@@ -76,13 +73,13 @@ static void write_asset(const struct scene_fixture *f, const char *name, double 
     size_t bytes;
     void *file = asset_build(&parts, &bytes);
     assert_non_null(file);
-    mem_free(temp_write(f->prepared, name, file, bytes));
+    temp_write(f->prepared, name, file, bytes);
     free(file);
 }
 
 static void write_manifest(const struct scene_fixture *f, const char *text)
 {
-    mem_free(temp_write_text(f->prepared, "manifest.json", text));
+    temp_write_text(f->prepared, "manifest.json", text);
 }
 
 /* Writes a manifest of all assets in reverse order that all refer to one file. */
@@ -105,40 +102,33 @@ static struct plant *load(const struct scene_fixture *f, const char *more)
     char text[1000];
     snprintf(text, sizeof(text), plant_text, more);
     char *path = temp_write_text(f->folder, "plant.yaml", text);
-    mem_free(temp_write_text(f->folder, "tags.csv", tags_text));
-    mem_free(temp_write_text(f->folder, "m.glb", "glTF"));
+    temp_write_text(f->folder, "tags.csv", tags_text);
+    temp_write_text(f->folder, "m.glb", "glTF");
     struct plant *plant = plant_load(path, &diag);
     if (!plant)
         diag_print(&diag, stderr);
     diag_finish(&diag);
-    mem_free(path);
     assert_non_null(plant);
     return plant;
 }
 
-static int set_up(void **state)
+static void begin(struct scene_fixture *f)
 {
-    struct scene_fixture *f = mem_new(sizeof(*f));
-    f->folder = temp_folder_create();
+    f->folder = temp_folder();
     f->plant = load(f, "");
     f->prepared = plant_prepared_folder(f->plant);
-    f->log = log_create(LOG_ERROR);
+    f->log = test_log();
     write_asset(f, "1.asset", 1, "TI-2", 2);
     write_good_manifest(f);
-    *state = f;
-    return 0;
 }
 
-static int tear_down(void **state)
+static void end(struct scene_fixture *f)
 {
-    struct scene_fixture *f = *state;
     plant_destroy(&f->plant);
-    log_destroy(&f->log);
     mem_free(f->prepared);
-    temp_folder_destroy(&f->folder);
-    mem_free(f);
-    return 0;
 }
+
+TEST_FIXTURE(struct scene_fixture, begin, end)
 
 #define CASE(name) TEST_ON(struct scene_fixture *f, name, set_up, tear_down)
 
@@ -188,9 +178,8 @@ static void assert_refused(struct scene_fixture *f, const char *words)
     fflush(stderr);
     int kept = dup(STDERR_FILENO);
     assert_non_null(freopen(path, "w", stderr));
-    struct log *log = log_create(LOG_ERROR); /* a new log, so that no message is suppressed as a repetition */
+    struct log *log = test_log(); /* a new log, so that no message is suppressed as a repetition */
     struct scene *scene = scene_create(log, f->plant, f->prepared);
-    log_destroy(&log);
     fflush(stderr);
     dup2(kept, STDERR_FILENO);
     close(kept);
@@ -200,7 +189,6 @@ static void assert_refused(struct scene_fixture *f, const char *words)
     if (!strstr(text, words) || !strstr(text, "run plantcast-prep"))
         fail_msg("expected '%s' and what to do in: %s", words, text);
     mem_free(text);
-    mem_free(path);
 }
 
 CASE(other_sensors_are_refused)
@@ -224,11 +212,10 @@ CASE(broken_files_are_refused)
     assert_refused(f, "1.asset: truncated");
     assert_int_equal(truncate(path, 0), 0);
     assert_refused(f, "1.asset: cannot be read");
-    mem_free(temp_write_text(f->prepared, "1.asset", "glTF and so on"));
+    temp_write_text(f->prepared, "1.asset", "glTF and so on");
     assert_refused(f, "1.asset: not an asset file");
     unlink(path);
     assert_refused(f, "asset C: no usable prepared file");
-    mem_free(path);
 }
 
 CASE(broken_manifests_are_refused)
@@ -249,7 +236,6 @@ CASE(broken_manifests_are_refused)
     char *path = temp_path(f->prepared, "manifest.json");
     unlink(path);
     assert_refused(f, "manifest.json: cannot be read");
-    mem_free(path);
 }
 
 /* The plant file or the model changed without running plantcast-prep again. */
@@ -269,7 +255,7 @@ CASE(what_was_not_prepared_is_refused)
     struct scene *scene = scene_create(f->log, f->plant, f->prepared);
     assert_non_null(scene);
     scene_destroy(&scene);
-    mem_free(temp_write_text(f->folder, "m.glb", "glTG"));
+    temp_write_text(f->folder, "m.glb", "glTG");
     assert_refused(f, "m.glb, or the asset's nodes");
 }
 

@@ -4,7 +4,6 @@
 
 #include "tests/support/test.h"
 
-
 #include "base/clock.h"
 
 static const int64_t MS = NS_PER_MS;

@@ -3,8 +3,6 @@
 #include "placing/sensor_coverage.h"
 
 #include "tests/support/test.h"
-#include <math.h>
-
 
 #include "tests/support/toy.h"
 

@@ -6,41 +6,34 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-
 #include "base/clock.h"
-#include "base/mem.h"
 #include "base/system/service_manager.h"
-#include "tests/support/temp.h"
 
 enum { EVERY_MS = 500, LIMIT_S = 30 }; /* sixty requests within the limit */
 
 struct service_manager_setup {
-    char *folder, *path;
+    char *path;
     int fd;
 };
 
-static int set_up(void **state)
+static void begin(struct service_manager_setup *s)
 {
-    struct service_manager_setup *s = *state = mem_new(sizeof(*s));
     struct sockaddr_un address = { .sun_family = AF_UNIX };
     setsid(); /* own session, as a service manager would start it; otherwise the work of other processes in the session counts too */
-    s->folder = temp_folder_create();
-    s->path = temp_path(s->folder, "notify");
+    s->path = temp_path(temp_folder(), "notify");
     memcpy(address.sun_path, s->path, strlen(s->path));
     s->fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     assert_int_equal(bind(s->fd, (struct sockaddr *)&address, sizeof(address)), 0);
-    return setenv("NOTIFY_SOCKET", s->path, 1);
+    setenv("NOTIFY_SOCKET", s->path, 1);
 }
 
-static int tear_down(void **state)
+static void end(struct service_manager_setup *s)
 {
-    struct service_manager_setup *s = *state;
     close(s->fd);
-    mem_free(s->path);
-    temp_folder_destroy(&s->folder);
-    mem_free(s);
-    return unsetenv("NOTIFY_SOCKET");
+    unsetenv("NOTIFY_SOCKET");
 }
+
+TEST_FIXTURE(struct service_manager_setup, begin, end)
 
 #define CASE(name) TEST_ON(struct service_manager_setup *s, name, set_up, tear_down)
 

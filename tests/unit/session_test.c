@@ -5,9 +5,7 @@
 #include "tests/support/test.h"
 #include <jansson.h>
 
-
 #include "base/clock.h"
-#include "base/mem.h"
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 #include "render/depth_grid.h"
@@ -32,7 +30,7 @@ static json_t *hear(struct session_case *f)
     bool due = session_has_text(f->session, f->now_ns);
     assert_int_equal(session_next_text(f->session, f->now_ns, f->now_ns, &text), due);
     if (due)
-        assert_non_null(message = json_loads(text.at, 0, NULL));
+        assert_non_null(message = test_json(json_loads(text.at, 0, NULL)));
     text_finish(&text);
     return message;
 }
@@ -46,7 +44,7 @@ static const char *type_of(const json_t *message)
 static void expect(struct session_case *f, const char *types)
 {
     char got[256] = "";
-    for (json_t *message; (message = hear(f)); json_decref(message))
+    for (const json_t *message; (message = hear(f));)
         snprintf(got + strlen(got), sizeof(got) - strlen(got), "%s ", type_of(message));
     assert_string_equal(got, types);
 }
@@ -56,7 +54,6 @@ static void expect_error(struct session_case *f, const char *code)
     json_t *message = hear(f);
     assert_string_equal(type_of(message), "error");
     assert_string_equal(json_string_value(json_object_get(message, "code")), code);
-    json_decref(message);
 }
 
 static void greet(struct session_case *f)
@@ -309,7 +306,7 @@ CASE(welcome_tells_the_plant_and_no_addresses)
     assert_true(session_next_text(f->session, f->now_ns, f->now_ns, &text));
     assert_null(strstr(text.at, "10.20.30.40"));
     assert_null(strstr(text.at, "400123"));
-    json_t *welcome = json_loads(text.at, 0, NULL), *tag, *limits, *rgb;
+    json_t *welcome = test_json(json_loads(text.at, 0, NULL)), *tag, *limits, *rgb;
     assert_non_null(welcome);
     assert_int_equal(json_array_size(json_object_get(welcome, "groups")), 2);
     tag = json_array_get(json_object_get(welcome, "tags"), 0);
@@ -321,7 +318,6 @@ CASE(welcome_tells_the_plant_and_no_addresses)
     rgb = json_object_get(json_array_get(json_object_get(welcome, "colormaps"), 0), "rgb");
     assert_int_equal(json_string_length(rgb), 1024);
     assert_string_equal(json_string_value(json_object_get(json_object_get(welcome, "view"), "group")), "temperature");
-    json_decref(welcome);
     text_finish(&text);
 }
 
@@ -869,7 +865,6 @@ CASE(tags_come_whole_then_by_change_then_nothing)
     assert_true(json_number_value(json_array_get(row, 1)) == 3.25);
     assert_int_equal(json_array_size(row), 2); /* a good reading without an alarm has two members only */
     assert_int_equal(json_integer_value(json_object_get(tags, "age_ms")), 40);
-    json_decref(tags);
     f->now_ns += 3600 * NS_PER_S;
     expect(f, "");
     f->snapshot->readings[1].quality = QUALITY_BAD_COMMUNICATION_ERROR;
@@ -882,7 +877,6 @@ CASE(tags_come_whole_then_by_change_then_nothing)
     assert_true(json_is_null(json_array_get(row, 1)));
     assert_string_equal(json_string_value(json_array_get(row, 2)), "bad");
     assert_int_equal(json_integer_value(json_array_get(row, 4)), 40);
-    json_decref(tags);
     expect(f, "");
 }
 
@@ -892,22 +886,18 @@ CASE(what_is_shown_is_confirmed)
     f->snapshot->taken_utc_ns = 5000;
     say(f, "{\"type\":\"params\",\"seq\":1,\"show\":\"difference\",\"baseline\":{\"set\":\"calm\"},"
            "\"sensors\":{\"TI-1\":{\"strength\":2}}}");
-    json_t *params = hear(f), *want = json_pack("{s:s,s:i}", "name", "calm", "time_us", 5),
-           *sensors = json_pack("{s:{s:f}}", "TI-1", "strength", 2.0);
+    json_t *params = hear(f), *want = test_json(json_pack("{s:s,s:i}", "name", "calm", "time_us", 5)),
+           *sensors = test_json(json_pack("{s:{s:f}}", "TI-1", "strength", 2.0));
     assert_string_equal(json_string_value(json_object_get(params, "show")), "difference");
     assert_true(json_equal(json_object_get(params, "baseline"), want));
     assert_true(json_equal(json_array_get(json_object_get(params, "baselines"), 0), want));
     assert_true(json_equal(json_object_get(params, "sensors"), sensors));
     assert_string_equal(json_string_value(json_object_get(params, "colormap")), "diverging");
-    json_decref(params);
-    json_decref(want);
-    json_decref(sensors);
     say(f, "{\"type\":\"params\",\"seq\":2,\"show\":\"distance\",\"sensor\":\"TI-1\",\"baseline\":null}");
     params = hear(f);
     assert_string_equal(json_string_value(json_object_get(params, "sensor")), "TI-1");
     assert_string_equal(json_string_value(json_object_get(params, "unit")), "m");
     assert_true(json_is_null(json_object_get(params, "baseline")));
-    json_decref(params);
 }
 
 CASE(params_are_confirmed_and_bad_ones_change_nothing)
@@ -919,7 +909,6 @@ CASE(params_are_confirmed_and_bad_ones_change_nothing)
     assert_int_equal(json_integer_value(json_object_get(params, "seq")), 4);
     assert_string_equal(json_string_value(json_object_get(params, "group")), "pressure");
     assert_true(json_number_value(json_object_get(params, "ramp_interval")) == 2);
-    json_decref(params);
     struct view before = f->session->view;
     say(f, "{\"type\":\"params\",\"seq\":5,\"ramp_interval\":3,\"power\":0}");
     expect_error(f, "bad_field");
@@ -991,12 +980,10 @@ CASE(a_fit_is_answered_with_a_camera_and_moves_nothing)
     json_t *target = json_object_get(answer, "target");
     assert_float_equal(json_number_value(json_array_get(target, 0)), 5.75, 1e-6);
     assert_true(json_number_value(json_object_get(answer, "height_m")) >= 2);
-    json_decref(answer);
     assert_memory_equal(&before, &f->session->view.camera, sizeof(before));
     say(f, "{\"type\":\"fit\",\"seq\":10}");
     answer = hear(f);
     assert_true(json_number_value(json_object_get(answer, "fov")) == 45 && !json_object_get(answer, "height_m"));
-    json_decref(answer);
 }
 
 TEST_WITH(a_pick_is_asked_once_and_answered, session_case_set_up, session_case_tear_down)
@@ -1026,12 +1013,10 @@ TEST_WITH(a_pick_is_asked_once_and_answered, session_case_set_up, session_case_t
     json_t *nearest = json_array_get(json_object_get(said, "nearest"), 0);
     assert_string_equal(json_string_value(json_object_get(nearest, "tag")), "TI-1");
     assert_string_equal(json_string_value(json_object_get(nearest, "quality")), "good");
-    json_decref(said);
     answer.pick = (struct pick){ .asset = -1, .sensor = -1, .value = 0 };
     session_on_pick(f->session, &answer);
     said = hear(f);
     assert_true(json_is_null(json_object_get(said, "asset")) && json_is_null(json_object_get(said, "value")));
-    json_decref(said);
 }
 
 CASE(a_follower_is_shown_its_leaders_view)
@@ -1054,7 +1039,6 @@ CASE(a_follower_is_shown_its_leaders_view)
     assert_int_equal(json_integer_value(json_object_get(following, "session")), 8);
     assert_int_equal(json_integer_value(json_object_get(following, "height")), 600);
     assert_string_equal(json_string_value(json_object_get(following, "group")), "temperature");
-    json_decref(following);
     assert_int_equal(show(f).view.width_px, 800);
     session_on_message(leader, camera, sizeof(camera) - 1, f->now_ns, f->now_ns);
     session_on_message(leader, params, sizeof(params) - 1, f->now_ns, f->now_ns);
@@ -1064,7 +1048,6 @@ CASE(a_follower_is_shown_its_leaders_view)
     assert_int_equal(request.view.camera_seq, 1); /* camera_seq: this client itself requested no other camera */
     following = hear(f);
     assert_string_equal(json_string_value(json_object_get(following, "group")), "pressure");
-    json_decref(following);
     say(f, "{\"type\":\"resize\",\"width\":320,\"height\":200}");
     assert_int_equal(show(f).view.width_px, 800);
     say(f, "{\"type\":\"follow\",\"session\":null}");
@@ -1073,7 +1056,6 @@ CASE(a_follower_is_shown_its_leaders_view)
     following = hear(f);
     assert_true(json_is_null(json_object_get(following, "session")));
     assert_int_equal(json_integer_value(json_object_get(following, "width")), 320);
-    json_decref(following);
     request = show(f);
     assert_true(request.view.width_px == 320 && request.view.camera.eye_m[0] == 9);
     session_follow(f->session, leader, f->now_ns);
@@ -1082,17 +1064,15 @@ CASE(a_follower_is_shown_its_leaders_view)
     assert_int_equal(json_integer_value(json_object_get(following, "session")), 8);
     assert_true(json_is_true(json_object_get(following, "gone")));
     assert_string_equal(json_string_value(json_object_get(following, "group")), "pressure");
-    json_decref(following);
     request = show(f);
     assert_true(request.view.width_px == 320 && request.view.camera.eye_m[0] == 3);
     session_follow(f->session, leader, f->now_ns); /* the leader is back */
     following = hear(f);
     assert_null(json_object_get(following, "gone"));
-    json_decref(following);
     session_leader_gone(f->session, f->now_ns);
     say(f, "{\"type\":\"follow\",\"session\":null}");
     session_follow(f->session, NULL, f->now_ns);
-    json_decref(hear(f));
+    hear(f);
     assert_true(show(f).view.camera.eye_m[0] == 9); /* the session's own view, kept meanwhile */
     session_destroy(&leader);
 }
@@ -1105,14 +1085,12 @@ CASE(pings_come_back_exactly)
     assert_true(json_number_value(json_object_get(pong, "t")) == 123456.78901234567);
     assert_int_equal(json_integer_value(json_object_get(pong, "time_us")), f->now_ns / 1000);
     assert_true(json_is_null(json_object_get(pong, "oldest_age_ms"))); /* nothing was read yet */
-    json_decref(pong);
     f->snapshot->readings[0] = (struct reading){ .quality = QUALITY_GOOD, .age_ns = 40 * MS };
     f->snapshot->readings[1] = (struct reading){ .quality = QUALITY_GOOD, .age_ns = 250 * MS };
     f->snapshot->readings[2] = (struct reading){ .quality = QUALITY_BAD_COMMUNICATION_ERROR, .age_ns = 9000 * MS };
     say(f, "{\"type\":\"ping\",\"t\":1}");
     pong = hear(f);
     assert_int_equal(json_integer_value(json_object_get(pong, "oldest_age_ms")), 250);
-    json_decref(pong);
 }
 
 CASE(codecs_are_chosen_and_chosen_again)

@@ -4,9 +4,7 @@
 
 #include "tests/support/test.h"
 
-
 #include "base/clock.h"
-#include "base/mem.h"
 #include "session/session_impl.h"
 
 enum { TILES = 2 };

@@ -3,8 +3,6 @@
    present. */
 #include "tests/support/test.h"
 #include <jansson.h>
-#include <math.h>
-
 
 #include "base/clock.h"
 #include "service/history_loader.h"
@@ -52,25 +50,19 @@ static json_t *hear(struct session_case *f, const char *type)
     struct text text = { 0 };
     json_t *found = NULL;
     while (session_next_text(f->session, f->now_ns, utc_ns(f), &text)) {
-        json_t *message = json_loads(text.at, 0, NULL);
+        json_t *message = test_json(json_loads(text.at, 0, NULL));
         assert_non_null(message);
-        if (!strcmp(json_string_value(json_object_get(message, "type")), type)) {
-            json_decref(found);
+        if (!strcmp(json_string_value(json_object_get(message, "type")), type))
             found = message;
-        } else {
-            json_decref(message);
-        }
         text.length = 0;
     }
     text_finish(&text);
     return found;
 }
 
-static int64_t number(json_t *message, const char *name)
+static int64_t number(const json_t *message, const char *name)
 {
-    int64_t value = json_integer_value(json_object_get(message, name));
-    json_decref(message);
-    return value;
+    return json_integer_value(json_object_get(message, name));
 }
 
 static void expect_error(struct session_case *f, const char *code)
@@ -78,7 +70,6 @@ static void expect_error(struct session_case *f, const char *code)
     json_t *message = hear(f, "error");
     assert_non_null(message);
     assert_string_equal(json_string_value(json_object_get(message, "code")), code);
-    json_decref(message);
 }
 
 static void greet(struct session_case *f, const char *more)
@@ -89,7 +80,6 @@ static void greet(struct session_case *f, const char *more)
     json_t *welcome = hear(f, "welcome");
     assert_non_null(welcome);
     snprintf(f->resume, sizeof(f->resume), "%s", json_string_value(json_object_get(welcome, "resume")));
-    json_decref(welcome);
 }
 
 static void go(struct session_case *f, int64_t ago_s, double speed)
@@ -108,12 +98,11 @@ static double wanted(struct session_case *f)
 
 static void bring(struct session_case *f, double ago_s, double value)
 {
-    struct snapshot *snapshot = snapshot_create(f->snapshot->count);
+    struct snapshot *snapshot = test_snapshot(f->snapshot->count);
     int64_t at_us = NOW_US - (int64_t)llround(ago_s * 1e6);
     snapshot->taken_utc_ns = at_us * 1000;
     snapshot->readings[0] = (struct reading){ .value = value };
     snapshot_cache_add(f->services.snapshot_cache, at_us, snapshot);
-    snapshot_destroy(&snapshot);
     session_on_historical_snapshot(f->session, at_us, true, f->now_ns);
 }
 
@@ -147,7 +136,6 @@ CASE(test_the_client_is_told_where_it_is)
     say(f, "{\"type\":\"time\",\"at_us\":null}");
     time = hear(f, "time");
     assert_true(json_is_null(json_object_get(time, "at_us")));
-    json_decref(time);
     assert_true(f->session->view.at_us == 0 && f->session->view.field.slot == 0);
     assert_ptr_equal(session_snapshot(f->session), f->snapshot);
 }

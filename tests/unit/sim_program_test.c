@@ -3,7 +3,6 @@
 #include "tests/support/test.h"
 #include <arpa/inet.h>
 #include <errno.h>
-#include <math.h>
 #include <modbus.h>
 #include <poll.h>
 #include <signal.h>
@@ -13,7 +12,6 @@
 
 #include "base/clock.h"
 #include "base/files/atomic_file.h"
-#include "base/mem.h"
 #include "tests/support/modbus_device.h"
 #include "tests/support/ports.h"
 #include "tests/support/sleep.h"
@@ -48,7 +46,7 @@ static const char tags_text[] =
     "unit 9,9!40001,Word,,,,,,,,77,,\n";
 
 struct sim_program_setup {
-    char folder[40], *plant_path, *tags_path, *model_path;
+    char *folder, *plant_path;
     int port, control_port, control_fd;
     pid_t pid;
     FILE *out;
@@ -59,10 +57,9 @@ static pid_t spawn(char *const arguments[], FILE **out)
 {
     int pipes[2];
     const char *folder = getenv("PLANTCAST_BIN");
-    char *program = mem_printf("%s/plantcast-sim", folder ? folder : "build");
+    char *program = test_printf("%s/plantcast-sim", folder ? folder : "build");
     if (access(program, X_OK) != 0) {
         print_message("# %s is not there\n", program);
-        mem_free(program);
         skip();
     }
     assert_int_equal(pipe(pipes), 0);
@@ -77,7 +74,6 @@ static pid_t spawn(char *const arguments[], FILE **out)
     }
     close(pipes[1]);
     *out = fdopen(pipes[0], "r");
-    mem_free(program);
     return pid;
 }
 
@@ -89,37 +85,25 @@ static int exit_status(struct sim_program_setup *s)
     return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
 }
 
-static int set_up(void **state)
+static void begin(struct sim_program_setup *s)
 {
-    static struct sim_program_setup s;
-    s = (struct sim_program_setup){ .folder = "/tmp/plantcast-sim-XX"
-                                              "XX"
-                                              "XX",
-                                    .control_fd = -1 };
-    assert_non_null(mkdtemp(s.folder));
-    s.port = free_port();
-    s.control_port = free_port();
-    s.plant_path = mem_printf("%s/sim-test.yaml", s.folder);
-    s.tags_path = mem_printf("%s/sim-test.csv", s.folder);
-    s.model_path = mem_printf("%s/none.glb", s.folder);
-    assert_int_equal(atomic_file_put(s.model_path, "glTF", 4), 0); /* the simulator does not open the model */
-    char *text = mem_printf(plant_text, s.port);
-    assert_int_equal(atomic_file_put(s.plant_path, text, strlen(text)), 0);
-    assert_int_equal(atomic_file_put(s.tags_path, tags_text, strlen(tags_text)), 0);
-    mem_free(text);
+    s->folder = temp_folder();
+    s->control_fd = -1;
+    s->port = free_port();
+    s->control_port = free_port();
+    s->plant_path = temp_write_text(s->folder, "sim-test.yaml", test_printf(plant_text, s->port));
+    temp_write_text(s->folder, "sim-test.csv", tags_text);
+    temp_write_text(s->folder, "none.glb", "glTF"); /* the simulator does not open the model */
     struct diag diag = { 0 };
-    s.plant = plant_load(s.plant_path, &diag);
-    if (!s.plant)
+    s->plant = plant_load(s->plant_path, &diag);
+    if (!s->plant)
         diag_print(&diag, stderr);
     diag_finish(&diag);
-    assert_non_null(s.plant);
-    *state = &s;
-    return 0;
+    assert_non_null(s->plant);
 }
 
-static int tear_down(void **state)
+static void end(struct sim_program_setup *s)
 {
-    struct sim_program_setup *s = *state;
     if (s->control_fd >= 0)
         close(s->control_fd);
     if (s->pid > 0) {
@@ -129,15 +113,9 @@ static int tear_down(void **state)
     if (s->out)
         fclose(s->out);
     plant_destroy(&s->plant);
-    unlink(s->plant_path);
-    unlink(s->tags_path);
-    unlink(s->model_path);
-    mem_free(s->model_path);
-    rmdir(s->folder);
-    mem_free(s->plant_path);
-    mem_free(s->tags_path);
-    return 0;
 }
+
+TEST_FIXTURE(struct sim_program_setup, begin, end)
 
 #define CASE(name) TEST_ON(struct sim_program_setup *s, name, set_up, tear_down)
 
@@ -182,8 +160,6 @@ static const char *control(struct sim_program_setup *s, const char *command)
 /* --- the daemon's side ------------------------------------------------------------------------------------------------------ */
 
 struct sim_reader {
-    struct log *log;
-    struct counters *counters;
     struct store *store;
     struct snapshot *snapshot;
     struct source *source;
@@ -191,21 +167,15 @@ struct sim_reader {
 
 static void reader_start(struct sim_reader *reader, const struct plant *plant)
 {
-    reader->log = log_create(LOG_ERROR);
-    reader->counters = counters_create();
-    reader->store = store_create(plant);
-    reader->snapshot = snapshot_create(plant->tag_count);
-    reader->source = source_start(reader->log, plant, 0, reader->store, reader->counters);
+    reader->store = test_store(plant);
+    reader->snapshot = test_snapshot(plant->tag_count);
+    reader->source = source_start(test_log(), plant, 0, reader->store, test_counters());
     assert_non_null(reader->source);
 }
 
 static void reader_stop(struct sim_reader *reader)
 {
     source_stop(&reader->source);
-    snapshot_destroy(&reader->snapshot);
-    store_destroy(&reader->store);
-    counters_destroy(&reader->counters);
-    log_destroy(&reader->log);
 }
 
 static const struct reading *look(struct sim_reader *reader, int tag)

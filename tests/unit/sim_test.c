@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Parts of plantcast-sim: encoding compared with the daemon's decoding, the process model, recorded series and their map. */
 #include "tests/support/test.h"
-#include <math.h>
 #include <unistd.h>
 
 #include "base/files/atomic_file.h"
-#include "base/mem.h"
 #include "deploy/demo/sim_encode.h"
 #include "deploy/demo/sim_image.h"
 #include "deploy/demo/sim_map.h"
@@ -266,22 +264,10 @@ TEST(process_repeats_with_its_seed)
 
 /* --- series and map --------------------------------------------------------------------------------------------------------- */
 
-static char *write_file(const char *name, const char *text)
-{
-    char *path = mem_printf("/tmp/plantcast-sim-test-%ld-%s", (long)getpid(), name);
-    assert_int_equal(atomic_file_put(path, text, strlen(text)), 0);
-    return path;
-}
-
-static void drop_file(char *path)
-{
-    unlink(path);
-    mem_free(path);
-}
-
 TEST(wide_series)
 {
-    char why[200], *path = write_file("wide.csv", "t_min,a,b,d\r\n10,1.5,-2,1\r\n13,2.5,,I/O Timeout\r\n16,3.5,4e1,hot\r\n");
+    char why[200];
+    char *path = temp_write_text(temp_folder(), "wide.csv", "t_min,a,b,d\r\n10,1.5,-2,1\r\n13,2.5,,I/O Timeout\r\n16,3.5,4e1,hot\r\n");
     struct series series;
     bool found;
     assert_true(series_read(&series, path, "a", &found, why) && found);
@@ -304,12 +290,13 @@ TEST(wide_series)
     assert_true(series_read(&series, path, "c", &found, why));
     assert_false(found);
     assert_non_null(strstr(why, "has no series c"));
-    drop_file(path);
 }
 
 TEST(long_series)
 {
-    char why[200], *path = write_file("long.csv", "1636070400000,Alarm,M-1,state,NORMAL,VARCHAR\n1636070400001,Mixer,M-1,T,100,DOUBLE\n"
+    char why[200];
+    char *path = temp_write_text(temp_folder(), "long.csv",
+                                 "1636070400000,Alarm,M-1,state,NORMAL,VARCHAR\n1636070400001,Mixer,M-1,T,100,DOUBLE\n"
                                                   "1636070400002,Mixer,M-1,RPM,60,DOUBLE\n1636070406001,Mixer,M-1,T,101.5,DOUBLE");
     struct series series;
     bool found;
@@ -322,7 +309,6 @@ TEST(long_series)
     assert_false(found);
     assert_false(series_read(&series, path, "M-1/state", &found, why));
     assert_non_null(strstr(why, ":1: M-1/state: expected a number"));
-    drop_file(path);
 }
 
 TEST(bad_series)
@@ -332,13 +318,12 @@ TEST(bad_series)
         ":3: a: expected a number", ":3: expected a time", ":1: no time column", "is empty", ":2: expected", ":2: expected"
     };
     for (int i = 0; i < 6; i++) {
-        char why[200] = "", *path = write_file("bad.csv", texts[i]);
+        char why[200] = "", *path = temp_write_text(temp_folder(), "bad.csv", texts[i]);
         struct series series;
         bool found;
         assert_false(series_read(&series, path, "a", &found, why));
         if (!strstr(why, wanted[i]))
             fail_msg("%s: said %s", wanted[i], why);
-        drop_file(path);
     }
     char why[200];
     struct series series;
@@ -375,11 +360,12 @@ TEST(map_files)
 {
     struct diag diag = { 0 };
     struct sim_map map = { 0 };
-    char *path =
-        write_file("a.map", "# what feeds what\nvalues ../data/x.csv\nvalues /abs/y.csv\n\nspeed 60\nloop\nT1 = a\nT2 : b\nspeed -1\n");
+    char *folder = temp_folder();
+    char *path = temp_write_text(
+        folder, "a.map", "# what feeds what\nvalues ../data/x.csv\nvalues /abs/y.csv\n\nspeed 60\nloop\nT1 = a\nT2 : b\nspeed -1\n");
     sim_map_read(&map, path, &diag);
     assert_int_equal(map.file_count, 2);
-    assert_string_equal(map.files[0], "/tmp/../data/x.csv");
+    assert_string_equal(map.files[0], temp_path(folder, "../data/x.csv"));
     assert_string_equal(map.files[1], "/abs/y.csv");
     assert_true(map.loop);
     assert_int_equal(map.count, 1);
@@ -391,5 +377,4 @@ TEST(map_files)
     assert_int_equal(diag.errors, 3);
     diag_finish(&diag);
     sim_map_finish(&map);
-    drop_file(path);
 }

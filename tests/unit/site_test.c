@@ -6,53 +6,28 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-
 #include "base/files/atomic_file.h"
-#include "base/mem.h"
 
 struct site_fixture {
-    char root[64], web[80];
+    char *root, *web;
 };
 
-static void write_file(const char *folder, const char *name, const char *content)
+static void begin(struct site_fixture *f)
 {
-    char *path = mem_printf("%s/%s", folder, name);
-    assert_int_equal(atomic_file_put(path, content, strlen(content)), 0);
-    mem_free(path);
-}
-
-static int set_up(void **state)
-{
-    struct site_fixture *f = mem_new(sizeof(*f));
-    char *core = NULL, *link = NULL;
-    strcpy(f->root, "/tmp/plantcast-site-XXXXXX");
-    assert_non_null(mkdtemp(f->root));
-    snprintf(f->web, sizeof(f->web), "%s/web", f->root);
-    core = mem_printf("%s/core", f->web);
-    link = mem_printf("%s/escape.js", f->web);
+    f->root = temp_folder();
+    f->web = temp_path(f->root, "web");
+    char *core = temp_path(f->web, "core"), *link = temp_path(f->web, "escape.js");
     assert_int_equal(mkdir(f->web, 0700) | mkdir(core, 0700), 0);
-    write_file(f->root, "secret.js", "secret");
-    write_file(f->web, "index.html", "<p>");
-    write_file(f->web, ".hidden.js", "hidden");
-    write_file(f->web, "notes", "no ending");
-    write_file(f->web, "x.exe", "unknown ending");
-    write_file(core, "wire.js", "export {};");
+    temp_write_text(f->root, "secret.js", "secret");
+    temp_write_text(f->web, "index.html", "<p>");
+    temp_write_text(f->web, ".hidden.js", "hidden");
+    temp_write_text(f->web, "notes", "no ending");
+    temp_write_text(f->web, "x.exe", "unknown ending");
+    temp_write_text(core, "wire.js", "export {};");
     assert_int_equal(symlink("../secret.js", link), 0);
-    mem_free(link);
-    mem_free(core);
-    *state = f;
-    return 0;
 }
 
-static int tear_down(void **state)
-{
-    struct site_fixture *f = *state;
-    char *command = mem_printf("rm -rf '%s'", f->root);
-    assert_int_equal(system(command), 0);
-    mem_free(command);
-    mem_free(f);
-    return 0;
-}
+TEST_FIXTURE(struct site_fixture, begin, NULL)
 
 #define CASE(name) TEST_ON(struct site_fixture *f, name, set_up, tear_down)
 
@@ -84,15 +59,14 @@ CASE(scripts_come_without_comments_and_indentation)
                                  "  f(`a \\` ${b\n  // text\n   } c`, `d`);\n  // gone\n  g(/  x/);\n// end";
     static const char served[] = "// licence\n\nconst a = 1; // why\n\n\nconst b = 'x//y';\n"
                                  "f(`a \\` ${b\n  // text\n   } c`, `d`);\n\ng(/  x/);\n";
-    char *vendor = mem_printf("%s/vendor", f->web);
+    char *vendor = test_printf("%s/vendor", f->web);
     assert_int_equal(mkdir(vendor, 0700), 0);
-    write_file(f->web, "a.js", source);
-    write_file(f->web, "a.css", source);
-    write_file(vendor, "a.js", source);
+    temp_write_text(f->web, "a.js", source);
+    temp_write_text(f->web, "a.css", source);
+    temp_write_text(vendor, "a.js", source);
     expect(f, "/a.js", served, "text/javascript; charset=utf-8");
     expect(f, "/a.css", source, "text/css; charset=utf-8");
     expect(f, "/vendor/a.js", source, "text/javascript; charset=utf-8");
-    mem_free(vendor);
 }
 
 CASE(nothing_else_is)
@@ -132,8 +106,8 @@ CASE(nothing_else_is)
 CASE(files_stay_as_they_were_at_the_start)
 {
     struct web_site *before = site_create(NULL, f->web);
-    write_file(f->web, "index.html", "<p>more");
-    write_file(f->web, "new.js", "1;");
+    temp_write_text(f->web, "index.html", "<p>more");
+    temp_write_text(f->web, "new.js", "1;");
     struct web_site *after = site_create(NULL, f->web);
     assert_memory_equal(site_find(before, "/")->bytes, "<p>", 3);
     assert_int_equal(site_find(before, "/")->count, 3);

@@ -4,14 +4,12 @@
 
 #include "tests/support/test.h"
 
-
 static void add(struct snapshot_cache *snapshot_cache, int64_t at_us, double value)
 {
-    struct snapshot *snapshot = snapshot_create(2);
+    struct snapshot *snapshot = test_snapshot(2);
     snapshot->readings[0] = (struct reading){ .value = value };
     snapshot->taken_utc_ns = at_us * 1000;
     snapshot_cache_add(snapshot_cache, at_us, snapshot);
-    snapshot_destroy(&snapshot);
 }
 
 TEST(test_what_was_added_is_there_once)

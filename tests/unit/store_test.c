@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The store: readings that are exactly zero, not a number, old, or cut off from their source. */
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "tests/support/plant_by_hand.h"
 #include "value/alarm.h"
@@ -16,31 +15,19 @@ struct store_setup {
     struct snapshot *snapshot;
 };
 
-static int set_up(void **state)
+static void begin(struct store_setup *s)
 {
-    static struct store_setup s;
-    s.plant = plant_by_hand_create(3);
-    plant_by_hand_source(s.plant, "a", 1);
-    plant_by_hand_tag(s.plant, "a0", TABLE_HOLDING, 0, DATA_INT16);
-    plant_by_hand_tag(s.plant, "a1", TABLE_HOLDING, 1, DATA_INT16);
-    plant_by_hand_source(s.plant, "b", 2);
-    plant_by_hand_tag(s.plant, "b0", TABLE_HOLDING, 0, DATA_INT16);
-    s.store = store_create(s.plant);
-    s.snapshot = snapshot_create(s.plant->tag_count);
-    *state = &s;
-    return 0;
+    s->plant = plant_by_hand_create(3);
+    plant_by_hand_source(s->plant, "a", 1);
+    plant_by_hand_tag(s->plant, "a0", TABLE_HOLDING, 0, DATA_INT16);
+    plant_by_hand_tag(s->plant, "a1", TABLE_HOLDING, 1, DATA_INT16);
+    plant_by_hand_source(s->plant, "b", 2);
+    plant_by_hand_tag(s->plant, "b0", TABLE_HOLDING, 0, DATA_INT16);
+    s->store = test_store(s->plant);
+    s->snapshot = test_snapshot(s->plant->tag_count);
 }
 
-static int tear_down(void **state)
-{
-    struct store_setup *s = *state;
-    snapshot_destroy(&s->snapshot);
-    assert_null(s->snapshot);
-    store_destroy(&s->store);
-    store_destroy(&s->store);
-    plant_by_hand_destroy(&s->plant);
-    return 0;
-}
+TEST_FIXTURE(struct store_setup, begin, NULL)
 
 #define CASE(name) TEST_ON(struct store_setup *s, name, set_up, tear_down)
 
@@ -236,17 +223,15 @@ static void count_events(void *arg, const struct sample_event *event)
 /* The readings move to another plant: one tag stays, at another index and with another stale time; one tag is new. */
 CASE(readings_go_on_in_another_plant)
 {
-    static int by_name[] = { 1, 0 };
     struct plant *plant = plant_by_hand_create(2);
     plant_by_hand_source(plant, "a", 1);
     plant_by_hand_tag(plant, "new", TABLE_HOLDING, 0, DATA_INT16);
     plant_by_hand_tag(plant, "a1", TABLE_HOLDING, 1, DATA_INT16)->validity.stale_s = 60;
-    plant->tags_by_name = by_name;
     write_one(s, 1, 42, QUALITY_GOOD, 10 * S);
     store_set_alarm(s->store, 1, ALARM_HH, ALARM_UNACKNOWLEDGED);
     store_link_up(s->store, 0, 10 * S);
-    struct store *store = store_create(plant);
-    struct snapshot *snapshot = snapshot_create(2);
+    struct store *store = test_store(plant);
+    struct snapshot *snapshot = test_snapshot(2);
     store_adopt(store, s->store);
     store_snapshot(store, 30 * S, 1030 * S, snapshot);
     assert_true(snapshot->readings[1].value == 42);
@@ -255,10 +240,6 @@ CASE(readings_go_on_in_another_plant)
     assert_true(snapshot->readings[1].age_ns == 20 * S);
     assert_quality(snapshot->readings[0].quality, QUALITY_BAD_WAITING);
     assert_true(store_link_is_up(store, 0));
-    snapshot_destroy(&snapshot);
-    store_destroy(&store);
-    plant->tags_by_name = NULL;
-    plant_by_hand_destroy(&plant);
 }
 
 /* Another source takes over a tag whose server was lost. It repeats the old value with the original timestamp, a moment off by our
@@ -316,8 +297,7 @@ TEST(qualities_have_names_and_classes)
 
 static void set_up_again(struct store_setup *s)
 {
-    store_destroy(&s->store);
-    s->store = store_create(s->plant);
+    s->store = test_store(s->plant);
 }
 
 CASE(a_value_that_never_moves_is_doubted)
@@ -488,7 +468,7 @@ CASE(says_when_a_reading_gets_stale)
 /* Random writes, losses, alarms and pauses: every change in a snapshot was reported to listeners or predicted by the due time. */
 CASE(nothing_changes_unannounced)
 {
-    struct snapshot *last = snapshot_create(3);
+    struct snapshot *last = test_snapshot(3);
     const uint32_t qualities[] = { QUALITY_GOOD, QUALITY_UNCERTAIN_UNITS_EXCEEDED, QUALITY_BAD_SENSOR_FAILURE };
     int told = 0, announced = 0;
     s->plant->sources[0].heartbeat_s = 3;
@@ -525,5 +505,4 @@ CASE(nothing_changes_unannounced)
         memcpy(last->readings, s->snapshot->readings, 3 * sizeof(*last->readings));
     }
     assert_true(announced > 100);
-    snapshot_destroy(&last);
 }

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Estimate of a level's subdivision from a sample of its triangles. */
 #include "tests/support/test.h"
-#include <math.h>
 
-#include "base/mem.h"
 #include "preprocess/subdivision/subdivide_impl.h"
 #include "tests/support/surface_case.h"
 

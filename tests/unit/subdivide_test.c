@@ -2,16 +2,13 @@
 /* Subdivision: a few huge triangles show the field of a fine mesh, sensors are on vertices, and no cracks open. The truth is the field's
    formula on the distance formula, in doubles. */
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "base/math/vec.h"
-#include "base/mem.h"
 #include "preprocess/geometry/welded_positions.h"
 #include "preprocess/subdivision/subdivide.h"
 #include "protocol/asset_distance.h"
 #include "surface/mesh/bvh.h"
 #include "surface/mesh/trimesh.h"
-#include "tests/support/sweep.h"
 
 #define PI 3.14159265358979323846
 #define SENSORS 6

@@ -4,10 +4,6 @@
 
 #include "tests/support/test.h"
 
-
-#include "base/mem.h"
-#include "tests/support/sweep.h"
-
 enum { SIDE_PX = 100, TILES = (SIDE_PX + SUN_TILE_STEP_PX - 1) / SUN_TILE_STEP_PX, ROUNDS = 20000, AREA_PX = 20 };
 
 struct lookup_counts {

@@ -5,11 +5,8 @@
 #include "surface/surface.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 
-#include "base/mem.h"
 #include "tests/support/surface_case.h"
-#include "tests/support/sweep.h"
 
 #define MEAN_MAX 0.003 /* of the largest distance */
 #define WORST_MAX 0.01
@@ -667,10 +664,9 @@ TEST(a_surface_without_area_is_refused)
 {
     static const float line[3][3] = { { 0, 0, 0 }, { 1, 1, 1 }, { 2, 2, 2 } };
     static const uint32_t triangle[3] = { 0, 1, 2 };
-    struct log *quiet = log_create(LOG_ERROR);
+    struct log *quiet = test_log();
     assert_null(surface_create(quiet, NULL, line, 3, triangle, 1, &(struct surface_params){ 0 }));
     assert_null(surface_create(quiet, NULL, line, 3, triangle, 0, &(struct surface_params){ 0 }));
-    log_destroy(&quiet);
 }
 
 /* Sizes whose squares underflow; the result does not matter, but the computation must end. */

@@ -3,11 +3,9 @@
 #include "tests/support/test.h"
 
 #include "base/files/atomic_file.h"
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "plant/parse/csv.h"
 #include "plant/tags/tag_edit.h"
-#include "tests/support/sweep.h"
 
 static void expect(const char *text, const struct tag_edit *edits, size_t count, const char *expected)
 {
@@ -121,11 +119,6 @@ static void write_random(struct text *text, char separator, int rows)
     }
 }
 
-static void save(const char *path, const char *text)
-{
-    assert_int_equal(atomic_file_put(path, text, strlen(text)), 0);
-}
-
 static void compare(const char *before_path, const char *after_path, int changed)
 {
     struct diag diag = { 0 };
@@ -147,9 +140,7 @@ static void compare(const char *before_path, const char *after_path, int changed
 
 TEST(test_random_lists)
 {
-    char folder[] = "/tmp/tag_edit.XXXXXX";
-    assert_non_null(mkdtemp(folder));
-    char *before_path = mem_printf("%s/before.csv", folder), *after_path = mem_printf("%s/after.csv", folder);
+    char *folder = temp_folder();
     seed = (unsigned)sweep_seed();
     for (int round = 0; round < 200; round++) {
         struct text text = { 0 };
@@ -161,15 +152,8 @@ TEST(test_random_lists)
         const struct tag_edit edit = { name, "NEW", NULL, NULL, NULL, { 1.5, 2, -0.25 }, false };
         char *out = tag_edit(text.at, &edit, 1, &why);
         assert_non_null(out);
-        save(before_path, text.at);
-        save(after_path, out);
-        compare(before_path, after_path, changed);
+        compare(temp_write_text(folder, "before.csv", text.at), temp_write_text(folder, "after.csv", out), changed);
         mem_free(out);
         text_finish(&text);
     }
-    remove(before_path);
-    remove(after_path);
-    remove(folder);
-    mem_free(before_path);
-    mem_free(after_path);
 }

@@ -5,9 +5,7 @@
 #include "tests/support/test.h"
 #include <minizip/zip.h>
 
-#include "base/mem.h"
 #include "base/text/text.h"
-#include "tests/support/temp.h"
 
 static char *folder;
 static char why[256];
@@ -17,7 +15,6 @@ static bool read_bytes(struct tag_export *list, const void *bytes, size_t count)
     char *path = temp_write(folder, "tags", bytes, count);
     *list = (struct tag_export){ 0 };
     bool good = tag_export_read(list, path, NULL, why, sizeof(why));
-    mem_free(path);
     return good;
 }
 
@@ -373,14 +370,13 @@ TEST(test_alike)
       "PI-１０１" };
     for (size_t i = 0; i < sizeof(others) / sizeof(*others); i++) {
         struct tag_export list;
-        char *text = mem_printf("Tag,Address\nPI-101,1\n%s,2\nPI-102,3\n", others[i]);
+        char *text = test_printf("Tag,Address\nPI-101,1\n%s,2\nPI-102,3\n", others[i]);
         assert_true(read_text(&list, text));
         assert_int_equal(list.count, 3);
         check(&list, 1, EXPORT_NAME, others[i]);
         if (!list.remarks.at || !strstr(list.remarks.at, "1 tag differs") || !strstr(list.remarks.at, "PI-101 (lines 2 and 3)"))
             fail_msg("%s: %s", others[i], list.remarks.at ? list.remarks.at : "");
         tag_export_finish(&list);
-        mem_free(text);
     }
 }
 
@@ -498,7 +494,6 @@ static bool read_xlsx(struct tag_export *list, const char *strings, const char *
     zipClose(zip, NULL);
     *list = (struct tag_export){ 0 };
     bool good = tag_export_read(list, path, NULL, why, sizeof(why));
-    mem_free(path);
     return good;
 }
 
@@ -545,7 +540,6 @@ TEST(test_checksum)
     assert_false(tag_export_read(&list, path, NULL, why, sizeof(why)));
     assert_non_null(strstr(why, "sheet1.xml is damaged: the checksum is wrong"));
     mem_free(bytes);
-    mem_free(path);
 }
 
 /* A workbook with a cover, a hidden sheet and a list, and unusual names of its parts. */
@@ -577,7 +571,6 @@ TEST(test_sheets)
     assert_non_null(strstr(list.remarks.at, "the tag list is sheet 'Tags' of 3 sheets"));
     assert_non_null(strstr(list.remarks.at, "not read: 'Old'"));
     tag_export_finish(&list);
-    mem_free(path);
 }
 
 /* Reads a workbook of `count` sheets that all refer to one part. */
@@ -600,7 +593,6 @@ static bool read_sheets(int count, struct tag_export *list)
     bool good = tag_export_read(list, path, NULL, why, sizeof(why));
     text_finish(&workbook);
     text_finish(&relations);
-    mem_free(path);
     return good;
 }
 
@@ -637,15 +629,8 @@ TEST(test_refused)
 static int set_up(void **state)
 {
     (void)state;
-    folder = temp_folder_create();
+    folder = temp_folder();
     return 0;
 }
 
-static int tear_down(void **state)
-{
-    (void)state;
-    temp_folder_destroy(&folder);
-    return 0;
-}
-
-TEST_GROUP(set_up, tear_down)
+TEST_GROUP(set_up, NULL)

@@ -6,32 +6,18 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-
-#include "base/mem.h"
-#include "tests/support/temp.h"
-
 enum { NOBODY = 65534 };
 struct tag_file_fixture {
     char *folder, *path;
 };
 
-static int set_up(void **state)
+static void begin(struct tag_file_fixture *f)
 {
-    struct tag_file_fixture *f = mem_new(sizeof(*f));
-    f->folder = temp_folder_create();
+    f->folder = temp_folder();
     f->path = temp_write_text(f->folder, "tags.csv", "one\n");
-    *state = f;
-    return 0;
 }
 
-static int tear_down(void **state)
-{
-    struct tag_file_fixture *f = *state;
-    temp_folder_destroy(&f->folder);
-    mem_free(f->path);
-    mem_free(f);
-    return 0;
-}
+TEST_FIXTURE(struct tag_file_fixture, begin, NULL)
 
 #define CASE(name) TEST_ON(struct tag_file_fixture *f, name, set_up, tear_down)
 
@@ -42,7 +28,6 @@ static void expect_text(const char *folder, const char *name, const char *want)
     assert_non_null(text);
     assert_string_equal(text, want);
     mem_free(text);
-    mem_free(path);
 }
 
 static bool put(const struct tag_file_fixture *f, char *before, char *after, char **kept, struct refusal *why)
@@ -55,7 +40,8 @@ static bool put(const struct tag_file_fixture *f, char *before, char *after, cha
 CASE(test_every_list_stays_beside_the_next)
 {
     struct refusal why;
-    char *kept, *taken = temp_write_text(f->folder, "tags.csv.2", "somebody's own\n");
+    char *kept;
+    temp_write_text(f->folder, "tags.csv.2", "somebody's own\n");
     static const char *const names[] = { "tags.csv.1", "tags.csv.3" };
     char *texts[] = { "one\n", "two\n", "three\n" };
     assert_int_equal(chmod(f->path, 0640), 0);
@@ -70,7 +56,6 @@ CASE(test_every_list_stays_beside_the_next)
     assert_int_equal(stat(f->path, &st), 0);
     assert_int_equal(st.st_mode & 0777, 0640); /* permissions are kept */
     expect_text(f->folder, "tags.csv.2", "somebody's own\n");
-    mem_free(taken);
 }
 
 CASE(test_what_was_put_is_put_back)
@@ -89,7 +74,6 @@ CASE(test_what_was_put_is_put_back)
     assert_null(tag_file_read(gone, &why));
     assert_int_equal(why.code, REFUSAL_UNREAD_FILE);
     assert_string_equal(why.args, "file=none.csv\nerror=No such file or directory");
-    mem_free(gone);
 }
 
 CASE(test_a_list_that_changed_meanwhile_is_not_written_over)
@@ -102,7 +86,6 @@ CASE(test_a_list_that_changed_meanwhile_is_not_written_over)
     expect_text(f->folder, "tags.csv", "one\n");
     char *first = temp_path(f->folder, "tags.csv.1");
     assert_int_equal(access(first, F_OK), -1);
-    mem_free(first);
 }
 
 /* A read-only folder, as a daemon sees it whose service may not write there. */

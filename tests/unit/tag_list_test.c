@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tag lists in Kepware's format and ours, and every kind of mistake with its line, column and message. */
 #include "tests/support/test.h"
-#include <math.h>
 
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "tests/support/plant_case.h"
-#include "tests/support/temp.h"
 
 #define CASE(name) TEST_ON(struct plant_case *c, name, plant_case_set_up, plant_case_tear_down)
 
@@ -163,19 +160,17 @@ CASE(tags_vouch_for_other_tags)
 CASE(directions_are_tags)
 {
     static const char header[] = "Tag Name,Address,Group,Asset,X,Y,Z,Place,Direction\n";
-    char *good = mem_printf("%sU,40001,temp,E-101,0,0,0,,A B  C\nV,40002,temp,E-101,1,0,0,,D\nW,40003,temp,E-101,1,0,0,,\n"
+    char *good = test_printf("%sU,40001,temp,E-101,0,0,0,,A B  C\nV,40002,temp,E-101,1,0,0,,D\nW,40003,temp,E-101,1,0,0,,\n"
                             "A,40004,,,,,,,\nB,40005,,,,,,,\nC,40006,,,,,,,\nD,40007,,,,,,,\n", header);
     plant_case_load(c, yaml, good);
-    mem_free(good);
     plant_case_assert_loaded(c, 0);
     const struct plant_tag *t = c->plant->tags;
     assert_true(t[0].direction.count == 3 && t[0].direction.tags[0] == 3 && t[0].direction.tags[1] == 4 && t[0].direction.tags[2] == 5);
     assert_true(t[1].direction.count == 1 && t[1].direction.tags[0] == 6 && t[2].direction.count == 0);
     assert_true(c->plant->groups[plant_find_group(c->plant, "temp")].directed);
-    char *bad = mem_printf("%sU,40001,temp,E-101,0,0,0,,A A\nV,40002,temp,E-101,1,0,0,,V\nW,40003,temp,E-101,1,0,0,,AA\n"
+    char *bad = test_printf("%sU,40001,temp,E-101,0,0,0,,A A\nV,40002,temp,E-101,1,0,0,,V\nW,40003,temp,E-101,1,0,0,,AA\n"
                            "A,40004,,,,,,,W\nB,40005,temp,E-101,,,,equipment,W\n", header);
     plant_case_load(c, yaml, bad);
-    mem_free(bad);
     FOUND(c,
           { "tags.csv", 2, 27, "Direction: expected one tag (a bearing in degrees) or three tags (the components along X, Y and Z)" },
           { "tags.csv", 3, 27, "Direction: expected tags other than 'V' itself" },
@@ -359,7 +354,7 @@ CASE(alarms_are_of_the_tag_else_of_the_group)
 
 CASE(bits_mirror_alarms)
 {
-    char *mirror = mem_printf("%s\nalarms: mirror\n", yaml);
+    char *mirror = test_printf("%s\nalarms: mirror\n", yaml);
     plant_case_load(c, mirror,
                     "Tag Name,Address,Mirrors\n"
                     "TT 101,40001,\n"
@@ -381,7 +376,6 @@ CASE(bits_mirror_alarms)
                     "A4,10004,TT LL\n");
     FOUND(c, { "tags.csv", 2, 10, "Mirrors: 'TT' is not a Boolean" }, { "tags.csv", 3, 10, "Mirrors: expected a tag and LL" },
           { "tags.csv", 4, 10, "Mirrors: there is no tag 'TI'" }, { "tags.csv", 6, 10, "'TT LL' is already mirrored at line 5" });
-    mem_free(mirror);
 }
 
 CASE(units_agree_with_the_group)

@@ -4,7 +4,6 @@
 
 #include "tests/support/test.h"
 
-
 #include "base/clock.h"
 
 enum { SHARE = SCHEDULER_MOVING };

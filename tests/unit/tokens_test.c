@@ -6,11 +6,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-
 #include "base/clock.h"
 #include "base/files/atomic_file.h"
-#include "base/mem.h"
-#include "tests/support/temp.h"
 
 static const int64_t NOW_NS = 1767225600LL * 1000000000; /* 2026-01-01 */
 
@@ -19,25 +16,14 @@ struct tokens_fixture {
     char *folder, *path;
 };
 
-static int set_up(void **state)
+static void begin(struct tokens_fixture *f)
 {
-    struct tokens_fixture *f = mem_new(sizeof(*f));
-    f->log = log_create(LOG_ERROR);
-    f->folder = temp_folder_create();
+    f->log = test_log();
+    f->folder = temp_folder();
     f->path = temp_path(f->folder, "tokens");
-    *state = f;
-    return 0;
 }
 
-static int tear_down(void **state)
-{
-    struct tokens_fixture *f = *state;
-    mem_free(f->path);
-    temp_folder_destroy(&f->folder);
-    log_destroy(&f->log);
-    mem_free(f);
-    return 0;
-}
+TEST_FIXTURE(struct tokens_fixture, begin, NULL)
 
 #define CASE(name) TEST_ON(struct tokens_fixture *f, name, set_up, tear_down)
 
@@ -87,9 +73,8 @@ CASE(a_token_may_be_for_one_plant)
     assert_int_equal(tokens_role(tokens, &holder, NOW_NS), ROLE_NOBODY);
     assert_true(tokens_find(tokens, "pc_any", NOW_NS, &read));
     text.at[text.length - 1] = 0;
-    char *bad = mem_printf("%s plant ", text.at);
+    char *bad = test_printf("%s plant ", text.at);
     assert_int_equal(tokens_parse_line(strstr(bad, "viewer any"), &read, &why), -1);
-    mem_free(bad);
     tokens_destroy(&tokens);
     text_finish(&text);
 }
@@ -116,14 +101,12 @@ CASE(a_token_may_be_for_one_display)
     static const char *const bad[] = { "room", "room:", "room:0", "room:17", "room:1x", "room:-1", "room:111111111111", ":1", "a b:1", "" };
     for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
         assert_false(tokens_parse_display(bad[i], &read));
-        char *line = mem_printf("viewer x %064d display %s", 0, bad[i]);
+        char *line = test_printf("viewer x %064d display %s", 0, bad[i]);
         assert_int_equal(tokens_parse_line(line, &read, &why), -1);
-        mem_free(line);
     }
-    char *line = mem_printf("operator x %064d display room:1", 0);
+    char *line = test_printf("operator x %064d display room:1", 0);
     assert_int_equal(tokens_parse_line(line, &read, &why), -1);
     assert_non_null(strstr(why, "are allowed only for the role viewer"));
-    mem_free(line);
     text_finish(&text);
 }
 

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Light packed into 32 bits decodes within half a step of its largest channel. */
 #include "tests/support/test.h"
-#include <math.h>
-
 
 #include "render/soft/tones.h"
 

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Parallel transport compared with formulas for planes, spheres and boxes. */
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "base/math/vec.h"
-#include "base/mem.h"
 #include "preprocess/influence/transport.h"
 #include "tests/support/surface_case.h"
 

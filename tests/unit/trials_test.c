@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Trial layouts: the field equals that of a plant with its sensors at the trial positions, only for sessions that request the trial. */
 #include "tests/support/test.h"
-#include <math.h>
 
-#include "base/mem.h"
 #include "field/field.h"
 #include "protocol/asset_distance.h"
-#include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 
 enum { VERTICES = 900, SENSORS = 6, MOVED = 2, TO = 400 };
@@ -19,31 +16,26 @@ struct trials_fixture {
     struct field_params params;
 };
 
-static int setup(void **state)
+static void begin(struct trials_fixture *f)
 {
-    struct trials_fixture *f = mem_new(sizeof(*f));
     f->plant = synthetic_create(.vertices = VERTICES, .sensors = SENSORS, .assets = 2, .seed = sweep_seed());
-    f->workers = workers_create(2);
+    f->workers = test_workers(2);
     f->field = field_create(f->workers, &f->plant->scene);
     f->trials = trials_create();
     field_set_trials(f->field, f->trials);
     field_params_default(&f->plant->plant, 0, &f->params);
-    *state = f;
-    return 0;
 }
 
-static int teardown(void **state)
+static void end(struct trials_fixture *f)
 {
-    struct trials_fixture *f = *state;
     field_destroy(&f->field);
     trials_destroy(&f->trials);
-    workers_destroy(&f->workers);
     synthetic_destroy(&f->plant);
-    mem_free(f);
-    return 0;
 }
 
-#define CASE(name) TEST_ON(struct trials_fixture *f, name, setup, teardown)
+TEST_FIXTURE(struct trials_fixture, begin, end)
+
+#define CASE(name) TEST_ON(struct trials_fixture *f, name, set_up, tear_down)
 
 /* Returns the distances along the surface to vertex `to`, as the synthetic plant defines them: sums of the distances along the axes. */
 static float *along(const struct trials_fixture *f, size_t to)

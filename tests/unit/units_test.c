@@ -2,9 +2,7 @@
 /* Conversion of units: a value in one unit is never shown in another; the conversion table against known numbers, and every way by which
    values arrive. */
 #include "tests/support/test.h"
-#include <math.h>
 
-#include "base/mem.h"
 #include "base/text/text.h"
 #include "deploy/demo/sim_encode.h"
 #include "history/history.h"
@@ -15,7 +13,6 @@
 #include "plant/tags/units.h"
 #include "loopcheck/loop_checks.h"
 #include "tests/support/plant_case.h"
-#include "tests/support/temp.h"
 #include "value/decode.h"
 #include "value/derived.h"
 #include "value/quality.h"
@@ -177,17 +174,15 @@ CASE(derived_tags_compute_as_rows_say)
                     "B,= [F] - [C],,,,,,,\n");
     plant_case_assert_loaded(c, 1);
     FOUND(c, { "tags.csv", 6, 3, "Address: '= [F] - [C]' combines C in °C with F in °F" });
-    struct store *store = store_create(c->plant);
+    struct store *store = test_store(c->plant);
     struct derived_state *derived = derived_create(c->plant);
     const struct sample samples[] = { { 0, 100, QUALITY_GOOD }, { 1, 50, QUALITY_GOOD }, { 2, 0, QUALITY_GOOD } };
-    struct snapshot *snapshot = snapshot_create(c->plant->tag_count);
+    struct snapshot *snapshot = test_snapshot(c->plant->tag_count);
     store_write(store, samples, 3, 1, 1);
     derived_compute(derived, store, 2, 2);
     store_snapshot(store, 3, 3, snapshot);
     assert_true(fabs(snapshot->readings[3].value - 75) < 1e-9);
-    snapshot_destroy(&snapshot);
     derived_destroy(&derived);
-    store_destroy(&store);
 }
 
 CASE(what_cannot_be_converted_is_an_error_at_its_cell)
@@ -209,11 +204,11 @@ TEST_WITH(readings_are_not_adopted_in_another_unit, plant_case_set_up, plant_cas
     struct plant_case *c = *state, other = { .folder = c->folder, .path = c->path };
     static const char rows[] = "Tag Name,Address,Data Type,Group,Asset,X,Y,Z,Eng Units\n"
                                "F,hr:0,Float,temp,A,0,0,0,%s\nC,hr:2,Float,temp,A,0,0,0,\n";
-    char *before = mem_printf(rows, "°C"), *after = mem_printf(rows, "°F");
+    char *before = test_printf(rows, "°C"), *after = test_printf(rows, "°F");
     plant_case_load(c, yaml, before);
     plant_case_load(&other, yaml, after);
-    struct store *was = store_create(c->plant), *is = store_create(other.plant);
-    struct snapshot *snapshot = snapshot_create(2);
+    struct store *was = test_store(c->plant), *is = test_store(other.plant);
+    struct snapshot *snapshot = test_snapshot(2);
     const struct sample samples[] = { { 0, 212, QUALITY_GOOD }, { 1, 70, QUALITY_GOOD } };
     store_write(was, samples, 2, 1, 1);
     store_adopt(is, was);
@@ -223,12 +218,7 @@ TEST_WITH(readings_are_not_adopted_in_another_unit, plant_case_set_up, plant_cas
     /* the loop check was made in another unit, so it is void */
     assert_true(loop_check_fingerprint(c->plant, 0) != loop_check_fingerprint(other.plant, 0));
     assert_true(loop_check_fingerprint(c->plant, 1) == loop_check_fingerprint(other.plant, 1));
-    snapshot_destroy(&snapshot);
-    store_destroy(&was);
-    store_destroy(&is);
     plant_case_forget(&other);
-    mem_free(before);
-    mem_free(after);
 }
 
 /* --- files ------------------------------------------------------------------------------------------------------------------ */
@@ -242,7 +232,7 @@ CASE(files_say_their_unit_or_mean_the_row_s)
     struct import_counts counts;
     struct history_series series;
     struct text out = { 0 };
-    struct log *log = log_create(LOG_ERROR);
+    struct log *log = test_log();
     plant_case_load(c, yaml, "Tag Name,Address,Data Type,Group,Asset,X,Y,Z,Eng Units,Deadband\nF,hr:0,Float,temp,A,0,0,0,°F,0\n");
     plant_case_assert_loaded(c, 0);
     char *folder = temp_path(c->folder, "h"), *again = temp_path(c->folder, "again");
@@ -262,19 +252,15 @@ CASE(files_say_their_unit_or_mean_the_row_s)
         series_text_csv(&out, "F", c->plant->tags[0].unit, &series);
         history_series_finish(&series);
         assert_non_null(strstr(out.at, "\nF,2026-10-25T00:00:01.000Z,100,0x00000000,°C\r\n"));
-        mem_free(temp_write_text(c->folder, "s.csv", out.at));
+        temp_write_text(c->folder, "s.csv", out.at);
         text_finish(&out);
         params.folder = again;
         assert_true(pass || history_import(&params, &diag, &counts));
     }
-    mem_free(temp_write_text(c->folder, "s.csv", "Tag,Time,Value,Unit\nF,2026-10-25T00:00:01Z,212,bar\n"));
+    temp_write_text(c->folder, "s.csv", "Tag,Time,Value,Unit\nF,2026-10-25T00:00:01Z,212,bar\n");
     assert_false(history_import(&params, &diag, &counts));
     assert_non_null(strstr(diag.items[0].text, "unit 'bar' cannot be converted to '°C', the unit in which tag F is recorded"));
     diag_finish(&diag);
-    mem_free(folder);
-    mem_free(again);
-    mem_free(path);
-    log_destroy(&log);
 }
 
 /* Values recorded in one unit are returned in the tag's current unit by every query, and one export file uses one unit. */
@@ -284,8 +270,8 @@ CASE(what_was_recorded_is_shown_in_the_unit_of_now)
     static const char rows[] = "Tag Name,Address,Data Type,Group,Asset,X,Y,Z,Eng Units,Deadband\nF,hr:0,Float,%s,A,0,0,0,°F,0\n";
     struct diag diag = { 0 };
     struct import_counts counts;
-    struct log *log = log_create(LOG_ERROR);
-    char *taken = mem_printf(rows, "taken"), *converted = mem_printf(rows, "temp"), *folder = temp_path(c->folder, "h");
+    struct log *log = test_log();
+    char *taken = test_printf(rows, "taken"), *converted = test_printf(rows, "temp"), *folder = temp_path(c->folder, "h");
     char *path = temp_write_text(c->folder, "s.csv", "Tag,Time,Value\nF,2026-10-25T00:00:01Z,212\nF,2026-10-25T00:10:00Z,212\n");
     plant_case_load(c, yaml, taken);
     struct import_params params = { .log = log, .plant = c->plant, .folder = folder, .path = path, .start_us = INT64_MIN };
@@ -309,13 +295,8 @@ CASE(what_was_recorded_is_shown_in_the_unit_of_now)
         history_series_finish(&buckets);
         history_reader_destroy(&reader);
         mem_free(tags);
-        mem_free(temp_write_text(c->folder, "s.csv", "Tag,Time,Value\nF,2026-10-25T02:00:00Z,50\n"));
+        temp_write_text(c->folder, "s.csv", "Tag,Time,Value\nF,2026-10-25T02:00:00Z,50\n");
         params.plant = c->plant;
         assert_true(pass || history_import(&params, &diag, &counts));
     }
-    mem_free(taken);
-    mem_free(converted);
-    mem_free(folder);
-    mem_free(path);
-    log_destroy(&log);
 }

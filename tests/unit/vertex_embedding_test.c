@@ -4,17 +4,14 @@
 #include "surface/vertex_embedding.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 
 #include "base/files/cache_file.h"
-#include "base/mem.h"
 #include "protocol/asset_distance.h"
 #include "scene/asset.h"
 #include "surface/surface_store.h"
 #include "tests/support/cad.h"
 #include "tests/support/model_maker.h"
 #include "tests/support/prep_case.h"
-#include "tests/support/temp.h"
 
 #define CELL 0.02 /* metres; size of a cell, and thickness of the plate */
 #define ACROSS 80
@@ -59,7 +56,7 @@ static void write_model(const struct prep_case *c, const struct cad *cad)
     maker_node(&maker, "plate", maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions, "indices", indices)),
                NULL);
     char *glb = maker_glb(&maker, &size);
-    mem_free(temp_write(c->folder, "model.glb", glb, size));
+    temp_write(c->folder, "model.glb", glb, size);
     mem_free(glb);
     maker_finish(&maker);
 }
@@ -73,7 +70,6 @@ static struct surface *kept_surface(const struct prep_case *c)
     struct surface *surface = surface_unpack(&(struct unpack){ kept.bytes, kept.count, false }, the_log, NULL);
     assert_non_null(surface);
     cache_file_close(&kept);
-    mem_free(path);
     return surface;
 }
 
@@ -196,7 +192,6 @@ TEST(coarser_levels_have_the_distances_of_their_own_side)
     assert_true(without > 100 && with < without / 2);
     surface_destroy(&surface);
     asset_unref(&asset);
-    mem_free(path);
     cad_finish(&plate);
 }
 

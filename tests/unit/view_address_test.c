@@ -4,7 +4,6 @@
 
 #include "tests/support/test.h"
 
-
 #include "base/text/text.h"
 
 static void assert_read(const char *address, const char *expected)

@@ -2,8 +2,6 @@
 /* The store of visibility buffers: lookup by shape, memory limit, least recently used evicted first. */
 #include "tests/support/test.h"
 
-
-#include "base/mem.h"
 #include "render/soft/visibility_store.h"
 
 /* Returns NULL if the store did not accept the buffer. */

@@ -3,8 +3,6 @@
 #include "message/visibility.h"
 
 #include "tests/support/test.h"
-#include <math.h>
-
 
 #include "render/view.h"
 #include "tests/support/small_scene.h"
@@ -89,21 +87,18 @@ static struct params_change parse(const char *text)
 {
     struct params_change change = { 0 };
     struct message_error error = { 0 };
-    json_t *o = json_loads(text, 0, NULL);
+    json_t *o = test_json(json_loads(text, 0, NULL));
     if (!visibility_parse(small_scene()->plant, o, &change, &error))
         fail_msg("%s: %s", text, error.text);
-    json_decref(o);
     return change;
 }
 
 static void assert_printed(const struct visibility *visibility, const char *text)
 {
-    json_t *got = json_object(), *want = json_loads(text, 0, NULL);
+    json_t *got = test_json(json_object()), *want = test_json(json_loads(text, 0, NULL));
     visibility_print(small_scene()->plant, visibility, got);
     if (!json_equal(got, want))
         fail_msg("%s", json_dumps(got, JSON_COMPACT));
-    json_decref(got);
-    json_decref(want);
 }
 
 TEST(what_is_said_comes_back)

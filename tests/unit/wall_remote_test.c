@@ -4,8 +4,6 @@
 
 #include <jansson.h>
 
-#include "base/mem.h"
-#include "tests/support/temp.h"
 #include "views/wall_remote.h"
 
 struct wall_remote_fixture {
@@ -17,30 +15,24 @@ struct wall_remote_fixture {
     struct wall_remote *remote;
 };
 
-static int set_up(void **state)
+static void begin(struct wall_remote_fixture *f)
 {
-    struct wall_remote_fixture *f = mem_new(sizeof(*f));
-    f->log = log_create(LOG_ERROR);
+    f->log = test_log();
     f->display.panes[0] = (struct wall_pane){ .area = "main", .kind = PANE_VIEWS };
     f->display.panes[1] = (struct wall_pane){ .area = "side", .kind = PANE_ALARMS };
     f->display.pane_count = 2;
     f->wall = (struct wall){ .id = "room", .displays = &f->display, .display_count = 1 };
     f->plant = (struct plant){ .screens.walls = &f->wall, .screens.wall_count = 1 };
-    f->folder = temp_folder_create();
+    f->folder = temp_folder();
     f->remote = wall_remote_open(f->log, &f->plant, f->folder, NULL);
-    *state = f;
-    return 0;
 }
 
-static int tear_down(void **state)
+static void end(struct wall_remote_fixture *f)
 {
-    struct wall_remote_fixture *f = *state;
     wall_remote_close(&f->remote);
-    temp_folder_destroy(&f->folder);
-    log_destroy(&f->log);
-    mem_free(f);
-    return 0;
 }
+
+TEST_FIXTURE(struct wall_remote_fixture, begin, end)
 
 #define CASE(name) TEST_ON(struct wall_remote_fixture *f, name, set_up, tear_down)
 
@@ -54,10 +46,9 @@ static enum refusal_code order(struct wall_remote_fixture *f, const char *view, 
 /* Frees the text; asserts the list's length and a part of its text. */
 static void assert_list(char *text, size_t count, const char *part)
 {
-    json_t *message = json_loads(text, 0, NULL);
+    json_t *message = test_json(json_loads(text, 0, NULL));
     assert_int_equal(json_array_size(json_object_get(message, "list")), count);
     assert_non_null(strstr(text, part));
-    json_decref(message);
     mem_free(text);
 }
 

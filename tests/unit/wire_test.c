@@ -6,10 +6,7 @@
 #include <dirent.h>
 #include <jansson.h>
 
-
-#include "base/mem.h"
 #include "base/text/text.h"
-#include "tests/support/sweep.h"
 
 #define FOLDER "protocol/vectors/frame"
 
@@ -77,11 +74,11 @@ static bool reserved_is_zero(const char *bytes)
 static void check_vector(const char *name, bool *valid)
 {
     size_t count, json_count;
-    char *bin = mem_printf("%s/%s.bin", FOLDER, name), *sidecar = mem_printf("%s/%s.json", FOLDER, name);
+    char *bin = test_printf("%s/%s.bin", FOLDER, name), *sidecar = test_printf("%s/%s.json", FOLDER, name);
     char *bytes = text_read_file(bin, 1 << 20, &count), *text = text_read_file(sidecar, 1 << 20, &json_count);
     assert_non_null(bytes);
     assert_non_null(text);
-    json_t *expected = json_loads(text, JSON_REJECT_DUPLICATES, NULL);
+    json_t *expected = test_json(json_loads(text, JSON_REJECT_DUPLICATES, NULL));
     assert_non_null(expected);
     struct wire_frame got;
     *valid = json_is_true(json_object_get(expected, "valid"));
@@ -94,11 +91,8 @@ static void check_vector(const char *name, bool *valid)
         wire_put_frame(&want, header);
         assert_memory_equal(header, bytes, reserved_is_zero(bytes) ? WIRE_FRAME_HEADER_BYTES : 108);
     }
-    json_decref(expected);
     mem_free(text);
     mem_free(bytes);
-    mem_free(sidecar);
-    mem_free(bin);
 }
 
 TEST(reads_and_writes_the_vectors)

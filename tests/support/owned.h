@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Resources that belong to the running test: they are released after its tear-down, the newest first. Resources of a group's set-up, and
+   of programs without tests, are released when the program exits. Thread: any. */
+#ifndef TESTS_OWNED_H
+#define TESTS_OWNED_H
+#include <jansson.h>
+#include <stddef.h>
+
+struct counters;
+struct log;
+struct plant;
+struct snapshot;
+struct store;
+struct workers;
+
+/* Hands a resource over. release() gets it once. */
+void owned_add(void (*release)(void *resource), void *resource);
+/* Returns the number of resources that are not released yet. */
+size_t owned_count(void);
+/* Releases all but the `kept` oldest resources. */
+void owned_release(size_t kept);
+
+/* These functions return a new resource that is already handed over. */
+json_t *test_json(json_t *json); /* returns `json`, which it hands over; NULL is fine */
+char *test_printf(const char *format, ...) __attribute__((format(printf, 1, 2)));
+struct log *test_log(void); /* prints errors only */
+struct counters *test_counters(void);
+struct snapshot *test_snapshot(size_t tag_count);
+struct store *test_store(const struct plant *plant);
+struct workers *test_workers(int threads); /* 0: one thread per core */
+
+#endif
