@@ -5,7 +5,6 @@
 #include "protocol/distance_pack.h"
 
 #include "tests/support/test.h"
-#include <math.h>
 #include <xxhash.h>
 
 /* Two levels: two triangles on four vertices, then one triangle on the first three. One texture, two sensors. */
@@ -113,6 +112,20 @@ static void refused_sealed(struct asset_bytes *f, const char *reason)
     refused(f, f->size, reason);
 }
 
+/* Asserts that the good file is refused after a change of a section, which has elements of `type`, or of the header. */
+#define REFUSED(section, type, change, reason)                                                                                             \
+    do {                                                                                                                                   \
+        struct asset_bytes changed = build(&good);                                                                                         \
+        ((type *)part(&changed, section))change;                                                                                           \
+        refused_sealed(&changed, reason);                                                                                                  \
+    } while (0)
+#define REFUSED_HEADER(change, reason)                                                                                                     \
+    do {                                                                                                                                   \
+        struct asset_bytes changed = build(&good);                                                                                         \
+        changed.header->change;                                                                                                            \
+        refused_sealed(&changed, reason);                                                                                                  \
+    } while (0)
+
 TEST(what_is_built_is_read_back)
 {
     struct asset_bytes f = build(&good);
@@ -213,12 +226,8 @@ TEST(truncated_or_foreign_files_are_refused)
     f = build(&good);
     memcpy(f.bytes, "glTF", 4);
     refused_sealed(&f, "magic");
-    f = build(&good);
-    f.header->version = 5;
-    refused_sealed(&f, "version 5, but this program reads version 6");
-    f = build(&good);
-    f.header->header_bytes = 320;
-    refused_sealed(&f, "header of 320 bytes");
+    REFUSED_HEADER(version = 5, "version 5, but this program reads version 6");
+    REFUSED_HEADER(header_bytes = 320, "header of 320 bytes");
     f = build(&good);
     assert_false(asset_view_init(&view, f.bytes + 8, f.size - 8, why));
     assert_non_null(strstr(why, "aligned"));
@@ -244,107 +253,47 @@ TEST(every_flipped_bit_is_noticed)
 TEST(sections_out_of_bounds_are_refused)
 {
     for (int i = 0; i < ASSET_SECTION_COUNT; i++) {
-        struct asset_bytes f = build(&good);
-        f.header->sections[i].offset = f.size + 64;
-        refused_sealed(&f, "outside the file");
-        f = build(&good);
-        f.header->sections[i].offset = UINT64_MAX - 63;
-        refused_sealed(&f, "outside the file");
-        f = build(&good);
-        f.header->sections[i].bytes = UINT64_MAX;
-        refused_sealed(&f, "outside the file");
-        f = build(&good);
-        f.header->sections[i].offset = 0;
-        refused_sealed(&f, "overlap another section");
-        f = build(&good);
-        f.header->sections[i].offset += 4;
-        refused_sealed(&f, "section");
+        REFUSED_HEADER(sections[i].offset = changed.size + 64, "outside the file");
+        REFUSED_HEADER(sections[i].offset = UINT64_MAX - 63, "outside the file");
+        REFUSED_HEADER(sections[i].bytes = UINT64_MAX, "outside the file");
+        REFUSED_HEADER(sections[i].offset = 0, "overlap another section");
+        REFUSED_HEADER(sections[i].offset += 4, "section");
     }
-    struct asset_bytes f = build(&good);
-    f.header->sections[ASSET_GEODESIC].bytes -= 4;
-    refused_sealed(&f, "section geodesic: 1020 bytes, expected 1024");
-    f = build(&good);
-    f.header->sensor_count = UINT32_MAX;
-    refused_sealed(&f, "section sensors");
-    f = build(&good);
-    f.header->index_count = 8;
-    refused_sealed(&f, "the number of indices, 8, is not a multiple of 3");
-    f = build(&good);
-    f.header->vertex_count = 0;
-    refused_sealed(&f, "nothing to draw");
-    f = build(&good);
-    ((char *)part(&f, ASSET_NAMES))[5] = 'x';
-    refused_sealed(&f, "the last name is not terminated");
+    REFUSED_HEADER(sections[ASSET_GEODESIC].bytes -= 4, "section geodesic: 1020 bytes, expected 1024");
+    REFUSED_HEADER(sensor_count = UINT32_MAX, "section sensors");
+    REFUSED_HEADER(index_count = 8, "the number of indices, 8, is not a multiple of 3");
+    REFUSED_HEADER(vertex_count = 0, "nothing to draw");
+    REFUSED(ASSET_NAMES, char, [5] = 'x', "the last name is not terminated");
 }
 
 TEST(wrong_vertices_are_refused)
 {
-    struct asset_bytes f = build(&good);
-    ((float *)part(&f, ASSET_POSITIONS))[7] = NAN;
-    refused_sealed(&f, "vertex 2: position is not finite");
-    f = build(&good);
-    ((float *)part(&f, ASSET_POSITIONS))[7] = 9;
-    refused_sealed(&f, "vertex 2: position 9 m lies outside the bounds 0..1 m");
-    f = build(&good);
-    ((float *)part(&f, ASSET_NORMALS))[2] = NAN;
-    refused_sealed(&f, "vertex 0: normal");
-    f = build(&good);
-    ((float *)part(&f, ASSET_NORMALS))[5] = 0;
-    refused_sealed(&f, "vertex 1: normal of length 0");
-    f = build(&good);
-    ((float *)part(&f, ASSET_TEXCOORDS))[6] = INFINITY;
-    refused_sealed(&f, "vertex 3: texture coordinate");
-    f = build(&good);
-    ((float *)part(&f, ASSET_SECOND_TEXCOORDS))[3] = NAN;
-    refused_sealed(&f, "vertex 1: texture coordinate");
-    f = build(&good);
-    f.header->origin_m[1] = INFINITY;
-    refused_sealed(&f, "origin");
-    f = build(&good);
-    f.header->bounds_min_m[1] = -INFINITY;
-    refused_sealed(&f, "bounds are not finite");
+    REFUSED(ASSET_POSITIONS, float, [7] = NAN, "vertex 2: position is not finite");
+    REFUSED(ASSET_POSITIONS, float, [7] = 9, "vertex 2: position 9 m lies outside the bounds 0..1 m");
+    REFUSED(ASSET_NORMALS, float, [2] = NAN, "vertex 0: normal");
+    REFUSED(ASSET_NORMALS, float, [5] = 0, "vertex 1: normal of length 0");
+    REFUSED(ASSET_TEXCOORDS, float, [6] = INFINITY, "vertex 3: texture coordinate");
+    REFUSED(ASSET_SECOND_TEXCOORDS, float, [3] = NAN, "vertex 1: texture coordinate");
+    REFUSED_HEADER(origin_m[1] = INFINITY, "origin");
+    REFUSED_HEADER(bounds_min_m[1] = -INFINITY, "bounds are not finite");
 }
 
 TEST(wrong_primitives_and_levels_are_refused)
 {
+    REFUSED(ASSET_INDICES, uint32_t, [4] = 4, "primitive 0: index 4 refers to vertex 4, but there are only 4 vertices");
+    /* this index is within the file, but not within the level's prefix of vertices */
+    REFUSED(ASSET_INDICES, uint32_t, [7] = 3, "primitive 1: index 7 refers to vertex 3, but there are only 3 vertices");
+    REFUSED(ASSET_PRIMITIVES, struct asset_primitive, [1].first_index = UINT32_MAX - 2, "primitive 1: indices");
+    REFUSED(ASSET_PRIMITIVES, struct asset_primitive, [1].index_count = 2, "primitive 1: indices 6+2 of 9");
+    REFUSED(ASSET_PRIMITIVES, struct asset_primitive, [0].material = 1, "primitive 0: material 1 of 1");
+    REFUSED(ASSET_PRIMITIVES, struct asset_primitive, [0].name = 6, "primitive 0: name at byte 6");
+    REFUSED(ASSET_LEVELS, struct asset_level, [1].vertex_count = 5, "level 1 uses the first 5 vertices, expected at most 4");
+    REFUSED(ASSET_LEVELS, struct asset_level, [0].vertex_count = 3, "level 0 uses the first 3 vertices, expected 4");
+    REFUSED(ASSET_LEVELS, struct asset_level, [1].first_primitive = 0, "level 1: primitives 0+1, expected a start at primitive 1 of 2");
+    REFUSED(ASSET_LEVELS, struct asset_level, [1].primitive_count = UINT32_MAX, "level 1: primitives");
+    REFUSED(ASSET_LEVELS, struct asset_level, [1].error_m = -1, "level 1: error of -1 m after 0 m");
+    REFUSED(ASSET_LEVELS, struct asset_level, [0].added_count = 2, "level 0 adds 2 vertices, but only 1 vertices belong to this level");
     struct asset_bytes f = build(&good);
-    ((uint32_t *)part(&f, ASSET_INDICES))[4] = 4;
-    refused_sealed(&f, "primitive 0: index 4 refers to vertex 4, but there are only 4 vertices");
-    f = build(&good);
-    ((uint32_t *)part(&f, ASSET_INDICES))[7] = 3;
-    /* the index is within the file but not within the level's prefix of vertices */
-    refused_sealed(&f, "primitive 1: index 7 refers to vertex 3, but there are only 3 vertices");
-    f = build(&good);
-    ((struct asset_primitive *)part(&f, ASSET_PRIMITIVES))[1].first_index = UINT32_MAX - 2;
-    refused_sealed(&f, "primitive 1: indices");
-    f = build(&good);
-    ((struct asset_primitive *)part(&f, ASSET_PRIMITIVES))[1].index_count = 2;
-    refused_sealed(&f, "primitive 1: indices 6+2 of 9");
-    f = build(&good);
-    ((struct asset_primitive *)part(&f, ASSET_PRIMITIVES))[0].material = 1;
-    refused_sealed(&f, "primitive 0: material 1 of 1");
-    f = build(&good);
-    ((struct asset_primitive *)part(&f, ASSET_PRIMITIVES))[0].name = 6;
-    refused_sealed(&f, "primitive 0: name at byte 6");
-    f = build(&good);
-    ((struct asset_level *)part(&f, ASSET_LEVELS))[1].vertex_count = 5;
-    refused_sealed(&f, "level 1 uses the first 5 vertices, expected at most 4");
-    f = build(&good);
-    ((struct asset_level *)part(&f, ASSET_LEVELS))[0].vertex_count = 3;
-    refused_sealed(&f, "level 0 uses the first 3 vertices, expected 4");
-    f = build(&good);
-    ((struct asset_level *)part(&f, ASSET_LEVELS))[1].first_primitive = 0;
-    refused_sealed(&f, "level 1: primitives 0+1, expected a start at primitive 1 of 2");
-    f = build(&good);
-    ((struct asset_level *)part(&f, ASSET_LEVELS))[1].primitive_count = UINT32_MAX;
-    refused_sealed(&f, "level 1: primitives");
-    f = build(&good);
-    ((struct asset_level *)part(&f, ASSET_LEVELS))[1].error_m = -1;
-    refused_sealed(&f, "level 1: error of -1 m after 0 m");
-    f = build(&good);
-    ((struct asset_level *)part(&f, ASSET_LEVELS))[0].added_count = 2;
-    refused_sealed(&f, "level 0 adds 2 vertices, but only 1 vertices belong to this level");
-    f = build(&good);
     f.header->level_count = 1;
     f.header->sections[ASSET_LEVELS].bytes = sizeof(struct asset_level);
     refused_sealed(&f, "the levels contain 1 of 2 primitives");
@@ -352,36 +301,20 @@ TEST(wrong_primitives_and_levels_are_refused)
 
 TEST(wrong_clusters_are_refused)
 {
-    struct asset_bytes f = build(&good);
-    ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[1].first_index = 0;
-    refused_sealed(&f, "cluster 1 of 3: indices 0+3 lie outside the expected 3..6 (primitive 0)");
-    f = build(&good);
-    ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[1].index_count = 6;
-    refused_sealed(&f, "cluster 1 of 3: indices 3+6 lie outside the expected 3..6");
-    f = build(&good);
-    ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[0].index_count = 0;
-    refused_sealed(&f, "cluster 0 of 3: indices 0+0");
-    f = build(&good);
-    ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[2].index_count = 2;
-    refused_sealed(&f, "cluster 2 of 3: indices 6+2");
-    f = build(&good);
-    ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[1].high_m[2] = 0.4f;
-    refused_sealed(&f, "cluster 1: index 4 at 0.5 m lies outside the cluster's box 0..0.4 m");
-    f = build(&good);
-    ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[2].low_m[0] = NAN;
-    refused_sealed(&f, "cluster 2: box or cone is not finite");
-    f = build(&good);
-    ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[2].cone_cutoff = 1.5f;
-    refused_sealed(&f, "cutoff 1.5 lies outside 0..1");
-    f = build(&good);
-    ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[2].cone_cutoff = 0.5f;
-    refused_sealed(&f, "cluster 2: a normal lies outside the cluster's cone (0.8)");
-    f = build(&good);
-    ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[0].cone_axis[2] = 2;
-    refused_sealed(&f, "cluster 0: the cone axis has length 2");
+    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [1].first_index = 0,
+            "cluster 1 of 3: indices 0+3 lie outside the expected 3..6 (primitive 0)");
+    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [1].index_count = 6, "cluster 1 of 3: indices 3+6 lie outside the expected 3..6");
+    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [0].index_count = 0, "cluster 0 of 3: indices 0+0");
+    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [2].index_count = 2, "cluster 2 of 3: indices 6+2");
+    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [1].high_m[2] = 0.4f,
+            "cluster 1: index 4 at 0.5 m lies outside the cluster's box 0..0.4 m");
+    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [2].low_m[0] = NAN, "cluster 2: box or cone is not finite");
+    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [2].cone_cutoff = 1.5f, "cutoff 1.5 lies outside 0..1");
+    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [2].cone_cutoff = 0.5f, "cluster 2: a normal lies outside the cluster's cone (0.8)");
+    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [0].cone_axis[2] = 2, "cluster 0: the cone axis has length 2");
     struct asset_parts parts = good;
     parts.cluster_count = 2;
-    f = build(&parts);
+    struct asset_bytes f = build(&parts);
     refused_sealed(&f, "cluster 2 of 2");
     const struct asset_cluster more[4] = { clusters[0], clusters[1], clusters[2], clusters[2] };
     parts.clusters = more;
@@ -449,61 +382,29 @@ TEST(turned_away_means_only_backs)
 
 TEST(wrong_materials_and_textures_are_refused)
 {
-    struct asset_bytes f = build(&good);
-    ((struct asset_material *)part(&f, ASSET_MATERIALS))->normal_texture = 1;
-    refused_sealed(&f, "material 0: texture 1 of 1");
-    f = build(&good);
-    f.header->sections[ASSET_TEXCOORDS].bytes = 0;
-    refused_sealed(&f, "material 0: texture 0 of 1, without coordinates");
-    f = build(&good);
-    f.header->sections[ASSET_SECOND_TEXCOORDS].bytes = 0;
-    refused_sealed(&f, "material 0: texture 0 of 1, without coordinates");
-    f = build(&good);
-    f.header->sections[ASSET_SECOND_TEXCOORDS].bytes -= 8;
-    refused_sealed(&f, "section second texcoords: 24 bytes, expected 32");
-    f = build(&good);
-    ((struct asset_material *)part(&f, ASSET_MATERIALS))->second |= 1;
-    refused_sealed(&f, "material 0: flags of second texture coordinates 0x9 have bits outside 0x1e");
-    f = build(&good);
-    ((struct asset_material *)part(&f, ASSET_MATERIALS))->second |= 1 << 5;
-    refused_sealed(&f, "material 0: flags of second texture coordinates 0x28 have bits outside 0x1e");
-    f = build(&good);
-    ((struct asset_material *)part(&f, ASSET_MATERIALS))->base_color[1] = NAN;
-    refused_sealed(&f, "material 0: a factor");
-    f = build(&good);
-    ((struct asset_material *)part(&f, ASSET_MATERIALS))->metallic = 1.5f;
-    refused_sealed(&f, "material 0: a factor");
-    f = build(&good);
-    ((struct asset_material *)part(&f, ASSET_MATERIALS))->emissive[2] = INFINITY;
-    refused_sealed(&f, "material 0: a factor is not finite");
-    f = build(&good);
-    ((struct asset_material *)part(&f, ASSET_MATERIALS))->alpha = 3;
-    refused_sealed(&f, "material 0: alpha mode 3");
-    f = build(&good);
-    ((struct asset_texture *)part(&f, ASSET_TEXTURES))->offset = 4;
-    refused_sealed(&f, "texture 0: bytes 4+8 of 8");
-    f = build(&good);
-    ((struct asset_texture *)part(&f, ASSET_TEXTURES))->width_px = 0;
-    refused_sealed(&f, "texture 0: 0 x 1 pixels");
-    f = build(&good);
-    ((struct asset_texture *)part(&f, ASSET_TEXTURES))->height_px = UINT32_MAX;
-    refused_sealed(&f, "texture 0: 2 x 4294967295 pixels");
-    f = build(&good);
-    ((struct asset_texture *)part(&f, ASSET_TEXTURES))->srgb = 2;
-    refused_sealed(&f, "texture 0: srgb 2");
+    REFUSED(ASSET_MATERIALS, struct asset_material, ->normal_texture = 1, "material 0: texture 1 of 1");
+    REFUSED_HEADER(sections[ASSET_TEXCOORDS].bytes = 0, "material 0: texture 0 of 1, without coordinates");
+    REFUSED_HEADER(sections[ASSET_SECOND_TEXCOORDS].bytes = 0, "material 0: texture 0 of 1, without coordinates");
+    REFUSED_HEADER(sections[ASSET_SECOND_TEXCOORDS].bytes -= 8, "section second texcoords: 24 bytes, expected 32");
+    REFUSED(ASSET_MATERIALS, struct asset_material, ->second |= 1,
+            "material 0: flags of second texture coordinates 0x9 have bits outside 0x1e");
+    REFUSED(ASSET_MATERIALS, struct asset_material, ->second |= 1 << 5,
+            "material 0: flags of second texture coordinates 0x28 have bits outside 0x1e");
+    REFUSED(ASSET_MATERIALS, struct asset_material, ->base_color[1] = NAN, "material 0: a factor");
+    REFUSED(ASSET_MATERIALS, struct asset_material, ->metallic = 1.5f, "material 0: a factor");
+    REFUSED(ASSET_MATERIALS, struct asset_material, ->emissive[2] = INFINITY, "material 0: a factor is not finite");
+    REFUSED(ASSET_MATERIALS, struct asset_material, ->alpha = 3, "material 0: alpha mode 3");
+    REFUSED(ASSET_TEXTURES, struct asset_texture, ->offset = 4, "texture 0: bytes 4+8 of 8");
+    REFUSED(ASSET_TEXTURES, struct asset_texture, ->width_px = 0, "texture 0: 0 x 1 pixels");
+    REFUSED(ASSET_TEXTURES, struct asset_texture, ->height_px = UINT32_MAX, "texture 0: 2 x 4294967295 pixels");
+    REFUSED(ASSET_TEXTURES, struct asset_texture, ->srgb = 2, "texture 0: srgb 2");
 }
 
 TEST(wrong_sensors_are_refused)
 {
-    struct asset_bytes f = build(&good);
-    ((struct asset_sensor *)part(&f, ASSET_SENSORS))[1].surface_m[0] = NAN;
-    refused_sealed(&f, "sensor 1: the position is not finite");
-    f = build(&good);
-    ((struct asset_sensor *)part(&f, ASSET_SENSORS))[1].surface_distance_m = -1;
-    refused_sealed(&f, "sensor 1: the position");
-    f = build(&good);
-    ((struct asset_sensor *)part(&f, ASSET_SENSORS))[1].nearest_vertex = 4;
-    refused_sealed(&f, "sensor 1: nearest vertex 4 of 4");
+    REFUSED(ASSET_SENSORS, struct asset_sensor, [1].surface_m[0] = NAN, "sensor 1: the position is not finite");
+    REFUSED(ASSET_SENSORS, struct asset_sensor, [1].surface_distance_m = -1, "sensor 1: the position");
+    REFUSED(ASSET_SENSORS, struct asset_sensor, [1].nearest_vertex = 4, "sensor 1: nearest vertex 4 of 4");
 }
 
 /* Every code decodes to a larger distance than the code before, and each distance gets the nearest code, up to half-way to the
@@ -524,20 +425,21 @@ TEST(distances_have_16_bits)
     }
 }
 
-/* Uses more vertices than one block holds. */
-TEST(distances_lie_in_blocks)
+enum { MANY = 70, FAR = 600, BLOCKS = 3 }; /* number of sensors; of vertices; of blocks of vertices */
+
+/* Returns an asset of FAR vertices along a line and of sensors without distances. FAR is more than one block of distances holds. */
+static struct asset_parts long_line(uint32_t sensor_count)
 {
-    enum { VERTICES = 600, SENSORS = 3 };
-    static float at[VERTICES][3], up[VERTICES][3], along_m[SENSORS * VERTICES];
-    static struct asset_sensor on[SENSORS];
+    static float at[FAR][3], up[FAR][3];
+    static struct asset_sensor on[MANY];
+    static struct asset_material plain;
     struct asset_parts parts = good;
-    struct asset_view v;
-    char why[200] = "";
-    for (size_t i = 0; i < VERTICES; i++) {
+    plain = materials[0];
+    plain.base_color_texture = plain.occlusion_texture = ASSET_NO_TEXTURE;
+    plain.second = 0;
+    for (size_t i = 0; i < FAR; i++) {
         up[i][2] = 1;
         at[i][0] = (float)i;
-        for (size_t s = 0; s < SENSORS; s++)
-            along_m[s * VERTICES + i] = (float)(s * 1024 + i); /* exactly, or nearly */
     }
     parts.positions_m = (const float(*)[3])at;
     parts.normals = (const float(*)[3])up;
@@ -545,28 +447,36 @@ TEST(distances_lie_in_blocks)
     parts.colors = NULL;
     parts.levels = NULL;
     parts.clusters = NULL;
-    parts.sensors = on;
-    parts.geodesic_m = along_m;
-    parts.vertex_count = VERTICES;
-    parts.sensor_count = SENSORS;
-    struct asset_material plain = materials[0];
-    plain.base_color_texture = plain.occlusion_texture = ASSET_NO_TEXTURE;
-    plain.second = 0;
     parts.materials = &plain;
+    parts.sensors = on;
+    parts.vertex_count = FAR;
+    parts.sensor_count = sensor_count;
+    return parts;
+}
+
+TEST(distances_lie_in_blocks)
+{
+    enum { SENSORS = 3 };
+    static float along_m[SENSORS * FAR];
+    struct asset_parts parts = long_line(SENSORS);
+    struct asset_view v;
+    char why[200] = "";
+    for (size_t i = 0; i < FAR; i++)
+        for (size_t s = 0; s < SENSORS; s++)
+            along_m[s * FAR + i] = (float)(s * 1024 + i); /* exactly, or nearly */
+    parts.geodesic_m = along_m;
     struct asset_bytes f = build(&parts);
     if (!asset_view_init(&v, f.bytes, f.size, why))
         fail_msg("%s", why);
     assert_int_equal(v.header->sections[ASSET_GEODESIC].bytes, 3 * 768 * 2);
-    for (size_t i = 0; i < VERTICES; i++)
+    for (size_t i = 0; i < FAR; i++)
         for (size_t s = 0; s < SENSORS; s++)
-            assert_float_equal(asset_distance_m(&v, s, i), along_m[s * VERTICES + i], along_m[s * VERTICES + i] * 0x1p-12f);
+            assert_float_equal(asset_distance_m(&v, s, i), along_m[s * FAR + i], along_m[s * FAR + i] * 0x1p-12f);
     assert_int_equal(asset_distance_codes(&v, 2, 599)[599 % ASSET_DISTANCE_BLOCK + 1], ASSET_DISTANCE_NONE);
     free(f.bytes);
 }
 
 /* --- packed distances --------------------------------------------------------------------------------------------------------- */
-
-enum { MANY = 70, FAR = 600, BLOCKS = 3 }; /* number of sensors; of vertices; of blocks of vertices */
 
 struct packed_file {
     uint16_t codes[BLOCKS][MANY][ASSET_DISTANCE_BLOCK];
@@ -614,30 +524,11 @@ static void write_packed(void *arg, uint16_t *codes)
 
 static struct asset_bytes build_packed(struct packed_file *packed)
 {
-    static float at[FAR][3], up[FAR][3];
-    static struct asset_sensor on[MANY];
-    struct asset_parts parts = good;
-    struct asset_material plain = materials[0];
-    for (size_t i = 0; i < FAR; i++) {
-        up[i][2] = 1;
-        at[i][0] = (float)i;
-    }
-    plain.base_color_texture = plain.occlusion_texture = ASSET_NO_TEXTURE;
-    plain.second = 0;
-    parts.positions_m = (const float(*)[3])at;
-    parts.normals = (const float(*)[3])up;
-    parts.texcoords = parts.second_texcoords = NULL;
-    parts.colors = NULL;
-    parts.levels = NULL;
-    parts.clusters = NULL;
-    parts.materials = &plain;
-    parts.sensors = on;
+    struct asset_parts parts = long_line(MANY);
     parts.geodesic_m = NULL;
     parts.write_geodesic = write_packed;
     parts.write_arg = packed;
     parts.packed_bytes = packed->offsets[BLOCKS];
-    parts.vertex_count = FAR;
-    parts.sensor_count = MANY;
     return build(&parts);
 }
 

@@ -3,7 +3,6 @@
 #include "tests/support/test.h"
 
 #include "base/clock.h"
-#include "base/mem.h"
 #include "tests/support/modbus_case.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/sleep.h"
@@ -140,8 +139,7 @@ CASE(requests_keep_to_the_device_s_limits)
     modbus_case_add_registers(s, 40);
     s->plant->sources[0].max_registers = 10;
     s->plant->sources[0].pause_ms = 30;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     modbus_case_expect(s, 39, QUALITY_GOOD, 3);
     sleep_ns(300 * NS_PER_MS);
     assert_int_equal(s->device.most, 10);
@@ -158,8 +156,7 @@ CASE(a_hole_is_refused_once)
     s->plant->sources[0].max_gap = 8;
     s->device.bad_register = 12;
     s->device.bad_code = 2;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     for (int i = 0; i < 16; i++)
         modbus_case_expect(s, i, QUALITY_GOOD, 3);
     int refused = s->device.refused;
@@ -174,8 +171,7 @@ CASE(busy_is_asked_again_soon)
     modbus_case_add_registers(s, 1);
     s->plant->sources[0].poll_ms = 20000;
     s->device.bad_code = 6;
-    device_start(&s->device);
-    modbus_case_start(s);
+    modbus_case_serve(s);
     while (s->device.requests < 2) /* the first request was refused; the second one comes long before the next poll */
         sleep_ns(5 * NS_PER_MS);
     s->device.bad_code = 0;
@@ -202,57 +198,23 @@ static void check_hostile(struct modbus_case *s, enum device_wire wire, int mann
     assert_true(modbus_case_look(s, 20)->value == 500);
 }
 
-CASE(short_answers)
-{
-    check_hostile(s, DEVICE_TCP, DEVICE_SHORT);
-}
-CASE(long_answers)
-{
-    check_hostile(s, DEVICE_TCP, DEVICE_LONG);
-}
-CASE(garbage)
-{
-    check_hostile(s, DEVICE_TCP, DEVICE_GARBAGE);
-}
-CASE(garbage_on_a_line)
-{
-    check_hostile(s, DEVICE_LINE, DEVICE_GARBAGE);
-}
-CASE(garbage_in_rtu_over_tcp)
-{
-    check_hostile(s, DEVICE_RTU_TCP, DEVICE_GARBAGE);
-}
-CASE(long_answers_in_rtu_over_tcp)
-{
-    check_hostile(s, DEVICE_RTU_TCP, DEVICE_LONG);
-}
-CASE(answers_of_other_units)
-{
-    check_hostile(s, DEVICE_TCP, DEVICE_FOREIGN);
-}
-CASE(answers_of_other_units_on_a_line)
-{
-    check_hostile(s, DEVICE_LINE, DEVICE_FOREIGN);
-}
-CASE(answers_of_other_units_in_rtu_over_tcp)
-{
-    check_hostile(s, DEVICE_RTU_TCP, DEVICE_FOREIGN);
-}
-CASE(answers_of_no_length)
-{
-    check_hostile(s, DEVICE_TCP, DEVICE_MEASURED);
-}
-CASE(answers_of_length_1)
-{
-    ((struct modbus_case *)s)->device.said_length = 1;
-    check_hostile(s, DEVICE_TCP, DEVICE_MEASURED);
-}
-CASE(answers_of_length_65535)
-{
-    ((struct modbus_case *)s)->device.said_length = 65535;
-    check_hostile(s, DEVICE_TCP, DEVICE_MEASURED);
-}
-CASE(short_answers_in_rtu_over_tcp)
-{
-    check_hostile(s, DEVICE_RTU_TCP, DEVICE_SHORT);
-}
+/* length: the length in the header of answers whose manner is DEVICE_MEASURED. */
+#define HOSTILE(name, wire, manner, length)                                                                                                \
+    CASE(name)                                                                                                                             \
+    {                                                                                                                                      \
+        s->device.said_length = length;                                                                                                    \
+        check_hostile(s, wire, manner);                                                                                                    \
+    }
+HOSTILE(short_answers, DEVICE_TCP, DEVICE_SHORT, 0)
+HOSTILE(short_answers_in_rtu_over_tcp, DEVICE_RTU_TCP, DEVICE_SHORT, 0)
+HOSTILE(long_answers, DEVICE_TCP, DEVICE_LONG, 0)
+HOSTILE(long_answers_in_rtu_over_tcp, DEVICE_RTU_TCP, DEVICE_LONG, 0)
+HOSTILE(garbage, DEVICE_TCP, DEVICE_GARBAGE, 0)
+HOSTILE(garbage_on_a_line, DEVICE_LINE, DEVICE_GARBAGE, 0)
+HOSTILE(garbage_in_rtu_over_tcp, DEVICE_RTU_TCP, DEVICE_GARBAGE, 0)
+HOSTILE(answers_of_other_units, DEVICE_TCP, DEVICE_FOREIGN, 0)
+HOSTILE(answers_of_other_units_on_a_line, DEVICE_LINE, DEVICE_FOREIGN, 0)
+HOSTILE(answers_of_other_units_in_rtu_over_tcp, DEVICE_RTU_TCP, DEVICE_FOREIGN, 0)
+HOSTILE(answers_of_no_length, DEVICE_TCP, DEVICE_MEASURED, 0)
+HOSTILE(answers_of_length_1, DEVICE_TCP, DEVICE_MEASURED, 1)
+HOSTILE(answers_of_length_65535, DEVICE_TCP, DEVICE_MEASURED, 65535)
