@@ -166,7 +166,7 @@ bool method_number(const struct matcher *matcher, const struct match_subject *su
     bool other_area = rate_prefix(matcher, subject, list->assets[0]) == 0;
     out->confidence = other_area || !same_width ? 0.6 : cut ? 0.9 : 0.93;
     snprintf(out->reason, sizeof(out->reason), "loop %.30s: equipment number %.30s%s", number->text, text,
-             other_area   ? ", but the prefix is not that of the equipment"
+             other_area   ? ", but the tag's area prefix differs from the equipment's"
              : same_width ? ""
                           : ", with a different number of leading zeros");
     return true;

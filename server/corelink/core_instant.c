@@ -65,7 +65,7 @@ const char *core_instant_read(const void *bytes, size_t count, int64_t *first_us
 {
     const uint8_t *at = bytes;
     if (count < CORE_INSTANT_HEAD_BYTES || memcmp(at, MAGIC, sizeof(MAGIC)) != 0)
-        return "the core's answer does not hold the readings of an instant";
+        return "the core's answer has an unknown format: do both nodes run the same version?";
     size_t readings = get(at + 4, 4);
     *first_us = (int64_t)get(at + 8, 8);
     if (*first_us < 0 || count != CORE_INSTANT_HEAD_BYTES + readings * CORE_INSTANT_READING_BYTES)

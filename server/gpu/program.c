@@ -116,7 +116,7 @@ static GLuint compile_embedded(struct log *log, GLenum stage, const char *name, 
 {
     const char *text = embedded_find(name);
     if (!text) {
-        log_err(log, "shader %s is missing in this program: build the program again", name);
+        log_err(log, "shader %s is missing in this binary: install or build Plantcast again", name);
         return 0;
     }
     return program_compile(log, stage, name, text, defines);

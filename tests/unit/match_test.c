@@ -88,7 +88,7 @@ CASE(test_by_number)
 {
     expect(f, "TE-330A", "", MATCH_SURE, "20-V-330", "loop 330: equipment number 330");
     expect(f, "20-LT-3302", "", MATCH_SURE, "20-V-330", "loop 3302: equipment number 330");
-    expect(f, "40-LT-330", "", MATCH_LIKELY, "20-V-330", "the prefix is not that of the equipment");
+    expect(f, "40-LT-330", "", MATCH_LIKELY, "20-V-330", "the tag's area prefix differs from the equipment's");
     expect(f, "PT-205B", "", MATCH_SURE, "P-205B", "");
     expect(f, "PT-205C", "", MATCH_NONE, NULL, "nothing in the model");
     expect(f, "PT-205", "", MATCH_NONE, NULL, "P-205A or P-205B");

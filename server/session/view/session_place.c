@@ -110,7 +110,7 @@ bool session_check_loop(struct session *session, const struct message *message, 
 {
     const struct session_context *context = session->context;
     if (!context->services->loop_checks) {
-        message_refuse(error, "no_history", "loop checks are stored in the folder of history", REFUSAL_UNRECORDED);
+        message_refuse(error, "no_history", "loop checks need recorded history: start plantcastd with --history DIR", REFUSAL_UNRECORDED);
         return false;
     }
     const struct kept_action action = session_kept_begin(session);
