@@ -74,7 +74,9 @@ function nowText({ model, time }, tag, fresh) {
 // Updates the cells that change by themselves: the present value and the age.
 export function refreshCells(session, element, row, fresh) {
     const now = session.clockUs();
-    setText(element.querySelector('[data-col=now]'), nowText(session, row.tag, fresh));
+    const value = element.querySelector('[data-col=now]');
+    setText(value, nowText(session, row.tag, fresh));
+    value.title = value.textContent;
     setText(element.querySelector('[data-col=since]'), row.us === null || now === null ? '' : ageText((now - row.us) / 1000));
 }
 
