@@ -33,7 +33,7 @@ for (const { file, unit } of [{ file: 'skid_203.step', unit: 'millimetre' }, { f
     test(`${file}: tree, names, sizes, colours, shared parts`, { skip }, () => withSamples((folder) => {
         const said = plantcast('import', join(folder, file), '-o', join(folder, 'plant'));
         assert.equal(said.status, 0, said.stderr);
-        assert.match(said.stdout, /4 parts in 11 places; chord error 1 mm; Z up/);
+        assert.match(said.stdout, /4 parts in 11 places; chord error 1 mm; Z axis up/);
         assert.doesNotMatch(said.stdout, /damaged/);
         assert.match(said.stdout, new RegExp(`units: ${unit}`, 'i'));
         const glb = join(folder, 'plant', file.replace(/\.\w+$/, '.glb'));
@@ -73,7 +73,7 @@ for (const { file, unit } of [{ file: 'tree.igs', unit: 'millimetre' }, { file: 
     test(`${file}: tree, names, sizes, colours, shared parts`, { skip }, () => withSamples((folder) => {
         const said = plantcast('import', join(folder, file), '-o', join(folder, 'plant')), stem = file.replace(/\.\w+$/, '');
         assert.equal(said.status, 0, said.stderr);
-        assert.match(said.stdout, /5 parts in 13 places; chord error 1 mm; Z up/);
+        assert.match(said.stdout, /5 parts in 13 places; chord error 1 mm; Z axis up/);
         assert.match(said.stdout, new RegExp(`units: ${unit}`));
         const glb = join(folder, 'plant', `${stem}.glb`), { list } = JSON.parse(plantcast('nodes', glb, '--json').stdout);
         assert.deepEqual(list.map(({ path }) => path.split('/').slice(1).join('/')).slice(1), ['Skid S-100', 'Skid S-100/Plate:1',

@@ -545,7 +545,7 @@ TEST(test_tables)
     expect_table(folder, "time;TI-2;TI-3\n", "line 1: no column 'TI-1'");
     expect_table(folder, "TI-1,TI-2\n1,2\n", "1 lines have numbers of all 2 sensors, 0 lines do not; a fit needs at least 8");
     expect_table(folder, "TI-1;TI-2\n1,5;2,5\n2,5;3\n", "0 lines have numbers of all 2 sensors, 2 lines do not; a fit needs at least 8");
-    expect_table(folder, "TI-1,TI-2\n1,2\n1,5,2,5\n", "line 3: cell 3, but the header has only 2 columns");
+    expect_table(folder, "TI-1,TI-2\n1,2\n1,5,2,5\n", "line 3: the row has a cell 3, but the header has only 2 columns");
     expect_table(folder, "", "is empty");
 }
 

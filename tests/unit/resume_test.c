@@ -150,7 +150,7 @@ CASE(a_terminal_shows_one_line)
     assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
     prep_case_says(&seen, "preparing 40 of 40 assets");
     prep_case_says(&seen, "\r");
-    prep_case_says(&seen, " of 40 assets, ");
+    prep_case_says(&seen, " of 40 assets prepared, ");
     prep_case_says(&seen, " left\033[K");
     assert_string_equal(seen.at + seen.length - 4, "\r\033[K");
     text_finish(&seen);

@@ -7,6 +7,7 @@ import { notBuilt, startTiny } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 300000 };
 const WARM_UP = 3, CYCLES = 5, HEAP_KB = 25; // HEAP_KB: largest growth of the heap per cycle
+const CARD_LISTENERS = 4;                    // of the sensor card, which may be in the document at one measurement only; fewer than CYCLES
 const TRIES = 40, PAUSE_MS = 250;            // the page may differ for a moment, for example while a message is shown
 // Without compiled code, whose size depends on the time that functions run, the size of the heap is nearly the same in each run.
 const JITLESS = ['--js-flags=--jitless'];
@@ -147,7 +148,8 @@ test('cycles of all actions leave as many nodes and listeners as before', option
     const first = await measure(), contained = await contents();
     await cycles(CYCLES);
     let last = await measure();
-    for (let i = 0; i < TRIES && (last.nodes > first.nodes || last.listeners > first.listeners); i++) {
+    const listeners = first.listeners + (contained.card === undefined ? CARD_LISTENERS : 0);
+    for (let i = 0; i < TRIES && (last.nodes > first.nodes || last.listeners > listeners); i++) {
         await new Promise((go) => setTimeout(go, PAUSE_MS));
         last = await measure();
     }
@@ -155,7 +157,7 @@ test('cycles of all actions leave as many nodes and listeners as before', option
     const grown = Object.keys(contains).filter((id) => contains[id] > (contained[id] ?? 0)).map((id) => [id, contained[id], contains[id]]);
     const said = JSON.stringify({ first, last, grown });
     t.diagnostic(said);
-    assert.ok(last.nodes <= first.nodes && last.listeners <= first.listeners, said);
+    assert.ok(last.nodes <= first.nodes && last.listeners <= listeners, said);
     assert.ok(grownKb < HEAP_KB, `${grownKb} kB a cycle, ${said}`);
     assert.deepEqual(browser.errors, []);
 });
