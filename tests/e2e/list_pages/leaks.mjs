@@ -21,7 +21,10 @@ before(async () => {
     page = browser.page;
     await waitForPicture(page);
     await waitForHealth(page, 'live');
-    await page.waitForFunction(() => Boolean(globalThis.plantcast.session.time.fromUs));
+    await page.waitForFunction(() => { // instants of the last 4 s count as the present
+        const { session } = globalThis.plantcast;
+        return session.time.fromUs && session.clockUs() - session.time.fromUs > 6e6;
+    });
     devTools = await page.context().newCDPSession(page);
     await devTools.send('Performance.enable');
     await devTools.send('HeapProfiler.enable');
