@@ -46,7 +46,8 @@ async function journal(core, tag) {
 
 // Returns the changes of TI-1's alarm, the oldest first.
 async function changes(core) {
-    return (await journal(core, 'TI-1')).filter(({ kind }) => kind === 'H').map(({ time_us, event, state }) => `${time_us} ${event} ${state}`).sort();
+    const rows = await journal(core, 'TI-1');
+    return rows.filter(({ kind }) => kind === 'H').map(({ time_us, event, state }) => `${time_us} ${event} ${state}`).sort();
 }
 
 // Measures the longest time without usable readings at a renderer: { end() } returns milliseconds.
