@@ -16,13 +16,14 @@ const ICONS = {
 
 export class AlarmTable {
     // table: an empty <table>; select: a selection list of the same sort orders, for screens without column titles; pick: node in the title
-    // of the first column (selection of rows). changed(): called after the user chose another order.
+    // of the first column (selection of rows), or null. changed(): called after the user chose another order.
     constructor(table, select, pick, changed) {
         Object.assign(this, { select, changed, sort: { by: null, down: false } });
         this.heads = COLUMNS.filter(sortable).map((name) => [name, make('th', { scope: 'col', 'data-col': name, 'aria-sort': 'none' },
             make('button', { type: 'button', title: say('column.sort', { what: say(`column.${name}`) }),
                 onclick: () => this.order(nextSort(this.sort, name)) }, say(`column.${name}`)))]);
-        const heads = new Map(this.heads), other = (name) => (name === 'pick' ? make('th', { 'data-col': name }, pick)
+        const heads = new Map(this.heads), other = (name) => (name === 'pick'
+            ? make('th', { 'data-col': name, ...pick ? {} : { role: 'none' } }, pick) // without a node: no column title for screen readers
             : make('th', { scope: 'col', 'data-col': name }, say(`column.${name}`)));
         table.prepend(make('thead', {}, make('tr', {}, ...COLUMNS.map((name) => heads.get(name) ?? other(name)))));
         fillSelect(select, [['', say('column.order')], ...this.heads.map(([name]) => [name, say(`column.${name}`)])], '');
