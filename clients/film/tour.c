@@ -11,12 +11,6 @@
 #include "clients/cli/picture/saved_view.h"
 #include "render/overlay/text_face.h"
 
-static const char *word(const json_t *o, const char *name)
-{
-    const char *text = json_string_value(json_object_get(o, name));
-    return text ? text : "";
-}
-
 json_t *tour_stops(const char *answer, const char *from, const char *id)
 {
     json_t *all = json_loads(answer, 0, NULL), *tours = json_object_get(all, "tours"), *tour, *stops = NULL;
@@ -24,9 +18,9 @@ json_t *tour_stops(const char *answer, const char *from, const char *id)
     size_t i;
     text_add(&known, "%s", "");
     json_array_foreach(tours, i, tour) {
-        if (!strcmp(word(tour, "id"), id))
+        if (!strcmp(saved_view_text(tour, "id"), id))
             stops = json_incref(json_object_get(tour, "stops"));
-        text_add(&known, "%s%s", i ? ", " : "", word(tour, "id"));
+        text_add(&known, "%s%s", i ? ", " : "", saved_view_text(tour, "id"));
     }
     if (!stops)
         fprintf(stderr, "plantcast: %s: there is no tour '%s' (tours: %s)\n", from, id, *known.at ? known.at : "none");
@@ -42,12 +36,12 @@ double tour_dwell_s(const json_t *stop)
 
 const char *tour_text(const json_t *stop)
 {
-    return word(stop, "text");
+    return saved_view_text(stop, "text");
 }
 
 bool tour_add_view(const json_t *stop, struct snapshot_options *options)
 {
-    return saved_view_add_address(options, word(stop, "id"), word(stop, "view"));
+    return saved_view_add_address(options, saved_view_text(stop, "id"), saved_view_text(stop, "view"));
 }
 
 static void write_instant(FILE *file, double s)

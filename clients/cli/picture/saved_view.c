@@ -10,7 +10,7 @@
 #include "message/view_address.h"
 #include "views/named_views.h"
 
-static const char *word(const json_t *view, const char *name)
+const char *saved_view_text(const json_t *view, const char *name)
 {
     const char *text = json_string_value(json_object_get(view, name));
     return text ? text : "";
@@ -68,9 +68,9 @@ static const json_t *find(const json_t *list, const char *name)
     const json_t *view, *titled = NULL;
     size_t i, count = 0;
     json_array_foreach(list, i, view) {
-        if (!strcmp(word(view, "id"), name))
+        if (!strcmp(saved_view_text(view, "id"), name))
             return view;
-        if (!strcmp(word(view, "title"), name)) {
+        if (!strcmp(saved_view_text(view, "title"), name)) {
             titled = view;
             count++;
         }
@@ -84,7 +84,7 @@ static void print_unknown(const json_t *list, const char *from, const char *name
     size_t i;
     fprintf(stderr, "plantcast: %s: no view has the id '%s', or is the only one with this title; %s\n", from, name,
             json_array_size(list) ? "ids and titles of the views:" : "there are no views");
-    json_array_foreach(list, i, view) fprintf(stderr, "  %-24s %s\n", word(view, "id"), word(view, "title"));
+    json_array_foreach(list, i, view) fprintf(stderr, "  %-24s %s\n", saved_view_text(view, "id"), saved_view_text(view, "title"));
 }
 
 /* list: JSON array of the views; NULL: none. */
@@ -93,7 +93,7 @@ static bool add_from(struct snapshot_options *options, const json_t *list)
     const json_t *view = find(list, options->view);
     if (!view)
         print_unknown(list, options->from, options->view);
-    return view && saved_view_add_address(options, word(view, "id"), word(view, "view"));
+    return view && saved_view_add_address(options, saved_view_text(view, "id"), saved_view_text(view, "view"));
 }
 
 bool saved_view_add_from_daemon(struct snapshot_options *options)

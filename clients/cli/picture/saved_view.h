@@ -7,6 +7,8 @@
 #include "plant/plant.h"
 #include "snapshot.h"
 
+/* Returns a text member of a view or tour in a daemon's JSON, "" if the member is missing; owned by the JSON. */
+const char *saved_view_text(const json_t *view, const char *name);
 /* Adds the parameters of an address (part of the page's URL after `#`) to options->args, except those that the command line gave, and the
    instant. All of options->args must come from the command line. id: name of the view in messages. Returns false with the reason
    printed. */
