@@ -371,15 +371,15 @@ test('a film is good picture by picture; one that was changed, cut or made anew 
     };
     const other = runProgram('plantcast', ['verify', film, '--key', path('other.pub')]);
     assert.match(other.err, /picture 1: the picture was signed with another key/);
-    const anew = (name, ...how) => {
+    const reencoded = (name, ...how) => {
         const { status, stderr } = spawnSync('ffmpeg', ['-v', 'error', '-y', '-i', film, '-map_metadata', '0', '-movflags',
             'use_metadata_tags', ...how, path(name)], { encoding: 'utf8' });
         assert.equal(status, 0, stderr);
         return path(name);
     };
     const LOSSLESS = ['-c:v', 'libx264rgb', '-qp', '0'];
-    assert.equal(check(anew('same.mp4', ...LOSSLESS)).code, 0, 'the same pictures in other bytes');
-    const bits = (name, set) => anew(name, '-c', 'copy', '-bsf:v', `h264_metadata=${set}`);
+    assert.equal(check(reencoded('same.mp4', ...LOSSLESS)).code, 0, 'the same pictures in other bytes');
+    const bits = (name, set) => reencoded(name, '-c', 'copy', '-bsf:v', `h264_metadata=${set}`);
     assert.equal(check(bits('copied.mp4', 'video_full_range_flag=1')).code, 0, 'written by another program with the same colours');
     bad(bits('transfer.mp4', 'transfer_characteristics=8'), /box colr differs|VUI.* describes other colours/);
     bad(bits('primaries.mp4', 'colour_primaries=5'), /box colr differs|VUI.* describes other colours/);
@@ -391,16 +391,18 @@ test('a film is good picture by picture; one that was changed, cut or made anew 
     assert.equal(spawnSync('ffmpeg', ['-v', 'error', '-y', '-i', film, '-f', 'lavfi', '-i', 'anullsrc', '-shortest', '-c:v', 'copy',
         '-map_metadata', '0', '-movflags', 'use_metadata_tags', path('sound.mp4')]).status, 0);
     bad(path('sound.mp4'), /box trak occurs twice/);
-    bad(anew('pieces.mp4', '-c', 'copy', '-movflags', 'use_metadata_tags+frag_keyframe'), /unexpected box mvex/);
-    bad(anew('lossy.mp4', '-c:v', 'libx264rgb', '-crf', '20'), /picture 1: the pixels of the picture differ from the signed pixels/);
-    bad(anew('yuv.mp4', '-c:v', 'libx264', '-pix_fmt', 'yuv420p', '-vf', 'crop=320:200'),
+    bad(reencoded('pieces.mp4', '-c', 'copy', '-movflags', 'use_metadata_tags+frag_keyframe'), /unexpected box mvex/);
+    bad(reencoded('lossy.mp4', '-c:v', 'libx264rgb', '-crf', '20'), /picture 1: the pixels of the picture differ from the signed pixels/);
+    bad(reencoded('yuv.mp4', '-c:v', 'libx264', '-pix_fmt', 'yuv420p', '-vf', 'crop=320:200'),
         /not as plantcast clip --signed encodes it|box colr/);
-    bad(anew('box.mp4', ...LOSSLESS, '-vf', "drawbox=10:10:1:1:red:fill:enable='eq(n,2)'"), /picture 3: the pixels of the picture differ/);
+    bad(reencoded('box.mp4', ...LOSSLESS, '-vf', "drawbox=10:10:1:1:red:fill:enable='eq(n,2)'"),
+        /picture 3: the pixels of the picture differ/);
     const PASS = [...LOSSLESS, '-fps_mode', 'passthrough'];
-    bad(anew('less.mp4', ...PASS, '-vf', "select='not(eq(n,1))'"), /picture [23]: (the pixels .*differ|it is shown for another duration)/);
-    bad(anew('short.mp4', ...LOSSLESS, '-frames:v', '3'), /the film has 3 pictures but signed statements of 4/);
-    bad(anew('slow.mp4', ...PASS, '-vf', "setpts='if(gte(N,2),PTS+3/TB,PTS)'"), /shown for another duration than the others/);
-    bad(anew('turned.mp4', '-c', 'copy', '-metadata:s:v', 'rotate=180'), /box tkhd differs/);
+    bad(reencoded('less.mp4', ...PASS, '-vf', "select='not(eq(n,1))'"),
+        /picture [23]: (the pixels .*differ|it is shown for another duration)/);
+    bad(reencoded('short.mp4', ...LOSSLESS, '-frames:v', '3'), /the film has 3 pictures but signed statements of 4/);
+    bad(reencoded('slow.mp4', ...PASS, '-vf', "setpts='if(gte(N,2),PTS+3/TB,PTS)'"), /shown for another duration than the others/);
+    bad(reencoded('turned.mp4', '-c', 'copy', '-metadata:s:v', 'rotate=180'), /box tkhd differs/);
     assert.equal(spawnSync('ffmpeg', ['-v', 'error', '-y', '-i', film, '-map_metadata', '-1', '-c', 'copy', path('bare.mp4')]).status, 0);
     bad(path('bare.mp4'), /box (udta is missing|meta differs)/);
     const bytes = readFileSync(film);

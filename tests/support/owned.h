@@ -20,8 +20,8 @@ size_t owned_count(void);
 /* Releases all but the `kept` oldest resources. */
 void owned_release(size_t kept);
 
-/* These functions return a new resource that is already handed over. */
-json_t *test_json(json_t *json); /* returns `json`, which it hands over; NULL is fine */
+/* Each of these functions creates a resource and hands it over with owned_add(), so that its caller never releases it. */
+json_t *test_json(json_t *json); /* hands `json` over and returns it; accepts NULL */
 char *test_printf(const char *format, ...) __attribute__((format(printf, 1, 2)));
 struct log *test_log(void); /* prints errors only */
 struct counters *test_counters(void);
