@@ -26,10 +26,10 @@ float kernel_largest(const float *distance_m, size_t count, float most_m);
 /* For one sensor, raises top[i] to its strength if the sensor is the nearest one to vertex i. After a call for each sensor, top[i] is
    the largest strength among equally near nearest sensors; kernel_shepard() divides by it, so that weights cannot overflow. */
 void kernel_top_shepard(const float *restrict distance_m, const float *restrict near_m, size_t count, float strength, float *restrict top);
-/* Raises top[i] to one sensor's exponent of Algorithm 1, max(0, 1 - distance / radius) strength / ln 2 (a power of 2), if that is larger
-   and the sensor contributes. A sensor contributes within its reach. If no sensor reaches vertex i, the nearest one contributes alone
-   and continues its value, so that a triangle with one reached corner can be interpolated. Start with zeros and call once for each
-   sensor. */
+/* Raises top[i] to one sensor's exponent of the paper's Algorithm 1 (Kim & Suh 2025), max(0, 1 - distance / radius) strength / ln 2 (a
+   power of 2), if that is larger and the sensor contributes. A sensor contributes within its reach. If no sensor reaches vertex i, the
+   nearest one contributes alone and continues its value, so that a triangle with one reached corner can be interpolated. Start with zeros
+   and call once for each sensor. */
 void kernel_top_paper(const float *restrict distance_m, const float *restrict near_m, size_t count, float reach_m, float radius_m,
                       float strength, float *restrict top);
 

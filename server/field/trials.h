@@ -33,7 +33,8 @@ struct trial {
 };
 /* Returns the trial's position of this tag; NULL if the trial does not move the tag, or is NULL. */
 const struct trial_sensor *trial_find(const struct trial *trial, int tag);
-/* Returns the geodesic distances of every vertex; NULL if they are not known yet. */
+/* Returns the geodesic distance in metres of each vertex of the asset from the sensor's trial position. NULL while
+   the distances are being computed. Owned by sensor->reach. */
 const float *trial_distances(const struct trial_sensor *sensor);
 
 struct trials;

@@ -14,7 +14,7 @@ struct connection {               /* identity of one connection; lives as long a
     char token[TOKEN_MAX_CHARS + 1]; /* access token of the last request on this connection; "": none */
     bool from_proxy;                 /* true: a trusted proxy sent the last request */
     bool forwarded;                  /* true: the trusted proxy passed on a client's request; false also for the proxy's own checks */
-    bool answered;                   /* true: all requests of this connection are answered */
+    bool answered;                   /* true: no request of this connection waits for an answer */
     /* bytes received by the connection when the wait for its next request began; UINT64_MAX: not waiting (http/stuck_head.h) */
     uint64_t received_before_head;
 };

@@ -85,7 +85,7 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
         note_busy(modbus, block, code, now_ns);
         return;
     }
-    /* a block (tags read by one request) that the device answered before is read once more before it is split in two */
+    /* a block (tags read by one request) that the device has answered before: one further request decides whether it is split in two */
     if (block->answered) {
         block->answered = false;
         block->due_ns = now_ns;

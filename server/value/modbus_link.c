@@ -255,8 +255,8 @@ int modbus_link_open(struct modbus_link *link)
     link->open = status == 0;
     link->answers = 0;
     link->opened_ns = clock_mono_ns();
-    /* checks stop_fd once more: modbus_link_interrupt() may have been called before the socket was in its reserved descriptor, and so could
-       not end this connection */
+    /* checks stop_fd a second time: modbus_link_interrupt() may have been called before the socket was in its reserved descriptor, and so
+       could not end this connection */
     if (link->open && wait_for(-1, 0, link->stop_fd, 0) == -ECANCELED) {
         close_link(link);
         status = -ECANCELED;

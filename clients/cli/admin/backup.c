@@ -410,7 +410,8 @@ static bool is_database(const char *name)
     return length > 7 && !strcmp(name + length - 7, ".sqlite");
 }
 
-/* Compares each restored file with its hash in the backup. Databases are copied for that, which also reads and checks every page. */
+/* Compares the hash of each restored file with the hash in the backup. Also copies each database to a temporary file: SQLite reads every
+   page for that, and reports damage that was already in the backup. */
 static bool each_restored(struct backup_job *job, const char *plant_path, const char *history)
 {
     size_t i;

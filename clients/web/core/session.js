@@ -357,7 +357,8 @@ export class Session {
             this.setParams(this.unsent);
     }
 
-    // Greets again without a parameter that the server refused or, if it named none, without one of the parts of our view.
+    // Sends `hello` again after a refusal, without the parameter that the server named. If it named none, leaves out the last of helloParts
+    // (parts of the view, such as camera and parameters), so that repeated refusals end with a hello without any part.
     helloWithout(name) {
         const isParam = name !== 'baseline' && this.params[name] !== undefined;
         if (isParam)

@@ -30,7 +30,7 @@ void stuck_head_await(struct lws *wsi, bool first)
     lws_set_timer_usecs(wsi, CHECK_INTERVAL_US);
 }
 
-/* Stops the watch. The timer stays set and fires once more: libwebsockets 4.1 cannot cancel a timer, and a delay of -1 makes it fire
+/* Stops the watch. The timer stays set and fires one last time: libwebsockets 4.1 cannot cancel a timer, and a delay of -1 makes it fire
    immediately. */
 void stuck_head_arrived(struct lws *wsi)
 {
