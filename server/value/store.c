@@ -255,7 +255,9 @@ static uint32_t vouched_quality(const struct store *store, size_t tag, int64_t n
     if (by->mask == 0)
         return QUALITY_GOOD;
     const struct held *word = &store->tags[by->tag];
-    if (!quality_is_good(own_quality(word, now_mono_ns)) || !(fabs(word->value) < 9e18))
+    bool readable =
+        quality_is_good(own_quality(word, now_mono_ns)) && quality_is_good(heartbeat_quality(store, (size_t)by->tag, now_mono_ns));
+    if (!readable || !(fabs(word->value) < 9e18))
         return QUALITY_UNCERTAIN;
     bool good = (((uint64_t)(int64_t)word->value & by->mask) == by->want) != by->negate;
     return good ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE;

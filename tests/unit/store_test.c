@@ -320,6 +320,19 @@ CASE(a_value_that_never_moves_is_doubted)
 }
 
 /* A gateway keeps answering with the last values of a controller that has stopped. */
+CASE(a_stopped_heartbeat_makes_quality_tags_unreadable)
+{
+    s->plant->sources[0].heartbeat_s = 3;
+    s->plant->sources[0].heartbeat_tag = 1;
+    s->plant->tags[2].validity.quality = (struct plant_quality_tag){ .tag = 0, .mask = 1, .want = 1 };
+    set_up_again(s);
+    for (int t = 0; t < 10; t++) {
+        for (int tag = 0; tag < 3; tag++)
+            write_one(s, tag, 1, QUALITY_GOOD, t * S);
+        assert_quality(look(s, 2, t * S)->quality, t < 3 ? QUALITY_GOOD : QUALITY_UNCERTAIN);
+    }
+}
+
 CASE(a_stopped_heartbeat_makes_all_bad)
 {
     s->plant->sources[0].heartbeat_s = 3;
