@@ -15,6 +15,7 @@
 static const int64_t ROUND_NS = 200 * NS_PER_MS;
 
 struct written {
+    double value;
     uint32_t quality;
     int64_t mono_ns; /* INT64_MIN: nothing written yet */
 };
@@ -37,7 +38,7 @@ struct derived_state *derived_create(const struct plant *plant)
     state->snapshot = snapshot_create(plant->tag_count);
     state->written = mem_array(plant->derived_count, sizeof(*state->written));
     for (size_t i = 0; i < plant->derived_count; i++)
-        state->written[i] = (struct written){ QUALITY_BAD_WAITING, INT64_MIN };
+        state->written[i] = (struct written){ 0, QUALITY_BAD_WAITING, INT64_MIN };
     return state;
 }
 
@@ -78,8 +79,9 @@ static struct reading combine(const struct derived_state *state, const struct pl
     return all;
 }
 
-/* Writes a result to the store only if an input is newer than at the last write, or the quality differs. Writing an unchanged result would
- * make it look newer than its inputs. */
+/* Writes a result to the store only if an input is newer than at the last write, or value or quality differ. Writing an unchanged result
+ * would make it look newer than its inputs. Inputs have their devices' times, so an input that arrives late may change the value without
+ * being the newest. */
 static void write_new(struct derived_state *state, struct store *store, size_t i, struct reading *reading)
 {
     struct written *written = &state->written[i];
@@ -88,9 +90,10 @@ static void write_new(struct derived_state *state, struct store *store, size_t i
     int64_t mono_ns = known && !quality_is_bad(reading->quality) ? snapshot->taken_mono_ns - reading->age_ns : snapshot->taken_mono_ns;
     if (mono_ns < written->mono_ns)
         mono_ns = written->mono_ns;
-    if (reading->quality == written->quality && (quality_is_bad(reading->quality) || mono_ns == written->mono_ns))
+    bool same_value = quality_is_bad(reading->quality) || (mono_ns == written->mono_ns && reading->value == written->value);
+    if (reading->quality == written->quality && same_value)
         return;
-    *written = (struct written){ reading->quality, mono_ns };
+    *written = (struct written){ reading->value, reading->quality, mono_ns };
     const struct sample sample = { .tag = state->plant->derived[i], .value = reading->value, .quality = reading->quality };
     store_write(store, &sample, 1, mono_ns, snapshot->taken_utc_ns - (snapshot->taken_mono_ns - mono_ns));
 }

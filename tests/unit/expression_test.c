@@ -157,6 +157,41 @@ TEST_WITH(quality_and_age_are_carried_through, plant_case_set_up, plant_case_tea
     derived_destroy(&derived);
 }
 
+/* Inputs have their devices' times. A sample that is not the newest input still changes the result. */
+TEST_WITH(late_inputs_change_the_result, plant_case_set_up, plant_case_tear_down)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c, yaml, "Tag Name,Address,Stale s\na,40001,60\nb,40002,60\nd,= [a] - [b],\n");
+    plant_case_assert_loaded(c, 0);
+    struct store *store = test_store(c->plant);
+    struct snapshot *snapshot = test_snapshot(c->plant->tag_count);
+    struct derived_state *derived = derived_create(c->plant);
+    static const struct {
+        int tag, sampled_s, now_s;
+        double value;
+        uint32_t quality;
+        double d;
+    } steps[] = {
+        { 1, 1, 1, 4, QUALITY_GOOD, NAN },
+        { 0, 10, 11, 10, QUALITY_GOOD, 6 },
+        { 1, 10, 12, 3, QUALITY_GOOD, 7 }, /* as new as the newest input */
+        { 0, 20, 21, 10, QUALITY_GOOD, 7 },
+        { 1, 19, 22, 2, QUALITY_GOOD, 8 }, /* older than the newest input */
+        { 1, 23, 30, 0, QUALITY_BAD_SENSOR_FAILURE, NAN },
+        { 1, 24, 31, 2, QUALITY_GOOD, 8 },
+        { 1, 25, 32, 1, QUALITY_GOOD, 9 }, /* older than the time at which the result became Good again */
+    };
+    for (size_t i = 0; i < sizeof(steps) / sizeof(*steps); i++) {
+        write_one(store, steps[i].tag, steps[i].value, steps[i].quality, steps[i].sampled_s * S);
+        derived_compute(derived, store, steps[i].now_s * S, (1000 + steps[i].now_s) * S);
+        store_snapshot(store, steps[i].now_s * S, (1000 + steps[i].now_s) * S, snapshot);
+        const struct reading *d = &snapshot->readings[2];
+        if (isnan(steps[i].d) ? !quality_is_bad(d->quality) : quality_is_bad(d->quality) || d->value != steps[i].d)
+            fail_msg("step %zu: the result is %g (%s), expected %g", i, d->value, quality_name(d->quality), steps[i].d);
+    }
+    derived_destroy(&derived);
+}
+
 TEST_WITH(rows_are_checked, plant_case_set_up, plant_case_tear_down)
 {
     struct plant_case *c = *state;
