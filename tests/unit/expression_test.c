@@ -60,6 +60,13 @@ TEST(arithmetic)
     assert_false(isfinite(worth("1/0")));
     assert_false(isfinite(worth("sqrt(-1)")));
     assert_false(isfinite(worth("lmtd(100, 20, 20, 60)")));
+    /* a part without a value makes the whole undefined */
+    static const char *const parts[] = { "min(1, sqrt(-1))",  "max(1, sqrt(-1))",          "min(1, 1/0)",
+                                         "1/(1/0)",           "sqrt(-1)^0",                "1^sqrt(-1)",
+                                         "max(1, -1/0)",      "approach(sqrt(-1),2,1,0)",  "approach(2,sqrt(-1),1,0)" };
+    for (size_t i = 0; i < sizeof(parts) / sizeof(*parts); i++)
+        if (isfinite(worth(parts[i])))
+            fail_msg("%s is %g, expected no value", parts[i], worth(parts[i]));
 }
 
 TEST(mistakes_are_found)

@@ -342,6 +342,9 @@ double expression_value(const struct expression *expression, const double *value
             top--;
             stack[top - 1] = join(step->operation, stack[top - 1], stack[top]);
         }
+        /* an undefined part makes the whole undefined: min(), or a division by infinity, would otherwise hide it */
+        if (!isfinite(stack[top - 1]))
+            return NAN;
     }
     assert(top == 1);
     return stack[0];
