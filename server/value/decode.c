@@ -176,3 +176,8 @@ void decode_number(const struct plant_tag *tag, double raw, struct sample *out)
     if (!isfinite(raw))
         fail(out);
 }
+
+uint32_t decode_quality(const struct plant_tag *tag, double value)
+{
+    return isfinite(value) ? judge_range(&tag->scale, value) : QUALITY_BAD_SENSOR_FAILURE;
+}

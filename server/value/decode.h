@@ -20,4 +20,8 @@ void decode_sample(const struct plant_tag *tag, const uint16_t *words, struct sa
  * the number becomes 0 or 1. */
 void decode_number(const struct plant_tag *tag, double raw, struct sample *out);
 
+/* Returns the quality of a value that needs no scaling, in the unit of the tag's row: Good, Uncertain_EngineeringUnitsExceeded beyond the
+ * instrument's range, or Bad_SensorFailure if the value is not finite. */
+uint32_t decode_quality(const struct plant_tag *tag, double value);
+
 #endif

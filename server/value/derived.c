@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "plant/tags/expression.h"
+#include "value/decode.h"
 #include "value/lookup.h"
 #include "value/quality.h"
 #include "value/source_impl.h"
@@ -52,8 +53,8 @@ void derived_destroy(struct derived_state **state)
     *state = NULL;
 }
 
-/* Evaluates a tag's expression in the units of the tag list. The result has the worst quality among its inputs, and the age of the newest
- * input. */
+/* Evaluates a tag's expression in the units of the tag list. The result has the worst quality among its inputs and its own measuring range,
+ * and the age of the newest input. */
 static struct reading combine(const struct derived_state *state, const struct plant_tag *tag)
 {
     const struct plant *plant = state->plant;
@@ -71,11 +72,11 @@ static struct reading combine(const struct derived_state *state, const struct pl
     }
     if (quality_is_bad(all.quality))
         return all;
-    all.value = unit_change_value(&tag->scale.change, expression_value(tag->expression, values));
-    if (!isfinite(all.value)) {
-        all.value = 0;
-        all.quality = QUALITY_BAD_SENSOR_FAILURE;
-    }
+    double value = expression_value(tag->expression, values);
+    uint32_t quality = decode_quality(tag, value);
+    if (quality >> 30 > all.quality >> 30)
+        all.quality = quality;
+    all.value = quality_is_bad(quality) ? 0 : unit_change_value(&tag->scale.change, value);
     return all;
 }
 

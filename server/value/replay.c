@@ -9,6 +9,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "value/decode.h"
 #include "value/lookup.h"
 #include "value/quality.h"
 #include "value/series.h"
@@ -84,9 +85,10 @@ static void play_lane(struct replay *replay, struct replay_lane *lane, int64_t n
         if (now_mono_ns - due > LATEST_NS)
             continue;
         double value = lane->series.value[lane->next];
-        const struct sample sample = { .tag = lane->tag,
-                                       .value = unit_change_value(&lane->change, value),
-                                       .quality = isnan(value) ? QUALITY_BAD : QUALITY_GOOD };
+        const struct plant_tag *tag = &replay->base.plant->tags[lane->tag];
+        struct sample sample = { .tag = lane->tag, .value = unit_change_value(&lane->change, value), .quality = QUALITY_BAD };
+        if (!isnan(value))
+            sample.quality = decode_quality(tag, unit_change_back(&tag->scale.change, sample.value));
         store_write(replay->base.store, &sample, 1, due, now_utc_ns - (now_mono_ns - due));
         counter_inc(replay->samples, 1);
     }

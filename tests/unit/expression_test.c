@@ -199,6 +199,30 @@ TEST_WITH(late_inputs_change_the_result, plant_case_set_up, plant_case_tear_down
     derived_destroy(&derived);
 }
 
+/* The measuring range is in the unit of the row (212 °F are 100 °C, 373.15 K). */
+TEST_WITH(results_beyond_the_range_are_uncertain, plant_case_set_up, plant_case_tear_down)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c, yaml,
+                    "Tag Name,Address,Stale s,Group,Asset,X,Y,Z,Eng Units,Scaled Low,Scaled High\n"
+                    "a,40001,60,,,,,,,,\nd,= [a] * 2,,g,A,0,0,0,°F,32,212\n");
+    plant_case_assert_loaded(c, 0);
+    struct store *store = test_store(c->plant);
+    struct snapshot *snapshot = test_snapshot(c->plant->tag_count);
+    struct derived_state *derived = derived_create(c->plant);
+    static const double values[] = { 106, 106.1, 16, 15.9, 50 };
+    static const bool beyond[] = { false, true, false, true, false };
+    for (int i = 0; i < 5; i++) {
+        write_one(store, 0, values[i], QUALITY_GOOD, (i + 1) * S);
+        derived_compute(derived, store, (i + 1) * S, (i + 1001) * S);
+        store_snapshot(store, (i + 1) * S, (i + 1001) * S, snapshot);
+        assert_string_equal(quality_name(snapshot->readings[1].quality),
+                            quality_name(beyond[i] ? QUALITY_UNCERTAIN_UNITS_EXCEEDED : QUALITY_GOOD));
+        assert_true(fabs(snapshot->readings[1].value - (2 * values[i] + 459.67) * 5 / 9) < 1e-9);
+    }
+    derived_destroy(&derived);
+}
+
 TEST_WITH(rows_are_checked, plant_case_set_up, plant_case_tear_down)
 {
     struct plant_case *c = *state;

@@ -113,6 +113,17 @@ CASE(every_sample_comes_at_its_time)
     wait_for_link(s, false);                    /* after the end of the replay no value looks live */
 }
 
+CASE(values_beyond_the_range_are_uncertain)
+{
+    struct sample_event got[20];
+    play(s, "speed: 100", "t_s,a\n0,0\n1,9\n2,9.1\n3,-0.1\n4,5\n", "Tag Name,Address,Scaled Low,Scaled High\nA,a,0,9\n");
+    wait_for_heard(s, 5);
+    assert_true(of_tag(s, 0, got, 20) >= 5);
+    for (size_t i = 0; i < 5; i++)
+        assert_string_equal(quality_name(got[i].quality),
+                            quality_name(i == 2 || i == 3 ? QUALITY_UNCERTAIN_UNITS_EXCEEDED : QUALITY_GOOD));
+}
+
 CASE(a_loop_goes_on)
 {
     struct sample_event got[MOST];
