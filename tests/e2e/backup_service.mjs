@@ -168,6 +168,12 @@ test('a wrong key, a damaged file and a newer version are refused by name, and n
     const without = third.run('plantcast restore /root/a --without-secrets');
     assert.equal(without.code, 0, without.err);
     assert.match(without.out, /missing +\/etc\/plantcast\/p1\/tls\/fullchain\.pem\n[^]*missing +\/etc\/plantcast\/p1\/tokens/);
+    const completed = third.run('plantcast init p1');
+    assert.deepEqual([completed.code, /^engineer +pc_[^]*^viewer +pc_/m.test(completed.out)], [0, true], completed.err);
+    const made = ok(third.run(`cd ${ETC} && stat -c '%n %U %G %a' tokens tls/* && ` +
+        'openssl x509 -in tls/fullchain.pem -noout -ext subjectAltName'));
+    assert.match(made, /tokens root plantcast 640\n[^]*ca\.key root root 600\n[^]*privkey\.pem root plantcast 640\n[^]*DNS:localhost/);
+    assert.match(third.run('plantcast init p1').err, /exists already/);
 });
 
 test('a passphrase, as age asks for it', { ...options, skip: options.skip || (has('script') ? false : 'no script') }, () => {

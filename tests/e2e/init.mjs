@@ -64,7 +64,7 @@ test('init touches nothing that is there, and gives the next plant another port'
     const options = readFileSync(etc('one/options'), 'utf8');
     const again = init('one', '--plant', plant.folder);
     assert.equal(again.code, 1);
-    assert.match(again.err, /is there already/);
+    assert.match(again.err, /exists already/);
     assert.equal(readFileSync(etc('one/options'), 'utf8'), options);
     for (const [name, port] of [['two', 8443], ['three', 8444]]) {
         const { out, err } = init(name, '--plant', plant.folder, '--host', 'plant.example');
