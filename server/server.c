@@ -695,8 +695,9 @@ int server_check(const struct server_params *params)
     if (!plant)
         fprintf(stderr, "plantcastd: %s: %d error%s\n", params->plant_path, diag.errors, diag.errors == 1 ? "" : "s");
     else
-        printf("%s: %zu assets, %zu groups, %zu source%s, %zu tags, %zu of them sensors: %s", params->plant_path, plant->asset_count,
-               plant->group_count, plant->source_count, plant->source_count == 1 ? "" : "s", plant->tag_count, sensors,
+        printf("%s: %zu asset%s, %zu group%s, %zu source%s, %zu tag%s, %zu of them sensors: %s", params->plant_path, plant->asset_count,
+               plant->asset_count == 1 ? "" : "s", plant->group_count, plant->group_count == 1 ? "" : "s", plant->source_count,
+               plant->source_count == 1 ? "" : "s", plant->tag_count, plant->tag_count == 1 ? "" : "s", sensors,
                status ? "not good" : "good");
     if (plant && diag.errors + diag.warnings > 0)
         printf(" (%d error%s, %d warning%s)", diag.errors, diag.errors == 1 ? "" : "s", diag.warnings, diag.warnings == 1 ? "" : "s");

@@ -83,7 +83,12 @@ void read_plan_text(struct text *out, const struct plant *plant, int source_inde
     const struct plant_source *source = &plant->sources[source_index];
     struct read_plan plan;
     if (strcmp(source->kind, "modbus") != 0) {
-        text_add(out, "source %s: %s, nothing to read\n", source->id, source->kind);
+        size_t tags = 0;
+        for (size_t i = 0; i < plant->tag_count; i++)
+            tags += plant->tags[i].source == source_index;
+        add_way(out, source);
+        text_add(out, "%s%s: %s %zu tag%s\n", source->host_count > 0 ? ": " : "", source->kind,
+                 source->host_count > 0 ? "subscribes to" : "no requests, plays", tags, tags == 1 ? "" : "s");
         return;
     }
     read_plan_init(&plan, plant, source_index);

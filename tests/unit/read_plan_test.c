@@ -241,6 +241,19 @@ TEST(a_plan_is_put_in_words)
     assert_non_null(strstr(text.at, "source a: /dev/ttyS0, 1200 baud, parity N, 1 stop bit: 4 tags"));
     assert_non_null(strstr(text.at, "106 bytes in a second; the pauses take 6 % of the time; 123 % of what the line can carry: TOO MUCH"));
     text_finish(&text);
+    mem_free(plant->sources[0].kind);
+    plant->sources[0].kind = mem_strdup("replay");
+    plant->sources[0].transport = TRANSPORT_TCP;
+    read_plan_text(&text, plant, 0);
+    assert_string_equal(text.at, "source a: replay: no requests, plays 4 tags\n");
+    text_finish(&text);
+    mem_free(plant->sources[0].kind);
+    plant->sources[0].kind = mem_strdup("opcua");
+    plant->sources[0].host_count = 1;
+    read_plan_text(&text, plant, 0);
+    assert_string_equal(text.at, "source a: 127.0.0.1:1: opcua: subscribes to 4 tags\n");
+    text_finish(&text);
+    plant->sources[0].host_count = 0;
     mem_free(plant->sources[0].hosts[0]);
 }
 
