@@ -360,6 +360,7 @@ void session_requested(struct session *session, const struct frame_request *requ
     if (!replaced)
         pacer_asked(&session->delivery.pacer);
     session->demand.refining = request->urgency == URGENCY_REFINE || (session->demand.refining && session->delivery.pacer.asked > 1);
+    session->delivery.pacer.ladder.reprojects = request->depth;
     session->demand.input = session->demand.any = session->demand.data = session->tile.moved = false;
     session->demand.refined = request->view.tier != TIER_REFINED ? REFINED_NOT : request->draft ? REFINED_DRAFT : REFINED_FULL;
     if (session->demand.refined)

@@ -225,6 +225,25 @@ TEST(a_slow_network_gets_small_pictures_in_time)
     assert_true(pacer.ladder.size == 0); /* the decoder is not the bottleneck, so the size stays */
 }
 
+/* A client that reprojects gets fewer and better pictures. */
+TEST(a_client_that_reprojects_gets_better_pictures)
+{
+    double rates[2], bytes[2];
+    for (int reprojects = 0; reprojects < 2; reprojects++) {
+        struct pacer pacer = fresh();
+        struct pacer_world world = { .bytes_per_s = 1.7e6, .rtt_ns = 200 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
+        world.decode_ns = 8 * MS;
+        pacer.ladder.reprojects = reprojects;
+        run_world(&world, &pacer, 5);
+        measure(&world);
+        run_world(&world, &pacer, 60);
+        rates[reprojects] = rate(&world);
+        bytes[reprojects] = (double)world.most_bytes;
+        print_message("%.1f pictures a second of at most %.0f bytes\n", rates[reprojects], bytes[reprojects]);
+    }
+    assert_true(bytes[1] > 1.2 * bytes[0] && rates[1] < rates[0] && rates[1] > 8);
+}
+
 /* Decoding takes 150 ms: the pacer reduces pixels, not quality, and at most one frame waits at the decoder. */
 TEST(a_slow_decoder_gets_fewer_pixels)
 {

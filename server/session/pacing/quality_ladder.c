@@ -75,10 +75,12 @@ double quality_ladder_bytes(const struct quality_ladder *ladder)
 }
 
 /* Returns the factor by which the limit on a frame's transfer time grows at this step. A step whose next one has fewer pixels gets twice
-   the time: viewers at different picture sizes can no longer share frames. */
-static int slack_factor(int step)
+   the time: viewers at different picture sizes can no longer share frames. A client that reprojects gets 120 ms (1.5 * SLOW_NS) for a
+   frame, which still is 8 frames a second. */
+static double slack_factor(const struct quality_ladder *ladder, int step)
 {
-    return step < QUALITY_LADDER_STEPS - 1 && steps[step + 1].rung.scale < 1 ? 2 : 1;
+    double usual = ladder->reprojects ? 1.5 : 1;
+    return step < QUALITY_LADDER_STEPS - 1 && steps[step + 1].rung.scale < 1 ? 2 : usual;
 }
 
 /* Returns the best step (the lowest index) whose frames the network is expected to carry within limit_ns. */
@@ -86,7 +88,7 @@ static int best_within(const struct quality_ladder *ladder, const struct channel
 {
     int step = 0;
     while (step < QUALITY_LADDER_STEPS - 1 &&
-           channel_transfer_ns(channel, ladder->unit_bytes * steps[step].bytes) > limit_ns * slack_factor(step))
+           (double)channel_transfer_ns(channel, ladder->unit_bytes * steps[step].bytes) > (double)limit_ns * slack_factor(ladder, step))
         step++;
     return step;
 }
@@ -119,7 +121,7 @@ static void go_down(struct quality_ladder *ladder, int step, int64_t now_ns)
 static void follow_network(struct quality_ladder *ladder, const struct channel *channel, int64_t now_ns)
 {
     int down = best_within(ladder, channel, SLOW_NS), up = best_within(ladder, channel, FAST_NS);
-    bool lags = channel->lag_ns > 2.0 * SLOW_NS * slack_factor(ladder->step) && ladder->step < QUALITY_LADDER_STEPS - 1 &&
+    bool lags = channel->lag_ns > 2.0 * SLOW_NS * slack_factor(ladder, ladder->step) && ladder->step < QUALITY_LADDER_STEPS - 1 &&
                 now_ns - ladder->down_ns >= SETTLE_NS;
     if (down > ladder->step || lags) {
         go_down(ladder, down > ladder->step ? down : ladder->step + 1, now_ns);

@@ -17,6 +17,7 @@ struct quality_ladder { /* initialise with quality_ladder_init() */
     int step;           /* index of the quality step, 0: best; chosen by the bandwidth */
     int size;           /* index of the picture size, 0: full; chosen by the client's decoding time or by the server's rendering time */
     double unit_bytes;  /* estimated size in bytes of a frame at step 0, smoothed */
+    bool reprojects;    /* true: the client shows its newest picture from the present camera, so fewer and better frames suffice */
     bool known;         /* true: at least one frame was acknowledged, so unit_bytes is measured */
     /* monotonic times since when these conditions hold: a better step fits; a larger picture fits; decoding takes too long. 0: the
        condition does not hold now */
