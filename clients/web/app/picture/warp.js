@@ -119,6 +119,8 @@ export class Warp {
         this.canvas.style.display = 'none';
         if (!this.open())
             return;
+        this.canvas.addEventListener('webglcontextlost', (event) => this.lose(event));
+        this.canvas.addEventListener('webglcontextrestored', () => this.regain());
         viewport.canvas.after(this.canvas);
         this.worker = new Worker(new URL('./warp_worker.js', import.meta.url), { type: 'module' });
         this.worker.onmessage = ({ data }) => this.take(data);
@@ -144,7 +146,8 @@ export class Warp {
             console.warn(`pictures are not warped: ${error.message}`);
             return false;
         }
-        this.canvas.addEventListener('webglcontextlost', () => this.giveUp());
+        // fit() creates the textures of `reduced` when the canvas changes its size, as it does from this size
+        this.canvas.width = this.canvas.height = 1;
         gl.enable(gl.DEPTH_TEST);
         gl.enable(gl.CULL_FACE);
         gl.depthFunc(gl.LEQUAL);
@@ -172,7 +175,26 @@ export class Warp {
         return texture;
     }
 
-    // Shows pictures unwarped from now on, because WebGL or the worker is lost.
+    // Shows pictures unwarped until the browser restores WebGL.
+    lose(event) {
+        event.preventDefault(); // without this, the browser does not restore WebGL
+        this.hide();
+        this.viewport.warp = null;
+        this.viewport.invalidate();
+    }
+
+    // Warps again after the browser has restored WebGL. Programs, textures and buffers of the lost context do not exist any more.
+    regain() {
+        this.source = this.loaded = this.painted = null;
+        for (const part of this.grids.flatMap(({ parts }) => parts ?? []))
+            part.buffers = null;
+        if (!this.canvas.isConnected || !this.open())
+            return;
+        this.viewport.warp = this;
+        this.viewport.invalidate();
+    }
+
+    // Shows pictures unwarped from now on, because WebGL or the worker fails.
     giveUp() {
         this.hide();
         this.viewport.warp = null;
