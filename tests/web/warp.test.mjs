@@ -201,6 +201,13 @@ test('a camera that jumps, or changes its projection, gets no picture from elsew
     assert.ok(isNear(PARALLEL, { ...PARALLEL, height_m: 7 }));
 });
 
+test('a picture drawn with fewer pixels keeps its exact shape', () => {
+    const gl = new Proxy({}, { get: () => () => {} }), canvas = { width: 1, height: 1, style: {} };
+    const warp = Object.assign(Object.create(Warp.prototype), { gl, canvas, reduced: [], intervals: [], last: 0, mostPx: 10000 });
+    warp.fit({ fullWidth: 322, fullHeight: 178 });
+    assert.deepEqual([canvas.width, canvas.height, canvas.style.aspectRatio], [134, 74, '322 / 178']);
+});
+
 test('pictures wait for their depth, but not for a worker that does not answer', () => {
     let now = 0, draws = 0;
     mock.timers.enable({ apis: ['setTimeout'] });

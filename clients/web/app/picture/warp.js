@@ -398,6 +398,7 @@ export class Warp {
             if (middle > SLOW_MS)
                 this.mostPx = Math.max(LEAST_PX, canvas.width * canvas.height / 2);
         }
+        canvas.style.aspectRatio = `${fullWidth} / ${fullHeight}`; // exact, because a reduced width and height are rounded
         const scale = Math.min(1, Math.sqrt(this.mostPx / (fullWidth * fullHeight)));
         const [width, height] = [fullWidth, fullHeight].map((px) => Math.round(px * scale));
         if (canvas.width === width && canvas.height === height)
