@@ -16,10 +16,18 @@ const points = (...list) => ({ step: false, bucket_us: 0, points: list });
 
 test('a line holds its last value until now, and breaks where there is none', () => {
     const series = points([1e6, 5, GOOD_CODE], [2e6, null, BAD_CODE], [4e6, 7, GOOD_CODE]);
-    assert.deepEqual(line(series, 0, 6e6), [[1, 2, 4, 6], [5, null, 7, 7]]);
-    assert.deepEqual(line(points([1e6, 5, GOOD_CODE], [2e6, null, BAD_CODE]), 0, 6e6), [[1, 2], [5, null]]);
+    assert.deepEqual(line(series, 0, 6e6), [[1, 1.999999, 2, 4, 6], [5, 5, null, 7, 7]]);
+    assert.deepEqual(line(points([1e6, 5, GOOD_CODE], [2e6, null, BAD_CODE]), 0, 6e6), [[1, 1.999999, 2], [5, 5, null]]);
     assert.deepEqual(line(points(), 0, 6e6), [[], []]);
     assert.deepEqual(line(points([1e6, 5, BAD_CODE]), 0, 6e6), [[1], [null]], 'a value that is bad is none');
+});
+
+test('a value holds until the quality changes, in the line, its values and its statistics', () => {
+    const series = points([0, 20, GOOD_CODE], [8e6, 50, UNCERTAIN_CODE], [12e6, 70, UNCERTAIN_CODE], [20e6, null, BAD_CODE]);
+    assert.deepEqual(line(series, 0, 24e6), [[0, 7.999999, 8, 12, 19.999999, 20], [20, 20, 50, 70, 70, null]]);
+    assert.deepEqual([4e6, 8e6, 10e6, 16e6, 22e6].map((us) => valueAt(series, us)), [20, 50, 60, 70, null]);
+    const { mean, known } = statistics(series, 0, 20e6);
+    assert.deepEqual([mean, known], [(20 * 8 + 60 * 4 + 70 * 8) / 20, 1]);
 });
 
 test('steps are steps', () => {

@@ -34,7 +34,7 @@ export function line(series, fromUs, toUs) {
         if (length > 0)
             putInterval(put, point, length, points[i - 1], points[i + 1]);
         else
-            putPoint(put, point, series.step, ys);
+            putPoint(put, point, points[i - 1], series.step);
     });
     const last = ys.findLast((value) => value !== undefined);
     if (points.length > 0 && last !== null && xs.at(-1) < toUs / 1e6)
@@ -42,12 +42,11 @@ export function line(series, fromUs, toUs) {
     return [xs, ys];
 }
 
-// Adds a point. Of a step tag, a value holds until the next point, so the old value is added just before that point as well.
-function putPoint(put, [us, value, quality], step, ys) {
-    const shown = severityOf(quality) === BAD ? null : value;
-    const before = ys.at(-1);
-    if (step && shown !== null && before !== null && before !== undefined)
-        put(us - 1, before);
+// Adds a point. Where no straight line leads to it (HISTORY.md), the value before holds until just before the point.
+function putPoint(put, [us, value, quality], before, step) {
+    const shown = severityOf(quality) === BAD ? null : value, isJoined = !step && shown !== null && before?.[2] === quality;
+    if (!isJoined && before && before[1] !== null && severityOf(before[2]) !== BAD)
+        put(us - 1, before[1]);
     put(us, shown);
 }
 

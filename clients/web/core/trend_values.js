@@ -40,7 +40,7 @@ function pieces({ points, bucket_us: length, step }, fromUs, toUs) {
             if (last !== null && until > us + length)
                 add(us + length, until, last, next?.[4] ?? last);
         } else if (point[1] !== null && severityOf(point[2]) < BAD) {
-            const until = next?.[0] ?? toUs, flat = step || !next || next[1] === null || severityOf(next[2]) >= BAD;
+            const until = next?.[0] ?? toUs, flat = step || !next || next[1] === null || next[2] !== point[2];
             add(point[0], until, point[1], flat ? point[1] : next[1]);
         }
     });
@@ -82,7 +82,7 @@ export function valueAt({ points, bucket_us: length, step }, us) {
         return point[3];
     if (first === null || (length === 0 && severityOf(point[2]) >= BAD))
         return null;
-    if (!next || step || last === null || last === undefined || (length === 0 && severityOf(next[2]) >= BAD))
+    if (!next || step || last === null || last === undefined || (length === 0 && next[2] !== point[2]))
         return first;
     return first + ((last - first) * (us - begin)) / (next[0] - begin);
 }
