@@ -97,6 +97,14 @@ static void add_date(struct text *out, int64_t utc_us)
                  utc.tm_hour, utc.tm_min, utc.tm_sec);
 }
 
+/* Returns why an escalated alarm is sent again; "" if it is not escalated or has ended. Without operators' acknowledgements, as with alarms:
+ * display, the daemon knows only that the alarm is still there. */
+static const char *escalated_for(const struct outbox_item *item)
+{
+    bool waits = item->status == ALARM_UNACKNOWLEDGED || item->status == ALARM_RETURNED;
+    return item->step == 0 || item->ended_us ? "" : waits ? "Not acknowledged" : "Still present";
+}
+
 static void add_name(struct text *out, const struct plant *plant, const struct outbox_item *item)
 {
     const struct plant_tag *tag = tag_of(plant, item);
@@ -119,8 +127,8 @@ static void add_line(struct text *out, const struct plant *plant, const struct o
         text_add(out, " (limit %.6g%s%s)", item->limit, space, unit);
     if (asset)
         text_add(out, "; %s%s%s", asset->tag, *asset->area ? ", " : "", asset->area);
-    if (item->step > 0)
-        text_add(out, "; not acknowledged since");
+    if (*escalated_for(item))
+        text_add(out, "; %s", escalated_for(item));
     if (item->ended_us)
         text_add(out, item->status == ALARM_ACKNOWLEDGED ? "; acknowledged since" : "; no longer present");
     text_add(out, "\r\n");
@@ -134,7 +142,8 @@ static void add_subject(struct text *out, const struct plant *plant, const struc
         of_it++;
     text_add(out, "[%s] ", plant->name);
     if (message->count == 1) {
-        text_add(out, "%sP%d ", message->items[0].step > 0 ? "Not acknowledged: " : "", most_urgent);
+        const char *why = escalated_for(&message->items[0]);
+        text_add(out, "%s%sP%d ", why, *why ? ": " : "", most_urgent);
         add_name(out, plant, &message->items[0]);
     } else {
         text_add(out, "%zu alarms, %zu of priority %d", message->count, of_it, most_urgent);

@@ -413,6 +413,31 @@ CASE(a_mail_says_what_and_since_when)
     text_finish(&mail);
 }
 
+/* Without acknowledgements in Plantcast, nobody knows here whether an operator has acknowledged the alarm in the control system. */
+CASE(an_escalated_mail_says_only_what_is_known)
+{
+    load(f, "  - { id: all, to: boss, escalate: [{ after_min: 10, to: ops }] }\n");
+    static const char *const said[] = { [LOCAL] = "Not acknowledged", [DISPLAY] = "Still present" };
+    for (int mode = LOCAL; mode <= DISPLAY; mode++) {
+        struct outbox_message message;
+        struct text mail = { 0 };
+        int64_t raised_us = T0 + mode * 60 * MIN;
+        put(f, mode, mode, true, true, raised_us, raised_us);
+        outbox_tick(f->outbox, raised_us + 10 * MIN);
+        assert_true(outbox_next(f->outbox, OPS, raised_us + 10 * MIN + 3 * S, &message));
+        notify_mail_text(&mail, f->c->plant, &f->c->plant->notify->recipients[OPS], &message, raised_us + 11 * MIN);
+        char *subject = decoded(strstr(mail.at, "?B?") + 3), *body = decoded(strstr(mail.at, "\r\n\r\n"));
+        assert_non_null(strstr(subject, said[mode]));
+        assert_non_null(strstr(body, said[mode]));
+        assert_null(strstr(body, said[1 - mode]));
+        outbox_sent(f->outbox, OPS, raised_us + 11 * MIN);
+        put(f, mode, mode, false, false, raised_us, raised_us + 12 * MIN);
+        mem_free(subject);
+        mem_free(body);
+        text_finish(&mail);
+    }
+}
+
 CASE(a_damaged_file_is_refused)
 {
     load(f, "  - { id: all, to: ops }\n");
