@@ -26,6 +26,7 @@ static const int64_t CONNECT_NS = 10 * NS_PER_S;
 struct topic {
     char *name, *unit;       /* unit: text of a JSON object with the unit as its only member */
     int64_t received_utc_ns; /* UTC time of the reading that was published last */
+    double value;            /* value that was published last; a sample with the same time may replace it */
     uint32_t quality;
     bool is_published; /* published on the current connection */
 };
@@ -77,6 +78,7 @@ static bool publish_reading(struct publisher *publisher, struct topic *topic, co
         snprintf(value, sizeof(value), "%.15g", reading->value);
     text_add(&text, "{\"value\":%s,\"time\":\"%s\",\"quality\":%u,%s", value, time, reading->quality, topic->unit + 1);
     topic->received_utc_ns = reading->received_utc_ns;
+    topic->value = reading->value;
     topic->quality = reading->quality;
     topic->is_published = true;
     bool good = publish(publisher, topic->name, text.at);
@@ -92,7 +94,8 @@ static bool publish_readings(struct publisher *publisher)
     for (size_t i = 0; i < snapshot->count && good; i++) {
         struct topic *topic = &publisher->topics[i];
         const struct reading *reading = &snapshot->readings[i];
-        if (!topic->is_published || topic->received_utc_ns != reading->received_utc_ns || topic->quality != reading->quality)
+        bool same = topic->received_utc_ns == reading->received_utc_ns && topic->quality == reading->quality;
+        if (!topic->is_published || !same || topic->value != reading->value)
             good = publish_reading(publisher, topic, reading);
     }
     return good;

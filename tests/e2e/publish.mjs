@@ -108,6 +108,27 @@ test('another Plantcast shows it, with the same values, qualities and times', op
     await other.until('TI-1', { quality_name: 'Good' });
 });
 
+test('a value that replaces another of the same time is published', options, async () => {
+    const late = await PublishedPlant.create(broker);
+    const keys = 'payload: json, topic: "in/{tag}", time: t', rows = ['A,,,°C,temperature,E-101,0.5,0,0,60,,,,,'];
+    late.write(keys, rows);
+    writeFileSync(late.file, `${readFileSync(late.file, 'utf8')}publish:
+  { host: 127.0.0.1, port: ${broker.port}, prefix: plantcast/late, every_s: 0.2, keepalive_s: 5 }
+`);
+    try {
+        assert.equal(late.plant.prepare().code, 0);
+        await late.plant.startDaemon();
+        await late.daemon.line(/source broker: .*: reading/);
+        const t = Math.floor(Date.now() / 1000);
+        for (const value of [10, 11]) {
+            client.publish('in/A', JSON.stringify({ value, t }));
+            await until(`A ${value}`, () => JSON.parse(heard['plantcast/late/tags/A'] ?? '{}').value === value);
+        }
+    } finally {
+        await late.destroy();
+    }
+});
+
 test('a broker that is killed and comes back has all anew; who dies is offline', options, async () => {
     await broker.restart();
     await plant.daemon.line(/publish: .*: not publishing: /);
