@@ -269,11 +269,11 @@ $(support): $(call objects,$(wildcard tests/support/*.c tests/support/*.cc))
 # Tests that compare distances with an exact solver of CGAL.
 $(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: $(call objects,$(wildcard tests/oracle/*.cc))
 $(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: pkg_libs += -lgmp -lmpfr
-$(out)/tests/unit/rvm_test $(out)/tests/unit/rvm_fuzz_test: $(out)/lib/import.a
+$(foreach t,rvm rvm_fuzz outline_fuzz,$(out)/tests/unit/$(t)_test): $(out)/lib/import.a
 $(out)/tests/unit/revision_test: $(out)/lib/import.a $(out)/lib/match.a
 $(out)/tests/unit/rvm_test $(out)/tests/unit/rvm_fuzz_test $(out)/tests/unit/revision_test: pkg_libs += -lGLU
 $(out)/tests/unit/revision_test: pkg_libs += -lminizip -lexpat
-match_tests := $(foreach t,match tag_export,$(out)/tests/unit/$(t)_test)
+match_tests := $(foreach t,match tag_export tag_list_fuzz,$(out)/tests/unit/$(t)_test)
 $(match_tests): $(out)/lib/match.a
 $(match_tests): pkg_libs += -lminizip -lexpat
 # Writes STEP and IGES files for the tests of the importer.

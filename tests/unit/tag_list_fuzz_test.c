@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Replays the seeds of the tag list fuzzer and random mutations of them. */
+#include "tests/fuzz/tag_list_fuzz.c"
+
+#include "tests/support/test.h"
+
+#include "tests/support/replay.h"
+
+TEST(seeds_and_their_changes_keep_the_promises)
+{
+    assert_true(replay_folder("tests/fuzz/tag_list", 400, LLVMFuzzerTestOneInput) >= 3);
+}
