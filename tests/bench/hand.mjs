@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Measures how soon the page reacts to the hand: sends real pointer events to chromium, which shows the demo plant through a slow link.
-// Prints one JSON object per row. Arguments: WIDTHxHEIGHT (1920x1080), CODEC (auto), ROUND_TRIP_MS (0), BYTES_PER_S of the link (0: no
-// limit).
+// Prints one JSON object per row. Arguments: WIDTHxHEIGHT, CODEC (auto), ROUND_TRIP_MS (0), BYTES_PER_S of the link (0: no limit). Without
+// arguments, measures the links of LINKS in turn, and prints a table of the goals.
 import { createRequire } from 'node:module';
 import { missing, startPlant } from '../e2e/support/plant.mjs';
 import { cpuMs, family } from '../e2e/support/processes.mjs';
 import { Relay, relayMissing } from '../e2e/support/relay.mjs';
 
 const { chromium } = createRequire(new URL('../e2e/package.json', import.meta.url))('playwright-core');
-const [size = '1920x1080', codec = 'auto', roundTripMs = '0', bytesPerS = '0'] = process.argv.slice(2);
-const [width, height] = size.split('x').map(Number);
+// Links with the largest time to the first changed pixel (p95, ms) and the least number of updates per second that are goals.
+const LINKS = [['1280x720', 'jpeg', 0, 0, 34, 55], ['1280x720', 'jpeg', 50, 0, 34, 55], ['1280x720', 'jpeg', 200, 0, 34, 55],
+    ['1280x720', 'jpeg', 300, 0, 34, 55], ['1280x720', 'jpeg', 0, 125000, 34, 55], ['1920x1080', 'jpeg', 0, 0, 34, 30],
+    ['1920x1080', 'jpeg', 200, 0, 34, 30]];
+const BROWSER_MS = 25; // largest processor time of the browser for an update that is a goal
+let width, height, name, results; // of the link that is being measured
 const SECONDS = Number(process.env.SECONDS) || 5, TRIES = Number(process.env.TRIES) || 20, HZ = 60, CALM_MS = 400;
 const ARGS = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking'];
-const name = `hand_${size}_${codec}_${roundTripMs}ms${bytesPerS === '0' ? '' : `_${bytesPerS}Bps`}`;
-const say = (what, value, unit, more = {}) => console.log(JSON.stringify({ name: `${name}_${what}`, value, unit, ...more }));
+function say(what, value, unit, more = {}) {
+    console.log(JSON.stringify({ name: `${name}_${what}`, value, unit, ...more }));
+    results[what] = more.p95 ?? value;
+}
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const round = (x) => Math.round(10 * x) / 10;
 const rank = (values, share) => round([...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))]);
@@ -121,10 +127,15 @@ async function measure(page, browserPid, daemonPid) {
         await page.screenshot({ path: process.env.SHOT });
 }
 
-const why = missing() ?? relayMissing();
-if (why) {
-    say('seen_per_s', null, '1/s', { why });
-} else {
+async function run(size, codec = 'auto', roundTripMs = 0, bytesPerS = 0) {
+    name = `hand_${size}_${codec}_${roundTripMs}ms${Number(bytesPerS) === 0 ? '' : `_${bytesPerS}Bps`}`;
+    results = {};
+    [width, height] = size.split('x').map(Number);
+    const why = missing() ?? relayMissing();
+    if (why) {
+        say('seen_per_s', null, '1/s', { why });
+        return;
+    }
     const plant = await startPlant();
     const port = Number(new URL(plant.url).port);
     const relay = await Relay.open(port, { bytesPerS: Number(bytesPerS), delayMs: Number(roundTripMs) / 2 });
@@ -132,7 +143,7 @@ if (why) {
     try {
         const browser = await chromium.connect(server.wsEndpoint());
         const page = await browser.newPage({ viewport: { width: width + 300, height: height + 200 } });
-        await page.goto(`http://127.0.0.1:${roundTripMs === '0' && bytesPerS === '0' ? port : relay.port}/?codec=${codec}`);
+        await page.goto(`http://127.0.0.1:${Number(roundTripMs) + Number(bytesPerS) === 0 ? port : relay.port}/?codec=${codec}`);
         await page.waitForFunction(() => globalThis.plantcast?.session.picture);
         // The picture gets exactly the size that is measured.
         await page.evaluate(([w, h]) => Object.assign(document.getElementById('viewport').style,
@@ -144,4 +155,19 @@ if (why) {
         relay.close();
         await plant.stop();
     }
+}
+
+if (process.argv.length > 2) {
+    await run(...process.argv.slice(2));
+} else {
+    const rows = [], met = (value, isMet) => `${value ?? '–'} ${isMet ? '(met)' : '(not met)'}`;
+    for (const [size, codec, roundTripMs, bytesPerS, pixelMs, rate] of LINKS) {
+        await run(size, codec, roundTripMs, bytesPerS);
+        const { first_pixel_ms: first, updates_per_s: updates, cpu_per_update_ms: cpu, pictures_per_s: pictures } = results;
+        rows.push([`${size}, ${roundTripMs} ms${bytesPerS ? `, ${bytesPerS * 8 / 1e6} Mbit/s` : ''}`, met(first, first <= pixelMs),
+            met(updates, updates >= rate), met(cpu, cpu <= BROWSER_MS), pictures ?? '–']);
+    }
+    console.log(['', '| picture, round trip | pointer to first changed pixel, p95, ms (34) | updates/s (720p: 55, 1080p: 30) |' +
+        ` processor time of an update, ms (${BROWSER_MS}) | server pictures/s |`, '|---|---|---|---|---|',
+    ...rows.map((cells) => `| ${cells.join(' | ')} |`)].join('\n'));
 }
