@@ -3,14 +3,17 @@
 import assert from 'node:assert/strict';
 import { mock, test } from 'node:test';
 import { Announcer } from '../../clients/web/app/alarms/announcer.js';
-import { learnWords } from '../../clients/web/core/words.js';
+import { learnWords, say } from '../../clients/web/core/words.js';
 
 test('in a flood each alarm is announced once, and no text is replaced before it can be read', async () => {
     await learnWords();
     const said = [], region = { set textContent(text) { said.push(text); } };
-    const session = { model: { readings: [] }, time: { atUs: 1 }, now: () => 0, clockUs: () => null };
-    const alarm = (n, priority = 3) => ({ tag: { name: `T-${n}`, index: n }, kind: 'H', state: 'unacknowledged', priority, value: null,
-        limit: null });
+    const rows = new Map(), session = { model: { readings: [], alarms: { rows } }, time: { atUs: 1 }, now: () => 0, clockUs: () => null };
+    const alarm = (n, priority = 3, state = 'unacknowledged') => {
+        const row = { id: `${n}/H`, tag: { name: `T-${n}`, index: n }, kind: 'H', state, priority, value: null, limit: null };
+        rows.set(row.id, row);
+        return row;
+    };
     mock.timers.enable({ apis: ['setTimeout'] });
     globalThis.document = { getElementById: () => region };
     try {
@@ -26,6 +29,17 @@ test('in a flood each alarm is announced once, and no text is replaced before it
         assert.match(said[1], /^T-7 .*; T-1 .*; T-2 .*; .*\b16\b/);
         announcer.take([alarm(20)]);
         assert.match(said[2], /^T-20 /, 'at once when none is being read');
+        announcer.take([21, 22, 23, 24, 25].map((n) => alarm(n)));
+        alarm(21, 3, 'acknowledged');
+        rows.delete('22/H');
+        alarm(23, 3, 'returned');
+        mock.timers.tick(3000);
+        assert.match(said[3], /^T-23 [^;]*; T-24 [^;]*; T-25 [^;]*$/, 'without alarms that were acknowledged or ended meanwhile');
+        assert.ok(said[3].includes(say('state.returned')), said[3]);
+        announcer.take([alarm(26)]);
+        alarm(26, 3, 'acknowledged');
+        mock.timers.tick(3000);
+        assert.equal(said.length, 4, 'nothing is left to announce');
     } finally {
         delete globalThis.document;
         mock.timers.reset();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tells screen readers about each new alarm once: tag, kind, state and value. Loaded with the first alarm that is raised while the page is
 // open.
+import { calls } from '../../core/alarms.js';
 import { say } from '../../core/words.js';
 import { byId } from '../common/dom.js';
 import { limitText } from './alarm_bar.js';
@@ -8,14 +9,16 @@ import { limitText } from './alarm_bar.js';
 const MOST = 3; // maximum number of alarms whose text is read out in one announcement; of the others, only the number is read out
 const READ_MS = 3000; // shortest time between two announcements: a screen reader drops a text that is replaced too soon
 
+const isOpen = ({ state }) => calls(state) && state !== 'acknowledged';
+
 export class Announcer {
     constructor({ session }) {
-        Object.assign(this, { session, waiting: [], timer: null });
+        Object.assign(this, { session, waiting: new Set(), timer: null }); // waiting: ids of queued alarms
     }
 
     // Queues newly raised alarms. All alarms that are queued when the next announcement is due are announced together.
     take(raised) {
-        this.waiting.push(...raised.map((alarm) => ({ priority: alarm.priority, text: this.textOf(alarm) })));
+        raised.forEach(({ id }) => this.waiting.add(id));
         if (this.timer === null)
             this.announce();
     }
@@ -25,13 +28,17 @@ export class Announcer {
             .filter(Boolean).join(', ');
     }
 
+    // Reads out the queued alarms with their present states, without alarms that were acknowledged or ended while they were queued.
     announce() {
         this.timer = null;
-        if (this.waiting.length === 0)
+        const { rows } = this.session.model.alarms;
+        const all = [...this.waiting].map((id) => rows.get(id)).filter((alarm) => alarm && isOpen(alarm))
+            .sort((a, b) => a.priority - b.priority);
+        this.waiting.clear();
+        if (all.length === 0)
             return;
-        const all = this.waiting.splice(0).sort((a, b) => a.priority - b.priority);
         const more = all.length > MOST ? [say('alarms.more', { count: all.length - MOST })] : [];
-        byId('alarm-said').textContent = [...all.slice(0, MOST).map(({ text }) => text), ...more].join('; ');
+        byId('alarm-said').textContent = [...all.slice(0, MOST).map((alarm) => this.textOf(alarm)), ...more].join('; ');
         this.timer = setTimeout(() => this.announce(), READ_MS);
     }
 }
