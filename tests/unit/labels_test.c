@@ -55,12 +55,16 @@ static void check_vector(const char *name)
                                .measure = measure,
                                .arg = json_object_get(vector, "callout") };
     const json_t *slots = json_object_get(vector, "slots"), *callouts = json_object_get(vector, "callouts");
+    const json_t *leads_of = json_object_get(vector, "leads"); /* for each item: 1 if a leader line connects it with its call-out */
     labels_place(items, count, &area, places);
     for (size_t i = 0; i < count; i++) {
         if (places[i].slot != (int)at(slots, i))
             fail_msg("%s: item %zu has slot %d, not %g", name, i, places[i].slot, at(slots, i));
         if (places[i].callout != (callouts ? (int)at(callouts, i) : LABEL_NONE))
             fail_msg("%s: item %zu is in call-out %d, not %g", name, i, places[i].callout, at(callouts, i));
+        bool leads = places[i].callout != LABEL_NONE && labels_has_leader(items, places, count, area.unit, i);
+        if (leads != (leads_of && at(leads_of, i) > 0))
+            fail_msg("%s: item %zu has %s leader line to its call-out", name, i, leads ? "a" : "no");
     }
     mem_free(items);
     mem_free(boxes);

@@ -25,6 +25,7 @@ for (const name of readdirSync(folder)) {
             measure });
         assert.deepEqual(items.map(({ id }) => placed.get(id)?.slot ?? -1), vector.slots);
         assert.deepEqual(items.map(({ id }) => placed.get(id)?.callout ?? -1), vector.callouts ?? items.map(() => -1));
+        assert.deepEqual(items.map(({ id }) => Number(placed.get(id)?.leads ?? 0)), vector.leads ?? items.map(() => 0));
     });
 }
 
@@ -54,6 +55,17 @@ test('none over another, none over a mark, all inside; important ones are not cr
     }
 });
 
+// Checks that leader lines connect a call-out with its rings up to 60 units away, or else with the nearest one.
+function checkLeaders(members, placed) {
+    const far = ({ id, x, y }) => {
+        const [x1, y1, x2, y2] = leaderLine({ x, y, ...placed.get(id) }, placed.get(id), 0);
+        return Math.hypot(x2 - x1, y2 - y1);
+    };
+    const most = Math.max(60, Math.min(...members.map(far)));
+    for (const item of members)
+        assert.equal(placed.get(item.id).leads, far(item) <= most, `${far(item)} of at most ${most}`);
+}
+
 // Random pictures from a phone's size to a wall's, with few or many rings, and with a legend in the way.
 test('every ring is in a label or a call-out, within the picture and over no legend', () => {
     for (let round = 0; round < 300; round++) {
@@ -71,6 +83,8 @@ test('every ring is in a label or a call-out, within the picture and over no leg
         for (const { id } of rings) {
             const place = placed.get(id);
             assert.ok(place, `ring ${id} of ${rings.length} has none, in ${right} x ${bottom}`);
+            if (place.callout !== undefined)
+                checkLeaders(items.filter((item) => placed.get(item.id)?.callout === place.callout), placed);
             boxes.set(place.callout ?? id, { ...place, right: place.left + place.width, bottom: place.top + place.height });
         }
         const list = [...boxes.values()];

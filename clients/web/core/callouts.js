@@ -9,7 +9,9 @@ const CLOSE = 26, STILL_CLOSE = 34;
 // MOST_GROUPS: maximum number of labels; the distances grow by the factor FARTHER until the number is met
 const MOST_GROUPS = 24, FARTHER = 1.25;
 const STEP_X = 24, STEP_Y = 15, STEPS = 60; // units: spacing of the grid of candidate positions around the centre of the rings
-const FARTHEST = 60; // units: largest distance of a label from the bounding box of its rings, unless it is the only label that remains
+// units: largest distance of a label from the bounding box of its rings, unless it is the only label that remains; also the largest
+// distance from a call-out to the centre of a ring with a leader line
+const FARTHEST = 60;
 const MOST_GROWTHS = 100;                   // maximum number of times that the distances grow; by then they exceed any picture
 
 const OFFSETS = []; // candidate positions [x, y, squared distance], nearest first
@@ -65,8 +67,8 @@ const placeable = (items, area, unit) => (hasArea(area) && unit > 0 && unit < In
     ? items.filter(({ x, y, width, height }) => [x, y, width, height].every(Number.isFinite)) : []);
 
 // Places labels. all: items with rings, the most important first; measure(members) returns { width, height } of their call-out; taken:
-// occupied space (labels.js). Returns [{ members, box, slot }, ...]; each item at a finite position is a member of one. In an area of 0x0
-// there are no labels.
+// occupied space (labels.js). Returns [{ members, box, slot, leads }, ...]; each item at a finite position is a member of one. leads: the
+// Set of those members of a call-out that have a leader line. In an area of 0x0 there are no labels.
 export function placeRings(all, { area, unit, taken, measure }) {
     const order = placeable(all, area, unit);
     let lists, least = unit;
@@ -87,13 +89,22 @@ export function placeRings(all, { area, unit, taken, measure }) {
                 out.push({ members: one.members, slot: Math.min(slot, 1e6), box: slot > 1e6 ? forced(one) : boxOf(one, slot, unit) });
         }
         if (lost.length === 0)
-            return out;
+            return out.map(withLeads);
         const mates = new Map(lost.map((i) => [i, nearest(i)]));
         const joined = components(groups.length, (i, k) => mates.get(i) === k || mates.get(k) === i)
             .map((list) => group(order.filter((item) => list.some((i) => groups[i].members.includes(item))), measure)).filter(hasFiniteBox);
         if (joined.length >= groups.length)
-            return out; // no groups are left to merge, so those without room get no label
+            return out.map(withLeads); // no groups are left to merge, so those without room get no label
         groups = joined;
+    }
+
+    // Adds the members of a call-out that have a leader line: those near its box, or else the nearest. Many long lines would hide the
+    // plant.
+    function withLeads(one) {
+        const { members, box } = one, far = members.map(({ x, y }) =>
+            Math.hypot(Math.max(box.left - x, x - box.right, 0), Math.max(box.top - y, y - box.bottom, 0)));
+        const most = Math.max(FARTHEST * unit, Math.min(...far));
+        return members.length > 1 ? { ...one, leads: new Set(members.filter((_, i) => far[i] <= most)) } : one;
     }
 
     // Returns whether a box is near the rings of a group.

@@ -69,7 +69,8 @@ export function boxAt({ x, y, width, height, ring, across = 0, down = 0 }, slot,
 // picture, or undefined. callout: id of the call-out (one label for several rings) in the previous picture.
 // area: { left, top, right, bottom } in which labels must lie. rings: placeRings() of callouts.js, which places the labels of all rings.
 // measure(items): returns the size of a call-out for these items.
-// Returns a Map id -> { left, top, slot }; items with a ring also have width, height and callout (undefined: a label of its own).
+// Returns a Map id -> { left, top, slot }; items with a ring also have width, height and callout (undefined: a label of its own), and in a
+// call-out `leads` (true: a leader line connects both).
 export function placeLabels(all, { area, unit = 1, blocked = [], rings = null, measure = null }) {
     if (!hasArea(area) || !(unit > 0 && unit < Infinity))
         return new Map();
@@ -108,11 +109,13 @@ export function placeLabels(all, { area, unit = 1, blocked = [], rings = null, m
             return;
         }
     };
-    for (const { members, box, slot } of rings?.(order.filter((item) => item.rank === RANK_RING), { area, unit, taken, measure }) ?? []) {
+    for (const { members, box, slot, leads } of
+        rings?.(order.filter((item) => item.rank === RANK_RING), { area, unit, taken, measure }) ?? []) {
         const callout = members.length > 1 ? members[0].id : undefined;
         taken.add({ ...box, owner: members[0].id });
         for (const item of members) {
-            placed.set(item.id, { left: box.left, top: box.top, width: box.right - box.left, height: box.bottom - box.top, slot, callout });
+            placed.set(item.id, { left: box.left, top: box.top, width: box.right - box.left, height: box.bottom - box.top, slot, callout,
+                leads: leads?.has(item) });
             centres.push(item);
         }
         used += (box.right - box.left) * (box.bottom - box.top);

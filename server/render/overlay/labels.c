@@ -110,3 +110,21 @@ void labels_place(const struct label_item *items, size_t count, const struct lab
     mem_free(layout.labelled);
     mem_free(order);
 }
+
+/* Returns the distance in pixels from the centre of an item's marker to a label. */
+static double label_distance(const struct label_item *item, const struct label_box *box)
+{
+    return hypot(fmax(fmax(box->x - item->x, item->x - box->x - box->width), 0),
+                 fmax(fmax(box->y - item->y, item->y - box->y - box->height), 0));
+}
+
+bool labels_has_leader(const struct label_item *items, const struct label_place *places, size_t count, double unit, size_t i)
+{
+    double nearest = INFINITY;
+    if (places[i].callout == LABEL_NONE)
+        return places[i].slot >= LABEL_FIRST_FAR;
+    for (size_t k = 0; k < count; k++)
+        if (places[k].callout == places[i].callout)
+            nearest = fmin(nearest, label_distance(&items[k], &places[k].box));
+    return label_distance(&items[i], &places[i].box) <= fmax(nearest, LABEL_FARTHEST * unit);
+}

@@ -10,6 +10,8 @@ struct label_box {
 };
 
 enum { LABEL_NONE = -1, LABEL_SLOTS = 16, LABEL_FIRST_FAR = 8, LABEL_MOST_BAD = 12 };
+enum { LABEL_FARTHEST = 60 }; /* u: largest distance of a label from the box around its rings, if other labels
+                                  remain; longest leader line of a call-out, if it has a ring as near */
 enum label_rank { LABEL_NOT_WANTED = -1, LABEL_PLAIN, LABEL_DOUBTFUL, LABEL_BAD, LABEL_BEYOND };
 
 struct label_item {             /* one per visible marker */
@@ -38,5 +40,9 @@ struct label_place {
 
 /* Sets places[i] for items[i]. */
 void labels_place(const struct label_item *items, size_t count, const struct label_area *area, struct label_place *places);
+
+/* Returns whether a leader line connects item i with its label. places: from labels_place(). A call-out has leader lines to the rings near
+   it, or else to the nearest: many long lines would hide the plant. */
+bool labels_has_leader(const struct label_item *items, const struct label_place *places, size_t count, double unit, size_t i);
 
 #endif

@@ -12,8 +12,6 @@
 static const double CLOSE = 26, STILL_CLOSE = 34;
 static const double GROWTH = 1.25; /* factor by which CLOSE and STILL_CLOSE grow, repeatedly, until at most MAX_GROUPS labels remain */
 enum { MAX_GROUPS = 24 };
-/* largest distance of a label from the bounding box of its alarm rings, in units; ignored if only one label remains */
-static const double MAX_DISTANCE = 60;
 /* Grid of further label positions around the centre of the rings, tried nearest first. STEP_X, STEP_Y: spacing in units; STEPS: number of
    steps to each side of the centre. */
 enum { STEP_X = 24, STEP_Y = 15, STEPS = 60, SIDE = 2 * STEPS + 1, OFFSETS = SIDE * SIDE, NOWHERE = -2, FORCED = 1000000 };
@@ -170,12 +168,12 @@ static struct label_box box_at(const struct rings *rings, const struct ring_grou
                                item->height };
 }
 
-/* Returns whether a label is at most MAX_DISTANCE away from the rings of its group. */
+/* Returns whether a label is at most LABEL_FARTHEST away from the rings of its group. */
 static bool is_near(const struct rings *rings, const struct ring_group *group, const struct label_box *box)
 {
     double aside = fmax(0, fmax(box->x - group->item.x, group->item.x - box->x - box->width) - group->across);
     double away = fmax(0, fmax(box->y - group->item.y, group->item.y - box->y - box->height) - group->down);
-    return hypot(aside, away) <= MAX_DISTANCE * rings->layout->area->unit;
+    return hypot(aside, away) <= LABEL_FARTHEST * rings->layout->area->unit;
 }
 
 /* Returns whether the label of a group of alarm rings, with `more` pixels of free space around, fits in this slot (candidate position

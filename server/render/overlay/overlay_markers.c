@@ -322,7 +322,7 @@ static void place_labels(struct pen *pen, struct marker_labels *wanted, int card
             wanted->items[i].rank = LABEL_NOT_WANTED;
     labels_place(wanted->items, wanted->count, &area, places);
     for (size_t i = 0; i < wanted->count; i++)
-        if (places[i].slot >= LABEL_FIRST_FAR || places[i].callout != LABEL_NONE)
+        if (labels_has_leader(wanted->items, places, wanted->count, pen->unit, i))
             draw_leader(pen, &wanted->items[i], &places[i].box);
     for (size_t i = 0; i < wanted->count; i++) {
         if (places[i].slot == LABEL_NONE || (places[i].callout != LABEL_NONE && places[i].callout != (int)i))

@@ -315,7 +315,7 @@ export class Overlay {
     drawLabels(labels) {
         const places = labels.map((label) => [label, this.places.get(label.id)]).filter(([, place]) => place);
         for (const [label, place] of places) {
-            if (place.slot >= FIRST_FAR || place.callout !== undefined)
+            if (place.leads ?? place.slot >= FIRST_FAR)
                 this.drawLeader(label, place);
         }
         for (const [label, place] of places) {
