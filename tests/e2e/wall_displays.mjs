@@ -113,13 +113,29 @@ test('an alarm comes to the pane that is for it, and leaves once it is acknowled
         /PI-1/.test(pane.querySelector('h2').textContent) &&
         pane.querySelector('iframe').contentWindow.plantcast?.session.shown.group === 'pressure'));
     assert.equal(await page.evaluate(() => globalThis.mixed), 0, 'its name stands over no picture of another quantity');
+    const [frame, badge] = await page.evaluate(() => {
+        const pane = document.querySelector('.pane.views.called');
+        return [getComputedStyle(pane, '::after').borderTopColor, getComputedStyle(pane.querySelector('h2 .priority')).borderTopColor];
+    });
+    assert.equal(frame, badge, 'the frame has the colour of the alarm\'s priority');
     await shoot(page, 'wall-display-alarm');
+    await plant.ask('set TI-1 95');
+    await plant.ask('set TI-2 95');
+    await page.waitForFunction(() => { // alarms without room for their long rows have short ones, and the others are counted
+        const { alarms } = globalThis.wall.session.model, rows = [...document.querySelectorAll('.pane.alarms li.brief')];
+        const more = document.querySelector('.pane.alarms .more'), count = more.hidden ? 0 : Number(/\d+/.exec(more.textContent)[0]);
+        return alarms.list().length >= 3 && rows.length > 0 && rows.length + count === alarms.list().length &&
+            rows.every((row) => /^95\.\d+\s\S+$/.test(row.querySelector('.now').textContent));
+    });
+    await shoot(page, 'wall-display-alarms');
     await page.evaluate(() => {
         const { session } = globalThis.wall, all = [...session.model.alarms.rows.values()];
         const alarms = all.filter(({ state }) => state === 'unacknowledged').map(({ tag, kind }) => [tag.name, kind]);
         session.post({ type: 'alarm', seq: 1, action: 'acknowledge', alarms, name: 'kim' });
     });
     await page.waitForFunction(() => !document.querySelector('.pane.views.called'));
+    for (const tag of ['TI-1', 'TI-2'])
+        await plant.ask(`set ${tag} 20`);
 });
 
 test('another display has its own panes', options, async () => {

@@ -44,6 +44,14 @@ function aboutTags(session, names) {
     return [groups.map(quantityText).join(', '), ageOf(oldestMs(session, names))].filter(Boolean).join(' · ');
 }
 
+// Returns a tag's present value and its unit as texts. `known` false: there is no usable value.
+function valueOf({ model }, tag) {
+    const { value, quality } = model.readings[tag.index], { min, max, unit } = model.group(tag.group) ?? { min: 0, max: 1, unit: '' };
+    const known = quality !== 'bad' && value !== null;
+    return known ? { known, text: numberText(value, decimalsFor(max - min)), unit: unitText(tag.unit || unit) }
+        : { known, text: qualityText('bad'), unit: '' };
+}
+
 const timeOf = (session, us) => zoneClock(session.model.plant.time_zone)(us / 1000).time;
 
 // Returns the age of the oldest reading in a picture, for sessions that receive no readings themselves.
@@ -109,8 +117,8 @@ function ViewsPane(pane, context) {
 
     // Shows the alarm's state and the value now, which may change while the alarm's position is shown.
     function sayNow(alarm) {
-        setText(words.querySelector('.state'), `${say(`state.${alarm.state}`)} `);
-        setText(words.querySelector('.raised'), `${nowText(session, alarm)} `);
+        setText(words.querySelector('.now'), [say(`state.${alarm.state}`), nowText(session, alarm),
+            say('walls.since', { time: timeOf(session, alarm.raisedUs) })].filter(Boolean).join(' · '));
     }
 
     function showAlarm(page, alarm) {
@@ -118,9 +126,9 @@ function ViewsPane(pane, context) {
         // resets what a view that a user sent to this pane may have changed: a hidden alarm position, another range of colours
         page.session.setParams({ ...(tag.group ? { group: tag.group } : {}), clip: null, split: null, range: null });
         page.flyToTag(tag);
+        setVariable(element, '--called', `var(--p${alarm.priority})`);
         words.replaceChildren(badge(alarm.priority, isGone(alarm.state)), make('b', {}, ` ${say(`kind.${alarm.kind}`)} ${tag.name} `),
-            make('span', { class: 'raised' }), make('span', { class: 'state' }),
-            make('span', {}, say('walls.since', { time: timeOf(session, alarm.raisedUs) })));
+            make('span', { class: 'now' }));
         sayNow(alarm);
     }
 
@@ -193,20 +201,40 @@ function AlarmsPane(pane, { session, call, title, body }) {
         make('b', {}, `${say(`kind.${alarm.kind}`)} `, make('span', { class: 'tag' }, alarm.tag.name)),
         make('span', { class: 'what' }, [nowText(session, alarm), alarm.tag.description].filter(Boolean).join(' · ')),
         make('time', {}, timeOf(session, alarm.raisedUs)));
-    const rowOfMany = ({ asset, count, worst }) => make('li', { class: 'waiting' }, badge(worst.priority),
+    // Returns a row that takes less room: the kind's short name, the tag and its present value, and below them time and description.
+    function briefRowOf(alarm) {
+        const { tag, kind, raisedUs } = alarm, { text, unit } = tag.index === null ? { text: '', unit: '' } : valueOf(session, tag);
+        return make('li', { class: `brief${alarm.waiting ? ' waiting' : ''}` }, badge(alarm.priority, isGone(alarm.state)),
+            make('b', {}, `${kind.length > 2 ? say(`kind.${kind}`) : kind} `, make('span', { class: 'tag' }, tag.name)),
+            make('b', { class: 'now' }, [text, unit].filter(Boolean).join('\u00a0')),
+            make('span', { class: 'what' }, [timeOf(session, raisedUs), tag.description].filter(Boolean).join(' · ')));
+    }
+    const rowOfMany = ({ asset, count, worst }) => make('li', { class: 'waiting', 'data-count': count }, badge(worst.priority),
         make('b', {}, make('span', { class: 'tag' }, asset ?? worst.tag.name)), make('span', { class: 'what' },
             say('walls.many', { count, worst: `${worst.tag.name} ${worst.kind.length > 2 ? say(`kind.${worst.kind}`) : worst.kind}` })),
         make('time', {}, timeOf(session, worst.raisedUs)));
 
-    // Shows as many rows as fit, and the number of the others.
-    function fill(rows) {
+    const isFull = () => body.scrollHeight > body.clientHeight + 1;
+
+    // Shows as many rows as fit, and the number of the other alarms. brief: makes the rows that are shown if the others do not all fit; if
+    // their first lines alone all fit, only these are shown.
+    function fill(rows, brief = null) {
         list.replaceChildren(...rows);
         let hidden = 0;
         more.hidden = true;
-        while (list.children.length > 1 && body.scrollHeight > body.clientHeight + 1) {
+        list.classList.remove('short');
+        if (brief && isFull()) {
+            list.replaceChildren(...brief());
+            if (isFull()) {
+                list.classList.add('short');
+                list.classList.toggle('short', !isFull());
+            }
+        }
+        while (list.children.length > 1 && isFull()) {
+            hidden += Number(list.lastChild.dataset.count ?? 1);
             list.lastChild.remove();
             more.hidden = false;
-            setText(more, say('walls.more', { count: ++hidden }));
+            setText(more, say('walls.more', { count: hidden }));
         }
     }
 
@@ -223,7 +251,7 @@ function AlarmsPane(pane, { session, call, title, body }) {
         if (flood)
             fill(byEquipment(all.filter(({ state }) => !isGone(state))).map(rowOfMany));
         else
-            fill(all.map(rowOf));
+            fill(all.map(rowOf), () => all.map(briefRowOf));
     } };
 }
 
@@ -277,9 +305,8 @@ function TilesPane(pane, { session, body, title }) {
             if (!tag || !group)
                 continue;
             const { value, quality } = session.model.readings[tag.index], alarm = session.model.alarms.gravest(tag.index);
-            const known = quality !== 'bad' && value !== null;
-            const text = known ? numberText(value, decimalsFor(group.max - group.min)) : qualityText('bad');
-            tile.value.replaceChildren(text, make('span', {}, known ? ` ${unitText(tag.unit || group.unit)}` : ''));
+            const { known, text, unit } = valueOf(session, tag);
+            tile.value.replaceChildren(text, make('span', {}, unit && ` ${unit}`));
             tile.element.dataset.quality = quality;
             tile.element.dataset.alarm = alarm && !isGone(alarm.state) ? alarm.priority : '';
             flagOf(tile, alarm);
