@@ -137,6 +137,46 @@ test('a note for the whole shift needs no place; its author changes and ends it'
     await page.keyboard.press('Escape');
 });
 
+test('the pins of notes cover neither each other nor the right half, and are whole', options, async () => {
+    const { page } = desk;
+    const texts = ['Manhole open', 'Seal drips, the tray is emptied each hour by the outside operator of the shift', 'Hot'];
+    await page.evaluate((all) => {
+        const { session } = globalThis.plantcast;
+        all.forEach((text) => session.post({ type: 'note', seq: ++session.toldSeq, text, tag: 'TI-1' }));
+    }, texts);
+    // Returns pins that overlap another pin, leave the left half, or are cut. On a phone, the list of notes has the whole text.
+    const amiss = () => page.evaluate(() => {
+        const view = document.getElementById('viewport').getBoundingClientRect(), { split } = globalThis.plantcast.session.shown;
+        const right = split ? view.left + view.width / 2 : view.right;
+        const pins = [...document.querySelectorAll('.note-pin')]
+            .map((e) => [e.textContent, e.getBoundingClientRect(), e.firstChild]);
+        return pins.filter(([, a, text], i) => a.width === 0 || a.left < view.left - 1 || a.right > right + 1 ||
+            (innerWidth > 719 && text.scrollHeight > text.clientHeight + 1) || text.scrollWidth > text.clientWidth + 1 ||
+            pins.slice(i + 1).some(([, b]) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom))
+            .map(([text]) => text);
+    });
+    const screen = page.viewportSize();
+    for (const size of [screen, { width: 390, height: 844 }]) {
+        await page.setViewportSize(size);
+        for (const split of [null, { show: 'operator' }]) {
+            await page.evaluate((half) => globalThis.plantcast.session.setParams({ split: half }), split);
+            await page.waitForFunction(([count, halves]) => document.querySelectorAll('.note-pin:not([hidden])').length === count &&
+                Boolean(globalThis.plantcast.session.shown.split) === halves, [texts.length, Boolean(split)]);
+            await settle(page);
+            await shoot(page, `present-pins-${size.width}${split ? '-split' : ''}`);
+            assert.deepEqual(await amiss(), [], `${size.width}${split ? ', split' : ''}`);
+        }
+    }
+    await page.evaluate(() => {
+        const { session } = globalThis.plantcast;
+        session.notes.forEach(({ id }) => session.post({ type: 'remove_note', seq: ++session.toldSeq, id }));
+        session.setParams({ split: null });
+    });
+    await page.setViewportSize(screen);
+    await page.locator('.note-pin').first().waitFor({ state: 'detached' });
+    await settle(page);
+});
+
 test('a lost device raises an alarm of its own; rings keep their names and say since when they are held', options, async () => {
     await plant.tell('set TI-1 95.5');
     await plant.tell('set TI-2 95.5');

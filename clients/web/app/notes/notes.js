@@ -12,6 +12,7 @@ import { byId, make, setText, setVariable } from '../common/dom.js';
 
 const UNTIL = ['shift', 'day', 'week', 'ever'], HOURS = { shift: 8, day: 24, week: 168 };
 const MAY = ['operator', 'engineer'], POINTS_MS = 4000, TICK_MS = 500, LONGEST = 130;
+const STEM = 9, GAP = 2; // units: length of a pin's stem, as in the style sheet; space between two pins
 
 export class Notes {
     constructor({ session, selection, viewport, modules, hangs, tell, flyToTag, selectAsset }) {
@@ -215,6 +216,7 @@ export class Notes {
         this.pointer.position = mine.position;
         this.pointer.until = performance.now() + POINTS_MS;
         setText(this.pointer.element.firstChild, mine.by);
+        this.pointer.right = null; // its width may have changed
         this.show();
     }
 
@@ -225,15 +227,27 @@ export class Notes {
 
     // positions that follow the picture
 
+    // Places the pins. A pin that would cover another is lifted, if there is room, and its stem becomes longer. A pin that would leave the
+    // left half or the picture is moved to the left. Older pins are drawn first, so that their longer stems cover no other pin.
     show() {
         const { picture, shown } = this.session, half = picture && halves(shown, picture.shownWidth)[0];
         const project = half && projector(picture.camera, half.width, picture.fullHeight), { width, height } = this.viewport;
-        for (const { element, position } of [...this.pins.values(), ...(this.pointer ? [this.pointer] : [])]) {
-            const at = project?.(position), x = at && ((half.left + at[0]) * width) / picture.shownWidth;
-            const y = at && (at[1] * height) / picture.fullHeight, unit = this.scale;
-            element.hidden = !at || x < 0 || y < 0 || x > width || y > height || at[0] > half.width;
-            setVariable(element, '--left', `${(x ?? 0) / unit}px`);
-            setVariable(element, '--top', `${(y ?? 0) / unit}px`);
+        const unit = this.scale, right = half && ((half.left + half.width) * width) / picture.shownWidth / unit, boxes = [];
+        for (const pin of [...(this.pointer ? [this.pointer] : []), ...[...this.pins.values()].reverse()]) {
+            const { element, position } = pin, at = project?.(position);
+            const x = at && ((half.left + at[0]) * width) / picture.shownWidth / unit;
+            const y = at && (at[1] * height) / picture.fullHeight / unit;
+            element.hidden = !at || x < 0 || y < 0 || x > width / unit || y > height / unit || at[0] > half.width;
+            if (element.hidden)
+                continue;
+            if (pin.right !== right) { // measures the pin only if the space for it has changed
+                setVariable(element, '--most', `${right - 4}px`);
+                Object.assign(pin, { right, wide: element.offsetWidth, high: element.offsetHeight });
+            }
+            const shift = Math.max(-x, Math.min(0, right - pin.wide - x)), lift = liftOf({ ...pin, x: x + shift, y }, boxes);
+            boxes.push({ left: x + shift, right: x + shift + pin.wide, top: y - STEM - lift - pin.high, bottom: y - STEM - lift });
+            for (const [name, px] of Object.entries({ left: x, top: y, shift, lift }))
+                setVariable(element, `--${name}`, `${px}px`);
         }
     }
 
@@ -241,4 +255,14 @@ export class Notes {
     get scale() {
         return document.body.classList.contains('wall') ? Number(document.body.style.getPropertyValue('--wall')) || 1 : 1;
     }
+}
+
+// Returns how much higher a pin must be to cover none of the boxes; 0: there is no room above them. x, y: left end and foot of its stem.
+function liftOf({ x, y, wide, high }, boxes) {
+    const under = (lift) => boxes.find(({ left, right, top, bottom }) => left < x + wide && x < right &&
+        top < y - STEM - lift && y - STEM - lift - high < bottom);
+    let lift = 0;
+    for (let box = under(0); box; box = under(lift))
+        lift = y - STEM - box.top + GAP;
+    return y - STEM - lift - high < 0 ? 0 : lift;
 }
