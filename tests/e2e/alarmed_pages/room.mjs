@@ -327,6 +327,14 @@ for (const [zoom, viewport] of Object.entries(ZOOMED))
                 await hide();
                 await page.locator(part).waitFor({ state: 'hidden' });
             }
+            await press('y');
+            await call('showTrend');
+            await page.locator('#trend-chart canvas').waitFor();
+            await page.waitForFunction(() => { // the chart is above the time bar, whole, and has room for its curve
+                const box = (of) => document.querySelector(of).getBoundingClientRect(), chart = box('#trend-chart canvas');
+                return box('#trend-chart .u-over').height >= 40 && box('#timeline').height > 0 && chart.bottom <= box('#timeline').top + 1;
+            });
+            await shoot(page, `zoom-${viewport.width}-trend-and-time`);
             assert.deepEqual(errors, []);
         } finally {
             await close();

@@ -8,6 +8,7 @@ import { hatch, hatchAlong, strokeAlong, triangle } from './chart_style.js';
 
 const EXPAND = 2; // uPlot's mode in which gaps (nulls) extend to neighbouring instants
 const AXIS_PX = 58, UNIT_PX = 16, TIME_PX = 28, LINE_PX = 1.75, BOLD_PX = 3, LABEL_PX = 15, BADGE_PX = 13, DRAGGED_PX = 4;
+const PAD_PX = 17, LOW_PAD_PX = 8, LOW_PX = 130; // space above the curves, less in charts lower than LOW_PX
 const DAYS_S = 2 * 86400; // the ticks of the time axis are days if the range is longer than this
 const FONT = 'system-ui, sans-serif';
 
@@ -95,7 +96,7 @@ export class Plot {
         const right = this.isWide && units.length < 2 ? AXIS_PX + UNIT_PX : null;
         const onlyPlain = (chart, target, handler) => (event) => !event.shiftKey && event.button === 0 && handler(event);
         return {
-            ...this.shape, padding: [null, right, null, null],
+            ...this.shape, padding: [({ height: high }) => (high < LOW_PX ? LOW_PAD_PX : PAD_PX), right, null, null],
             tzDate: (s) => globalThis.uPlot.tzDate(new Date(s * 1000), this.view.zone),
             scales: { x: { time: true }, ...scales },
             cursor: { y: false, points: { show: false }, drag: { x: true, y: false, setScale: false }, bind: { mousedown: onlyPlain,
