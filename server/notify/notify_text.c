@@ -97,8 +97,8 @@ static void add_date(struct text *out, int64_t utc_us)
                  utc.tm_hour, utc.tm_min, utc.tm_sec);
 }
 
-/* Returns why an escalated alarm is sent again; "" if it is not escalated or has ended. Without operators' acknowledgements, as with alarms:
- * display, the daemon knows only that the alarm is still there. */
+/* Returns why an escalated alarm is sent again; "" if it is not escalated or has ended. Without operators' acknowledgements (alarms:
+   display), the daemon knows only that the alarm is still there. */
 static const char *escalated_for(const struct outbox_item *item)
 {
     bool waits = item->status == ALARM_UNACKNOWLEDGED || item->status == ALARM_RETURNED;
