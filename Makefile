@@ -16,6 +16,12 @@ flags_debug   := -O0 -g3
 flags_asan    := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 flags_tsan    := -O1 -g -fsanitize=thread
 flags_fuzz    := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined
+# gcc defines these macros itself.
+ifneq ($(findstring clang,$(CC)),)
+flags_asan += -D__SANITIZE_ADDRESS__
+flags_fuzz += -D__SANITIZE_ADDRESS__
+flags_tsan += -D__SANITIZE_THREAD__
+endif
 ifeq ($(flags_$(config)),)
 $(error config=$(config) is unknown: release, debug, asan, tsan or fuzz)
 endif
