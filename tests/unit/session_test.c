@@ -238,7 +238,14 @@ CASE(a_plant_may_give_no_depth_away)
     f->context.plant = &closed;
     say(f, DEPTH_HELLO);
     assert_false(session_gets_depth(f->session));
-    assert_true(ask(f, &request) && !request.depth);
+    assert_true(ask(f, &request) && !request.depth && !f->session->delivery.pacer.ladder.reprojects);
+}
+
+CASE(the_quality_ladder_knows_that_the_client_reprojects)
+{
+    struct frame_request request;
+    say(f, DEPTH_HELLO);
+    assert_true(ask(f, &request) && request.depth && f->session->delivery.pacer.ladder.reprojects);
 }
 
 #define SIGNED_HELLO "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"jpeg\",\"png\"],\"signed\":\"refined\"}"
