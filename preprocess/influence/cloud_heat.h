@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes distances with the method of Kim & Suh (Electronics 2025, 14(15), 2938), to compare them with our mesh distances: the heat
- * method (Crane, Weischedel, Wardetzky 2013) on points sampled from the surface, with neighbours by distance instead of mesh connectivity.
- * Therefore these distances cut through thin walls and across gaps narrower than CLOUD_REACH spacings. This error of the method is kept on
- * purpose, because the comparison should show it. Points: about CLOUD_POINTS Poisson-disc samples, at least one spacing apart. Neighbours:
- * all points within CLOUD_REACH spacings, found with FLANN. Tangent plane: least-squares plane through a point's neighbours. Laplacian:
- * Belkin, Sun & Wang (2009), made symmetric: w_ij = A_i A_j exp(-|p_i - p_j|^2 / 4 tau) / (4 pi tau^2). w_ij: weight of points i and j at
- * positions p_i and p_j; tau: diffusion time; A_i = pi r^2 / (neighbours + 1): area of a point; r: reach of the neighbours, in metres. Heat
- * u solves (A + t L) u = source (L: Laplacian, t: time, A: areas on the diagonal). X is the unit direction of the heat flow in each tangent
- * plane, by weighted least squares. Distances d minimise sum w_ij (d_j - d_i - (X_i + X_j) (p_j - p_i) / 2)^2. */
+/* Computes distances along the surface by the method of Kim & Suh (Electronics 2025, 14(15), 2938), for comparison with our distances on
+ * the mesh. It is the heat method (Crane, Weischedel, Wardetzky 2013) on points sampled from the surface, whose neighbours are the nearest
+ * points, not those connected by the mesh. Therefore these distances cross thin walls, and gaps narrower than CLOUD_REACH spacings. The
+ * comparison is meant to show this error.
+ *
+ * 1. Points: about CLOUD_POINTS Poisson-disc samples, at least one spacing apart.
+ * 2. Neighbours of a point: all points within r = CLOUD_REACH spacings (FLANN). Tangent plane: least-squares plane through them.
+ * 3. Laplacian L (Belkin, Sun & Wang 2009), made symmetric: w_ij = A_i A_j exp(-|p_i - p_j|^2 / 4 tau) / (4 pi tau^2). w_ij is the weight
+ *    of the points at p_i and p_j, tau the diffusion time, and A_i = pi r^2 / (neighbours + 1) the area of a point.
+ * 4. Heat u from the source: (A + t L) u = source, with time t and the areas on the diagonal of A.
+ * 5. X_i: unit direction of the heat flow in the tangent plane of point i, by weighted least squares.
+ * 6. Distances d minimise sum w_ij (d_j - d_i - (X_i + X_j) (p_j - p_i) / 2)^2. */
 #ifndef PREPROCESS_INFLUENCE_CLOUD_HEAT_H
 #define PREPROCESS_INFLUENCE_CLOUD_HEAT_H
 #include "base/log/log.h"

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds sensors that drift. Over a week of hourly means, a reading is modelled as a sum of terms: the prediction from the other sensors
-   (neighbours.h), without and with a lag, and the readings of the nearest sensors, each times a gain; and a straight line in time, which is
-   the drift.
-   The faster the plant changes around an hour, the less weight the hour has: heat is then on its way between sensors, which no gain can
-   describe. Where residuals jump within hours, as when the plant's operation changes, the level may differ afterwards, at most twice (level
-   shifts found one after the other: Chen & Liu, Joint estimation of model parameters and outlier effects in time series, 1993). Sensors
-   enter without their own offset (own[sensor] + common[hour]), so that one missing for a day does not shift the predictions of others.
-   Standard errors allow for correlated residuals (Newey & West 1987), since plant events last for hours. A drifting sensor distorts the
-   predictions of all others: the clearest one is found first and left out before the others are judged. Pure. Thread: any. */
+/* Finds sensors that drift, from hourly means over a week. A sensor's readings are modelled as a sum: a constant; the prediction from the
+   other sensors (neighbours.h), now and with a lag, and the readings of the nearest sensors, each times a gain; and a straight line in
+   time, which is the drift. Predictions leave out each sensor's own offset (own[sensor] + common[hour]), so that a sensor that is missing
+   for a day does not shift the predictions of others.
+   - Hours in which the plant changes fast have less weight: heat then travels between sensors, which no gain can describe.
+   - Where residuals jump within hours, as after a change of the plant's operation, the model gets another level, at most twice (level
+     shifts found one after the other: Chen & Liu, Joint estimation of model parameters and outlier effects in time series, 1993).
+   - Standard errors allow for correlated residuals (Newey & West 1987), because changes of the plant last for hours.
+   - A drifting sensor distorts the predictions of all others. Therefore the clearest drift is found first, and its sensor is left out
+     before the others are judged.
+   Pure. Thread: any. */
 #ifndef FIELD_DRIFT_H
 #define FIELD_DRIFT_H
 #include "field/neighbours.h"

@@ -1,34 +1,41 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the field: from readings to a scalar at every vertex of an asset.
-   Letters: for sensor i, v_i is the reading, s_i the strength, o_i the decay and D_i the distance of the vertex, Euclidean or geodesic. p
-   is the power, R the radius, and MIN to MAX the group's range.
-   paper (Algorithm 1 of Kim & Suh, Electronics 2025, 14(15), 2938): d_i = max(0, 1 - D_i/R), w_i = exp(d_i s_i) / sum_k exp(d_k s_k), u_i
-   = clamp((v_i - MIN)/(MAX - MIN)), value = sum_i u_i w_i d_i^o_i; the scalar is MIN + value (MAX - MIN).
-   shepard (inverse distance weighting, Shepard 1968): value = (sum_i s_i v_i / D_i^p) / (sum_i s_i / D_i^p); exactly v_i where D_i = 0. A
-   sensor of strength 0 never contributes, a common factor on all strengths cancels, and decay has no effect.
-   A sensor contributes at a point if it belongs to the group and the asset, its quality is not Bad, D_i is finite and D_i <= reach_m. If
-   reach_m is set, weights are multiplied by (1 - D_i/reach_m)^2 (with p = 2 these are the weights of Franke and Nielson, 1980), so that
-   the field has no edge where a sensor's contribution ends. Weights are divided by their sum, so a single sensor in reach does not seem to
-   fade.
-   Sensors with an assumed position (`Place: equipment`) never produce a gradient. They are ignored if the group has a sensor with a known
-   position on the asset. If it has none, one sensor gives the value of the whole asset, never a mean: the sensor whose reading is nearest
-   to trouble (by its own limits, else the farthest from the middle of the group's range). While all are Bad there is no data.
-   There is no data where no sensor contributes, and where a configured sensor that does not contribute is nearer than all that do. The
-   parameter `fill` fills such places; they are flagged uncertain. The scalar stored there continues that of the nearest contributing
-   sensor; without one it is MIN.
-   harmonic, fin: value = sum_i H_i v_i with weights H from the asset's influence file (protocol/ASSET.md); fin's values are relative to
-   ambient. Lost sensors get the values that follow from the others (field/influence_fill.h), so that H, prepared for all sensors, can be
-   used even if some are lost. Trial positions have no prepared weights. Where fin's weights add up to less than a tenth there is no data.
-   gp: as harmonic, but the weights add up to 1 on each body and may be negative (preprocess/influence/gaussian.h). There is no data where
-   sensors remove less than a tenth of the prior's variance. The standard deviation of gp (shown as uncertainty), and the smallest hot spot
-   that the nearest good sensor would show (shown as blind), depend only on which sensors are good.
-   Instead of the value, the scalar may be the distance from one sensor in metres, or the difference from a baseline: the present field
-   minus an earlier one, both over the sensors usable in both (paper subtracts clamped readings). For operators it is the position of
-   readings between their own tags' limits (field/limits.h), interpolated with the same weights; 0 is the middle. A sensor whose tag has no
-   limits does not contribute to it, and vertices nearest to such a sensor are flagged.
-   The field is linear in the readings: with G the weights before division and 1 a vector of ones, value = G v / G 1. G is kept in a
-   bounded cache or recomputed for each sum, with identical bits. A changed reading adds one column of G times its change; a changed
-   quality recomputes the sum. Thread: one at a time per field (work is spread over `workers`). */
+/* Computes the field of an asset: a scalar at every vertex, interpolated from the readings of the asset's sensors.
+
+   Symbols: v_i is the reading of sensor i, s_i its strength, o_i its decay, and D_i the distance from the sensor to the vertex (Euclidean
+   or geodesic). p is the power, R the radius, and MIN to MAX the range of the group.
+
+   Interpolations:
+   - shepard (inverse distance weighting, Shepard 1968): value = (sum_i s_i v_i / D_i^p) / (sum_i s_i / D_i^p), and exactly v_i at distance
+     0. A sensor of strength 0 never contributes. Only ratios of strengths matter. Decay has no effect.
+   - paper (Algorithm 1 of Kim & Suh, Electronics 2025, 14(15), 2938): d_i = max(0, 1 - D_i/R), w_i = exp(d_i s_i) / sum_k exp(d_k s_k),
+     u_i = clamp((v_i - MIN)/(MAX - MIN)), value = sum_i u_i w_i d_i^o_i. The scalar is MIN + value (MAX - MIN).
+   - harmonic, fin: value = sum_i H_i v_i, with weights H from the asset's influence file (protocol/ASSET.md). For fin, values are relative
+     to the ambient value. There is no data where the weights of fin add up to less than a tenth.
+   - gp: as harmonic, but the weights add up to 1 on each body and may be negative (preprocess/influence/gaussian.h). There is no data where
+     the sensors reduce the prior's variance by less than a tenth.
+   H is prepared for all sensors: a lost sensor gets the value that the other sensors predict for it (field/influence_fill.h). Trial
+   positions of sensors have no prepared weights.
+
+   Which sensors contribute: those of the group and the asset whose quality is not Bad, with finite D_i <= reach_m. If reach_m is set, the
+   weight is multiplied by (1 - D_i/reach_m)^2, so that the field has no edge at that distance (with p = 2: the weights of Franke & Nielson
+   1980). Weights are normalised, so the field of a single sensor does not fade towards reach_m.
+
+   Where there is no data: where no sensor contributes, and where the nearest sensor is Bad but would contribute otherwise. The parameter
+   `fill` fills these places, flagged as uncertain. Otherwise they store the scalar of the nearest contributing sensor, or MIN.
+
+   Sensors with an assumed position (`Place: equipment`) never produce a gradient. They are ignored if the asset has a sensor of the group
+   with a known position. Otherwise one sensor, never a mean, gives the value of the whole asset: the one nearest to or farthest beyond its
+   own limits; without limits, the one farthest from the middle of the group's range. If all are Bad, there is no data.
+
+   Other quantities than the value (`show`): the distance from one sensor in metres; the difference from a baseline, over the sensors usable
+   both now and then (paper subtracts clamped readings); for operators, the position of readings between their own limits (field/limits.h),
+   interpolated with the same weights. Sensors without limits do not contribute to the latter, and vertices nearest to such a sensor are
+   flagged. The uncertainty (standard deviation of gp) and the blind spots (smallest hot spot that the nearest Good sensor would show)
+   depend only on which sensors are Good.
+
+   The field is linear in the readings: value = G v / G 1, with weights G before normalisation, and 1 a vector of ones. A bounded cache
+   keeps G; without it, G is recomputed with identical bits. A changed reading adds its change times one column of G. A changed quality
+   recomputes the sum. Thread: one at a time per field (work is spread over `workers`). */
 #ifndef FIELD_FIELD_H
 #define FIELD_FIELD_H
 #include "base/workers.h"

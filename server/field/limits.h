@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The position of a reading between the limits of its own tag, for the operator's view: LL -2, L -1, H +1, HH +2, 0 in the middle, linear
-   in between, clamped to -3 and +3. Readings of different tags become comparable: each shows how far it is from its own trouble.
-   The rule for the high side (the low side is its mirror image); "inner" is H, or HH if there is no H:
-   Middle: half-way between the inner limits; with limits on one side only, the other end of the group's range (or, if that is beyond the
-   limit, half the range away from it).
-   From the middle (0) to the inner limit (+1); without HH the slope continues to just below +2.
-   From H (+1) to HH (+2); the slope continues beyond HH.
-   HH without H: no reading below HH is beyond a limit, so the position stays below +1 there, is +2 at HH, and continues with half the slope
-   below HH. Pure. Thread: any. */
+/* Position of a reading between the alarm limits of its own tag, for the operator's view. The limits have the positions LL -2, L -1, H +1
+   and HH +2, and the middle has 0. In between, the position is linear. Positions are clamped to -3..+3. They make the readings of different
+   tags comparable: each position says how near the reading is to its own limits.
+
+   The rule for the high side; the low side is its mirror image. "Inner limit" is H, or HH without H:
+   - The middle is half-way between the inner limits of both sides. If only one side has limits, the other end of the group's range replaces
+     the missing inner limit; if that end is beyond the existing limit, the point half a range away from the limit replaces it.
+   - From the middle (0), the position rises to +1 at H, and on to +2 at HH. Beyond HH, the slope continues.
+   - H without HH: the slope from the middle continues beyond H, to just below +2.
+   - HH without H: the position stays below +1 up to HH, is +2 at HH, and then rises with half the slope from the middle to HH.
+   Pure. Thread: any. */
 #ifndef FIELD_LIMITS_H
 #define FIELD_LIMITS_H
 #include "plant/plant.h"

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A scale: which colour of a map a value gets. This is the legend's rule, which frames and clients follow, too:
-   place = (value - MIN)/(MAX - MIN), or log(value/MIN)/log(MAX/MIN) on a logarithmic scale.
-   value < MIN: below; value > MAX: above; else colour number min(255, floor(256 place)), never a mixture of two.
-   Bands of an interval begin at MIN + k interval, k < max(1, ceil((MAX - MIN)/interval - 0.001)); MAX may cut the last one short. A whole
-   band has the colour at its middle.
-   n breaks inside (MIN, MAX) make n + 1 bands, each starting at its break; band i has the colour at the place (i + 0.5)/(n + 1).
-   MIN, MAX and value are compared as 32-bit floats, as they are stored. Pure. Thread: any. */
+/* Colour scale: which colour of a colour map a value gets. Legends, frames and clients use the same rule:
+   - Position of a value: (value - MIN)/(MAX - MIN), or log(value/MIN)/log(MAX/MIN) on a logarithmic scale.
+   - Colours: values below MIN and above MAX have colours of their own. Other values have the colour with index
+     min(255, floor(256 position)); neighbouring colours are never mixed.
+   - Bands of equal width (`interval`): band k begins at MIN + k interval, for k < max(1, ceil((MAX - MIN)/interval - 0.001)). MAX may make
+     the last band shorter. A band has the colour at the middle of its positions.
+   - Bands between `breaks`: n breaks inside (MIN, MAX) make n + 1 bands. Band i has the colour at the position (i + 0.5)/(n + 1).
+   MIN, MAX and value are compared as 32-bit floats, because they are stored as such. Pure. Thread: any. */
 #ifndef FIELD_SCALE_H
 #define FIELD_SCALE_H
 #include <stdbool.h>
