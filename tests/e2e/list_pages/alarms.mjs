@@ -273,8 +273,12 @@ test('in forced colours active and returned alarms still look different', option
         element.remove();
         return [borderTopStyle, outlineStyle].includes('solid');
     }));
+    const grounds = await page.locator('#groups input').evaluateAll((all) => all.map((input) =>
+        [input.checked, getComputedStyle(input.nextElementSibling).backgroundColor]));
+    const [, chosen] = grounds.find(([isChecked]) => isChecked);
     await shoot(page, 'alarms-forced-colours');
     await page.emulateMedia({ forcedColors: 'none' });
+    assert.ok(grounds.every(([isChecked, ground]) => isChecked === (ground === chosen)), `the chosen quantity: ${grounds}`);
     assert.deepEqual(frames, [true, true], 'frames around the past');
     assert.notEqual(looks[0][0], looks[1][0], looks.join(' | '));
     assert.deepEqual(looks.map(([, border]) => border), ['none', 'dashed']);
