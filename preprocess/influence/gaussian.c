@@ -171,14 +171,6 @@ static void solve_kernels(void *arg, size_t begin, size_t end)
     solver_finish(&solver);
 }
 
-static void over(struct workers *workers, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg)
-{
-    if (workers)
-        workers_for(workers, count, grain, body, arg);
-    else
-        body(arg, 0, count);
-}
-
 /* --- influence H (weights of sensors) at mesh points, from kernels --------------------------------------------------------------- */
 
 static double variance_of(const struct solving *solving, size_t sensor)
@@ -452,12 +444,12 @@ static void weigh(struct solving *solving, struct workers *workers)
         solving->levels[i] = mean_variance(solving, i);
     for (size_t i = 0; i < points; i++)
         solving->root_scale[i] = sqrt(solving->scale[i]);
-    over(workers, (vertices + STRIP - 1) / STRIP, 32, keep_kernels, solving);
-    over(workers, (points + TILE - 1) / TILE, 8, weigh_tiles, solving);
-    over(workers, (vertices + STRIP - 1) / STRIP, 32, weigh_strips, solving);
+    workers_for(workers, (vertices + STRIP - 1) / STRIP, 32, keep_kernels, solving);
+    workers_for(workers, (points + TILE - 1) / TILE, 8, weigh_tiles, solving);
+    workers_for(workers, (vertices + STRIP - 1) / STRIP, 32, weigh_strips, solving);
     if (solving->bend)
-        over(workers, solving->influence->count, BEND_WIDTH, add_bends, solving);
-    over(workers, GAUSSIAN_SAMPLES / BLOCK, 1, sample_blocks, solving);
+        workers_for(workers, solving->influence->count, BEND_WIDTH, add_bends, solving);
+    workers_for(workers, GAUSSIAN_SAMPLES / BLOCK, 1, sample_blocks, solving);
 }
 
 bool gaussian_solve(struct influence *influence, const struct influence_task *task, const struct gaussian_params *params)
@@ -469,7 +461,7 @@ bool gaussian_solve(struct influence *influence, const struct influence_task *ta
     *influence = (struct influence){ .count = mesh->source_count, .vertex_count = task->vertex_count };
     bool good = allocate(&solving) && begin(&solving, &common);
     if (good)
-        over(task->workers, influence->count, BLOCK, solve_kernels, &solving);
+        workers_for(task->workers, influence->count, BLOCK, solve_kernels, &solving);
     good = good && !solving.failed;
     if (good)
         gaussian_bodies_scale(&solving.bodies, influence->count, solving.covariance, solving.scale);

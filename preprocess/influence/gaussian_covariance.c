@@ -252,10 +252,7 @@ bool gaussian_covariance_find(struct gaussian_covariance *covariance, struct log
     struct slope slope = { .covariance = covariance, .k2 = { k2 * exp(-STEP), k2 * exp(STEP) }, .status = CHOLMOD_OK };
     for (int side = 0; side < 2; side++)
         slope.between[side] = mem_array(count * count, sizeof(**slope.between));
-    if (workers)
-        workers_for(workers, 2, 1, find_sides, &slope);
-    else
-        find_sides(&slope, 0, 2);
+    workers_for(workers, 2, 1, find_sides, &slope);
     for (size_t i = 0; i < count; i++)
         for (size_t j = 0; j <= i; j++)
             covariance->values[i * count + j] = covariance->values[j * count + i] =

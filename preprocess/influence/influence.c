@@ -166,10 +166,8 @@ bool influence_conduct(struct influence *influence, const struct influence_task 
     bool good = influence->shares && influence->precision && laplacian_init(&conduct.laplacian, &mesh->intrinsic) &&
                 factor(&conduct, decay_m, &common);
     conduct.block = block_of(&conduct, task->workers);
-    if (good && task->workers)
+    if (good)
         workers_for(task->workers, influence->count, conduct.block, solve_some, &conduct);
-    else if (good)
-        solve_some(&conduct, 0, influence->count);
     good = good && !conduct.failed;
     if (good)
         make_symmetric(influence);

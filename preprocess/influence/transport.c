@@ -315,10 +315,8 @@ bool transport_angles(struct influence *influence, struct log *log, struct worke
     if (good)
         find_normals(&transport);
     good = good && factorize(&transport, &common);
-    if (good && workers)
+    if (good)
         workers_for(workers, influence->count, 1, solve_some, &transport);
-    else if (good)
-        solve_some(&transport, 0, influence->count);
     good = good && !transport.failed;
     if (!good)
         log_err(log, "directions of %zu sensors on %zu points cannot be computed: %s", influence->count, mesh->mesh.point_count,

@@ -365,10 +365,7 @@ static void probe_triangles(void *arg, size_t begin, size_t end)
 static void probe_all(const struct probing *probing, size_t count, void (*probe_some)(void *arg, size_t begin, size_t end),
                       struct workers *workers)
 {
-    if (workers)
-        workers_for(workers, count, 1024, probe_some, (void *)probing);
-    else
-        probe_some((void *)probing, 0, count);
+    workers_for(workers, count, 1024, probe_some, (void *)probing);
 }
 
 static void raise_to(float *most_m, float found_m)

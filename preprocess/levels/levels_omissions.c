@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/math/vec.h"
 #include "base/mem.h"
 #include "preprocess/levels/box_groups.h"
 #include "preprocess/levels/levels_impl.h"
@@ -237,10 +236,7 @@ void omissions_find(struct omission *omissions, const struct welds *welds, struc
         return;
     list_tris(&search);
     make_classes(&search);
-    if (workers)
-        workers_for(workers, welds->part_count, 16, look_for_larger, &search);
-    else
-        look_for_larger(&search, 0, welds->part_count);
+    workers_for(workers, welds->part_count, 16, look_for_larger, &search);
     look_for_lonely(&search);
     finish_classes(&search);
     trimesh_finish(&search.mesh);

@@ -171,10 +171,7 @@ static void simplify_parts(void *arg, size_t begin, size_t end)
 
 static void for_parts(struct collapsing *collapsing, void (*body)(void *arg, size_t begin, size_t end), struct workers *workers)
 {
-    if (workers)
-        workers_for(workers, collapsing->welds->part_count, 1, body, collapsing);
-    else
-        body(collapsing, 0, collapsing->welds->part_count);
+    workers_for(workers, collapsing->welds->part_count, 1, body, collapsing);
 }
 
 static void read_parts(const struct collapsing *collapsing, struct version *version)

@@ -61,10 +61,7 @@ static void drop_some(void *arg, size_t begin, size_t end)
 static void drop_sensors(const struct sensor_distances *measured, struct workers *workers, const struct build_input *input)
 {
     struct drop drop = { measured->surface, input, (const double(*)[3])measured->places_m, measured->sensors };
-    if (workers)
-        workers_for(workers, input->sensor_count, 8, drop_some, &drop);
-    else
-        drop_some(&drop, 0, input->sensor_count);
+    workers_for(workers, input->sensor_count, 8, drop_some, &drop);
 }
 
 /* Returns the number of vertices that are not connected to any sensor. */

@@ -177,14 +177,6 @@ static void pack_blocks(void *arg, size_t begin, size_t end)
     mem_free(room);
 }
 
-static void run(struct workers *workers, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg)
-{
-    if (workers)
-        workers_for(workers, count, grain, body, arg);
-    else
-        body(arg, 0, count);
-}
-
 bool distance_rows_pack(struct distance_rows *rows, struct workers *workers)
 {
     const size_t blocks = blocks_of(rows);
@@ -195,8 +187,8 @@ bool distance_rows_pack(struct distance_rows *rows, struct workers *workers)
     rows->offsets = mem_try_array(blocks + 1, sizeof(*rows->offsets));
     packing.failed = !packing.near || !rows->packed || !rows->offsets;
     if (!packing.failed) {
-        run(workers, rows->sensor_count, 16, find_near, &packing);
-        run(workers, blocks, 16, pack_blocks, &packing);
+        workers_for(workers, rows->sensor_count, 16, find_near, &packing);
+        workers_for(workers, blocks, 16, pack_blocks, &packing);
     }
     if (!packing.failed) {
         rows->offsets[0] = ((blocks + 1) * sizeof(*rows->offsets) + 15) / 16 * 16;
@@ -227,6 +219,6 @@ int distance_rows_write(const struct distance_rows *rows, struct workers *worker
     struct rows_block turn = { .rows = rows, .fd = fd, .at = at };
     if (rows->packed_bytes)
         return write_packed(rows, fd, at);
-    run(workers, blocks_of(rows), 16, turn_blocks, &turn);
+    workers_for(workers, blocks_of(rows), 16, turn_blocks, &turn);
     return turn.error;
 }

@@ -600,10 +600,7 @@ static void measure_places(void *arg, size_t begin, size_t end)
 
 void subdiv_parallel(const struct subdiv *subdiv, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg)
 {
-    if (subdiv->in->workers)
-        workers_for(subdiv->in->workers, count, grain, body, arg);
-    else
-        body(arg, 0, count);
+    workers_for(subdiv->in->workers, count, grain, body, arg);
 }
 
 /* Measures the interpolation error along `count` edges. Errors below `enough` need not be exact, and edges with such an error get no split

@@ -176,7 +176,7 @@ void workers_for(struct workers *workers, size_t count, size_t grain, void (*bod
         return;
     if (grain == 0)
         grain = 1;
-    if (count <= grain || workers->count <= 1) {
+    if (!workers || count <= grain || workers->count <= 1) {
         body(arg, 0, count);
         return;
     }

@@ -14,7 +14,7 @@ int workers_count(const struct workers *workers);
 /* Queues job(arg) to run on some worker. Jobs start in order of submission. */
 void workers_submit(struct workers *workers, void (*job)(void *arg), void *arg);
 /* Runs body(arg, begin, end) over the indices 0 to count - 1 in pieces of about `grain` indices, on the calling thread and idle workers.
-   Returns when all pieces are done. May be called from a job. */
+   Returns when all pieces are done. May be called from a job. workers NULL: runs all pieces on the calling thread. */
 void workers_for(struct workers *workers, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg);
 
 /* Starts body(arg) on an idle worker while the caller continues; if no worker is idle, workers_end() runs it instead. `workers` may be

@@ -347,10 +347,7 @@ static bool untouched(const struct trimesh *mesh, size_t t, const char *mixed)
 static void ask(struct interior_search *search, struct workers *workers, const size_t *asked, size_t count)
 {
     search->asked = asked;
-    if (workers)
-        workers_for(workers, count, 256, search_some, search);
-    else
-        search_some(search, 0, count);
+    workers_for(workers, count, 256, search_some, search);
 }
 
 /* Corrects regions (sets of connected points) in which only a sample of the triangles was tested, and a few others differ. Wherever hidden
