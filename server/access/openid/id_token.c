@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/text/json_text.h"
 #include "base/text/utf8.h"
 
 static const int64_t OLDEST_S = 24 * 3600;
@@ -24,16 +25,12 @@ static const char *kty_of(const char *alg)
     return NULL;
 }
 
-static const char *text_of(const json_t *object, const char *key)
-{
-    return json_string_value(json_object_get(object, key));
-}
-
 /* --- the signature -------------------------------------------------------------------------------------------------------- */
 
 static bool is_for(const json_t *key, const char *alg, const char *kid)
 {
-    const char *use = text_of(key, "use"), *its_alg = text_of(key, "alg"), *its_kid = text_of(key, "kid"), *kty = text_of(key, "kty");
+    const char *use = json_member_text(key, "use"), *its_alg = json_member_text(key, "alg");
+    const char *its_kid = json_member_text(key, "kid"), *kty = json_member_text(key, "kty");
     return kty && !strcmp(kty, kty_of(alg)) && (!use || !strcmp(use, "sig")) && (!its_alg || !strcmp(its_alg, alg)) &&
            (!kid || (its_kid && !strcmp(its_kid, kid)));
 }
@@ -99,7 +96,7 @@ static enum id_token_fault read_claims(const char *token, const json_t *jwks, js
 static bool is_for_us(const json_t *claims, const char *client_id)
 {
     const json_t *aud = json_object_get(claims, "aud");
-    const char *azp = text_of(claims, "azp");
+    const char *azp = json_member_text(claims, "azp");
     bool found = json_is_string(aud) && !strcmp(json_string_value(aud), client_id);
     for (size_t i = 0; i < json_array_size(aud); i++) {
         const char *one = json_string_value(json_array_get(aud, i));
@@ -112,7 +109,7 @@ static bool is_for_us(const json_t *claims, const char *client_id)
 
 static const char *fault_of(const json_t *claims, const struct id_token_expected *expected)
 {
-    const char *iss = text_of(claims, "iss"), *sub = text_of(claims, "sub"), *nonce = text_of(claims, "nonce");
+    const char *iss = json_member_text(claims, "iss"), *sub = json_member_text(claims, "sub"), *nonce = json_member_text(claims, "nonce");
     const json_t *exp = json_object_get(claims, "exp"), *iat = json_object_get(claims, "iat"), *nbf = json_object_get(claims, "nbf");
     double now_s = (double)expected->now_s, oldest_s = now_s - OLDEST_S - (double)expected->patience_s;
     if (!iss || strcmp(iss, expected->config->issuer) != 0)
@@ -190,6 +187,6 @@ static bool copy_name(const char *text, char *out, size_t size)
 
 bool id_token_name(const struct openid_config *config, const json_t *claims, char *out, size_t size)
 {
-    return copy_name(text_of(claims, config->name_claim), out, size) || copy_name(text_of(claims, "email"), out, size) ||
-           copy_name(text_of(claims, "sub"), out, size);
+    return copy_name(json_member_text(claims, config->name_claim), out, size) || copy_name(json_member_text(claims, "email"), out, size) ||
+           copy_name(json_member_text(claims, "sub"), out, size);
 }

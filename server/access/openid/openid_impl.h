@@ -63,7 +63,7 @@ void openid_record(struct openid *openid, const char *event, const char *result,
                    const char *what, const char *why);
 void openid_say_refused(struct openid *openid, const char *from, const char *why);
 
-/* --- functions of openid_jobs.c; the caller holds the lock, except for openid_free_job() and openid_free_secret() --- */
+/* --- functions of openid_jobs.c; the caller holds the lock, except for openid_free_job() --- */
 
 /* Queues a job; takes ownership of its texts. */
 void openid_add_job(struct openid *openid, struct openid_jobs *jobs, const struct openid_job *job);
@@ -73,8 +73,6 @@ void openid_revoke_later(struct openid *openid, const char *refresh_token);
 /* Removes the oldest job, which the caller owns (openid_free_job). The queue must not be empty. */
 struct openid_job *openid_take_job(struct openid_jobs *jobs);
 void openid_free_job(struct openid_job *job);
-/* Frees a secret text after overwriting it; accepts NULL. */
-void openid_free_secret(char *text);
 
 /* --- functions of openid_provider.c; called by any thread, without the lock --- */
 

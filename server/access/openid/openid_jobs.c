@@ -3,19 +3,13 @@
 #include <string.h>
 
 #include "access/openid/openid_impl.h"
+#include "base/files/secret.h"
 #include "base/mem.h"
-
-void openid_free_secret(char *text)
-{
-    if (text)
-        explicit_bzero(text, strlen(text));
-    mem_free(text);
-}
 
 void openid_free_job(struct openid_job *job)
 {
-    openid_free_secret(job->code);
-    openid_free_secret(job->revoke);
+    secret_forget(job->code);
+    secret_forget(job->revoke);
     mem_free(job->from);
     mem_free(job);
 }

@@ -7,12 +7,8 @@
 #include "access/openid/openid_impl.h"
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/text/json_text.h"
 #include "base/text/text.h"
-
-static const char *text_of(const json_t *object, const char *key)
-{
-    return json_string_value(json_object_get(object, key));
-}
 
 static void replace(char **text, const char *by)
 {
@@ -51,9 +47,9 @@ static bool post(struct openid *openid, const char *endpoint, const struct text 
 static void keep_tokens(struct person *person, const json_t *json)
 {
     json_int_t seconds = json_integer_value(json_object_get(json, "expires_in"));
-    replace(&person->refresh_token, text_of(json, "refresh_token"));
-    replace(&person->access_token, text_of(json, "access_token"));
-    replace(&person->id_token, text_of(json, "id_token"));
+    replace(&person->refresh_token, json_member_text(json, "refresh_token"));
+    replace(&person->access_token, json_member_text(json, "access_token"));
+    replace(&person->id_token, json_member_text(json, "id_token"));
     person->access_until_s = seconds > 0 ? clock_utc_ns() / NS_PER_S + seconds : 0;
 }
 
@@ -64,7 +60,7 @@ static struct person *make_person(struct openid *openid, json_t *claims, const j
 {
     struct token_holder holder = { .signed_in = true, .until_utc_ns = clock_utc_ns() + (int64_t)(openid->config->hours * 3600e9) };
     bool told;
-    openid_complete(openid, claims, text_of(tokens, "access_token"), &told);
+    openid_complete(openid, claims, json_member_text(tokens, "access_token"), &told);
     if (!id_token_name(openid->config, claims, holder.name, sizeof(holder.name))) {
         *why = mem_strdup("the ID token has no user name that can be displayed; check name_claim in the file of --openid");
         return NULL;
@@ -76,14 +72,14 @@ static struct person *make_person(struct openid *openid, json_t *claims, const j
     }
     struct person *person = mem_new(sizeof(*person));
     person->holder = holder;
-    person->sub = mem_strdup(text_of(claims, "sub"));
+    person->sub = mem_strdup(json_member_text(claims, "sub"));
     keep_tokens(person, tokens);
     return person;
 }
 
 static struct person *take_tokens(struct openid *openid, const struct openid_job *job, const json_t *tokens, char **why)
 {
-    const char *id_token = text_of(tokens, "id_token"), *fault = "the provider sent no ID token";
+    const char *id_token = json_member_text(tokens, "id_token"), *fault = "the provider sent no ID token";
     bool unsure;
     json_t *claims = id_token ? openid_verify(openid, id_token, job->sign_in.nonce, NULL, &unsure, &fault) : NULL;
     struct person *person = claims ? make_person(openid, claims, tokens, why) : NULL;
@@ -112,7 +108,7 @@ struct person *openid_redeem(struct openid *openid, const struct openid_job *job
     openid_add_argument(&form, "redirect_uri", openid->config->redirect_uri);
     openid_add_argument(&form, "code_verifier", job->sign_in.verifier);
     bool answered = post(openid, "token_endpoint", &form, &reply);
-    const char *error = text_of(reply.json, "error");
+    const char *error = json_member_text(reply.json, "error");
     *result = answered ? judge_code(&reply, error) : OPENID_AWAY;
     if (!answered)
         *why = mem_printf("the provider does not answer: %s", reply.why);
@@ -124,7 +120,7 @@ struct person *openid_redeem(struct openid *openid, const struct openid_job *job
     if (!person && reply.status == 200) { /* the log-in failed, so the refresh token that came with it is revoked: it should not stay
                                              valid at the provider unused */
         pthread_mutex_lock(&openid->lock);
-        openid_revoke_later(openid, text_of(reply.json, "refresh_token"));
+        openid_revoke_later(openid, json_member_text(reply.json, "refresh_token"));
         pthread_mutex_unlock(&openid->lock);
     }
     openid_reply_finish(&reply);
@@ -163,7 +159,7 @@ static enum openid_rights refresh(struct openid *openid, struct person *person, 
     openid_add_argument(&form, "grant_type", "refresh_token");
     openid_add_argument(&form, "refresh_token", person->refresh_token);
     bool answered = post(openid, "token_endpoint", &form, &reply);
-    const char *error = text_of(reply.json, "error");
+    const char *error = json_member_text(reply.json, "error");
     *why = "the provider does not answer";
     if (answered && is_refusal(reply.status) && error && strcmp(error, "invalid_grant") != 0) {
         /* the provider refuses this server, not the person: the client secret may have expired */
@@ -172,7 +168,7 @@ static enum openid_rights refresh(struct openid *openid, struct person *person, 
         rights = RIGHTS_GONE;
         *why = "the provider ended the user's sign-in";
     } else if (answered && reply.status == 200) {
-        const char *id_token = text_of(reply.json, "id_token");
+        const char *id_token = json_member_text(reply.json, "id_token");
         bool unsure = false;
         keep_tokens(person, reply.json);
         json_t *claims =
@@ -200,7 +196,7 @@ static enum openid_rights ask_again(struct openid *openid, struct person *person
         rights = RIGHTS_GONE;
         *why = "the provider ended the user's sign-in";
     } else if (reply.status == 200 && json_is_object(reply.json)) {
-        const char *sub = text_of(reply.json, "sub");
+        const char *sub = json_member_text(reply.json, "sub");
         rights = sub && !strcmp(sub, person->sub) ? take_claims(openid, person, reply.json, why) : RIGHTS_GONE;
     }
     openid_reply_finish(&reply);

@@ -5,6 +5,7 @@
 
 #include "access/openid/openid_impl.h"
 #include "base/clock.h"
+#include "base/files/secret.h"
 #include "base/mem.h"
 #include "message/names.h"
 
@@ -77,7 +78,7 @@ static void let_in(struct openid *openid, const struct openid_job *job, struct p
     pthread_cond_broadcast(&openid->wake);
     pthread_mutex_unlock(&openid->lock);
     explicit_bzero(cookie, sizeof(cookie));
-    openid_free_secret(left);
+    secret_forget(left);
     mem_free(person);
     openid_say(openid, NULL);
     if (good) {
@@ -197,9 +198,9 @@ static void do_check(struct task *task)
     settle(openid, task, rights, why);
     pthread_mutex_unlock(&openid->lock);
     mem_free(copy->sub);
-    openid_free_secret(copy->refresh_token);
-    openid_free_secret(copy->access_token);
-    openid_free_secret(copy->id_token);
+    secret_forget(copy->refresh_token);
+    secret_forget(copy->access_token);
+    secret_forget(copy->id_token);
 }
 
 static void do_discover(struct task *task)
