@@ -11,6 +11,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
+#include "base/math/search.h"
 #include "base/mem.h"
 #include "base/text/text.h"
 #include "history/history.h"
@@ -273,12 +274,6 @@ static bool check_sample(struct history_import *import, void *arg, int tag, cons
     return true;
 }
 
-static int by_time(const void *a, const void *b)
-{
-    int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
-    return (x > y) - (x < y);
-}
-
 /* Returns the median spacing of a typical series: the lower median over all series with a rhythm (at least three samples and a spacing);
    0 if no series has a rhythm. */
 static int64_t typical_spacing(struct import_series *series, size_t count)
@@ -288,7 +283,7 @@ static int64_t typical_spacing(struct import_series *series, size_t count)
     for (size_t i = 0; i < count; i++)
         if (series[i].seen && spacing_has_rhythm(&series[i].spacing))
             medians[found++] = spacing_median(&series[i].spacing);
-    qsort(medians, found, sizeof(*medians), by_time);
+    qsort(medians, found, sizeof(*medians), compare_int64);
     if (found)
         typical_us = medians[(found - 1) / 2];
     mem_free(medians);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Writes a month's file. Points are first written in order of time; later they are sorted by tag, compressed and reduced to rollups. */
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/math/search.h"
 #include "base/mem.h"
 #include "history/month.h"
 #include "history/month_blocks.h"
@@ -264,19 +264,13 @@ static int by_tag_and_time(const void *a, const void *b)
     return x->order < y->order ? -1 : 1;
 }
 
-static int by_time(const void *a, const void *b)
-{
-    const int64_t *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
 /* Stores the times of all rows once, as a chunk that their blocks share. The caller frees chunk->times. */
 static int share_times(struct month_file *file, const struct month_row *rows, size_t count, struct month_chunk *chunk)
 {
     chunk->times = mem_array(count + 1, sizeof(*chunk->times));
     for (size_t i = 0; i < count; i++)
         chunk->times[i] = rows[i].point.t_us;
-    qsort(chunk->times, count, sizeof(*chunk->times), by_time);
+    qsort(chunk->times, count, sizeof(*chunk->times), compare_int64);
     for (size_t i = 0; i < count; i++)
         if (chunk->count == 0 || chunk->times[i] != chunk->times[chunk->count - 1])
             chunk->times[chunk->count++] = chunk->times[i];

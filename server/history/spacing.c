@@ -5,6 +5,7 @@
 
 #include <stdlib.h>
 
+#include "base/math/search.h"
 #include "base/mem.h"
 
 enum { MAX_SPACINGS = 4096 };
@@ -36,17 +37,11 @@ void spacing_put(struct spacing *spacing, const struct history_point *sample)
     spacing->at[spacing->count++] = spacing_us;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
-    return (x > y) - (x < y);
-}
-
 int64_t spacing_median(struct spacing *spacing)
 {
     if (!spacing->count)
         return 0;
-    qsort(spacing->at, spacing->count, sizeof(*spacing->at), ascending);
+    qsort(spacing->at, spacing->count, sizeof(*spacing->at), compare_int64);
     return spacing->at[(spacing->count - 1) / 2];
 }
 

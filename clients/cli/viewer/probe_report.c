@@ -6,18 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/math/search.h"
 #include "base/mem.h"
 #include "probe.h"
 #include "stream_reach.h"
 
 const char *const probe_motions[MOTION_COUNT] = { "still", "orbit", "random" };
 static const char *const stage_names[STAGE_COUNT] = { "wait", "field", "render", "encode", "network", "decode" };
-
-static int ascending(const void *pa, const void *pb)
-{
-    double a = *(const double *)pa, b = *(const double *)pb;
-    return (a > b) - (a < b);
-}
 
 static void append(struct latency_samples *all, const struct latency_samples *some)
 {
@@ -38,7 +33,7 @@ static double percentile(const struct latency_samples *of, double p)
 static void sort(struct latency_samples *samples)
 {
     if (samples->count)
-        qsort(samples->at, samples->count, sizeof(*samples->at), ascending);
+        qsort(samples->at, samples->count, sizeof(*samples->at), compare_doubles);
 }
 
 struct summary {

@@ -3,11 +3,19 @@
 #ifndef BASE_SEARCH_H
 #define BASE_SEARCH_H
 #include <stddef.h>
+#include <stdint.h>
 
 /* Compares doubles, for qsort(). */
 static inline int compare_doubles(const void *a, const void *b)
 {
     double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Compares int64_t, for qsort(). */
+static inline int compare_int64(const void *a, const void *b)
+{
+    int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
     return (x > y) - (x < y);
 }
 
