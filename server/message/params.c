@@ -9,17 +9,22 @@
 
 static const double NUMBER_MAX = 1e12, RANGE_LEAST = 1e-9;
 
+/* Refuses a field whose value names nothing that exists. Always returns false. */
+static bool refuse_name(const char *field, const json_t *value, enum refusal_code code, struct message_error *error)
+{
+    char name[48];
+    message_refuse_with(error, "bad_field", field, code, "name=%s",
+                        json_is_string(value) ? quoted(json_string_value(value), name) : "(not a text)");
+    return false;
+}
+
 static bool parse_group(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error)
 {
     const json_t *value = json_object_get(o, "group");
-    char name[48];
     if (!value)
         return true;
-    if (!json_is_string(value) || (out->field.group = plant_find_group(plant, json_string_value(value))) < 0) {
-        message_refuse_with(error, "bad_field", "group", REFUSAL_NO_GROUP, "name=%s",
-                            json_is_string(value) ? quoted(json_string_value(value), name) : "(not a text)");
-        return false;
-    }
+    if (!json_is_string(value) || (out->field.group = plant_find_group(plant, json_string_value(value))) < 0)
+        return refuse_name("group", value, REFUSAL_NO_GROUP, error);
     out->given |= GIVEN_GROUP;
     return true;
 }
@@ -119,14 +124,10 @@ static bool parse_range(const json_t *o, struct params_change *out, struct messa
 static bool parse_colormap(const json_t *o, struct params_change *out, struct message_error *error)
 {
     const json_t *value = json_object_get(o, "colormap");
-    char name[48];
     if (!value)
         return true;
-    if (!json_is_string(value) || (out->colormap = colormap_find(json_string_value(value))) < 0) {
-        message_refuse_with(error, "bad_field", "colormap", REFUSAL_UNKNOWN, "name=%s",
-                            json_is_string(value) ? quoted(json_string_value(value), name) : "(not a text)");
-        return false;
-    }
+    if (!json_is_string(value) || (out->colormap = colormap_find(json_string_value(value))) < 0)
+        return refuse_name("colormap", value, REFUSAL_UNKNOWN, error);
     out->given |= GIVEN_COLORMAP;
     return true;
 }
@@ -134,18 +135,14 @@ static bool parse_colormap(const json_t *o, struct params_change *out, struct me
 static bool parse_selected(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error)
 {
     const json_t *value = json_object_get(o, "selected");
-    char name[48];
     if (!value)
         return true;
     out->given |= GIVEN_SELECTED;
     out->selected_asset = -1;
     if (json_is_null(value))
         return true;
-    if (!json_is_string(value) || (out->selected_asset = plant_find_asset(plant, json_string_value(value))) < 0) {
-        message_refuse_with(error, "bad_field", "selected", REFUSAL_NO_ASSET, "name=%s",
-                            json_is_string(value) ? quoted(json_string_value(value), name) : "(not a text)");
-        return false;
-    }
+    if (!json_is_string(value) || (out->selected_asset = plant_find_asset(plant, json_string_value(value))) < 0)
+        return refuse_name("selected", value, REFUSAL_NO_ASSET, error);
     return true;
 }
 
@@ -171,14 +168,10 @@ static bool parse_light(const json_t *o, struct params_change *out, struct messa
 static bool parse_environment(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error)
 {
     const json_t *value = json_object_get(o, "environment");
-    char name[48];
     if (!value)
         return true;
-    if (!json_is_string(value) || (out->environment = plant_find_environment(plant, json_string_value(value))) < 0) {
-        message_refuse_with(error, "bad_field", "environment", REFUSAL_UNKNOWN, "name=%s",
-                            json_is_string(value) ? quoted(json_string_value(value), name) : "(not a text)");
-        return false;
-    }
+    if (!json_is_string(value) || (out->environment = plant_find_environment(plant, json_string_value(value))) < 0)
+        return refuse_name("environment", value, REFUSAL_UNKNOWN, error);
     out->given |= GIVEN_ENVIRONMENT;
     return true;
 }
