@@ -112,6 +112,10 @@ test('HTTP: what is there, what is not, and how it is said', { skip }, async () 
         const answer = await get(port, '/api/v1/tags', method, 'Content-Length: 0\r\n');
         assert.deepEqual([answer.status, answer.headers.allow], [405, 'GET, HEAD'], method);
     }
+    for (const path of ['/api/v1/reload', '/logout']) {
+        const answer = await get(port, path, 'DELETE', 'Content-Length: 0\r\n');
+        assert.deepEqual([answer.status, answer.headers.allow, String(answer.body)], [405, 'POST', 'only POST is allowed\n'], path);
+    }
     const page = await get(port, '/'), again = await get(port, '/', 'GET', `If-None-Match: ${page.headers.etag}\r\n`);
     assert.deepEqual([again.status, again.body.length], [304, 0]);
     assert.equal((await get(port, '/stream')).status, 426);

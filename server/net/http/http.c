@@ -240,20 +240,26 @@ static int serve_post(struct server_context *server, struct http_exchange *reque
     return import_post(server, request, path);
 }
 
-static int refuse_method(const struct server_context *server, struct http_exchange *request)
+/* Answers 405. posts: the path accepts POST, and nothing else. */
+static int refuse_method(const struct server_context *server, struct http_exchange *request, bool posts)
 {
     struct text text = { 0 };
     request->close = true; /* close the connection after the answer, because the client may send a body that nobody will read */
-    text_add(&text, "only GET and HEAD are allowed (POST: %s, %s", RELOAD_PATH, LOGOUT_PATH);
-    import_add_posts(server, &text);
-    text_add(&text, ")\n");
-    return request_answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, HTTP_TEXT, text.at, text.length, "allow:", "GET, HEAD");
+    if (posts) {
+        text_add(&text, "only POST is allowed\n");
+    } else {
+        text_add(&text, "only GET and HEAD are allowed (POST: %s, %s", RELOAD_PATH, LOGOUT_PATH);
+        import_add_posts(server, &text);
+        text_add(&text, ")\n");
+    }
+    return request_answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, HTTP_TEXT, text.at, text.length, "allow:",
+                          posts ? "POST" : "GET, HEAD");
 }
 
 static int serve(struct server_context *server, struct http_exchange *request, const char *path)
 {
-    bool post = lws_hdr_total_length(request->wsi, WSI_TOKEN_POST_URI) > 0 &&
-                (!strcmp(path, RELOAD_PATH) || !strcmp(path, LOGOUT_PATH) || import_takes_post(server, path));
+    bool posts = !strcmp(path, RELOAD_PATH) || !strcmp(path, LOGOUT_PATH) || import_takes_post(server, path);
+    bool post = posts && lws_hdr_total_length(request->wsi, WSI_TOKEN_POST_URI) > 0;
     bool get = lws_hdr_total_length(request->wsi, WSI_TOKEN_GET_URI) > 0;
     struct http_refusal refusal;
     request->head = lws_hdr_total_length(request->wsi, WSI_TOKEN_HEAD_URI) > 0;
@@ -263,7 +269,7 @@ static int serve(struct server_context *server, struct http_exchange *request, c
     connection_set_answered(server, request->wsi, false);
     stuck_head_arrived(request->wsi);
     if (!get && !request->head && !post)
-        return refuse_method(server, request);
+        return refuse_method(server, request, posts);
     if (!connection_identify(server, request->wsi, &refusal)) {
         counter_inc(server->counters.refused, 1);
         return refuse(request, &refusal);
