@@ -18,6 +18,8 @@ enum { MAX_JSON_BYTES = 512 << 20, MAX_DEPTH = 512, GLB_HEAD_BYTES = 20 };
 const struct model_box model_box_empty = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
 
 static const double MAX_COORDINATE = 1e15; /* limit of the numbers in the matrix of a node, as in plantcast-prep */
+/* least length of a rotation quaternion, and tolerance of a matrix's last row, as in plantcast-prep */
+static const double LEAST_ROTATION = 1e-6, MATRIX_SLACK = 1e-6;
 
 struct header_walk {
     struct model_header *header;
@@ -164,25 +166,35 @@ static struct model_box box_of_mesh(const struct header_walk *walk, const json_t
 
 /* --- nodes ---------------------------------------------------------------------------------------------------------------------- */
 
+/* Reads `count` numbers of a member; leaves `out` alone if the member is missing or null. Returns false if it is anything else. */
 static bool numbers_of(const json_t *object, const char *key, size_t count, double *out)
 {
     const json_t *list = json_object_get(object, key);
-    if (json_array_size(list) != count)
-        return false;
-    for (size_t i = 0; i < count; i++)
+    if (!list || json_is_null(list))
+        return true;
+    bool good = json_is_array(list) && json_array_size(list) == count;
+    for (size_t i = 0; i < count && good; i++) {
+        good = json_is_number(json_array_get(list, i));
         out[i] = json_number_value(json_array_get(list, i));
-    return true;
+    }
+    return good;
 }
 
-static void local_of(const json_t *node, double out[16])
+/* Reads the transform of a node. Returns NULL, or the error that plantcast-prep reports too. */
+static const char *local_of(const json_t *node, double out[16])
 {
     double t[3] = { 0, 0, 0 }, q[4] = { 0, 0, 0, 1 }, s[3] = { 1, 1, 1 };
-    if (numbers_of(node, "matrix", 16, out))
-        return;
-    numbers_of(node, "translation", 3, t);
-    numbers_of(node, "rotation", 4, q);
-    numbers_of(node, "scale", 3, s);
+    if (!numbers_of(node, "translation", 3, t) || !numbers_of(node, "rotation", 4, q) || !numbers_of(node, "scale", 3, s))
+        return "whose translation, rotation or scale is not 3, 4 or 3 numbers";
+    if (!(sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]) >= LEAST_ROTATION))
+        return "whose rotation is not a unit quaternion";
     transform_compose_quaternion(t, q, s, out);
+    if (!numbers_of(node, "matrix", 16, out))
+        return "whose matrix is not 16 numbers";
+    for (int column = 0; column < 4; column++)
+        if (!(fabs(out[4 * column + 3] - (column == 3)) <= MATRIX_SLACK))
+            return "whose matrix has a last row that is not 0 0 0 1";
+    return NULL;
 }
 
 static const char *name_of(const json_t *object)
@@ -203,7 +215,9 @@ static bool walk_node(struct header_walk *walk, const json_t *reference, int par
     walk->seen[number] = true;
     const json_t *mesh = mesh_number ? json_array_get(walk->meshes, (size_t)json_integer_value(mesh_number)) : NULL;
     double local[16], world[16];
-    local_of(node, local);
+    const char *error = local_of(node, local);
+    if (error)
+        return wrong(walk->why, walk->why_bytes, "has node %zu %s", number, error);
     transform_multiply(parent_world, local, world);
     for (int i = 0; i < 16; i++)
         if (!(fabs(world[i]) <= MAX_COORDINATE))
