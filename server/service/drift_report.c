@@ -110,9 +110,10 @@ void drift_text_add(struct text *out, const struct plant *plant, const struct dr
         int of = neighbours_tag(report->neighbours, i);
         if (tag >= 0 && of != tag)
             continue;
-        json_t *sensor = json_pack("{s:o,s:s,s:o,s:o,s:o,s:i}", "tag", string(plant->tags[of].name), "verdict",
-                                   drift_verdict_name(drift->verdict), "change", number(drift->change), "error", number(drift->error),
-                                   "scatter", number(drift->scatter), "hours", drift->hours);
+        json_t *sensor = json_pack("{s:o,s:s,s:s,s:o,s:o,s:o,s:i}", "tag", string(plant->tags[of].name), "verdict",
+                                   drift_verdict_name(drift->verdict), "cause", drift_unknown_cause(drift, report->count), "change",
+                                   number(drift->change), "error", number(drift->error), "scatter", number(drift->scatter), "hours",
+                                   drift->hours);
         if (tag >= 0)
             json_object_set_new(sensor, "by_hour", hours_of(report, i));
         char *text = json_text(sensor, DIGITS);

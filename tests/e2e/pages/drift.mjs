@@ -62,7 +62,9 @@ test('the one that drifts is found, and no other', options, async () => {
     assert.equal(one.by_hour.length, HOURS);
     assert.equal(one.by_hour[0][0], from);
     assert.ok(one.by_hour.at(-2)[1] - one.by_hour.at(-2)[2] > one.by_hour[1][1] - one.by_hour[1][2] + 5);
-    assert.deepEqual((await ask('group=pressure'))[1].sensors.map(({ verdict, change }) => [verdict, change]), [['unknown', null]]);
+    assert.deepEqual(sensors.map(({ cause }) => cause), ['', '', '', '']);
+    assert.deepEqual((await ask('group=pressure'))[1].sensors.map(({ verdict, cause, change }) => [verdict, cause, change]),
+        [['unknown', 'fewer than 3 sensors of the group on the asset', null]]);
 });
 
 test('the tool says the same; a week before nothing is known', options, async () => {
