@@ -194,8 +194,10 @@ static void rest(struct other *other, bool good)
     other->due_ns = next_ns > least_ns ? next_ns : least_ns;
 }
 
-static void on_end(struct other_plants *others, struct other *other, CURLcode code)
+static void on_end(void *arg, void *ended, CURLcode code)
 {
+    struct other_plants *others = arg;
+    struct other *other = ended;
     struct other_picture about;
     char said[CURL_ERROR_SIZE + 160];
     enum why why = why_of(code);
@@ -264,22 +266,8 @@ static int begin_due(struct other_plants *others)
 static void *run(void *arg)
 {
     struct other_plants *others = arg;
-    int running, left;
-    while (!atomic_load(&others->stopping)) {
-        int wait_ms = begin_due(others);
-        curl_multi_perform(others->multi, &running);
-        curl_multi_poll(others->multi, NULL, 0, wait_ms, NULL);
-        curl_multi_perform(others->multi, &running);
-        for (CURLMsg *message; (message = curl_multi_info_read(others->multi, &left));) {
-            struct other *other = NULL;
-            if (message->msg != CURLMSG_DONE)
-                continue;
-            CURLcode code = message->data.result;
-            curl_easy_getinfo(message->easy_handle, CURLINFO_PRIVATE, (char **)&other);
-            curl_multi_remove_handle(others->multi, message->easy_handle);
-            on_end(others, other, code);
-        }
-    }
+    while (!atomic_load(&others->stopping))
+        http_requests_wait(others->multi, begin_due(others), on_end, others);
     return NULL;
 }
 

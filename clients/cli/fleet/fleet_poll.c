@@ -129,8 +129,10 @@ static int64_t pause_ns(const struct fleet_poll *poll, const struct fleet_reques
     return (int64_t)(s * 1e9);
 }
 
-static void on_end(struct fleet_poll *poll, struct fleet_request *request, CURLcode code)
+static void on_end(void *arg, void *ended, CURLcode code)
 {
+    struct fleet_poll *poll = arg;
+    struct fleet_request *request = ended;
     const char *why = code == CURLE_OK ? NULL : http_request_why(&request->http, code);
     pthread_mutex_lock(&poll->lock);
     if (!why)
@@ -184,21 +186,9 @@ static int64_t begin_due(struct fleet_poll *poll, int64_t now_ns)
 static void *run(void *arg)
 {
     struct fleet_poll *poll = arg;
-    int running, left;
     while (!atomic_load(&poll->stopping)) {
         int64_t now_ns = clock_mono_ns(), next_ns = begin_due(poll, now_ns);
-        curl_multi_perform(poll->multi, &running);
-        curl_multi_poll(poll->multi, NULL, 0, (int)((next_ns - now_ns) / NS_PER_MS) + 1, NULL);
-        curl_multi_perform(poll->multi, &running);
-        for (CURLMsg *message; (message = curl_multi_info_read(poll->multi, &left));) {
-            struct fleet_request *request = NULL;
-            if (message->msg != CURLMSG_DONE)
-                continue;
-            CURLcode code = message->data.result;
-            curl_easy_getinfo(message->easy_handle, CURLINFO_PRIVATE, (char **)&request);
-            curl_multi_remove_handle(poll->multi, message->easy_handle);
-            on_end(poll, request, code);
-        }
+        http_requests_wait(poll->multi, (int)((next_ns - now_ns) / NS_PER_MS) + 1, on_end, poll);
     }
     return NULL;
 }

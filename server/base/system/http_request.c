@@ -60,6 +60,23 @@ const char *http_request_why(const struct http_request *request, CURLcode code)
     return request->error[0] ? request->error : curl_easy_strerror(code);
 }
 
+void http_requests_wait(CURLM *multi, int wait_ms, void (*on_end)(void *arg, void *request, CURLcode code), void *arg)
+{
+    int running, left;
+    curl_multi_perform(multi, &running);
+    curl_multi_poll(multi, NULL, 0, wait_ms, NULL);
+    curl_multi_perform(multi, &running);
+    for (CURLMsg *message; (message = curl_multi_info_read(multi, &left));) {
+        void *request = NULL;
+        if (message->msg != CURLMSG_DONE)
+            continue;
+        CURLcode code = message->data.result;
+        curl_easy_getinfo(message->easy_handle, CURLINFO_PRIVATE, (char **)&request);
+        curl_multi_remove_handle(multi, message->easy_handle);
+        on_end(arg, request, code);
+    }
+}
+
 void http_request_finish(struct http_request *request)
 {
     curl_easy_cleanup(request->handle);

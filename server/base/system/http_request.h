@@ -25,6 +25,9 @@ bool http_request_make(struct http_request *request, const char *agent, const ch
 void http_request_authorize(struct http_request *request, const char *scheme, const char *credentials);
 /* Returns the reason why a request failed, as libcurl's text; valid until the next request begins. */
 const char *http_request_why(const struct http_request *request, CURLcode code);
+/* Lets the transfers of a multi handle continue until something happens, at most wait_ms. Removes each transfer that ended from the multi
+   handle and calls on_end with the handle's CURLOPT_PRIVATE. */
+void http_requests_wait(CURLM *multi, int wait_ms, void (*on_end)(void *arg, void *request, CURLcode code), void *arg);
 /* Frees handle, headers and answer, and clears the struct. */
 void http_request_finish(struct http_request *request);
 
