@@ -71,12 +71,6 @@ static void print_usage(FILE *out)
           out);
 }
 
-static int fail_at(const char *path, const char *why)
-{
-    fprintf(stderr, "plantcast import: %s: %s\n", path, why);
-    return 1;
-}
-
 static void print_lines(const char *path, const char *lines)
 {
     for (size_t length; *lines; lines += length + (lines[length] == '\n')) {
@@ -125,7 +119,7 @@ static void convert(struct import_command *import, const char *path)
     } else {
         model_outline_finish(&model->outline);
         *model = (struct plant_draft_model){ 0 };
-        fail_at(path, why);
+        import_fail(path, why);
         import->unread++;
         import->interrupted = work_folder_interrupted() || !strcmp(why, "interrupted");
     }
@@ -160,10 +154,10 @@ static int convert_all(struct import_command *import)
     for (int i = 0; i < count && !import->interrupted; i++)
         convert(import, import->paths[i]);
     if (import->interrupted || work_folder_interrupted())
-        return fail_at(import->folder, "interrupted");
+        return import_fail(import->folder, "interrupted");
     if (import->unread > 0 && (import->count == 0 || (import->anew && find_plant(import) == WHOLE_PLANT))) {
         if (import->count > 0)
-            fail_at(import->folder, "nothing was imported: --anew needs all models of the plant, and some could not be read");
+            import_fail(import->folder, "nothing was imported: --anew needs all models of the plant, and some could not be read");
         return 1;
     }
     if (import->unread > 0)
@@ -187,7 +181,7 @@ static int move_all(const struct import_command *import)
     for (int i = 0; i < import->count && status == 0; i++) {
         char *from = mem_printf("%s/%d.glb", import->work.path, i), *to = mem_printf("%s/%s", import->folder, import->models[i].file);
         if (rename(from, to) != 0)
-            status = fail_at(to, strerror(errno));
+            status = import_fail(to, strerror(errno));
         mem_free(from);
         mem_free(to);
     }
@@ -208,7 +202,7 @@ static int bring_in(const struct import_command *import)
     if (found == WHOLE_PLANT && !import->anew)
         return revise(&params);
     if (import->dry_run)
-        return fail_at(import->folder, "this folder contains no plant to compare with: leave out --dry-run");
+        return import_fail(import->folder, "this folder contains no plant to compare with: leave out --dry-run");
     if (import->anew || found == BEGUN_PLANT)
         return import_anew(&params, &draft);
     int status = move_all(import);
@@ -219,16 +213,16 @@ static int run(struct import_command *import)
 {
     int status = work_folder_begin(&import->work, import->folder);
     if (status != 0)
-        return fail_at(import->folder, strerror(-status));
+        return import_fail(import->folder, strerror(-status));
     char *why = NULL;
     int lock = file_set_lock(
         &(struct plant_folder_params){ .folder = import->folder, .own = import->work.path, .lent = import->lent }, &why);
     if (lock < 0)
-        status = fail_at(import->folder, why);
+        status = import_fail(import->folder, why);
     /* ignore EEXIST and create the folder again if it is missing: the previous holder of the folder lock may have deleted it as a leftover
      * of a dead process */
     else if (mkdir(import->work.path, 0700) != 0 && errno != EEXIST)
-        status = fail_at(import->work.path, strerror(errno));
+        status = import_fail(import->work.path, strerror(errno));
     mem_free(why);
     import->findings = json_array();
     import->models = mem_array((size_t)import->count, sizeof(*import->models));

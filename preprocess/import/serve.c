@@ -15,17 +15,12 @@
 #include "base/mem.h"
 #include "plant/plant_folder.h"
 #include "importing/export_folder.h"
+#include "preprocess/import/commands.h"
 #include "preprocess/import/plant_draft.h"
-
-static int fail_at(const char *path, const char *why)
-{
-    fprintf(stderr, "plantcast import: %s: %s\n", path, why);
-    return 1;
-}
 
 static int make_folder(const char *path)
 {
-    return mkdir(path, 0777) == 0 || errno == EEXIST ? 0 : fail_at(path, strerror(errno));
+    return mkdir(path, 0777) == 0 || errno == EEXIST ? 0 : import_fail(path, strerror(errno));
 }
 
 /* Adds a symlink to the file to the folder of exports. The file itself stays where it is, because it may refer to files in its own
@@ -35,17 +30,17 @@ static int add_link(const char *exports, const char *file)
     char target[PATH_MAX];
     const char *slash = strrchr(file, '/'), *name = slash ? slash + 1 : file;
     if (!realpath(file, target))
-        return fail_at(file, strerror(errno));
+        return import_fail(file, strerror(errno));
     if (!export_name_good(name))
-        return fail_at(file, "import --serve does not allow this file name: rename the file");
+        return import_fail(file, "import --serve does not allow this file name: rename the file");
     char *link = mem_printf("%s/%s", exports, name);
     int status = 0;
     if (export_kind_of(name) == EXPORT_TAGS)
         export_folder_remove_tag_lists(exports, NULL);
     if (unlink(link) != 0 && errno != ENOENT)
-        status = fail_at(link, strerror(errno));
+        status = import_fail(link, strerror(errno));
     else if (symlink(target, link) != 0)
-        status = fail_at(link, strerror(errno));
+        status = import_fail(link, strerror(errno));
     mem_free(link);
     return status;
 }
@@ -56,7 +51,7 @@ static int beside(char path[PATH_MAX], const char *name)
     path[length > 0 ? length : 0] = 0;
     char *slash = strrchr(path, '/');
     if (!slash)
-        return fail_at(name, "this program cannot be found: the folder of the running program is unknown");
+        return import_fail(name, "this program cannot be found: the folder of the running program is unknown");
     strcpy(slash + 1, name);
     return 0;
 }
@@ -71,10 +66,10 @@ static int prepare(const char *plant)
         return 1;
     int error = posix_spawn(&child, program, NULL, NULL, arguments, environ);
     if (error)
-        return fail_at(program, strerror(error));
+        return import_fail(program, strerror(error));
     while (waitpid(child, &status, 0) < 0 && errno == EINTR)
         ;
-    return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? 0 : fail_at(plant, "cannot be prepared");
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? 0 : import_fail(plant, "cannot be prepared");
 }
 
 static int run_daemon(const struct serve_params *params, const char *plant)
@@ -87,7 +82,7 @@ static int run_daemon(const struct serve_params *params, const char *plant)
         return 1;
     fflush(stdout);
     execv(program, arguments);
-    return fail_at(program, strerror(errno));
+    return import_fail(program, strerror(errno));
 }
 
 int import_serve(const struct serve_params *params)
@@ -100,7 +95,7 @@ int import_serve(const struct serve_params *params)
     if (status == 0) {
         char *why = NULL;
         if (plant_folder_lock(&(struct plant_folder_params){ .folder = params->folder }, &why) < 0)
-            status = fail_at(params->folder, why);
+            status = import_fail(params->folder, why);
         mem_free(why);
     }
     if (status == 0)

@@ -69,7 +69,7 @@ static int read_block(const struct archive_reading *from, char *block)
 
 static const char *copy(const struct archive_reading *from, FILE *to, size_t most)
 {
-    static char block[BLOCK_BYTES];
+    char block[BLOCK_BYTES];
     size_t total = 0;
     for (int count; (count = read_block(from, block)) != 0; total += (size_t)count) {
         if (count < 0)

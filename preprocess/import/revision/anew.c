@@ -11,6 +11,7 @@
 #include "base/mem.h"
 #include "base/text/text.h"
 #include "placing/tag_file.h"
+#include "preprocess/import/commands.h"
 #include "preprocess/import/revision/revision_files.h"
 
 enum { TEXTS = 3 };
@@ -27,12 +28,6 @@ struct revision_making {
     size_t file_count;
     struct one_text texts[TEXTS];
 };
-
-static int fail_at(const char *path, const char *why)
-{
-    fprintf(stderr, "plantcast import: %s: %s\n", path, why);
-    return 1;
-}
 
 /* Adds one text file to the transaction and takes ownership of `after`. versioned: also keeps the current file under another name (NAME.1,
  * ...), because a person may have written it. */
@@ -52,14 +47,14 @@ static int add_text(struct revision_making *making, struct one_text *one, const 
     if (why.code) {
         char text[REFUSAL_TEXT_BYTES];
         refusal_text(&why, text);
-        status = fail_at(path, text);
+        status = import_fail(path, text);
     }
     struct revision_file *file = &making->files[making->file_count];
     *file = (struct revision_file){ name, NULL, one->before };
     if (status == 0 && one->after) {
         file->made = mem_printf("%s/%s", making->params->work, name);
         int error = atomic_file_put(file->made, one->after, strlen(one->after));
-        status = error == 0 ? 0 : fail_at(path, strerror(-error));
+        status = error == 0 ? 0 : import_fail(path, strerror(-error));
     }
     making->file_count += one->before || one->after;
     mem_free(path);
@@ -86,9 +81,9 @@ static int apply(const struct revision_making *making)
     int status = revision_files_apply(folder, making->params->work, making->files, making->file_count, &changed);
     if (status != 0)
         return status == -ESTALE
-                   ? fail_at(changed,
+                   ? import_fail(changed,
                              "this file was changed by another program during the import, so nothing was written: run the command again")
-                   : fail_at(folder, strerror(-status));
+                   : import_fail(folder, strerror(-status));
     for (size_t i = 0; i < TEXTS; i++)
         if (making->texts[i].kept)
             printf("%s/%s: written; the previous version is kept as %s\n", folder, making->texts[i].name, making->texts[i].kept);
