@@ -174,12 +174,6 @@ static bool parse_field(const char *text, bool *per_fragment)
     return *per_fragment || !strcmp(text, "vertices");
 }
 
-static bool is_address(const char *text)
-{
-    struct in6_addr any;
-    return inet_pton(AF_INET, text, &any) == 1 || inet_pton(AF_INET6, text, &any) == 1;
-}
-
 static bool is_loopback(const char *address)
 {
     struct in_addr four;
@@ -417,7 +411,7 @@ static int take_option(int option, struct server_params *params, int (**task)(co
     switch (option) {
     case OPTION_LISTEN:
         params->address = strcmp(optarg, "localhost") == 0 ? "127.0.0.1" : optarg;
-        return is_address(params->address) ? -1 : usage_error("--listen: expected an IP address, found", optarg);
+        return access_name_is_address(params->address) ? -1 : usage_error("--listen: expected an IP address, found", optarg);
     case OPTION_PORT: return parse_int(optarg, 0, 65535, &params->port) ? -1 : usage_error("--port: expected a port, found", optarg);
     case OPTION_FIELD:
         return parse_field(optarg, &params->per_fragment) ? -1 : usage_error("--field: expected vertices or per-fragment, found", optarg);
