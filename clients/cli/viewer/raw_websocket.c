@@ -188,7 +188,7 @@ static ssize_t read_frame_header(struct raw_websocket *raw, const char **why)
    ended or the message is too long. */
 static ssize_t read_payload(struct raw_websocket *raw, const char **why)
 {
-    static char bytes[64 * 1024];
+    char bytes[64 * 1024];
     bool control = raw->opcode >= OP_CLOSE;
     struct text *into = control ? &raw->control : &raw->message;
     size_t keep = control || !raw->binary                   ? raw->left
