@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Decides which frames a session wants next, and what to do with those that arrive. */
+#include <math.h>
+
 #include "base/clock.h"
 #include "render/depth_grid.h"
 #include "session/reply/reply.h"
@@ -157,9 +159,10 @@ static bool all_can_be_refined(const struct session *session, int64_t now_ns)
     return !session->context->overloaded && now_ns >= session->context->moving_until_ns;
 }
 
+/* Returns a side of a reduced frame. Rounds to the nearest even number, so that the frame keeps the shape of the view. */
 static int scaled(int px, double scale)
 {
-    int less = (int)(px * scale) & ~1;
+    int less = 2 * (int)lround(px * scale / 2);
     return scale < 1 && px > SMALL_PX && less < px ? less : px;
 }
 

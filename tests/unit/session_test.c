@@ -751,6 +751,7 @@ CASE(a_slow_client_gets_less_and_everything_in_the_end)
         snprintf(text, sizeof(text), "{\"type\":\"camera\",\"seq\":%d,\"eye\":[9,9,%d],\"target\":[0,0,1]}", i, i + 5);
         say(f, text);
         assert_true(ask(f, &request));
+        assert_true(fabs(request.view.height_px * 16.0 / 9 - request.view.width_px) <= 1 + 16.0 / 9); /* the shape of the view */
         size_t bytes = (size_t)(200e3 * request.quality.quality / 78 * request.view.width_px / 640 * request.view.width_px / 640);
         carry(f, &request, bytes, (int64_t)bytes * 8000);
     }

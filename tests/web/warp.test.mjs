@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { mock, test } from 'node:test';
 import { deflateRawSync } from 'node:zlib';
-import { Warp } from '../../clients/web/app/picture/warp.js';
+import { hasViewportShape, Warp } from '../../clients/web/app/picture/warp.js';
 import { projector } from '../../clients/web/core/camera.js';
 import { sight } from '../../clients/web/core/camera_moves.js';
 import { decodeGrid, readHeader } from '../../clients/web/core/depth_grid.js';
@@ -206,6 +206,12 @@ test('a picture drawn with fewer pixels keeps its exact shape', () => {
     const warp = Object.assign(Object.create(Warp.prototype), { gl, canvas, reduced: [], intervals: [], last: 0, mostPx: 10000 });
     warp.fit({ fullWidth: 322, fullHeight: 178 });
     assert.deepEqual([canvas.width, canvas.height, canvas.style.aspectRatio], [134, 74, '322 / 178']);
+});
+
+test('a reduced picture has the shape of the viewport in spite of its rounded sides', () => {
+    const shape = (fullWidth, fullHeight) => hasViewportShape({ fullWidth, fullHeight, shownWidth: fullHeight * 1280 / 720 });
+    assert.ok(shape(1280, 720) && shape(448, 250) && shape(448, 252) && shape(446, 252));
+    assert.ok(!shape(640, 352) && !shape(512, 360));
 });
 
 test('pictures wait for their depth, but not for a worker that does not answer', () => {

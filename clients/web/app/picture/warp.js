@@ -92,6 +92,10 @@ void main() {
 // REDUCED: REDUCED x REDUCED pixels become one pixel of the reduced picture, from which the greys are computed
 const LATTICE_PX = 14, REDUCED = 4;
 
+// Returns true if picture and viewport have the same shape. The width and height of a reduced picture are rounded to even numbers.
+export const hasViewportShape = ({ shownWidth, fullWidth, fullHeight }) =>
+    Math.abs(shownWidth - fullWidth) <= 2 + 2 * fullWidth / fullHeight;
+
 // Returns { program, at(name) }; at() returns the location of a uniform.
 export function programOf(gl, ...sources) {
     const program = gl.createProgram();
@@ -255,7 +259,7 @@ export class Warp {
     get isWanted() {
         const { session, source, modules } = this, { picture, camera } = session;
         return source !== null && this.isAhead && session.leader === null && !session.lent && !modules.there('cameraController')?.fly
-            && Math.abs(picture.shownWidth - picture.fullWidth) <= 2 && isNear(source.camera, camera);
+            && hasViewportShape(picture) && isNear(source.camera, camera);
     }
 
     // Draws the newest picture from the present camera, or shows the picture itself. Called once per animation frame, after new pictures
