@@ -70,7 +70,7 @@ static bool take_statement(struct film *film, const struct text *body)
 {
     if (film_statements_add(film->statements, (const uint8_t *)body->at, body->length))
         return true;
-    fprintf(stderr, "plantcast: %s: a picture has no signature: plantcastd --signing-key signs pictures of 256 pixels and more\n",
+    fprintf(stderr, "plantcast: %s: a picture has no signature: start plantcastd with --signing-key, and make --size at least 256x256\n",
             film->options->from);
     return false;
 }
@@ -223,7 +223,7 @@ int command_clip(int argc, char **argv)
     struct film film = { .options = &options, .said = "" };
     bool daemon = code < 0 && strstr(options.from, "://");
     if (code < 0 && options.is_signed && !daemon) {
-        fputs("plantcast: --signed: only a daemon with --signing-key signs pictures: give its URL\n", stderr);
+        fputs("plantcast: --signed needs the URL of a daemon with --signing-key instead of a plant file\n", stderr);
         code = 2;
     }
     if (code < 0)

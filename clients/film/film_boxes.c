@@ -221,7 +221,7 @@ static bool take_outer(struct box_walk *walk, FILE *file, uint64_t *left)
         return false;
     if (memcmp(head + 4, "moov", 4) == 0)
         return take_moov(walk, file, length);
-    return fseeko(file, (off_t)length, SEEK_CUR) == 0 || FAIL("it cannot be read");
+    return fseeko(file, (off_t)length, SEEK_CUR) == 0 || FAIL("cannot be read");
 }
 
 static bool has_all(const struct box_walk *walk)
@@ -239,7 +239,7 @@ bool film_boxes_plain(const char *path, struct film_size *size, char why[FILM_BO
     FILE *file = fopen(path, "rb");
     bool good = file && fseeko(file, 0, SEEK_END) == 0;
     if (!good)
-        snprintf(why, FILM_BOXES_WHY_BYTES, "it cannot be read: %m");
+        snprintf(why, FILM_BOXES_WHY_BYTES, "cannot be read: %m");
     uint64_t left = good ? (uint64_t)ftello(file) : 0;
     if (good)
         rewind(file);

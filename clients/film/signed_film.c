@@ -136,14 +136,14 @@ static bool open_film(struct film_reader *reader, const char *path)
     reader->packet = av_packet_alloc();
     reader->frame = av_frame_alloc();
     if (!reader->codec || !reader->packet || !reader->frame || avcodec_parameters_to_context(reader->codec, stream->codecpar) < 0)
-        return FAIL("this machine has no decoder for the film");
+        return FAIL("libavcodec on this machine cannot decode the film");
     reader->codec->thread_count = 1;
     reader->codec->color_primaries = AVCOL_PRI_UNSPECIFIED;
     reader->codec->color_trc = AVCOL_TRC_UNSPECIFIED;
     reader->codec->colorspace = AVCOL_SPC_UNSPECIFIED;
     reader->codec->color_range = AVCOL_RANGE_UNSPECIFIED;
     reader->codec->err_recognition = AV_EF_EXPLODE | AV_EF_BITSTREAM | AV_EF_BUFFER | AV_EF_CRCCHECK;
-    return (avcodec_open2(reader->codec, decoder, NULL) >= 0 || FAIL("this machine has no decoder for the film")) &&
+    return (avcodec_open2(reader->codec, decoder, NULL) >= 0 || FAIL("libavcodec on this machine cannot decode the film")) &&
            read_statements(reader);
 }
 
@@ -186,13 +186,13 @@ static bool is_plain_picture(struct film_reader *reader)
 {
     const AVFrame *frame = reader->frame;
     if (frame->format != AV_PIX_FMT_GBRP || frame->crop_left || frame->crop_right || frame->crop_top || frame->crop_bottom)
-        return FAIL("a picture is not as plantcast clip --signed encodes it");
+        return FAIL("the picture is not encoded as plantcast clip --signed encodes pictures");
     if (frame->color_primaries != AVCOL_PRI_BT709 || frame->color_trc != AVCOL_TRC_IEC61966_2_1 || frame->colorspace != AVCOL_SPC_RGB ||
         frame->color_range != AVCOL_RANGE_JPEG)
-        return FAIL("its H.264 stream (VUI) describes other colours than Plantcast writes: primaries %d, transfer %d, matrix %d, range %d",
+        return FAIL("the H.264 stream (VUI) describes other colours than Plantcast writes: primaries %d, transfer %d, matrix %d, range %d",
                     (int)frame->color_primaries, (int)frame->color_trc, (int)frame->colorspace, (int)frame->color_range);
     if (frame->sample_aspect_ratio.num != 0 && av_cmp_q(frame->sample_aspect_ratio, (AVRational){ 1, 1 }) != 0)
-        return FAIL("its H.264 stream (VUI) says that pixels are not square");
+        return FAIL("the H.264 stream (VUI) states that pixels are not square");
     return (frame->width == reader->size.width_px && frame->height == reader->size.height_px) ||
            FAIL("the size in box avc1 differs from the pictures' size");
 }
@@ -248,7 +248,7 @@ static bool takes_view(struct film_check *check, const json_t *statement)
     if (last && same_view(query, last))
         return true;
     if (last && !check->tour)
-        return FAIL("its view differs from that of the first picture (for a film of a tour, add --tour)");
+        return FAIL("the view differs from that of the first picture (for a film of a tour, add --tour)");
     json_array_append_new(check->views, json_pack("{s:O,s:O}", "query", query, "at_us", json_object_get(statement, "at_us")));
     return true;
 }
@@ -261,17 +261,17 @@ static bool follows(struct film_check *check, const json_t *statement)
     struct film_reader *reader = &check->reader;
     int64_t at_us = json_integer_value(json_object_get(statement, "at_us")), pts = reader->frame->pts;
     if (at_us == 0)
-        return FAIL("it is not a picture of the past");
+        return FAIL("the picture does not show a time of the past");
     for (size_t i = 0; i < sizeof(same) / sizeof(*same) && check->first; i++)
         if (!json_equal(json_object_get(statement, same[i]), json_object_get(check->first, same[i])))
-            return FAIL("its '%s' differs from that of the first picture", same[i]);
+            return FAIL("the statement's '%s' differs from that of the first picture", same[i]);
     if (!takes_view(check, statement))
         return false;
     int64_t step_us = at_us - check->at_us, pts_step = pts - check->pts;
     if (check->count > 0 && (step_us <= 0 || (check->step_us && llabs(step_us - check->step_us) > 1)))
-        return FAIL("the picture before it is missing, or pictures were moved or inserted");
+        return FAIL("the previous picture is missing, or pictures were moved or inserted");
     if (check->count > 0 && (pts_step <= 0 || (check->pts_step && pts_step != check->pts_step)))
-        return FAIL("it is shown for another duration than the others");
+        return FAIL("the duration of the picture differs from that of the others");
     check->step_us = check->count > 0 ? step_us : 0;
     check->pts_step = check->count > 0 ? pts_step : 0;
     check->at_us = at_us;
@@ -286,7 +286,7 @@ static bool verify_picture(struct film_check *check)
     const char *text = json_string_value(json_array_get(pair, 0)), *signature = json_string_value(json_array_get(pair, 1));
     uint8_t *rgb = pixels_of(reader);
     json_t *statement = NULL;
-    bool good = rgb && ((text && signature) || FAIL("it has no signed statement"));
+    bool good = rgb && ((text && signature) || FAIL("no signed statement"));
     good = good && (statement = signed_statement_verify(check->key, text, strlen(text), signature, reader->why));
     good = good && signed_statement_has_pixels(statement, rgb, reader->frame->width, reader->frame->height, reader->why);
     good = good && follows(check, statement);
@@ -331,7 +331,7 @@ int film_verify(const struct signing_key *key, const char *path, const struct re
     struct film_check check = { .key = key, .options = options, .tour = tour };
     struct film_reader *reader = &check.reader;
     check.views = json_array();
-    bool good = open_film(reader, path);
+    bool opened = open_film(reader, path), good = opened;
     while (good && next_picture(reader)) {
         good = verify_picture(&check);
         check.count += good;
@@ -343,8 +343,10 @@ int film_verify(const struct signing_key *key, const char *path, const struct re
     good = good && (check.count > 0 || FAIL("the film has no picture"));
     if (good)
         print_film(&check, path);
-    else
+    else if (opened)
         fprintf(stderr, "plantcast: %s: picture %zu: %s\n", path, check.count + 1, reader->why);
+    else
+        fprintf(stderr, "plantcast: %s: %s\n", path, reader->why);
     json_decref(check.first);
     json_decref(check.views);
     close_film(reader);

@@ -110,7 +110,7 @@ bool daemon_url_parse(const char *text, struct daemon_url *url)
     if (good)
         strcpy(url->host, host);
     else
-        fprintf(stderr, "plantcast: '%s' is not a URL such as https://HOST:PORT/ (plus the path of a proxy, where there is one)\n",
+        fprintf(stderr, "plantcast: '%s' is not a URL such as https://HOST:PORT/, or https://HOST/PATH/ of a proxy\n",
                 text);
     mem_free(copy);
     return good;
@@ -208,7 +208,7 @@ int daemon_get(const struct daemon_url *url, const char *path, struct text *body
     if (!exchange.status)
         fprintf(stderr, "plantcast: http%s://%s:%d%s: %s%s\n", url->tls ? "s" : "", url->host, url->port, whole,
                 exchange.why[0] ? exchange.why : "no answer",
-                strstr(exchange.why, "SSL") ? "; is its certificate trusted here? --ca FILE adds a trusted one" : "");
+                strstr(exchange.why, "SSL") ? "; name the daemon's certificate, or its authority, with --ca FILE" : "");
     if (context)
         lws_context_destroy(context);
     mem_free(whole);

@@ -65,8 +65,8 @@ static int read_readers(struct video_options *options, const char *path)
         options->password = g_strdup(colon + 1);
         size_t n = strlen(options->password);
         if (options->srt_port && (n < SRT_LEAST_CHARS || n > SRT_MOST_CHARS))
-            code = wrong("%s: the password is SRT's passphrase, too, and has %d to %d characters there, not %zu", path, SRT_LEAST_CHARS,
-                         SRT_MOST_CHARS, n);
+            code = wrong("%s: the password is also the passphrase of SRT, which must have %d to %d characters, not %zu", path,
+                         SRT_LEAST_CHARS, SRT_MOST_CHARS, n);
     }
     g_free(line);
     return code;
@@ -84,7 +84,7 @@ static int read_url(struct video_options *options, int argc, char **argv)
         options->url = g_strconcat(argv[1], g_str_has_suffix(argv[1], "/") ? "" : "/", NULL);
     if (uri)
         g_uri_unref(uri);
-    return good ? -1 : wrong("'%s' is not a URL such as https://HOST:PORT/ (plus the path of a proxy, where there is one)", argv[1]);
+    return good ? -1 : wrong("'%s' is not a URL such as https://HOST:PORT/, or https://HOST/PATH/ of a proxy", argv[1]);
 }
 
 static int read_size(struct video_options *options, const char *text)
@@ -175,7 +175,7 @@ int options_read(struct video_options *options, int *argc, char ***argv)
         { "open-readers", 0, 0, G_OPTION_ARG_NONE, &open_readers, "require no password: everybody who reaches the address may watch",
           NULL },
         { "most-readers", 0, 0, G_OPTION_ARG_INT, &options->most_readers,
-          "most viewers of RTSP, and of SRT, at the same time (default: 64)", "N" },
+          "largest number of viewers of RTSP, and of SRT, at the same time (default: 64)", "N" },
         { "time-code", 0, 0, G_OPTION_ARG_NONE, &time_code, "add a row of blocks below the picture, from which programs read its time",
           NULL },
         { "version", 0, 0, G_OPTION_ARG_NONE, &version, "print the version", NULL },

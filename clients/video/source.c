@@ -367,7 +367,7 @@ void source_look(struct video_source *source, struct shown *out)
     *out = (struct shown){ .title = title, .zone = source->zone, .headline = source->headline, .detail = source->detail, .age_ms = -1 };
     if (young && !frozen) {
         if (source->since_us)
-            fprintf(stderr, "plantcast-video: %s: sends pictures again\n", source->options->url);
+            fprintf(stderr, "plantcast-video: %s: pictures arrive again\n", source->options->url);
         source->since_us = 0;
         source->said[0] = 0;
         out->picture = source->picture;

@@ -141,7 +141,7 @@ test('a command that is a program of its own is given the certificates and the t
     writeFileSync(mine, (await run('token', 'add', tokens, '--role', 'viewer', '--name', 'films')).out);
     await plant.startDaemon('--tls-cert', cert, '--tls-key', join(plant.folder, 'key.pem'), '--tokens', tokens);
     const url = `https://localhost:${plant.port}/`;
-    for (const [more, why] of [[[], /is its certificate trusted here/], [['--ca', cert], /answers 401/]]) {
+    for (const [more, why] of [[[], /name the daemon's certificate/], [['--ca', cert], /answers 401/]]) {
         const { code, err } = await run(...film(url, ...more));
         assert.equal(code, 1, err);
         assert.match(err, why);
