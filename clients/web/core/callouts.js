@@ -122,7 +122,8 @@ export function placeRings(all, { area, unit, taken, measure }) {
             return inside && (alone || isNear(one, box)) && !taken.meets(grown, owner, over) &&
                 !out.some((other) => meets(grown, other.box));
         };
-        if (one.held >= 0 && one.held < SLOTS.length + OFFSETS.length && free(one.held, 0, 1))
+        const isKnown = one.held >= 0 && one.held < SLOTS.length + OFFSETS.length;
+        if (isKnown && isNear(one, boxOf(one, one.held, unit)) && free(one.held, 0, 1))
             return one.held;
         for (const over of [0, 1]) {
             for (let slot = 0; slot < SLOTS.length; slot++) {

@@ -168,11 +168,12 @@ static struct label_box box_at(const struct rings *rings, const struct ring_grou
                                item->height };
 }
 
-/* Returns whether a label is at most LABEL_FARTHEST away from the rings of its group. */
-static bool is_near(const struct rings *rings, const struct ring_group *group, const struct label_box *box)
+/* Returns whether a label in this slot is at most LABEL_FARTHEST away from the rings of its group. */
+static bool is_near(const struct rings *rings, const struct ring_group *group, int slot)
 {
-    double aside = fmax(0, fmax(box->x - group->item.x, group->item.x - box->x - box->width) - group->across);
-    double away = fmax(0, fmax(box->y - group->item.y, group->item.y - box->y - box->height) - group->down);
+    struct label_box box = box_at(rings, group, slot);
+    double aside = fmax(0, fmax(box.x - group->item.x, group->item.x - box.x - box.width) - group->across);
+    double away = fmax(0, fmax(box.y - group->item.y, group->item.y - box.y - box.height) - group->down);
     return hypot(aside, away) <= LABEL_FARTHEST * rings->layout->area->unit;
 }
 
@@ -183,7 +184,7 @@ static bool is_free(const struct rings *rings, const struct ring_group *group, i
     struct label_box box = box_at(rings, group, slot);
     struct label_box grown = { box.x - more, box.y - more, box.width + 2 * more, box.height + 2 * more };
     int owner = slot < LABEL_SLOTS && group->count == 1 ? group->members[0] : LABEL_NONE - 1;
-    if (rings->group_count > 1 && !is_near(rings, group, &box))
+    if (rings->group_count > 1 && !is_near(rings, group, slot))
         return false;
     if (!layout_is_inside(rings->layout, &box) || !layout_is_free(rings->layout, &grown, owner, over))
         return false;
@@ -199,7 +200,8 @@ static int find_slot(const struct rings *rings, const struct ring_group *group)
     int held = group->item.held;
     bool alone = rings->group_count == 1;
     double clearance = LABEL_CLEARANCE * rings->layout->area->unit;
-    if (held >= 0 && held < LABEL_SLOTS + OFFSETS && is_free(rings, group, held, 0, OVER_MARKS))
+    bool is_known = held >= 0 && held < LABEL_SLOTS + OFFSETS;
+    if (is_known && is_near(rings, group, held) && is_free(rings, group, held, 0, OVER_MARKS))
         return held;
     for (int i = 0; i < 2 * LABEL_SLOTS; i++)
         if (is_free(rings, group, i % LABEL_SLOTS, clearance, i < LABEL_SLOTS ? OVER_NOTHING : OVER_MARKS))
