@@ -29,7 +29,7 @@ test('standing alarms are those of the page: one for each tag, counted by its wo
         held: false, until_us: null, who: '', reason: '' });
     hearAlarms(model, { mode: 'local', alarms: [alarm('TI-1', 'H', 'unacknowledged', 3), alarm('TI-1', 'HH', 'unacknowledged', 2),
         alarm('TI-2', 'L', 'returned', 3), alarm('TI-9', 'L', 'active', 1), alarm('plc1', 'LINK', 'acknowledged', 1)] });
-    assert.deepEqual(model.alarms.list().map(({ tag, kind }) => [tag.name, kind]), [['TI-1', 'HH'], ['TI-2', 'L'], ['plc1', 'LINK']]);
+    assert.deepEqual(model.alarms.list().map(({ tag, kind }) => [tag.name, kind]), [['TI-1', 'HH'], ['plc1', 'LINK'], ['TI-2', 'L']]);
     const { active, waiting } = model.alarms.counts();
     assert.deepEqual([active, waiting], [2, 2]);
 });

@@ -641,6 +641,8 @@ test('alarms: a tag counts once, by its worst that is there', () => {
     assert.deepEqual(alarms.counts(), { active: 2, waiting: 1, latched: 0, of: [1, 0, 0, 1], gone: [0, 0, 0, 0] });
     socket.say(alarmRows([0, 'L', 'acknowledged', 2, 1], [0, 'LL', 'returned', 1, 2]));
     assert.deepEqual([alarms.gravest(0).kind, alarms.gravest(0).state, alarms.gravest(0).waiting], ['L', 'acknowledged', true]);
+    socket.say(alarmRows([0, 'H', 'returned', 1, 2], [1, 'H', 'acknowledged', 4, 1]));
+    assert.deepEqual(alarms.list().map(({ tag }) => tag.index), [1, 0], 'a returned alarm comes after an acknowledged active one');
     socket.say(alarmRows([0, 'L', 'returned', 2, 1], [0, 'LL', 'returned', 1, 2], [1, 'H', 'latched', 3, 2]));
     assert.deepEqual(alarms.counts(), { active: 0, waiting: 1, latched: 1, of: [0, 0, 0, 0], gone: [1, 0, 1, 0] });
 });

@@ -2,7 +2,7 @@
 // Rows of the alarm table and of the alarm journal: area, order, filter, and export as CSV. A row has at least { tag, kind, state,
 // priority, us (time of the raise or of the change), area, about (description) }.
 
-const STATES = ['unacknowledged', 'returned', 'active', 'latched', 'acknowledged', 'shelved', 'suppressed', 'out_of_service'];
+const STATES = ['unacknowledged', 'active', 'acknowledged', 'returned', 'latched', 'shelved', 'suppressed', 'out_of_service'];
 const byText = (of) => (a, b) => of(a).localeCompare(of(b), undefined, { numeric: true });
 const ORDERS = {
     state: (a, b) => STATES.indexOf(a.state) - STATES.indexOf(b.state),

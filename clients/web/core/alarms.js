@@ -57,9 +57,9 @@ export class Alarms {
             !before.get(tag.name)?.some((us) => us >= raisedUs));
     }
 
-    // Returns one alarm per tag: unacknowledged first, then active, then by priority, then newest first.
+    // Returns one alarm per tag: active before cleared, then unacknowledged first, then by priority, then newest first.
     list() {
-        return [...this.byTag.values()].sort((a, b) => b.waiting - a.waiting || isGone(a.state) - isGone(b.state) ||
+        return [...this.byTag.values()].sort((a, b) => isGone(a.state) - isGone(b.state) || b.waiting - a.waiting ||
             a.priority - b.priority || b.raisedUs - a.raisedUs);
     }
 
