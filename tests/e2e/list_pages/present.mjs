@@ -150,7 +150,7 @@ test('the pins of notes cover neither each other nor the right half, and are who
         const right = split ? view.left + view.width / 2 : view.right;
         const pins = [...document.querySelectorAll('.note-pin')]
             .map((e) => [e.textContent, e.getBoundingClientRect(), e.firstChild]);
-        return pins.filter(([, a, text], i) => a.width === 0 || a.left < view.left - 1 || a.right > right + 1 ||
+        return pins.filter(([, a, text], i) => a.width === 0 || a.left < view.left - 1 || a.right > right + 1 || a.top < view.top - 1 ||
             (innerWidth > 719 && text.scrollHeight > text.clientHeight + 1) || text.scrollWidth > text.clientWidth + 1 ||
             pins.slice(i + 1).some(([, b]) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom))
             .map(([text]) => text);
@@ -167,6 +167,17 @@ test('the pins of notes cover neither each other nor the right half, and are who
             assert.deepEqual(await amiss(), [], `${size.width}${split ? ', split' : ''}`);
         }
     }
+    await page.evaluate(async () => { // moves the camera down until the place of the notes is at the upper edge of the picture
+        const { projector } = await import('/core/camera.js'), { session, viewport } = globalThis.plantcast;
+        const { position } = session.model.tag('TI-1'), lower = ([x, y, z]) => [x, y, z - 0.01];
+        let { camera } = session;
+        while (projector(camera, viewport.width, viewport.height)(position)[1] > 15)
+            camera = { ...camera, eye: lower(camera.eye), target: lower(camera.target) };
+        session.setCamera(camera);
+    });
+    await settle(page);
+    await shoot(page, 'present-pins-high');
+    assert.deepEqual(await amiss(), [], 'at the upper edge');
     await page.evaluate(() => {
         const { session } = globalThis.plantcast;
         session.notes.forEach(({ id }) => session.post({ type: 'remove_note', seq: ++session.toldSeq, id }));

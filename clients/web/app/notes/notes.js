@@ -257,12 +257,19 @@ export class Notes {
     }
 }
 
-// Returns how much higher a pin must be to cover none of the boxes; 0: there is no room above them. x, y: left end and foot of its stem.
+// Returns how much higher a pin must be to cover none of the boxes; negative: how much lower, because the picture has no room above.
+// x, y: left end and foot of its stem.
 function liftOf({ x, y, wide, high }, boxes) {
     const under = (lift) => boxes.find(({ left, right, top, bottom }) => left < x + wide && x < right &&
         top < y - STEM - lift && y - STEM - lift - high < bottom);
-    let lift = 0;
-    for (let box = under(0); box; box = under(lift))
+    const most = y - STEM - high, least = Math.min(0, most); // lift at the upper edge of the picture; lift of a pin alone
+    let lift = least;
+    for (let box = under(lift); box; box = under(lift))
         lift = y - STEM - box.top + GAP;
-    return y - STEM - lift - high < 0 ? 0 : lift;
+    if (lift <= most)
+        return lift;
+    lift = least;
+    for (let box = under(lift); box; box = under(lift))
+        lift = most - box.bottom - GAP;
+    return lift;
 }
