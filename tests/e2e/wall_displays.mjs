@@ -139,8 +139,11 @@ test('an alarm comes to the pane that is for it, and leaves once it is acknowled
 });
 
 test('another display has its own panes', options, async () => {
-    const other = await openPage(`${plant.url}?wall=room&display=2`, { viewport: { width: 960, height: 540 } });
+    const other = await openPage(`${plant.url}?wall=room&display=2&lang=ko`, { viewport: { width: 960, height: 540 } });
     await other.page.locator('.pane.text p', { hasText: 'Clean F-101' }).waitFor();
+    await other.page.waitForFunction(() => document.querySelector('.pane.trend iframe').contentDocument?.documentElement.lang === 'ko');
+    const breaks = await other.page.locator('.pane.text p').first().evaluate((p) => getComputedStyle(p).wordBreak);
+    assert.equal(breaks, 'keep-all', 'lines do not break within Korean words');
     await other.page.waitForFunction(() => {
         const { contentDocument: inner, contentWindow: { innerHeight } } = document.querySelector('.pane.trend iframe');
         const chart = inner?.querySelector('#trend-chart canvas')?.getBoundingClientRect();

@@ -79,7 +79,8 @@ function build(walls) {
         return sayWrong(say('walls.unknown', { id: query.get('wall'), known: walls.map(({ id }) => id).join(', ') || say('none') }));
     if (!display)
         return sayWrong(say('walls.display', { n: number, id: wall.id, count: wall.displays.length }));
-    const grid = byId('grid'), context = { session, call, wall, display: number, theme: query.get('theme'), streamUrl };
+    const grid = byId('grid'), [theme, lang] = ['theme', 'lang'].map((name) => query.get(name));
+    const context = { session, call, wall, display: number, theme, lang, streamUrl };
     clear();
     document.body.classList.toggle('tiled', display.panes.some(({ tile }) => tile));
     fit();

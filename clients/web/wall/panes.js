@@ -64,8 +64,9 @@ function pictureAgeMs(session) {
 
 // Adds the normal page in an iframe, without controls. Returns an object whose member `page` is the global object `plantcast` of the page
 // in the iframe, or null until that is loaded.
-function pageIn({ wall, theme, body }, kind, place) {
-    const query = new URLSearchParams({ wall: `${wall.inches},${wall.distance_m}`, pane: kind, hangs: place, ...(theme ? { theme } : {}) });
+function pageIn({ wall, theme, lang, body }, kind, place) {
+    const query = new URLSearchParams({ wall: `${wall.inches},${wall.distance_m}`, pane: kind, hangs: place, ...(theme ? { theme } : {}),
+        ...(lang ? { lang } : {}) });
     const frame = make('iframe', { src: `./?${query}`, tabindex: -1 });
     body.append(frame);
     return { get page() { return frame.contentWindow?.plantcast ?? null; } };
