@@ -186,6 +186,13 @@ test('a view that names what the plant does not have is not shown, and said', op
     await other.page.locator('#named-list em').first().waitFor();
     const said = await other.page.locator('#named-list em').allTextContents();
     assert.equal(said.length, 2, 'the two that are wrong say so in the list');
+    const lines = await other.page.evaluate(() => { // the German name of the demo plant's vibration
+        const [name] = document.querySelector('#legend h2').childNodes, range = document.createRange();
+        name.textContent = 'Schwinggeschwindigkeit';
+        range.selectNodeContents(name);
+        return range.getClientRects().length;
+    });
+    assert.equal(lines, 1, 'the title of the legend does not break within a long word');
     await other.close();
 });
 
