@@ -89,11 +89,21 @@ static bool beyond(double raw, double a, double b)
     return raw < fmin(a, b) || raw > fmax(a, b);
 }
 
-static bool is_sentinel(const struct tag_scale *scale, uint64_t bits, double raw)
+/* Returns whether a published number is the unsigned or the signed integer of 16, 32 or 64 bits that has these bits. */
+static bool has_bits(double raw, uint64_t bits)
 {
-    for (int i = 0; i < scale->sentinel_count; i++)
-        if (scale->sentinels[i].is_bits ? scale->sentinels[i].bits == bits : scale->sentinels[i].number == raw)
+    int64_t number = bits <= UINT16_MAX ? (int16_t)bits : bits <= UINT32_MAX ? (int32_t)bits : (int64_t)bits;
+    return raw == (double)bits || raw == (double)number;
+}
+
+/* bits: the registers' bits; NULL: the source received a number */
+static bool is_sentinel(const struct tag_scale *scale, const uint64_t *bits, double raw)
+{
+    for (int i = 0; i < scale->sentinel_count; i++) {
+        const struct plant_sentinel *sentinel = &scale->sentinels[i];
+        if (!sentinel->is_bits ? sentinel->number == raw : bits ? sentinel->bits == *bits : has_bits(raw, sentinel->bits))
             return true;
+    }
     return false;
 }
 
@@ -135,9 +145,8 @@ static void fail(struct sample *out)
     out->quality = QUALITY_BAD_SENSOR_FAILURE;
 }
 
-/* Decodes a numeric value. raw: the number as received; bits: its bit pattern, with which special values are recognised that are stated as
-   bits. */
-static void decode_analog(const struct tag_scale *scale, uint64_t bits, double raw, struct sample *out)
+/* Decodes a numeric value. raw: the number as received; bits: as for is_sentinel() */
+static void decode_analog(const struct tag_scale *scale, const uint64_t *bits, double raw, struct sample *out)
 {
     /* special values are recognised before scaling: a scaled special value would look like a measurement */
     if (!isfinite(raw) || is_sentinel(scale, bits, raw)) {
@@ -156,24 +165,24 @@ void decode_sample(const struct plant_tag *tag, const uint16_t *words, struct sa
     uint64_t bits = join_words(tag->signal.byte_order, words, decode_width(tag));
     double raw = is_bit(&tag->signal) ? bit_of(tag, words[0]) : raw_of(tag, words);
     if (!is_bit(&tag->signal)) {
-        decode_analog(&tag->scale, bits, raw, out);
+        decode_analog(&tag->scale, &bits, raw, out);
         return;
     }
     out->value = raw;
     out->quality = QUALITY_GOOD;
-    if (is_sentinel(&tag->scale, bits, raw))
+    if (is_sentinel(&tag->scale, &bits, raw))
         fail(out);
 }
 
 void decode_number(const struct plant_tag *tag, double raw, struct sample *out)
 {
     if (tag->signal.type != DATA_BIT) {
-        decode_analog(&tag->scale, fabs(raw) < 9e18 ? (uint64_t)(int64_t)raw : 0, raw, out);
+        decode_analog(&tag->scale, NULL, raw, out);
         return;
     }
     out->value = (raw != 0) != tag->scale.negate;
     out->quality = QUALITY_GOOD;
-    if (!isfinite(raw))
+    if (!isfinite(raw) || is_sentinel(&tag->scale, NULL, raw))
         fail(out);
 }
 

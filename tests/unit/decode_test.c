@@ -108,16 +108,23 @@ TEST(numbers_are_decoded_as_registers_are)
         double raw, value;
         uint32_t quality;
     } numbers[] = { { 50, 5, QUALITY_GOOD }, { 120, 12, QUALITY_UNCERTAIN_UNITS_EXCEEDED }, { -99, 0, QUALITY_BAD_SENSOR_FAILURE },
-                    { 32768, 0, QUALITY_BAD_SENSOR_FAILURE }, { INFINITY, 0, QUALITY_BAD_SENSOR_FAILURE },
-                    { NAN, 0, QUALITY_BAD_SENSOR_FAILURE } };
+                    { 32768, 0, QUALITY_BAD_SENSOR_FAILURE }, { -32768, 0, QUALITY_BAD_SENSOR_FAILURE },
+                    { INFINITY, 0, QUALITY_BAD_SENSOR_FAILURE }, { NAN, 0, QUALITY_BAD_SENSOR_FAILURE } };
     struct sample sample;
     for (size_t i = 0; i < sizeof(numbers) / sizeof(*numbers); i++) {
         decode_number(&tag, numbers[i].raw, &sample);
         assert_true(sample.value == numbers[i].value && sample.quality == numbers[i].quality);
     }
-    tag = (struct plant_tag){ .signal.type = DATA_BIT, .scale.negate = true };
+    decode_number(&tag, 32768.5, &sample); /* not the integer 0x8000 */
+    assert_int_equal(sample.quality, QUALITY_UNCERTAIN_UNITS_EXCEEDED);
+    tag = (struct plant_tag){ .signal.type = DATA_BIT,
+                              .scale.negate = true,
+                              .scale.sentinel_count = 1,
+                              .scale.sentinels = { { .is_bits = true, .bits = 0xFFFFFFFF } } };
     decode_number(&tag, 7, &sample);
     assert_true(sample.value == 0 && sample.quality == QUALITY_GOOD);
+    decode_number(&tag, -1, &sample);
+    assert_int_equal(sample.quality, QUALITY_BAD_SENSOR_FAILURE);
 }
 
 TEST(bits)
