@@ -133,6 +133,23 @@ CASE(instruments_say_what_they_can_measure)
           { "tags.csv", 4, 10, "found 'open'" }, { "tags.csv", 5, 10, "found '5'" }, { "tags.csv", 6, 10, "found '0x'" });
 }
 
+/* Values of derived and replayed tags are in engineering units, so the columns for raw values have no effect on them. */
+CASE(raw_values_are_those_of_devices)
+{
+    temp_write_text(c->folder, "r.csv", "t_s,B,D\n0,1,1\n");
+    plant_case_load(c, YAML("[{ id: plc, type: modbus, host: h, address_base: 1 }, { id: rec, type: replay, file: r.csv }]"),
+                    "Tag Name,Source,Address,Negate Value,Open Circuit\n"
+                    "A,plc,40001,1,0x8000\n"
+                    "B,rec,,1,-1\n"
+                    "C,,= [A] - [B],yes,0x8000 -1\n"
+                    "D,rec,,0,\n");
+    FOUND(c, { "tags.csv", 3, 8, "Negate Value has no effect on 'B': the value of a replayed tag is in engineering units" },
+          { "tags.csv", 3, 10, "Open Circuit has no effect on 'B'" },
+          { "tags.csv", 4, 16, "Negate Value has no effect on 'C': the value of a derived tag is in engineering units" },
+          { "tags.csv", 4, 20, "Open Circuit has no effect on 'C': a derived tag has no raw value" });
+    assert_non_null(c->plant);
+}
+
 CASE(tags_vouch_for_other_tags)
 {
     plant_case_load(c, yaml,

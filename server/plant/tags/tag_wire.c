@@ -166,6 +166,11 @@ static void read_address(struct tag_wire *wire)
                    tag->signal.address, data_type_name(tag->signal.type), registers);
 }
 
+static const char *kind_of_number(const struct tag_wire *wire)
+{
+    return tag_is_derived(wire->columns) ? "derived" : "replayed";
+}
+
 /* --- scaling ---------------------------------------------------------------------------------------------------------------- */
 
 static void read_range(struct tag_wire *wire, enum tag_column low, enum tag_column high, double *out_low, double *out_high)
@@ -205,6 +210,9 @@ static void read_scaling(struct tag_wire *wire)
     if (tag->scale.has_range)
         read_range(wire, COL_SCALED_LOW, COL_SCALED_HIGH, &tag->scale.scaled_low, &tag->scale.scaled_high);
     tag->scale.negate = cell_flag(wire->columns, COL_NEGATE);
+    if (tag->scale.negate && is_number(wire))
+        cell_warning(wire->columns, COL_NEGATE, "Negate Value has no effect on '%.60s': the value of a %s tag is in engineering units",
+                     tag->name, kind_of_number(wire));
     for (enum tag_column clamp = COL_CLAMP_LOW; clamp <= COL_CLAMP_HIGH; clamp++)
         if (cell_flag(wire->columns, clamp))
             cell_warning(wire->columns, clamp, "%s has no effect: values beyond the range are marked as out of range",
@@ -242,6 +250,9 @@ static void read_sentinels(struct tag_wire *wire)
                        "Open Circuit: expected at most %d raw values such as 0x8000 or -32768, found '%.60s'", PLANT_SENTINELS, text);
             break;
         }
+    if (tag->scale.sentinel_count && is_number(wire))
+        cell_warning(wire->columns, COL_OPEN_CIRCUIT, "Open Circuit has no effect on '%.60s': a %s tag has no raw value", tag->name,
+                     kind_of_number(wire));
     mem_free(texts);
 }
 
