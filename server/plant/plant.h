@@ -296,7 +296,8 @@ struct tag_place { /* position of a tag's sensor on its asset */
 };
 
 struct tag_validity {                 /* conditions under which a tag's reading is good */
-    double stale_s; /* age in seconds from which the tag's reading is stale; default: three poll intervals, at least 5 s */
+    /* age in seconds from which the tag's reading is stale; default: three poll intervals, at least 5 s; OPC UA and Sparkplug: never */
+    double stale_s;
     bool states_stale;                /* the row states stale_s */
     double flatline_s;                /* seconds without any change after which the tag's value is uncertain; 0: never */
     struct plant_quality_tag quality; /* quality tag: another tag that states whether this tag's reading is valid */

@@ -150,6 +150,19 @@ CASE(raw_values_are_those_of_devices)
     assert_non_null(c->plant);
 }
 
+/* Sparkplug nodes and OPC UA servers report that they are lost; other publishers do not, so their silent tags become stale. */
+CASE(silent_tags_are_stale_unless_their_loss_is_reported)
+{
+    plant_case_load(c, YAML("[{ id: n, type: mqtt, host: h, topic: \"a/{tag}\" },"
+                            " { id: j, type: mqtt, host: h, payload: json, topic: \"a/{tag}\", poll_ms: 2000 },"
+                            " { id: s, type: mqtt, host: h, payload: sparkplug }]"),
+                    "Tag Name,Source,Address,Stale s\nA,n,,\nB,j,,\nC,j,,60\nD,s,G/N#D,\nE,s,G/N#E,9\n");
+    plant_case_assert_loaded(c, 0);
+    const double stale_s[] = { 5, 6, 60, PLANT_NEVER_STALE_S, 9 };
+    for (size_t i = 0; i < sizeof(stale_s) / sizeof(*stale_s); i++)
+        assert_true(c->plant->tags[i].validity.stale_s == stale_s[i]);
+}
+
 CASE(tags_vouch_for_other_tags)
 {
     plant_case_load(c, yaml,
