@@ -599,8 +599,10 @@ static void take_spool(struct historian *historian)
         if (error && error != -ENOENT && error != -ENOTDIR)
             log_err(historian->log, "history: the spool file %s cannot be read and is kept: %s", *place, strerror(-error));
         if (foreign)
-            log_warn(historian->log, "history: spool file %s: %zu points dropped: their tags are no longer in the tag list", *place,
-                     foreign);
+            log_warn(historian->log,
+                     "history: spool file %s: %zu points dropped: their tags are no longer in the tag list, or their units cannot be "
+                     "converted to the tags' present units",
+                     *place, foreign);
         if (!error)
             historian->spool_path = mem_strdup(*place);
     }

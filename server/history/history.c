@@ -15,6 +15,7 @@ struct history_reader {
     struct log *log;
     char *folder;
     const struct plant *plant; /* plant to whose units values are converted; NULL: values keep the units of the time of recording */
+    bool *told; /* by tag of `plant`: the log says that points of the tag are left out */
     struct month_file *files[OPEN_MONTHS];
     int next; /* index in the array of open files of the file to close next */
 };
@@ -30,6 +31,8 @@ struct history_reader *history_reader_create(struct log *log, const char *folder
 void history_reader_show_by(struct history_reader *reader, const struct plant *plant)
 {
     reader->plant = plant;
+    mem_free(reader->told);
+    reader->told = mem_array(plant->tag_count + 1, sizeof(*reader->told));
 }
 
 void history_reader_destroy(struct history_reader **reader)
@@ -39,6 +42,7 @@ void history_reader_destroy(struct history_reader **reader)
     for (int i = 0; i < OPEN_MONTHS; i++)
         month_file_close(&(*reader)->files[i]);
     mem_free((*reader)->folder);
+    mem_free((*reader)->told);
     mem_free(*reader);
     *reader = NULL;
 }
@@ -195,8 +199,20 @@ static void shorten(struct history_series *out, int64_t stretch_us)
     out->points = (struct history_points){ .step = out->step };
 }
 
+/* Logs once for each tag that points are left out. */
+static void report_left_out(struct history_reader *reader, int tag, const struct history_left_out *left_out)
+{
+    const struct plant_tag *of = &reader->plant->tags[tag];
+    if (!left_out->count)
+        return;
+    log_warn(reader->log, "history: tag %s: %zu points in '%s' are left out, because '%s' cannot be converted to '%s'", of->name,
+             left_out->count, left_out->unit, left_out->unit, of->unit);
+    reader->told[tag] = true;
+}
+
+/* left_out: receives the points that are left out; NULL: they are not counted */
 static int read_month(struct history_reader *reader, int month, const char *tag, int level, int64_t from_us, int64_t to_us,
-                      struct gather *gather)
+                      struct gather *gather, struct history_left_out *left_out)
 {
     struct history_series *out = gather->out;
     int error;
@@ -209,6 +225,8 @@ static int read_month(struct history_reader *reader, int month, const char *tag,
         error = month_file_points(file, tag, from_us, to_us, &out->points);
         out->step |= out->points.step;
     }
+    if (!error && left_out)
+        error = month_file_left_out(file, tag, from_us, to_us, left_out);
     month_file_end_read(file);
     return error;
 }
@@ -222,14 +240,19 @@ int history_series(struct history_reader *reader, const char *tag, int64_t from_
     int level = level_for(stretch_us), first = month_of(from_us), last = month_of(to_us);
     *out = (struct history_series){ .bucket_us = level < 0 ? 0 : bucket_length(stretch_us, level) };
     struct gather gather = { .out = out, .length_us = level < 0 ? 0 : history_level_us[level] };
+    struct history_left_out left_out = { 0 };
+    int index = reader->plant ? plant_find_tag(reader->plant, tag) : -1;
+    bool counts = index >= 0 && !reader->told[index];
     for (size_t i = 0; i < count && !error; i++) {
         /* leads: also reads the newest file before the range, because the line that enters the range may begin there; follows: also reads
            the oldest file after it */
         bool leads = i + 1 < count && months[i] < first && months[i + 1] >= first;
         bool follows = i > 0 && months[i] > last && months[i - 1] <= last;
         if ((months[i] >= first && months[i] <= last) || leads || (level < 0 && follows))
-            error = read_month(reader, months[i], tag, level, from_us, to_us, &gather);
+            error = read_month(reader, months[i], tag, level, from_us, to_us, &gather, counts ? &left_out : NULL);
     }
+    if (counts)
+        report_left_out(reader, index, &left_out);
     if (!error && level < 0)
         drop_edges(&out->points, from_us, to_us);
     drop_early_buckets(&out->buckets, from_us);

@@ -50,7 +50,10 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_BEGIN_READ] = "BEGIN",
     [SQL_COMMIT] = "COMMIT",
     [SQL_ROLLBACK] = "ROLLBACK",
-    [SQL_FIND_TAG] = "SELECT id, step, unit FROM tag WHERE name = ?",
+    /* series that were set aside follow the tag's own series, because their names begin with the tag's name and char(31) */
+    [SQL_FIND_TAG] = "SELECT id, step, unit FROM tag WHERE name = ?1 OR (name > ?1 || char(31) AND name < ?1 || char(32)) ORDER BY name",
+    [SQL_RENAME_TAG] = "UPDATE tag SET name = ?2 WHERE id = ?1",
+    [SQL_TAG_UNIT] = "SELECT unit FROM tag WHERE id = ?",
     [SQL_ADD_TAG] = "INSERT INTO tag(name, unit, step, within) VALUES(?, ?, ?, ?) ON CONFLICT(name) DO UPDATE"
                     " SET unit = excluded.unit, step = excluded.step, within = excluded.within RETURNING id",
     [SQL_HOLD] = "INSERT OR REPLACE INTO held(tag, t, v, q) VALUES(?, ?, ?, ?)",

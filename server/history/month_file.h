@@ -38,6 +38,10 @@ struct history_buckets { /* zero-initialise; free `at` with mem_free() */
 
 struct month_file;
 
+/* Returns whether values of one unit may be shown in another, and the conversion in *change. A blank unit fits all units, without
+   conversion, because the unit was not stated. */
+bool history_unit_fits(const char *from, const char *to, struct unit_change *change);
+
 /* Opens the file of a month for writing, and creates it if it is missing. A damaged file is renamed
    (history-2026-11.damaged-TIME.sqlite, logged) and replaced by a new one; a file of an older version is converted. `tags` must outlive
    it. Returns NULL on failure, with *error. */
@@ -96,8 +100,15 @@ int month_file_note(struct month_file *file, int64_t t_us, const char *kind, con
 int month_file_begin_read(struct month_file *file);
 void month_file_end_read(struct month_file *file);
 /* Appends the points of a tag between two times, ascending, with the last point before and the first point after that span if the file
-   has them. */
+   has them. Points whose unit cannot be converted to the wanted unit are left out, here and in the functions below. */
 int month_file_points(struct month_file *file, const char *tag, int64_t from_us, int64_t to_us, struct history_points *out);
+/* Points of one tag that are left out, because their unit cannot be converted; zero-initialise. */
+struct history_left_out {
+    size_t count;
+    char unit[32]; /* the first of their units */
+};
+/* Counts the points of a tag between two times that are left out, and adds them to *out. */
+int month_file_left_out(struct month_file *file, const char *tag, int64_t from_us, int64_t to_us, struct history_left_out *out);
 /* Appends the rollup buckets of a tag that begin in from_us..to_us, and the last bucket that begins before. *until_us receives the end of
    the last existing bucket. */
 int month_file_buckets(struct month_file *file, const char *tag, enum history_level level, int64_t from_us, int64_t to_us,

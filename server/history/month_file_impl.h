@@ -8,7 +8,8 @@
 #include "history/month_file.h"
 
 enum month_statement {
-    SQL_BEGIN, SQL_BEGIN_READ, SQL_COMMIT, SQL_ROLLBACK, SQL_FIND_TAG, SQL_ADD_TAG, SQL_HOLD, SQL_ADD_ROLLUP,
+    SQL_BEGIN, SQL_BEGIN_READ, SQL_COMMIT, SQL_ROLLBACK, SQL_FIND_TAG, SQL_RENAME_TAG, SQL_TAG_UNIT, SQL_ADD_TAG,
+    SQL_HOLD, SQL_ADD_ROLLUP,
     SQL_ALL_HELD, SQL_CLEAR_HELD, SQL_CLEAR_ROLLUPS, SQL_NOTE,
     SQL_BEFORE, SQL_AFTER, SQL_RANGE, SQL_RECENT_OF, SQL_HELD_OF, SQL_ROLLUPS, SQL_RECENT_ALL, SQL_WAITING, SQL_SPAN, SQL_EVENTS,
     SQL_HAS_BLOCKS, SQL_BLOCKS, SQL_NEXT_BLOCK, SQL_ADD_BLOCK, SQL_DELETE_BLOCK, SQL_BLOCK_SPAN, SQL_CUT_BLOCKS,
@@ -53,8 +54,8 @@ struct history_point month_point(sqlite3_stmt *statement, int first_column); /* 
                                                                                 row, the first of which is first_column. */
 /* Returns whether the file has blocks and seconds: files of versions 1 and 2 have none until a writer converts them. */
 bool month_has_blocks(struct month_file *file);
-/* Returns the id of a tag in the file; 0: the file does not have the tag. *change receives the conversion from the file's unit to
-   `wanted` (NULL: none). */
+/* Returns the id of the tag's series whose unit is `wanted` or can be converted to it, and the conversion in *change; 0: the file has no
+   such series. wanted NULL: the series to which the newest points belong, without conversion. */
 int64_t month_find_tag(struct month_file *file, const char *name, const char *wanted, bool *step, struct unit_change *change);
 /* Appends a tag's points of blocks and of the table `sample`, from the last one at or before from_us to the first one after to_us,
    ascending. Returns 0 or -errno. */

@@ -32,17 +32,23 @@ static const char *unit_shown(const struct month_file *file, const char *name)
     return tag >= 0 ? file->shown_by->tags[tag].unit : NULL;
 }
 
+bool history_unit_fits(const char *from, const char *to, struct unit_change *change)
+{
+    *change = (struct unit_change){ 0 };
+    return !*from || !*to || units_compare(from, to, change) <= UNITS_CONVERT;
+}
+
 int64_t month_find_tag(struct month_file *file, const char *name, const char *wanted, bool *step, struct unit_change *change)
 {
     *change = (struct unit_change){ 0 };
     sqlite3_stmt *find = month_sql(file, SQL_FIND_TAG);
     int64_t id = 0;
     database_bind_text(find, 1, name);
-    if (database_step(&file->db, find) == SQLITE_ROW) {
+    while (!id && database_step(&file->db, find) == SQLITE_ROW) {
+        if (wanted && !history_unit_fits(database_text(find, 2), wanted, change))
+            continue;
         id = sqlite3_column_int64(find, 0);
         *step = sqlite3_column_int(find, 1) != 0;
-        if (wanted)
-            units_compare(database_text(find, 2), wanted, change);
     }
     sqlite3_reset(find);
     return id;
@@ -152,24 +158,53 @@ int month_stored_points(struct month_file *file, int64_t id, int64_t from_us, in
     return error;
 }
 
-int month_file_points(struct month_file *file, const char *tag, int64_t from_us, int64_t to_us, struct history_points *out)
+/* Appends the points of a series, in the unit of the file. */
+static int add_series(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out)
 {
     size_t begin = out->count;
-    struct unit_change change;
     struct history_points stored = { 0 }, recent = { 0 };
-    int64_t id = month_find_tag(file, tag, unit_shown(file, tag), &out->step, &change);
-    if (!id)
-        return 0;
     int error = month_stored_points(file, id, from_us, to_us, &stored);
     if (!error)
         error = add_recent(file, id, &recent);
     month_points_merge(&stored, &recent, out);
     trim(out, begin, from_us, to_us);
-    for (size_t i = begin; i < out->count; i++)
-        out->at[i].value = unit_change_value(&change, out->at[i].value);
     mem_free(stored.at);
     mem_free(recent.at);
     return error;
+}
+
+int month_file_points(struct month_file *file, const char *tag, int64_t from_us, int64_t to_us, struct history_points *out)
+{
+    size_t begin = out->count;
+    struct unit_change change;
+    int64_t id = month_find_tag(file, tag, unit_shown(file, tag), &out->step, &change);
+    int error = id ? add_series(file, id, from_us, to_us, out) : 0;
+    for (size_t i = begin; i < out->count; i++)
+        out->at[i].value = unit_change_value(&change, out->at[i].value);
+    return error;
+}
+
+int month_file_left_out(struct month_file *file, const char *tag, int64_t from_us, int64_t to_us, struct history_left_out *out)
+{
+    const char *wanted = unit_shown(file, tag);
+    sqlite3_stmt *find = month_sql(file, SQL_FIND_TAG);
+    struct history_points points = { 0 };
+    struct unit_change change;
+    int code = SQLITE_DONE, error = 0;
+    database_bind_text(find, 1, tag);
+    while (wanted && !error && (code = database_step(&file->db, find)) == SQLITE_ROW) {
+        if (history_unit_fits(database_text(find, 2), wanted, &change))
+            continue;
+        points.count = 0;
+        error = add_series(file, sqlite3_column_int64(find, 0), from_us, to_us, &points);
+        for (size_t i = 0; i < points.count; i++)
+            out->count += history_point_usable(&points.at[i]) && points.at[i].t_us >= from_us && points.at[i].t_us <= to_us;
+        if (!*out->unit)
+            snprintf(out->unit, sizeof(out->unit), "%s", database_text(find, 2));
+    }
+    sqlite3_reset(find);
+    mem_free(points.at);
+    return error ? error : database_fail(&file->db, code, "cannot be read");
 }
 
 int month_file_buckets(struct month_file *file, const char *tag, enum history_level level, int64_t from_us, int64_t to_us,

@@ -9,6 +9,7 @@
 #include "history/month_blocks.h"
 #include "history/month_outbox.h"
 #include "history/month_seconds.h"
+#include "value/quality.h"
 
 /* --- transactions ------------------------------------------------------------------------------------------------------------- */
 
@@ -44,21 +45,80 @@ static bool convert_points(void *arg, struct history_points *points)
     return true;
 }
 
-/* Converts all values of a tag in this file to the unit in which the plant shows the tag now, if the file's unit differs. The table
-   `second` (newest points) has no point of the tag at this time: month_file_write() moves the points of earlier handles to blocks first. */
-static int convert_unit(struct month_file *file, int tag)
+static int put(struct month_file *file, enum month_statement which, int64_t id, const struct history_point *point)
+{
+    sqlite3_stmt *statement = month_sql(file, which);
+    sqlite3_bind_int64(statement, 1, id);
+    sqlite3_bind_int64(statement, 2, point->t_us);
+    database_bind_value(statement, 3, point->value);
+    sqlite3_bind_int64(statement, 4, point->quality);
+    return month_run(file, statement, "cannot write");
+}
+
+static int rename_series(struct month_file *file, int64_t id, const char *name)
+{
+    sqlite3_stmt *rename = month_sql(file, SQL_RENAME_TAG);
+    sqlite3_bind_int64(rename, 1, id);
+    database_bind_text(rename, 2, name);
+    return month_run(file, rename, "cannot rename a tag");
+}
+
+static void report_set_aside(struct month_file *file, const struct history_tag *of, int64_t id, const struct history_points *points)
+{
+    sqlite3_stmt *find = month_sql(file, SQL_TAG_UNIT);
+    size_t count = 0;
+    for (size_t i = 0; i < points->count; i++)
+        count += history_point_usable(&points->at[i]);
+    sqlite3_bind_int64(find, 1, id);
+    if (database_step(&file->db, find) == SQLITE_ROW)
+        log_warn(file->db.log, "%s: tag %s: %zu points in '%s' are left out from now on, because '%s' cannot be converted to '%s'",
+                 file->db.path, of->name, count, database_text(find, 0), database_text(find, 0), of->unit);
+    sqlite3_reset(find);
+}
+
+/* Ends the tag's series, whose unit cannot be converted to the tag's present unit, and renames it. The series keeps its points and its
+   unit. Readers leave the series out until the tag has a unit that fits. */
+static int set_series_aside(struct month_file *file, const struct history_tag *of, int64_t id)
+{
+    static const struct month_chunk own = { 0 };
+    struct history_points points = { 0 };
+    char *name = mem_printf("%s\x1f%lld", of->name, (long long)id);
+    int error = month_stored_points(file, id, 0, INT64_MAX, &points);
+    const struct history_point *last = points.count ? &points.at[points.count - 1] : NULL;
+    if (!error && last && history_point_usable(last)) {
+        const struct history_point end = { last->t_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION };
+        error = month_blocks_write(file, id, &own, &end, 1);
+        if (!error && file->has_outbox)
+            error = put(file, SQL_ADD_OUTBOX, id, &end);
+    }
+    if (!error)
+        error = rename_series(file, id, name);
+    if (!error)
+        report_set_aside(file, of, id, &points);
+    mem_free(points.at);
+    mem_free(name);
+    return error;
+}
+
+/* Ensures that the unit of the tag's series in this file fits the unit in which the plant shows the tag now: sets a series aside that does
+   not fit, and converts the values of one that does. The table `second` (newest points) has no point of the tag at this time:
+   month_file_write() moves the points of earlier handles to blocks first. */
+static int fit_unit(struct month_file *file, int tag)
 {
     const struct history_tag *of = &file->tags[tag];
-    sqlite3_stmt *find = month_sql(file, SQL_FIND_TAG);
-    struct unit_change change = { 0 };
-    int64_t id = 0;
-    database_bind_text(find, 1, of->name);
-    if (database_step(&file->db, find) == SQLITE_ROW) {
-        id = sqlite3_column_int64(find, 0);
-        units_compare(database_text(find, 2), of->unit, &change);
+    struct unit_change change;
+    bool step;
+    int64_t newest = month_find_tag(file, of->name, NULL, &step, &change);
+    int64_t id = month_find_tag(file, of->name, of->unit, &step, &change);
+    if (id != newest) {
+        int moved = newest ? set_series_aside(file, of, newest) : 0;
+        if (!moved && id) /* this series was set aside earlier */
+            moved = rename_series(file, id, of->name);
+        file->rollups[tag].loaded = false;
+        if (moved)
+            return moved;
     }
-    sqlite3_reset(find);
-    if (!change.converts)
+    if (!id || !change.converts)
         return 0;
     static const char *const columns[][2] = { { "sample", "v" },     { "recent", "v" },    { "held", "v" },
                                               { "rollup", "low" },   { "rollup", "high" }, { "rollup", "mean" },
@@ -84,7 +144,7 @@ static int tag_id(struct month_file *file, int tag, int64_t *id)
     *id = file->ids[tag];
     if (*id)
         return 0;
-    int unit_error = convert_unit(file, tag);
+    int unit_error = fit_unit(file, tag);
     if (unit_error)
         return unit_error;
     sqlite3_stmt *add = month_sql(file, SQL_ADD_TAG);
@@ -98,16 +158,6 @@ static int tag_id(struct month_file *file, int tag, int64_t *id)
     int error = database_fail(&file->db, code, "cannot add a tag");
     sqlite3_reset(add);
     return error;
-}
-
-static int put(struct month_file *file, enum month_statement which, int64_t id, const struct history_point *point)
-{
-    sqlite3_stmt *statement = month_sql(file, which);
-    sqlite3_bind_int64(statement, 1, id);
-    sqlite3_bind_int64(statement, 2, point->t_us);
-    database_bind_value(statement, 3, point->value);
-    sqlite3_bind_int64(statement, 4, point->quality);
-    return month_run(file, statement, "cannot write");
 }
 
 /* Finds the ids of rows' tags. Returns rows with ids in *with_ids, which the caller frees. */

@@ -19,7 +19,8 @@ static const char *const sql[STATEMENT_COUNT] = {
     [SPAN] = "SELECT (SELECT min(seq) FROM outbox), (SELECT max(seq) FROM outbox)",
     [ROWS] = "SELECT seq, tag, t, v, q FROM outbox ORDER BY seq LIMIT ?",
     [HELD] = "SELECT 0, tag, t, v, q FROM held",
-    [TAGS] = "SELECT id, name, unit, step FROM tag",
+    /* without the suffix of series that were set aside: in the database, name and unit together identify a tag */
+    [TAGS] = "SELECT id, substr(name, 1, instr(name || char(31), char(31)) - 1), unit, step FROM tag",
     [EVENTS] = "SELECT t, kind, text FROM event",
     [DELETE] = "DELETE FROM outbox WHERE seq <= ?",
 };

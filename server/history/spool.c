@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes spool files: one line for each row, with its kind (recorded or held), time, value, quality and name of the tag. */
+/* Reads and writes spool files: one line for each row, with its kind (recorded or held), time, value, quality and name of the tag. A line
+   of kind `u` precedes the first row of each tag: length of the tag's unit, unit and name. Earlier versions ignore this line. */
 #include "history/spool.h"
 
 #include <errno.h>
@@ -104,10 +105,20 @@ static int write_into_reserve(const char *path, const struct text *text)
     return error;
 }
 
-static void add_rows(struct text *text, const struct plant *plant, const struct recorder_rows *rows, char kind)
+static const char *unit_of(const struct plant *plant, int tag)
+{
+    return plant->tags[tag].unit ? plant->tags[tag].unit : "";
+}
+
+/* has_unit: by tag, whether the text has the line with its unit */
+static void add_rows(struct text *text, const struct plant *plant, const struct recorder_rows *rows, char kind, bool *has_unit)
 {
     for (size_t i = 0; i < rows->count; i++) {
         const struct history_row *row = &rows->at[i];
+        const char *unit = unit_of(plant, row->tag);
+        if (!has_unit[row->tag])
+            text_add(text, "u %zu %s%s\n", strlen(unit), unit, plant->tags[row->tag].name);
+        has_unit[row->tag] = true;
         text_add(text, "%c %" PRId64 " %.17g %" PRIu32 " %s\n", kind, row->point.t_us, row->point.value, row->point.quality,
                  plant->tags[row->tag].name);
     }
@@ -117,9 +128,11 @@ int spool_write(const char *path, const struct plant *plant, const struct spool_
 {
     struct text text = { 0 };
     struct atomic_file file;
+    bool *has_unit = mem_array(plant->tag_count + 1, sizeof(*has_unit));
     text_add(&text, "%s", HEAD);
-    add_rows(&text, plant, &rows->kept, 'k');
-    add_rows(&text, plant, &rows->held, 'h');
+    add_rows(&text, plant, &rows->kept, 'k', has_unit);
+    add_rows(&text, plant, &rows->held, 'h', has_unit);
+    mem_free(has_unit);
     int error = atomic_file_begin(&file, path, 0600);
     if (!error) {
         error = atomic_file_write(&file, text.at, text.length);
@@ -133,20 +146,41 @@ int spool_write(const char *path, const struct plant *plant, const struct spool_
     return error;
 }
 
-static void add_line(const char *line, const struct plant *plant, struct spool_rows *rows, size_t *foreign)
+struct spool_unit { /* of one tag */
+    bool misfits;              /* the spool's unit cannot be converted to the tag's present unit */
+    struct unit_change change; /* conversion from the spool's unit to the tag's present unit */
+};
+
+static void take_unit(const char *text, size_t bytes, const struct plant *plant, struct spool_unit *units)
+{
+    if (bytes > strlen(text))
+        return;
+    char *unit = mem_printf("%.*s", (int)bytes, text);
+    int tag = plant_find_tag(plant, text + bytes);
+    if (tag >= 0)
+        units[tag].misfits = !history_unit_fits(unit, unit_of(plant, tag), &units[tag].change);
+    mem_free(unit);
+}
+
+static void add_line(const char *line, const struct plant *plant, struct spool_unit *units, struct spool_rows *rows, size_t *foreign)
 {
     struct history_point point;
     char kind, *end;
     int at = 0;
-    if (sscanf(line, "%c %" SCNd64 " %n", &kind, &point.t_us, &at) != 2 || at == 0 || (kind != 'k' && kind != 'h'))
+    if (sscanf(line, "%c %" SCNd64 " %n", &kind, &point.t_us, &at) != 2 || at == 0)
+        return;
+    if (kind == 'u')
+        take_unit(line + at, (size_t)point.t_us, plant, units);
+    if (kind != 'k' && kind != 'h')
         return;
     point.value = strtod(line + at, &end);
     point.quality = (uint32_t)strtoul(end, &end, 10);
     int tag = *end == ' ' ? plant_find_tag(plant, end + 1) : -1;
-    if (tag < 0) {
+    if (tag < 0 || units[tag].misfits) {
         ++*foreign;
         return;
     }
+    point.value = unit_change_value(&units[tag].change, point.value);
     struct recorder_rows *to = kind == 'k' ? &rows->kept : &rows->held;
     mem_grow(&to->at, &to->capacity, to->count + 1, sizeof(*to->at));
     to->at[to->count++] = (struct history_row){ tag, point };
@@ -180,8 +214,10 @@ int spool_read(const char *path, const struct plant *plant, struct spool_rows *r
     if (!text)
         return -errno;
     bool known = !strncmp(text, HEAD, sizeof(HEAD) - 1);
+    struct spool_unit *units = mem_array(plant->tag_count + 1, sizeof(*units));
     for (char *line; known && (line = strsep(&at, "\n"));)
-        add_line(line, plant, rows, foreign);
+        add_line(line, plant, units, rows, foreign);
+    mem_free(units);
     mem_free(text);
     return known ? 0 : -EBADMSG;
 }

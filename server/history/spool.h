@@ -18,8 +18,9 @@ int spool_reserve(const char *folder);
 /* Writes all rows to the file, readable by its owner only; if the disk is full, into the reserve in the same folder. Returns 0 or
    -errno. */
 int spool_write(const char *path, const struct plant *plant, const struct spool_rows *rows);
-/* Appends the rows of the file whose tags are still in the plant. *foreign receives the number of rows whose tags are not in the plant.
-   Refuses a file of another user. Returns 0 or -errno; -ENOENT: no such file. */
+/* Appends the rows of the file whose tags are still in the plant, in the tags' present units. *foreign receives the number of rows whose
+   tags are not in the plant, or whose unit cannot be converted. Refuses a file of another user. Returns 0 or -errno; -ENOENT: no such
+   file. */
 int spool_read(const char *path, const struct plant *plant, struct spool_rows *rows, size_t *foreign);
 
 #endif

@@ -3,6 +3,7 @@
    the disk is full. */
 #include "tests/support/test.h"
 #include <errno.h>
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -15,6 +16,7 @@
 #include "history/month.h"
 #include "history/month_outbox.h"
 #include "history/recorder.h"
+#include "history/spool.h"
 #include "tests/support/plant_by_hand.h"
 #include "value/quality.h"
 
@@ -850,4 +852,137 @@ CASE(what_waits_is_converted_with_the_rest)
     assert_float_equal(batch.rows[0].point.value, 100, 1e-4);
     month_outbox_batch_finish(&batch);
     month_outbox_close(&outbox);
+}
+
+/* --- changes of unit that cannot be converted --------------------------------------------------------------------------------- */
+
+/* Writes points to the file of November as the historian of a plant does in which TT-1 has this unit. sends: also to the outbox */
+static void write_in_unit(struct history_setup *s, const char *unit, int64_t t_us, double value, int count, bool sends)
+{
+    int error;
+    struct history_tag tag = { "TT-1", unit, false, 0, INT64_MAX };
+    struct month_file *file = month_file_open(s->log, s->folder, month_of(t_us), &tag, 1, &error);
+    assert_non_null(file);
+    assert_int_equal(sends ? month_file_use_outbox(file) : 0, 0);
+    for (int i = 0; i < count; i++) {
+        struct history_row row = { 0, { t_us + i * S, value + i, QUALITY_GOOD } };
+        assert_int_equal(month_file_write(file, &row, 1, NULL, 0), 0);
+    }
+    assert_int_equal(month_file_tidy(file), 0);
+    month_file_close(&file);
+}
+
+/* Reads TT-1 as a plant does in which TT-1 has this unit. Returns the lines of the log; free with mem_free(). */
+static char *read_in_unit(struct history_setup *s, const char *unit, int64_t to_us, int max_points, struct history_series *series)
+{
+    mem_free(s->plant->tags[0].unit);
+    s->plant->tags[0].unit = mem_strdup(unit);
+    char *said = temp_path(s->folder, "said");
+    size_t bytes;
+    int kept = dup(STDERR_FILENO), to = open(said, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    assert_true(kept >= 0 && to >= 0 && dup2(to, STDERR_FILENO) >= 0);
+    struct log *log = log_create(LOG_WARN);
+    struct history_reader *reader = history_reader_create(log, s->folder);
+    history_reader_show_by(reader, s->plant);
+    int error = history_series(reader, "TT-1", NOVEMBER, to_us, max_points, series);
+    history_series_finish(series);
+    error = error ? error : history_series(reader, "TT-1", NOVEMBER, to_us, max_points, series);
+    history_reader_destroy(&reader);
+    log_destroy(&log);
+    dup2(kept, STDERR_FILENO);
+    close(kept);
+    close(to);
+    assert_int_equal(error, 0);
+    char *text = text_read_file(said, 1 << 20, &bytes);
+    assert_non_null(text);
+    return text;
+}
+
+CASE(points_of_another_quantity_are_left_out)
+{
+    static const char *const changes[][2] = { { "kPa", "°C" }, { "bar", "psig" }, { "pcs", "widgets" } };
+    for (size_t c = 0; c < sizeof(changes) / sizeof(*changes); c++) {
+        const char *before = changes[c][0], *after = changes[c][1];
+        struct history_series series;
+        write_in_unit(s, before, NOVEMBER, 100, 3, true);
+        /* the new unit is known, but the file has no point with it yet */
+        char *said = read_in_unit(s, after, NOVEMBER + 100 * S, 1000, &series);
+        assert_int_equal(series.points.count, 0);
+        char *line = test_printf("TT-1: 3 points in '%s' are left out, because '%s' cannot be converted to '%s'", before, before, after);
+        char *first = strstr(said, line);
+        assert_non_null(first);
+        assert_null(strstr(first + 1, line)); /* the second query says nothing */
+        mem_free(said);
+        history_series_finish(&series);
+        /* the present month's file has both units */
+        write_in_unit(s, after, NOVEMBER + 10 * S, 20, 1, true);
+        said = read_in_unit(s, after, NOVEMBER + 100 * S, 1000, &series);
+        assert_non_null(strstr(said, line));
+        mem_free(said);
+        assert_int_equal(series.points.count, 1);
+        assert_float_equal(series.points.at[0].value, 20, 0);
+        history_series_finish(&series);
+        mem_free(read_in_unit(s, after, NOVEMBER + 3600 * S, 2, &series));
+        assert_int_equal(series.buckets.count, 1);
+        assert_float_equal(series.buckets.at[0].high, 20, 0);
+        history_series_finish(&series);
+        struct history_tag tag = { "TT-1", after, false, 0, INT64_MAX };
+        struct snapshot *snapshot = test_snapshot(1);
+        assert_int_equal(history_at(s->reader, &tag, NOVEMBER + 5 * S, snapshot), 0);
+        assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_WAITING);
+        /* the database has a row for each unit of a tag */
+        struct month_outbox_batch batch = { 0 };
+        int error;
+        struct month_outbox *outbox = month_outbox_open(s->log, s->folder, month_of(NOVEMBER), &error);
+        assert_int_equal(month_outbox_read(outbox, 100, &batch), 0);
+        assert_int_equal(batch.tag_count, 2);
+        for (size_t i = 0; i < batch.tag_count; i++) {
+            assert_string_equal(batch.tags[i].name, "TT-1");
+            assert_string_equal(batch.tags[i].unit, changes[c][batch.tags[i].id == batch.rows[4].tag]);
+        }
+        assert_int_equal(batch.row_count, 5); /* one of them ends the first line */
+        month_outbox_batch_finish(&batch);
+        month_outbox_close(&outbox);
+        /* the change is undone: the first points are back, and no line leads across the time between */
+        write_in_unit(s, before, NOVEMBER + 20 * S, 110, 1, false);
+        mem_free(read_in_unit(s, before, NOVEMBER + 100 * S, 1000, &series));
+        assert_int_equal(series.points.count, 5);
+        assert_true(series.points.at[2].value == 102 && isnan(series.points.at[3].value) && series.points.at[4].value == 110);
+        history_series_finish(&series);
+        char name[MONTH_NAME_BYTES];
+        month_name(month_of(NOVEMBER), name);
+        assert_int_equal(unlink(temp_path(s->folder, name)), 0);
+    }
+}
+
+CASE(a_unit_stated_later_keeps_the_points)
+{
+    struct history_series series;
+    write_in_unit(s, "", NOVEMBER, 100, 3, false);
+    write_in_unit(s, "°C", NOVEMBER + 10 * S, 103, 1, false);
+    char *said = read_in_unit(s, "°C", NOVEMBER + 100 * S, 1000, &series);
+    assert_string_equal(said, "");
+    assert_int_equal(series.points.count, 4);
+    mem_free(said);
+    history_series_finish(&series);
+}
+
+CASE(a_spool_is_read_in_the_present_units)
+{
+    char *path = temp_path(s->folder, "spool");
+    struct history_row row = { 1, { NOVEMBER, 2, QUALITY_GOOD } };
+    struct spool_rows rows = { .kept = { &row, 1, 1 } }, back = { 0 };
+    size_t foreign = 0;
+    s->plant->tags[1].unit = mem_strdup("kgf/cm2");
+    assert_int_equal(spool_write(path, s->plant, &rows), 0);
+    mem_free(s->plant->tags[1].unit);
+    s->plant->tags[1].unit = mem_strdup("kPa");
+    assert_int_equal(spool_read(path, s->plant, &back, &foreign), 0);
+    assert_true(foreign == 0 && back.kept.count == 1);
+    assert_float_equal(back.kept.at[0].point.value, 196.133, 1e-6);
+    mem_free(s->plant->tags[1].unit);
+    s->plant->tags[1].unit = mem_strdup("°C");
+    assert_int_equal(spool_read(path, s->plant, &back, &foreign), 0);
+    assert_true(foreign == 1 && back.kept.count == 1);
+    mem_free(back.kept.at);
 }

@@ -199,7 +199,8 @@ static bool restore_events(struct postgres_tables *tables, struct month_file *fi
     return rows && (!error || fail(why, error));
 }
 
-/* Finds the tags in the database that this plant also has, by name. Returns NULL if the query failed. */
+/* Finds the tags in the database that this plant also has, by name, and whose unit can be converted to the tag's present unit. Returns NULL
+   if the query failed. */
 static struct tag_there *find_tags(const struct postgres_restore *restore, struct postgres_tables *tables, size_t *count)
 {
     char plant[NUMBER_BYTES];
@@ -209,10 +210,8 @@ static struct tag_there *find_tags(const struct postgres_restore *restore, struc
     *count = 0;
     for (int i = 0; rows && i < PQntuples(rows); i++) {
         struct tag_there there = { postgres_int32(rows, i, 0), plant_find_tag(restore->plant, PQgetvalue(rows, i, 1)), { 0 } };
-        if (there.tag < 0)
-            continue;
-        units_compare(PQgetvalue(rows, i, 2), restore->tags[there.tag].unit, &there.change);
-        found[(*count)++] = there;
+        if (there.tag >= 0 && history_unit_fits(PQgetvalue(rows, i, 2), restore->tags[there.tag].unit, &there.change))
+            found[(*count)++] = there;
     }
     PQclear(rows);
     return found;
