@@ -302,11 +302,6 @@ test('at 900 pixels twenty rows and more are seen, sorted by any column, filtere
     await settle(page);
     const { count, highest } = await wholeRows();
     assert.ok(count >= 20 && highest <= 29, `${count} rows of at most ${highest} pixels`);
-    const [needed, room] = await page.locator('#alarms-list td[data-col=now]').first().evaluate((cell) => {
-        cell.textContent = '200.00 mm/s'; // wider than the demo's other values
-        return [cell.scrollWidth, cell.clientWidth];
-    });
-    assert.ok(needed <= room, `a value of ${needed} pixels is cut at ${room}`);
     for (const [id, text] of [['#alarms-count', `${many.length}`],
         ['#alarms-which option[value=waiting]', `Unacknowledged (${many.length})`],
         ['#alarms-which option[value=gone]', 'Returned to normal (0)']])
