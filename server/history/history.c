@@ -32,7 +32,7 @@ void history_reader_show_by(struct history_reader *reader, const struct plant *p
 {
     reader->plant = plant;
     mem_free(reader->told);
-    reader->told = mem_array(plant->tag_count + 1, sizeof(*reader->told));
+    reader->told = plant ? mem_array(plant->tag_count + 1, sizeof(*reader->told)) : NULL;
 }
 
 void history_reader_destroy(struct history_reader **reader)
