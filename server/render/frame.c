@@ -193,7 +193,7 @@ static void read_marker(struct frame_marker *marker, const struct reading *now, 
 {
     static const struct reading nothing = { .quality = QUALITY_BAD_WAITING };
     const struct reading *before = !then->wanted ? NULL : then->snapshot ? &then->snapshot->readings[marker->tag] : &nothing;
-    marker->quality = before && (before->quality >> 30) > (now->quality >> 30) ? before->quality : now->quality;
+    marker->quality = before && quality_is_worse(before->quality, now->quality) ? before->quality : now->quality;
     if (!then->distance)
         marker->value = quality_is_bad(marker->quality) ? 0 : now->value - (before ? before->value : 0);
 }

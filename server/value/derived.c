@@ -65,7 +65,7 @@ static struct reading combine(const struct derived_state *state, const struct pl
     for (size_t i = 0; i < count; i++) {
         const struct reading *one = &state->snapshot->readings[inputs[i]];
         values[i] = unit_change_back(&plant->tags[inputs[i]].scale.change, one->value);
-        if (one->quality >> 30 > all.quality >> 30)
+        if (quality_is_worse(one->quality, all.quality))
             all.quality = one->quality;
         if (one->age_ns < all.age_ns)
             all.age_ns = one->age_ns;
@@ -74,7 +74,7 @@ static struct reading combine(const struct derived_state *state, const struct pl
         return all;
     double value = expression_value(tag->expression, values);
     uint32_t quality = decode_quality(tag, value);
-    if (quality >> 30 > all.quality >> 30)
+    if (quality_is_worse(quality, all.quality))
         all.quality = quality;
     all.value = quality_is_bad(quality) ? 0 : unit_change_value(&tag->scale.change, value);
     return all;

@@ -37,6 +37,11 @@ static inline bool quality_is_bad(uint32_t q)
 {
     return (q >> 30) >= 2;
 }
+/* Returns whether the first code has a higher severity (Good, Uncertain, Bad) than the second. */
+static inline bool quality_is_worse(uint32_t q, uint32_t than)
+{
+    return (q >> 30) > (than >> 30);
+}
 /* Returns the name of a status code, such as "Bad_CommunicationError". For a code that is not in the table, returns the name of its
  * severity, such as "Bad". */
 const char *quality_name(uint32_t q);

@@ -79,7 +79,7 @@ void stamped_writer_add(struct stamped_writer *writer, int tag, const struct sta
     if (!quality_is_bad(value->quality)) {
         decode_number(&writer->plant->tags[tag], value->value, &sample);
         /* the sender's quality code is used instead of ours, because it is more specific, unless ours is worse */
-        if (value->quality >> 30 >= sample.quality >> 30)
+        if (!quality_is_worse(sample.quality, value->quality))
             sample.quality = value->quality;
         if (was_kept && quality_is_good(sample.quality))
             sample.quality = QUALITY_UNCERTAIN_LAST_USABLE;

@@ -270,7 +270,7 @@ static uint32_t quality_now(const struct store *store, size_t tag, int64_t now_m
     uint32_t quality = own_quality(&store->tags[tag], now_mono_ns);
     uint32_t others[] = { heartbeat_quality(store, tag, now_mono_ns), vouched_quality(store, tag, now_mono_ns) };
     for (int i = 0; i < 2; i++)
-        if (others[i] >> 30 > quality >> 30)
+        if (quality_is_worse(others[i], quality))
             quality = others[i];
     return quality;
 }
