@@ -16,6 +16,8 @@
  * and LARGE at the midpoints of its edges */
 #define LARGE 16.0
 
+#define GRAIN 1024 /* probes per unit of work of a thread */
+
 /* Returns a hash of the three vertex indices that does not depend on their order and is never 0. */
 static uint64_t triangle_hash(const uint32_t v[3])
 {
@@ -362,12 +364,6 @@ static void probe_triangles(void *arg, size_t begin, size_t end)
         probe_triangle(arg, t, &near);
 }
 
-static void probe_all(const struct probing *probing, size_t count, void (*probe_some)(void *arg, size_t begin, size_t end),
-                      struct workers *workers)
-{
-    workers_for(workers, count, 1024, probe_some, (void *)probing);
-}
-
 static void raise_to(float *most_m, float found_m)
 {
     *most_m = *most_m < found_m ? found_m : *most_m;
@@ -381,11 +377,11 @@ static void measure(const struct deviation *from, const struct deviation *to, co
     size_t points = from->mesh.point_count, triangles = from->mesh.tri_count;
     float *found_m = mem_array(points > triangles ? points : triangles, sizeof(*found_m));
     struct probing probing = { from, to, only, anywhere, expected_m, apart_m, found_m };
-    probe_all(&probing, points, probe_points, workers);
+    workers_for(workers, points, GRAIN, probe_points, &probing);
     for (size_t i = 0; i < points; i++)
         raise_to(&apart_m[from->part[from->index[i]]], probing.found_m[i]);
     memset(probing.found_m, 0, triangles * sizeof(*probing.found_m));
-    probe_all(&probing, triangles, probe_triangles, workers);
+    workers_for(workers, triangles, GRAIN, probe_triangles, &probing);
     for (size_t t = 0; t < triangles; t++)
         raise_to(&apart_m[part_of(from, (uint32_t)t)], probing.found_m[t]);
     mem_free(probing.found_m);

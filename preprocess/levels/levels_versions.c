@@ -169,11 +169,6 @@ static void simplify_parts(void *arg, size_t begin, size_t end)
             bounded_simplify(collapsing->parts[p], collapsing->error_m);
 }
 
-static void for_parts(struct collapsing *collapsing, void (*body)(void *arg, size_t begin, size_t end), struct workers *workers)
-{
-    workers_for(workers, collapsing->welds->part_count, 1, body, collapsing);
-}
-
 static void read_parts(const struct collapsing *collapsing, struct version *version)
 {
     for (size_t p = 0; p < collapsing->welds->part_count; p++)
@@ -206,14 +201,14 @@ static void make_collapsed(struct versions *versions, const struct welds *welds,
     struct collapsing collapsing = { .welds = welds, .first = &versions->first, .from = &versions->at[versions->count - 1] };
     collapsing.parts = mem_array(welds->part_count, sizeof(*collapsing.parts));
     sort_by_part(&collapsing);
-    for_parts(&collapsing, begin_parts, workers);
+    workers_for(workers, welds->part_count, 1, begin_parts, &collapsing);
     double errors_m[VERSIONS_MAX];
     size_t count = list_errors(welds->whole_m, VERSIONS_MAX - versions->count, errors_m);
     for (size_t i = 0; i < count; i++) {
         collapsing.error_m = errors_m[i];
         const struct version *before = &versions->at[versions->count - 1];
         struct version *version = add_version(versions, welds, before->count);
-        for_parts(&collapsing, simplify_parts, workers);
+        workers_for(workers, welds->part_count, 1, simplify_parts, &collapsing);
         read_parts(&collapsing, version);
         if ((double)version->count > ALIKE * (double)before->count && i + 1 < count) {
             drop_last(versions);

@@ -62,7 +62,7 @@ bool subdiv_will_exceed_bound(const struct subdiv *subdiv)
         return least_needed_by_sample(subdiv) > (double)subdiv->most_tris;
     if (subdiv->finest)
         return false;
-    subdiv_parallel(subdiv, subdiv->mesh.tri_count, GRAIN, add_needed, &sum);
+    workers_for(subdiv->in->workers, subdiv->mesh.tri_count, GRAIN, add_needed, &sum);
     return sum.needed > subdiv->most_tris;
 }
 

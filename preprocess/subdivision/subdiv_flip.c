@@ -103,7 +103,7 @@ static size_t list_turns(struct subdiv *subdiv, const struct subdiv_list *edges,
         if (turn.across != TRIMESH_NONE && mesh->cuts[turn.across].corner == TRIMESH_NONE)
             turns[count++] = turn;
     }
-    subdiv_parallel(subdiv, count, GRAIN, try_turns, &(struct turns){ subdiv, turns });
+    workers_for(subdiv->in->workers, count, GRAIN, try_turns, &(struct turns){ subdiv, turns });
     for (size_t i = 0; i < count; i++)
         if (turns[i].may)
             turns[kept++] = turns[i];

@@ -598,16 +598,12 @@ static void measure_places(void *arg, size_t begin, size_t end)
         sample_cache_hand_over(subdiv->in->sample_cache, &notes);
 }
 
-void subdiv_parallel(const struct subdiv *subdiv, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg)
-{
-    workers_for(subdiv->in->workers, count, grain, body, arg);
-}
-
 /* Measures the interpolation error along `count` edges. Errors below `enough` need not be exact, and edges with such an error get no split
  * point. */
 static void measure_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count, double enough)
 {
-    subdiv_parallel(subdiv, count, GRAIN, try_edges, &(struct measure_job){ .subdiv = subdiv, .findings = findings, .enough = enough });
+    struct measure_job job = { .subdiv = subdiv, .findings = findings, .enough = enough };
+    workers_for(subdiv->in->workers, count, GRAIN, try_edges, &job);
     for (size_t i = 0; i < count; i++)
         subdiv_cache_add(subdiv, &findings[i]);
 }
@@ -629,14 +625,15 @@ void subdiv_measure_new_edges(struct subdiv *subdiv, struct subdiv_finding *find
 
 void subdiv_measure_insides(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count)
 {
-    subdiv_parallel(subdiv, count, GRAIN, try_insides, &(struct measure_job){ .subdiv = subdiv, .findings = findings });
+    workers_for(subdiv->in->workers, count, GRAIN, try_insides, &(struct measure_job){ .subdiv = subdiv, .findings = findings });
     for (size_t i = 0; i < count; i++)
         subdiv_cache_add(subdiv, &findings[i]);
 }
 
 void subdiv_measure_places(struct subdiv *subdiv, uint32_t first, const uint32_t *edges, size_t count)
 {
-    subdiv_parallel(subdiv, count, GRAIN, measure_places, &(struct measure_job){ .subdiv = subdiv, .edges = edges, .first = first });
+    struct measure_job job = { .subdiv = subdiv, .edges = edges, .first = first };
+    workers_for(subdiv->in->workers, count, GRAIN, measure_places, &job);
 }
 
 void subdiv_add_place(struct subdiv *subdiv, uint32_t place, uint32_t part)

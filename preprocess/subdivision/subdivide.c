@@ -164,7 +164,7 @@ static void measure_edges(struct subdiv *subdiv)
     struct subdiv_mesh *mesh = &subdiv->mesh;
     subdiv_mesh_sort(&mesh->made);
     struct sides sides = { subdiv, mem_array(mesh->made.count, 1) };
-    subdiv_parallel(subdiv, mesh->made.count, GRAIN, look_at_sides, &sides);
+    workers_for(subdiv->in->workers, mesh->made.count, GRAIN, look_at_sides, &sides);
     struct subdiv_finding *findings = mem_array(3 * mesh->made.count, sizeof(*findings));
     size_t count = take_new_sides(subdiv, &sides, ASKS, findings);
     take_new_sides(subdiv, &sides, 0, findings);
@@ -234,7 +234,7 @@ static void measure_insides(struct subdiv *subdiv, double limit)
     size_t count = 0;
     subdiv_mesh_sort(&mesh->made);
     struct insides insides = { subdiv, limit, mem_array(mesh->made.count, 1) };
-    subdiv_parallel(subdiv, mesh->made.count, GRAIN, choose_insides, &insides);
+    workers_for(subdiv->in->workers, mesh->made.count, GRAIN, choose_insides, &insides);
     for (size_t m = 0; m < mesh->made.count; m++)
         count += insides.asked[m] != 0;
     struct subdiv_finding *findings = mem_array(count, sizeof(*findings));
@@ -323,7 +323,7 @@ static void aim_at_corners(struct subdiv *subdiv)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
     struct aims aims = { subdiv, mem_array(mesh->made.count, 1) };
-    subdiv_parallel(subdiv, mesh->made.count, GRAIN, find_flat, &aims);
+    workers_for(subdiv->in->workers, mesh->made.count, GRAIN, find_flat, &aims);
     for (size_t m = 0; m < mesh->made.count; m++) {
         struct subdiv_tri *tri = &mesh->tris[mesh->made.at[m]];
         if (aims.flat[m])

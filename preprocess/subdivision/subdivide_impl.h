@@ -65,10 +65,6 @@ static inline bool subdiv_is_short(const struct subdiv *subdiv, double length_m)
     return length_m < 2 * subdiv->shortest_m;
 }
 
-/* Calls body(arg, begin, end) for ranges of about `grain` indices that cover [0, count), on all cores; on the calling thread if there are
- * no workers. */
-void subdiv_parallel(const struct subdiv *subdiv, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg);
-
 /* --- measuring (subdiv_measure.c) --- */
 
 /* The measured error of one edge or triangle. */
