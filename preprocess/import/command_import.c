@@ -14,6 +14,7 @@
 #include "preprocess/import/file_name.h"
 #include "preprocess/import/findings.h"
 #include "preprocess/import/formats.h"
+#include "preprocess/import/import_fail.h"
 #include "preprocess/import/options.h"
 #include "preprocess/import/plant_draft.h"
 #include "preprocess/import/revision/anew.h"

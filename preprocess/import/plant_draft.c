@@ -2,7 +2,6 @@
 /* Generates the first plant file of an import, which people continue to edit by hand or with the tag matcher. */
 #include "preprocess/import/plant_draft.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +12,7 @@
 #include "base/text/text.h"
 #include "placing/tag_file.h"
 #include "preprocess/glb/glb_scene.h"
+#include "preprocess/import/import_fail.h"
 
 static const char head[] = "# Plant file written by plantcast import. Lengths are in metres, Z is up. PLANT.md describes all keys.\n"
                            "plant:\n";
@@ -196,12 +196,6 @@ bool plant_draft_is_begun(const char *path)
     return is;
 }
 
-static int fail_at(const char *path, const char *why)
-{
-    fprintf(stderr, "plantcast import: %s: %s\n", path, why);
-    return -EIO;
-}
-
 static int write_new(const char *folder, const char *file, const char *text)
 {
     char *path = mem_printf("%s/%s", folder, file);
@@ -210,7 +204,7 @@ static int write_new(const char *folder, const char *file, const char *text)
     if (there)
         printf("%s: unchanged\n", path);
     else if (status != 0)
-        fail_at(path, strerror(-status));
+        import_fail(path, strerror(-status));
     mem_free(path);
     return status;
 }
@@ -305,7 +299,7 @@ int plant_draft_begin(const char *folder)
     if (access(plant, F_OK) != 0) {
         status = write_person(person);
         if (status != 0)
-            fail_at(person, strerror(-status));
+            import_fail(person, strerror(-status));
         if (status == 0)
             status = write_new(folder, "tags.csv", tags_head);
         if (status == 0)

@@ -15,7 +15,7 @@
 #include "base/mem.h"
 #include "plant/plant_folder.h"
 #include "importing/export_folder.h"
-#include "preprocess/import/commands.h"
+#include "preprocess/import/import_fail.h"
 #include "preprocess/import/plant_draft.h"
 
 static int make_folder(const char *path)

@@ -11,7 +11,7 @@
 #include "base/mem.h"
 #include "base/text/text.h"
 #include "placing/tag_file.h"
-#include "preprocess/import/commands.h"
+#include "preprocess/import/import_fail.h"
 #include "preprocess/import/revision/revision_files.h"
 
 enum { TEXTS = 3 };
@@ -82,7 +82,7 @@ static int apply(const struct revision_making *making)
     if (status != 0)
         return status == -ESTALE
                    ? import_fail(changed,
-                             "this file was changed by another program during the import, so nothing was written: run the command again")
+                       "this file was changed by another program during the import, so nothing was written: run the command again")
                    : import_fail(folder, strerror(-status));
     for (size_t i = 0; i < TEXTS; i++)
         if (making->texts[i].kept)

@@ -14,6 +14,7 @@
 #include "base/mem.h"
 #include "plant/plant_folder.h"
 #include "plant/recipe.h"
+#include "preprocess/import/import_fail.h"
 #include "preprocess/import/revision/revision.h"
 #include "preprocess/import/revision/revision_files.h"
 #include "preprocess/match/decisions.h"
@@ -40,12 +41,6 @@ struct revising {
     size_t file_count;
 };
 
-static int fail_at(const char *path, const char *why)
-{
-    fprintf(stderr, "%s: %s: %s\n", program, path, why);
-    return 1;
-}
-
 /* --- reading ------------------------------------------------------------------------------------------------------------------ */
 
 /* Reads a text file. Returns NULL if it does not exist, or on an error, which sets *status to 1. */
@@ -54,7 +49,7 @@ static char *read_text(const char *path, int *status)
     size_t bytes;
     char *text = text_read_file(path, max_text_bytes, &bytes);
     if (!text && errno != ENOENT)
-        *status = fail_at(path, strerror(errno));
+        *status = import_fail(path, strerror(errno));
     return text;
 }
 
@@ -64,12 +59,12 @@ static int find_tags(struct revising *r)
 {
     char folder[PATH_MAX], path[PATH_MAX];
     if (!realpath(r->params->folder, folder) || !realpath(r->plant->files.tags_path, path))
-        return fail_at(r->plant->files.tags_path, strerror(errno));
+        return import_fail(r->plant->files.tags_path, strerror(errno));
     char *slash = strrchr(path, '/');
     *slash = 0;
     bool beside = !strcmp(folder, path);
     if (!beside && access(*path ? path : "/", W_OK | X_OK) != 0)
-        return fail_at(r->plant->files.tags_path, "the folder of this tag list is not writable");
+        return import_fail(r->plant->files.tags_path, "the folder of this tag list is not writable");
     *slash = '/';
     r->tags_name = mem_strdup(beside ? slash + 1 : path);
     return 0;
@@ -177,7 +172,7 @@ static int add_text(struct revising *r, const char *name, const char *text, cons
     struct revision_file *file = &r->files[r->file_count++];
     *file = (struct revision_file){ name, text ? mem_printf("%s/text%zu", r->params->work, r->file_count) : NULL, before };
     int status = text ? atomic_file_put(file->made, text, strlen(text)) : 0;
-    return status == 0 ? 0 : fail_at(name, strerror(-status));
+    return status == 0 ? 0 : import_fail(name, strerror(-status));
 }
 
 static const char *if_other(const char *text, const char *before)
@@ -208,9 +203,9 @@ static int apply(struct revising *r)
     status = revision_files_apply(r->params->folder, r->params->work, r->files, r->file_count, &changed);
     return status == 0 ? 0
            : status == -ESTALE
-               ? fail_at(changed,
-                         "this file was changed by another program during the import, so nothing was written: run the command again")
-               : fail_at(r->params->folder, strerror(-status));
+               ? import_fail(changed,
+                             "this file was changed by another program during the import, so nothing was written: run the command again")
+               : import_fail(r->params->folder, strerror(-status));
 }
 
 static int plan(struct revising *r)
@@ -292,7 +287,7 @@ int revise_undo(const char *folder, bool forced, int lent)
                 "%s: %s: files were changed since the import: %s; --force undoes the import anyway and keeps these files as NAME.undone\n",
                 program, folder, changed.at);
     else if (status != 0)
-        fail_at(folder, why ? why : status == -ENOENT ? "this folder has no import to undo" : strerror(-status));
+        import_fail(folder, why ? why : status == -ENOENT ? "this folder has no import to undo" : strerror(-status));
     else
         printf("%s: restored to the state before the last import: %s\n", folder, done.at ? done.at : "");
     text_finish(&changed);
