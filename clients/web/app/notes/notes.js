@@ -227,8 +227,9 @@ export class Notes {
 
     // positions that follow the picture
 
-    // Places the pins. A pin that would cover another is lifted, if there is room, and its stem becomes longer. A pin that would leave the
-    // left half or the picture is moved to the left. Older pins are drawn first, so that their longer stems cover no other pin.
+    // Places the pins. A pin that would cover another is lifted, and its stem becomes longer; if the picture has no room above, the pin is
+    // lowered. A pin that would leave the left half is moved to the left. The newest pins are placed first, so that only older pins, which
+    // are drawn below the others, get longer stems.
     show() {
         const { picture, shown } = this.session, half = picture && halves(shown, picture.shownWidth)[0];
         const project = half && projector(picture.camera, half.width, picture.fullHeight), { width, height } = this.viewport;
