@@ -418,6 +418,7 @@ test('plantcast tags and plantcast probe', { skip }, (t) => {
     const report = JSON.parse(probe.out);
     assert.ok(report.frames > 0 && report.input_to_frame_ms.p50 > 0 && report.failures.length === 0, probe.out);
     promise(t, 'from one frame of the probe to the next', 1000 / report.fps, 1000);
+    promise(t, 'from one frame of its two sessions to the next', 1000 / report.frames, 250);
     // Every camera that was sent counts as an input, not only those that a frame happened to show.
     assert.ok(report.input_to_frame_ms.count >= Math.min(60, 3 * report.frames),
         `${report.input_to_frame_ms.count} inputs, ${report.frames} frames`);
@@ -427,7 +428,7 @@ test('plantcast tags and plantcast probe', { skip }, (t) => {
     const followed = JSON.parse(blind.out);
     assert.equal(followed.sessions_fps.filter((fps) => fps > 0).length, 40, blind.out);
     promise(t, 'from one frame of a follower to the next', 1000 / Math.min(...followed.sessions_fps), 1000);
-    assert.ok(followed.behind_leader_ms.count > 0 && followed.kb_per_frame > 1 && followed.errors === 0, blind.out);
+    assert.ok(followed.behind_leader_ms.count > 40 && followed.kb_per_frame > 1 && followed.errors === 0, blind.out);
     for (const options of [[], ['--blind']]) {
         const refused = runProgram('plantcast', ['probe', 'http://127.0.0.1:1/', '--seconds', '1', ...options]);
         assert.equal(refused.code, 1);
