@@ -8,13 +8,15 @@
 #include "history/month.h"
 #include "base/text/timestamp.h"
 
-/* Appends a number with ten significant digits, which is more than any transmitter has. none: text for a number that is not finite. */
+/* Appends a number with ten significant digits, which is more than any transmitter has, and large counters with all digits. none: text for
+   a number that is not finite. */
 static void add_number(struct text *out, double value, const char *none)
 {
     if (isnan(value))
         text_add(out, "%s", none);
     else
-        text_add(out, "%.10g", value + 0.0); /* adding 0.0 turns -0.0 into 0.0, so that no minus sign is printed */
+        /* adding 0.0 turns -0.0 into 0.0, so that no minus sign is printed */
+        text_add(out, fabs(value) < 1e10 ? "%.10g" : "%.15g", value + 0.0);
 }
 
 /* Appends a JSON string in quotes. */

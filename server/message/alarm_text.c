@@ -13,7 +13,7 @@
 #include "base/text/timestamp.h"
 #include "message/json_values.h"
 
-enum { ROWS_DEFAULT = 1000, MAX_ROWS = 10000, DIGITS = 7 };
+enum { ROWS_DEFAULT = 1000, MAX_ROWS = 10000 };
 
 static const char *mode_name(enum alarm_mode mode)
 {
@@ -36,8 +36,8 @@ static void add_row(void *arg, const struct alarm *alarm)
     json_array_append_new(arg, row);
     if (word == ALARM_NORMAL)
         return;
-    json_t *rest = json_pack("[i,o,o,o,b,b]", alarm->priority, instant(alarm->raised_utc_ns), number(alarm->value), number(alarm->limit),
-                             alarm->state.active, alarm->held);
+    json_t *rest = json_pack("[i,o,o,o,b,b]", alarm->priority, instant(alarm->raised_utc_ns), reading_number(alarm->value),
+                             reading_number(alarm->limit), alarm->state.active, alarm->held);
     json_array_extend(row, rest);
     json_decref(rest);
     if (alarm->who[0] || alarm->reason[0] || alarm->until.utc_ns) {
@@ -59,7 +59,7 @@ char *alarms_text(struct alarm_text_cache *cache, struct alarm_service *alarm_se
     *number_out = alarm_service_changes(alarm_service, since, add_row, rows);
     char *text = json_text(json_pack("{s:s,s:s,s:b,s:I,s:o}", "type", "alarms", "mode", mode_name(plant->alarms), "all", since == 0,
                                      "time_us", (json_int_t)(now_utc_ns / 1000), "alarms", rows),
-                           DIGITS);
+                           READING_DIGITS);
     if (cache) {
         alarm_text_cache_finish(cache);
         *cache = (struct alarm_text_cache){ mem_strdup(text), since, *number_out };
@@ -162,8 +162,9 @@ static const char SPECIAL[] = ",\"\n\r"; /* characters that require quotes aroun
 
 static void add_csv_number(struct text *out, double value)
 {
+    /* adding 0.0 turns -0.0 into 0.0, so that no minus sign is sent */
     if (isfinite(value))
-        text_add(out, "%.9g", value + 0.0); /* adding 0.0 turns -0.0 into 0.0, so that no minus sign is sent */
+        text_add(out, fabs(value) < 1e9 ? "%.9g" : "%.15g", value + 0.0);
 }
 
 static void add_csv_alarm(struct listing *listing, const struct alarm *alarm)
@@ -189,8 +190,8 @@ static json_t *alarm_object(const struct alarm *alarm)
     return json_pack("{s:o,s:s,s:s,s:i,s:o,s:o,s:o,s:o,s:b,s:b,s:o,s:o,s:o}", "tag", string(alarm->name), "kind",
                      alarm_kind_name(alarm->kind), "state", alarm_status_name(alarm_status_of(alarm)), "priority", alarm->priority,
                      "raised_us", instant(alarm->raised_utc_ns), "changed_us", instant(alarm->changed_utc_ns), "value",
-                     number(alarm->value), "limit", number(alarm->limit), "active", alarm->state.active, "held", alarm->held, "until_us",
-                     instant(alarm->until.utc_ns), "who", string(alarm->who), "reason", string(alarm->reason));
+                     reading_number(alarm->value), "limit", reading_number(alarm->limit), "active", alarm->state.active, "held",
+                     alarm->held, "until_us", instant(alarm->until.utc_ns), "who", string(alarm->who), "reason", string(alarm->reason));
 }
 
 static void list(void *arg, const struct alarm *alarm)
@@ -238,7 +239,7 @@ char *alarms_api_text(struct alarm_service *alarm_service, const struct plant *p
     return json_text(json_pack("{s:s,s:I,s:o,s:I,s:o,s:o}", "mode", mode_name(plant->alarms), "time_us", (json_int_t)(now_utc_ns / 1000),
                                "counts", counts(alarm_service), "total", (json_int_t)listing.total, "alarms", listing.rows, "next_offset",
                                next < listing.total ? json_integer(next) : json_null()),
-                     DIGITS);
+                     READING_DIGITS);
 }
 
 /* --- the journal ------------------------------------------------------------------------------------------------------------ */
@@ -278,8 +279,8 @@ static void add_journal_row(void *arg, const struct journal_row *row)
         json_array_append_new(paging->rows,
                               json_pack("{s:I,s:I,s:o,s:s,s:s,s:s,s:s,s:i,s:o,s:o,s:o,s:o}", "id", (json_int_t)row->id, "time_us",
                                         (json_int_t)row->t_us, "tag", string(row->tag), "kind", row->kind, "event", row->event, "before",
-                                        row->before, "state", row->after, "priority", row->priority, "limit", number(row->limit), "value",
-                                        number(row->value), "who", string(row->who), "reason", string(row->reason)));
+                                        row->before, "state", row->after, "priority", row->priority, "limit", reading_number(row->limit),
+                                        "value", reading_number(row->value), "who", string(row->who), "reason", string(row->reason)));
 }
 
 bool alarms_journal_text(struct log *log, const char *folder, const struct alarm_query *query, struct text *out)
@@ -301,7 +302,7 @@ bool alarms_journal_text(struct log *log, const char *folder, const struct alarm
     }
     char *text = json_text(json_pack("{s:o,s:o}", "rows", paging.rows, "next_before",
                                      paging.count == query->limit ? json_integer(paging.last_id) : json_null()),
-                           DIGITS);
+                           READING_DIGITS);
     text_add(out, "%s", text);
     mem_free(text);
     return true;

@@ -2,10 +2,24 @@
 #include "message/json_values.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 json_t *number(double value)
 {
     return isfinite(value) ? json_real(value + 0.0) : json_null(); /* adding 0.0 turns -0.0 into 0.0, so that no minus sign is sent */
+}
+
+json_t *reading_number(double value)
+{
+    double size = fabs(value);
+    char text[32];
+    if (size >= 1e7 && size < 9e15 && value == trunc(value)) /* an integer is exact, whatever the number of digits of json_text() */
+        return json_integer((json_int_t)value);
+    if (!(size < 1e4))
+        return number(size < 1e12 ? round(value * 1000) / 1000 : value);
+    snprintf(text, sizeof(text), "%.7g", value);
+    return number(strtod(text, NULL));
 }
 
 json_t *string(const char *text)

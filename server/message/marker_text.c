@@ -24,7 +24,7 @@ static json_t *value_of(const struct frame *frame, const struct frame_marker *ma
 {
     const struct field_params *params = frame->view.split && marker->half ? &frame->view.right.field : &frame->view.field;
     bool lost = quality_is_bad(marker->quality) && params->show != SHOW_DISTANCE;
-    return lost ? json_null() : number(marker->value);
+    return lost ? json_null() : reading_number(marker->value);
 }
 
 static int class_of(const struct frame_marker *marker)
@@ -167,11 +167,11 @@ static void add_list(struct text *text, const char *name, const char *list)
 static void add_markers(struct text *text, struct frame *frame, const struct known_markers *known, struct marker_text_cache *lists)
 {
     if (!same_places(frame, known)) {
-        lists->markers = lists->markers ? lists->markers : json_text(all_markers(frame), DIGITS);
+        lists->markers = lists->markers ? lists->markers : json_text(all_markers(frame), READING_DIGITS);
         add_list(text, "markers", lists->markers);
         return;
     }
-    char *values = json_text(changed_values(frame, known), DIGITS);
+    char *values = json_text(changed_values(frame, known), READING_DIGITS);
     if (strcmp(values, "[]") != 0)
         add_list(text, "values", values);
     mem_free(values);

@@ -8,6 +8,8 @@
 #include "access/access.h"
 #include "message/alarm_message.h"
 #include "message/alarm_text.h"
+#include "history/series_text.h"
+#include "session/reply/reply.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/sleep.h"
 #include "value/quality.h"
@@ -227,5 +229,36 @@ CASE(the_journal_is_read_by_pages)
     assert_true(query(s, true, "format=csv", &q));
     assert_true(alarms_journal_text(s->log, s->folder, &q, &out));
     assert_non_null(strstr(out.at, ",Kim,\"says \"\"now\"\", and means it\"\n"));
+    text_finish(&out);
+}
+
+/* Counters and totalizers have more digits than a transmitter: pages, programs and files must not round them. */
+CASE(large_readings_keep_their_digits)
+{
+    static const struct {
+        double value;
+        const char *text;
+    } cases[] = { { 4294967295, "4294967295" }, { 12345678, "12345678" },    { 12345678.53, "12345678.53" },
+                  { 101325.372, "101325.372" }, { -20000001, "-20000001" },  { 21.530000686, "21.53" },
+                  { 1.5e-7, "1.5e-7" },         { 123456789012, "123456789012" } };
+    uint32_t sent[2] = { 0 };
+    struct snapshot *snapshot = test_snapshot(2);
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+        char *row = test_printf("[0,%s,", cases[i].text);
+        store_write(s->store, &(struct sample){ 0, cases[i].value, QUALITY_UNCERTAIN }, 1, clock_mono_ns(), clock_utc_ns());
+        store_snapshot(s->store, clock_mono_ns(), clock_utc_ns(), snapshot);
+        char *text = reply_tags_text(s->plant, snapshot, sent, true);
+        if (!strstr(text, row))
+            fail_msg("expected %s in %s", row, text);
+        mem_free(text);
+    }
+    give(s, 1, 12345678, QUALITY_GOOD);
+    char *alarms = alarms_text(NULL, s->alarm_service, s->plant, clock_utc_ns(), &(uint64_t){ 0 });
+    assert_non_null(strstr(alarms, ",12345678,80"));
+    mem_free(alarms);
+    struct text out = { 0 };
+    struct history_series series = { .points = { .at = &(struct history_point){ 0, 123456789012, QUALITY_GOOD }, .count = 1 } };
+    series_text_json(&out, "TT-1", "Wh", &series);
+    assert_non_null(strstr(out.at, "[0,123456789012,0]"));
     text_finish(&out);
 }

@@ -6,7 +6,7 @@
 
 #include "session/reply/reply.h"
 
-enum { VALUE_DIGITS = 7, DIGITS = 9, EXACT_DIGITS = 17 };
+enum { DIGITS = 9, EXACT_DIGITS = 17 };
 
 static inline json_int_t us(int64_t ns)
 {

@@ -14,7 +14,7 @@ static json_t *age_ms(const struct reading *reading)
 
 static json_t *value_of(const struct reading *reading)
 {
-    return quality_is_bad(reading->quality) ? json_null() : number(reading->value);
+    return quality_is_bad(reading->quality) ? json_null() : reading_number(reading->value);
 }
 
 static json_t *alarm_of(const struct reading *reading)
@@ -57,7 +57,7 @@ char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot
     }
     json_t *object = json_pack("{s:s,s:I,s:I,s:o}", "type", "tags", "time_us", us(snapshot->taken_utc_ns), "age_ms",
                                (json_int_t)(oldest_ns / 1000000), "values", values);
-    return json_text(object, VALUE_DIGITS);
+    return json_text(object, READING_DIGITS);
 }
 
 char *reply_status_text(const struct session_context *context, int64_t now_utc_ns)
