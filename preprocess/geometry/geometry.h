@@ -49,6 +49,9 @@ bool geometry_hash(uint64_t *out, const struct gltf_model *model, const struct g
  * estimating work. */
 uint64_t geometry_triangles(const struct gltf_model *model, const struct geometry_params *params);
 
+/* Returns whether any triangle of the node's own mesh has an area. geometry_cut() refuses an asset that only has nodes without. */
+bool geometry_node_has_area(const struct gltf_model *model, uint32_t node);
+
 /* Returns, for each node of the model, the bounding box (low, high) of its subtree's meshes in the asset frame; infinite if it has none.
  * The caller frees the array (mem_free). */
 double (*geometry_node_boxes(const struct gltf_model *model, const struct geometry_params *params))[2][3];

@@ -78,6 +78,26 @@ static bool has_area(const float (*p)[3], const uint32_t v[3])
     return vec_dot(n, n) > 0;
 }
 
+bool geometry_node_has_area(const struct gltf_model *model, uint32_t number)
+{
+    const struct gltf_node *node = &model->nodes[number];
+    const uint32_t count = node->mesh >= 0 ? model->meshes[node->mesh].primitive_count : 0;
+    for (uint32_t p = 0; p < count; p++) {
+        const struct gltf_primitive *primitive = &model->primitives[model->meshes[node->mesh].first_primitive + p];
+        double corners[3][3];
+        float relative[3][3]; /* to the first corner, because geometry_cut() computes areas near the origin, too */
+        for (uint32_t i = 0; i < primitive->index_count; i++) {
+            const float *at = primitive->positions[primitive->indices[i]];
+            transform_point(node->world, (const double[3]){ (double)at[0], (double)at[1], (double)at[2] }, corners[i % 3]);
+            for (int axis = 0; axis < 3; axis++)
+                relative[i % 3][axis] = (float)(corners[i % 3][axis] - corners[0][axis]);
+            if (i % 3 == 2 && has_area((const float(*)[3])relative, (const uint32_t[3]){ 0, 1, 2 }))
+                return true;
+        }
+    }
+    return false;
+}
+
 /* Lists in the output the indices of all triangles that have an area. If the node's transform mirrors, reverses their winding so that the
  * outside stays outside. Returns the number of indices. */
 static size_t take_triangles(const struct gltf_primitive *primitive, const float (*positions)[3], bool mirrored, uint32_t *out,

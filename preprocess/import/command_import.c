@@ -81,17 +81,23 @@ static void print_lines(const char *path, const char *lines)
     }
 }
 
-/* Reads the outline (nodes, sizes) of a converted model. Returns false with the reason in why; then there is no outline to free. Rejects a
- * model without triangles, which would give a plant without assets. */
-static bool read_outline(struct model_outline *outline, const char *glb, char why[CONVERSION_WHY_BYTES])
+/* Reads the outline (nodes, sizes) of a converted model, without the triangles of nodes that have no area, because plantcast-prep refuses
+ * such nodes. said: the reader's output. Returns false with the reason in why; then there is no outline to free. Rejects a model without
+ * triangles, which would give a plant without assets. */
+static bool read_outline(struct model_outline *outline, const char *glb, const char *said, char why[CONVERSION_WHY_BYTES])
 {
     if (!model_outline_read(outline, glb, why, CONVERSION_WHY_BYTES))
         return false;
+    size_t count = json_array_size(json_object_get(outline->header.json, "nodes"));
+    bool *flat = mem_array(count + 1, sizeof(*flat));
+    findings_flat_nodes(said, flat, count);
+    model_outline_leave_out(outline, flat);
+    mem_free(flat);
     if (outline->triangles > 0)
         return true;
     model_outline_finish(outline);
     snprintf(why, CONVERSION_WHY_BYTES,
-             "the model has no triangles, so there is nothing to show: export surfaces, not only lines and points");
+             "the model has no triangles with an area, so there is nothing to show: export surfaces, not only lines and points");
     return false;
 }
 
@@ -104,7 +110,7 @@ static void convert(struct import_command *import, const char *path)
     char why[CONVERSION_WHY_BYTES] = "", *glb = mem_printf("%s/%d.glb", import->work.path, number), *stem = file_name_stem(path);
     struct text said = { 0 };
     bool good = conversion_run(path, glb, import->work.path, &import->conversion, &said, why) &&
-                read_outline(&model->outline, glb, why);
+                read_outline(&model->outline, glb, said.at ? said.at : "", why);
     if (good) {
         model->file = mem_printf("%s.glb", stem);
         if (format->reader == FORMAT_GLTF) {

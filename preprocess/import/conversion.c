@@ -17,6 +17,7 @@
 #include "preprocess/child/child.h"
 #include "preprocess/child/child_paths.h"
 #include "preprocess/child/work_folder.h"
+#include "preprocess/geometry/geometry.h"
 #include "preprocess/import/cad_attributes.h"
 #include "preprocess/import/cad_glb.h"
 #include "preprocess/import/encoding.h"
@@ -177,6 +178,21 @@ static void say_empty_nodes(const struct gltf_model *model)
     text_finish(&names);
 }
 
+/* Prints a report line for each node whose triangles have no area. A node number that instances share counts as one node. */
+static void say_flat_nodes(const struct gltf_model *model)
+{
+    for (uint32_t i = 0, next; i < model->node_count; i = next) {
+        bool shown = false, area = false;
+        for (next = i; next < model->node_count && model->nodes[next].number == model->nodes[i].number; next++) {
+            const struct gltf_node *node = &model->nodes[next];
+            shown |= node->mesh >= 0 && model->meshes[node->mesh].index_count > 0;
+            area = area || geometry_node_has_area(model, next);
+        }
+        if (shown && !area)
+            printf("flat\t#%u\t%s\tnode\t\tnone of the node's triangles has an area\n", model->nodes[i].number, model->nodes[i].name);
+    }
+}
+
 /* Checks the GLB file that a reader wrote; called in a second child process, because the file may come from a compromised reader. Rejects
  * what plantcast-prep would reject. Returns the exit status of the child. */
 static int check(void *arg)
@@ -190,6 +206,8 @@ static int check(void *arg)
         printf("left out: %s\n", model.left_out[i]);
     if (good && reading->format->reader == FORMAT_GLTF)
         say_empty_nodes(&model);
+    if (good)
+        say_flat_nodes(&model);
     if (good && model.node_count == 0)
         good = wrong(why, "the file is empty");
     if (!good)

@@ -12,6 +12,8 @@
 
 enum { MAX_FIELDS = 6, MAX_LISTED = 20000 };
 
+static const char flat_node[] = "flat\t#";
+
 /* Returns a copy of the text in which invalid UTF-8 and control characters other than tabs are '?'. The caller frees it with mem_free. */
 static char *clean(const char *text, size_t length)
 {
@@ -59,7 +61,7 @@ static void add_line(json_t *model, char *line, struct text *plain)
 {
     static const char left_out[] = "left out: ";
     const char *fields[MAX_FIELDS];
-    if (!strncmp(line, "lost\t", 5)) {
+    if (!strncmp(line, "lost\t", 5) || !strncmp(line, flat_node, strlen(flat_node))) {
         split(line, fields);
         add_lost(model, fields, plain);
     } else if (!strncmp(line, "error\t", 6)) {
@@ -96,4 +98,14 @@ json_t *findings_read(const char *file, const char *said, const char *failed, st
     mem_free(name);
     mem_free(why);
     return model;
+}
+
+void findings_flat_nodes(const char *said, bool *flat, size_t count)
+{
+    for (const char *line = said; *line; line += strcspn(line, "\n"), line += *line == '\n')
+        if (!strncmp(line, flat_node, strlen(flat_node))) {
+            unsigned long number = strtoul(line + strlen(flat_node), NULL, 10);
+            if (number < count)
+                flat[number] = true;
+        }
 }

@@ -15,6 +15,9 @@
 static void add_up(struct model_outline *outline)
 {
     outline->box = model_box_empty;
+    outline->triangles = 0;
+    for (size_t i = 0; i < outline->header.count; i++)
+        outline->nodes[i].all_triangles = outline->nodes[i].triangles;
     for (size_t i = outline->header.count; i-- > 0;) {
         struct outline_node *node = &outline->nodes[i];
         int parent = outline->header.nodes[i].parent;
@@ -38,7 +41,6 @@ bool model_outline_read(struct model_outline *outline, const char *path, char *w
         outline->nodes[i] = (struct outline_node){ .name = from->name[0] ? from->name : from->mesh,
                                                    .extras = json_object_get(node, "extras"),
                                                    .triangles = own,
-                                                   .all_triangles = own,
                                                    .all = outline->header.boxes[i],
                                                    .depth = from->parent < 0 ? 0 : outline->nodes[from->parent].depth + 1,
                                                    .unnamed = !from->name[0] };
@@ -46,6 +48,14 @@ bool model_outline_read(struct model_outline *outline, const char *path, char *w
     }
     add_up(outline);
     return true;
+}
+
+void model_outline_leave_out(struct model_outline *outline, const bool *by_number)
+{
+    for (size_t i = 0; i < outline->header.count; i++)
+        if (by_number[outline->header.nodes[i].number])
+            outline->nodes[i].triangles = 0;
+    add_up(outline);
 }
 
 void model_outline_finish(struct model_outline *outline)

@@ -31,6 +31,8 @@ struct model_outline {
 /* Reads a GLB or glTF file. Returns false with the reason in why; then model_outline_finish() need not be called. */
 bool model_outline_read(struct model_outline *outline, const char *path, char *why, size_t why_bytes);
 void model_outline_finish(struct model_outline *outline);
+/* Sets the number of triangles to 0 for each node whose number (index in the file's list of nodes) is marked in by_number. */
+void model_outline_leave_out(struct model_outline *outline, const bool *by_number);
 
 /* Returns the value of a text property of this name, from the node's extras or from a group in them, or NULL if there is none. */
 const char *model_outline_property(const struct outline_node *node, const char *name);

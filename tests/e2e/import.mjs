@@ -224,3 +224,27 @@ test('what cannot be read is one line, and leaves nothing behind', { skip: notBu
     assert.deepEqual(readdirSync(folder).sort(), cases.map(([name]) => name).sort());
     assert.equal(run('plantcast', 'import', '-o', out).status, 2);
 }));
+
+// A line has triangles, but no area; plantcast-prep refuses an asset without area.
+test('nodes without area do not become assets', { skip: notBuilt }, () => inFolder((folder) => {
+    const out = join(folder, 'plant'), line = [0, 0, 0, 1, 0, 0, 3, 0, 0], triangle = [0, 0, 0, 1, 0, 0, 0, 1, 0];
+    const bytes = Buffer.from(new Float32Array([...line, ...triangle]).buffer);
+    const mesh = (view) => ({ primitives: [{ attributes: { POSITION: view } }] });
+    const model = (scale) => JSON.stringify({ asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0, 1, 2, 3] }],
+        nodes: [{ name: 'LINE', mesh: 0 }, { name: 'SHEET', mesh: 1, scale }, { name: 'FLAT', mesh: 1, scale: [1, 0, 1] },
+            { name: 'BOTH', mesh: 0, children: [4] }, { name: 'INNER', mesh: 1, scale }],
+        meshes: [mesh(0), mesh(1)], accessors: [0, 1].map((bufferView) => ({ componentType: 5126, count: 3, type: 'VEC3', bufferView })),
+        bufferViews: [0, 36].map((byteOffset) => ({ buffer: 0, byteOffset, byteLength: 36 })),
+        buffers: [{ byteLength: 72, uri: `data:application/octet-stream;base64,${bytes.toString('base64')}` }] });
+    writeFileSync(join(folder, 'a.gltf'), model([1, 1, 1]));
+    const { status, stdout, stderr } = run('plantcast', 'import', join(folder, 'a.gltf'), '-o', out);
+    assert.equal(status, 0, stderr);
+    for (const node of ['#0 LINE', '#2 FLAT', '#3 BOTH'])
+        assert.match(stdout, new RegExp(`lost: ${node} \\(node\\): none of the node's triangles has an area`));
+    const ids = [...readFileSync(join(out, 'plant.yaml'), 'utf8').matchAll(/\{ id: "(\w+)", model:/g)].map(([, id]) => id);
+    assert.deepEqual(ids, ['SHEET', 'BOTH']);
+    const prepared = run('plantcast-prep', join(out, 'plant.yaml'));
+    assert.equal(prepared.status, 0, prepared.stderr);
+    writeFileSync(join(folder, 'b.gltf'), model([0, 1, 1]));
+    assert.match(run('plantcast', 'import', join(folder, 'b.gltf'), '-o', out).stderr, /the model has no triangles with an area/);
+}));
