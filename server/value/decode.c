@@ -96,12 +96,19 @@ static bool has_bits(double raw, uint64_t bits)
     return raw == (double)bits || raw == (double)number;
 }
 
+/* Returns whether a raw value is this number, or the nearest number of 32 bits: a device that sends floats of 32 bits sends -999.9 as
+   -999.90002. */
+static bool is_number(double raw, double number)
+{
+    return raw == number || raw == (double)(float)number;
+}
+
 /* bits: the registers' bits; NULL: the source received a number */
 static bool is_sentinel(const struct tag_scale *scale, const uint64_t *bits, double raw)
 {
     for (int i = 0; i < scale->sentinel_count; i++) {
         const struct plant_sentinel *sentinel = &scale->sentinels[i];
-        if (!sentinel->is_bits ? sentinel->number == raw : bits ? sentinel->bits == *bits : has_bits(raw, sentinel->bits))
+        if (!sentinel->is_bits ? is_number(raw, sentinel->number) : bits ? sentinel->bits == *bits : has_bits(raw, sentinel->bits))
             return true;
     }
     return false;

@@ -267,6 +267,14 @@ TEST(an_open_circuit_s_value_is_no_reading)
     number.scale.sentinels[0].number = -9999;
     number.scale.sentinel_count = 1;
     assert_int_equal(decode(&number, (uint16_t[]){ 0x3C00, 0xC61C }).quality, QUALITY_BAD_SENSOR_FAILURE);
+    number.scale.sentinels[0].number = -999.9; /* no float of 32 bits; the nearest is C479F99A */
+    assert_int_equal(decode(&number, (uint16_t[]){ 0xF99A, 0xC479 }).quality, QUALITY_BAD_SENSOR_FAILURE);
+    assert_int_equal(decode(&number, (uint16_t[]){ 0xF99B, 0xC479 }).quality, QUALITY_GOOD);
+    struct sample sample;
+    decode_number(&number, (double)-999.9F, &sample); /* OPC UA and Sparkplug have floats of 32 bits too */
+    assert_int_equal(sample.quality, QUALITY_BAD_SENSOR_FAILURE);
+    decode_number(&number, -999.9, &sample); /* JSON */
+    assert_int_equal(sample.quality, QUALITY_BAD_SENSOR_FAILURE);
 }
 
 TEST(a_range_without_scaling_is_the_instrument_s)
