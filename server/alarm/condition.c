@@ -5,7 +5,7 @@
 enum condition_side condition_side(enum alarm_kind kind, double limit, double deadband, double value)
 {
     bool high = kind == ALARM_H || kind == ALARM_HH;
-    if (high ? value >= limit : value <= limit)
+    if (alarm_reaches(value, limit, high))
         return CONDITION_BEYOND;
     return (high ? value < limit - deadband : value > limit + deadband) ? CONDITION_CLEAR : CONDITION_BETWEEN;
 }

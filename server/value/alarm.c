@@ -75,18 +75,23 @@ int alarm_priority(const struct plant_tag *tag, enum alarm_kind kind)
     return kind == ALARM_BAD || priority > ALARM_PRIORITIES ? ALARM_PRIORITIES : priority;
 }
 
+bool alarm_reaches(double value, double limit, bool high)
+{
+    return high ? (float)value >= (float)limit : (float)value <= (float)limit;
+}
+
 enum alarm_kind alarm_beyond(const struct plant_tag *tag, const struct reading *reading)
 {
     const double *limits = tag->alarms.limits, value = reading->value;
     if (quality_is_bad(reading->quality) || !isfinite(value))
         return ALARM_NONE;
-    if (value >= limits[LIMIT_HH]) /* the comparison is false for a limit of NaN, which means that the limit is not configured */
+    if (alarm_reaches(value, limits[LIMIT_HH], true))
         return ALARM_HH;
-    if (value <= limits[LIMIT_LL])
+    if (alarm_reaches(value, limits[LIMIT_LL], false))
         return ALARM_LL;
-    if (value >= limits[LIMIT_H])
+    if (alarm_reaches(value, limits[LIMIT_H], true))
         return ALARM_H;
-    return value <= limits[LIMIT_L] ? ALARM_L : ALARM_NONE;
+    return alarm_reaches(value, limits[LIMIT_L], false) ? ALARM_L : ALARM_NONE;
 }
 
 void alarm_by_limits(const struct plant *plant, struct snapshot *snapshot)

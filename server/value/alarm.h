@@ -56,6 +56,10 @@ struct alarm_grade {
 /* Returns whether alarm `a` comes before alarm `b` in the order of struct alarm_grade. */
 bool alarm_graver(const struct alarm_grade *a, const struct alarm_grade *b);
 
+/* Returns whether a value is at or above a high limit, or at or below a low one; false if the limit is NaN (not configured). Compares with
+ * the precision of 32-bit floats: a device's float and a scaled value differ from the limit in the last digits although both read the same,
+ * such as 55.5 and 55.50000000000001. */
+bool alarm_reaches(double value, double limit, bool high);
 /* Returns the limit that a usable reading has reached or passed: the outer limit if it passed two; ALARM_NONE if the reading is within
  * limits. */
 enum alarm_kind alarm_beyond(const struct plant_tag *tag, const struct reading *reading);

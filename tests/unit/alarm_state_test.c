@@ -147,6 +147,10 @@ TEST(a_deadband_lies_inside_its_limit)
     assert_int_equal(condition_side(ALARM_L, 0, 1, 1), CONDITION_BETWEEN);
     assert_int_equal(condition_side(ALARM_LL, 0, 1, 1.001), CONDITION_CLEAR);
     assert_int_equal(condition_side(ALARM_LL, -5, 0, -4.999), CONDITION_CLEAR);
+    /* equal to the limit in the device, but not in 64 bits: a 32-bit float, and a scaled count */
+    assert_int_equal(condition_side(ALARM_H, 0.7, 0, (double)0.7F), CONDITION_BEYOND);
+    assert_int_equal(condition_side(ALARM_L, 55.5, 0, 0.555 * 100), CONDITION_BEYOND);
+    assert_int_equal(condition_side(ALARM_H, 0.7, 0, 0.699999), CONDITION_CLEAR);
 }
 
 TEST(delays_run_whole)
