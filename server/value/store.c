@@ -257,7 +257,8 @@ static uint32_t vouched_quality(const struct store *store, size_t tag, int64_t n
     const struct held *word = &store->tags[by->tag];
     bool readable =
         quality_is_good(own_quality(word, now_mono_ns)) && quality_is_good(heartbeat_quality(store, (size_t)by->tag, now_mono_ns));
-    if (!readable || !(fabs(word->value) < 9e18))
+    /* a value holds 53 bits: of a larger number, the lowest bits are lost */
+    if (!readable || !(fabs(word->value) <= 0x1p53))
         return QUALITY_UNCERTAIN;
     bool good = (((uint64_t)(int64_t)word->value & by->mask) == by->want) != by->negate;
     return good ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE;
