@@ -87,6 +87,13 @@ test('births and data, by name and by alias, of every kind of number', options, 
         { alias: 4, type: 'Boolean', value: true, properties: { Quality: { type: 'Int32', value: 0 } } }] });
     await until('PI-1', { quality_name: 'Bad_SensorFailure' });
     await until('XS-1', { quality: 'bad' });
+    // the device numbers its own metrics from 1, although aliases must be unique within a node
+    node.publishDeviceBirth('skid', { timestamp: Date.now(), metrics: [{ name: 'TI-2', alias: 1, type: 'Float', value: 4 },
+        { name: 'Raw', alias: 2, type: 'UInt16', value: 13824 }, { name: 'Running', alias: 3, type: 'Boolean', value: true }] });
+    node.publishNodeData({ timestamp: Date.now(), metrics: [{ alias: 1, type: 'Double', value: 22.5 }] });
+    node.publishDeviceData('skid', { timestamp: Date.now(), metrics: [{ alias: 1, type: 'Float', value: 5.5 }] });
+    await until('TI-1', { ...good, value: 22.5 });
+    await until('TI-2', { ...good, value: 5.5 });
     assert.equal(await metric('gaps_total'), 0);
     assert.equal(await metric('rebirths_total'), 0);
 });

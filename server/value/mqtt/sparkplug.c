@@ -31,7 +31,7 @@ struct sparkplug_node {
     int next_seq;
     int64_t asked_ns;      /* monotonic time of the last birth request; 0: never */
     bool is_wanted;        /* true: a birth request must be sent once ASK_NS have passed since the last one */
-    struct alias *aliases; /* by number */
+    struct alias *aliases; /* by number, then topic: some nodes number the metrics of each device from 1 */
     size_t alias_count, alias_capacity;
 };
 
@@ -198,7 +198,8 @@ static size_t tags_named(const struct sparkplug *sparkplug, size_t topic, const 
 static int by_number(const void *pa, const void *pb)
 {
     const struct alias *a = pa, *b = pb;
-    return (a->number > b->number) - (a->number < b->number);
+    int order = (a->number > b->number) - (a->number < b->number);
+    return order ? order : (a->topic > b->topic) - (a->topic < b->topic);
 }
 
 static void drop_aliases(struct sparkplug_node *node, size_t topic)
@@ -216,10 +217,10 @@ static size_t tags_of(const struct sparkplug *sparkplug, const struct sparkplug_
 {
     if (metric->name)
         return tags_named(sparkplug, topic, metric->name, first);
-    const struct alias wanted = { .number = metric->alias };
+    const struct alias wanted = { .number = metric->alias, .topic = topic };
     const struct alias *alias =
         metric->has_alias && node->alias_count > 0 ? bsearch(&wanted, node->aliases, node->alias_count, sizeof(wanted), by_number) : NULL;
-    if (!alias || alias->topic != topic)
+    if (!alias)
         return 0;
     *first = alias->first_tag;
     return alias->tags;
