@@ -120,15 +120,18 @@ static struct history_bucket *bucket_of(struct history_series *out, int64_t t_us
 static void put_bucket(struct gather *gather, const struct history_bucket *bucket)
 {
     struct history_series *out = gather->out;
+    struct history_bucket to = *bucket;
+    if (out->step) /* a switch holds its value; `first` of earlier versions is the value after a step at the bucket's start */
+        to.first = gather->last.last;
     int64_t begin_us = bucket->t_us - bucket->t_us % out->bucket_us, end_us = gather->last.t_us + gather->length_us;
     struct history_bucket *before = gather->has_last ? &out->buckets.at[out->buckets.count - 1] : NULL;
     int64_t border_us = before ? before->t_us + out->bucket_us : 0;
     if (before)
-        rollup_bridge(before, &gather->last, end_us, bucket, end_us, bucket->t_us < border_us ? bucket->t_us : border_us);
+        rollup_bridge(before, &gather->last, end_us, &to, end_us, bucket->t_us < border_us ? bucket->t_us : border_us);
     bool same = before && before->t_us == begin_us;
     struct history_bucket *into = bucket_of(out, begin_us);
     if (before && !same)
-        rollup_bridge(into, &gather->last, end_us, bucket, end_us > begin_us ? end_us : begin_us, bucket->t_us);
+        rollup_bridge(into, &gather->last, end_us, &to, end_us > begin_us ? end_us : begin_us, bucket->t_us);
     rollup_merge(into, bucket);
     gather->last = *bucket;
     gather->has_last = true;
@@ -152,7 +155,7 @@ static int add_month(struct month_file *file, const char *tag, int level, int64_
     struct history_buckets buckets = { 0 };
     struct history_points points = { 0 };
     int64_t until_us = from_us;
-    int error = month_file_buckets(file, tag, (enum history_level)level, from_us, to_us, &buckets, &until_us);
+    int error = month_file_buckets(file, tag, (enum history_level)level, from_us, to_us, &buckets, &until_us, &gather->out->step);
     if (!error && until_us <= to_us)
         error = month_file_points(file, tag, until_us, to_us, &points);
     for (size_t i = 0; i < buckets.count && !error; i++)

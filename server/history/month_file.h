@@ -110,9 +110,9 @@ struct history_left_out {
 /* Counts the points of a tag between two times that are left out, and adds them to *out. */
 int month_file_left_out(struct month_file *file, const char *tag, int64_t from_us, int64_t to_us, struct history_left_out *out);
 /* Appends the rollup buckets of a tag that begin in from_us..to_us, and the last bucket that begins before. *until_us receives the end of
-   the last existing bucket. */
+   the last existing bucket, *step whether the tag is a switch (unchanged if the file does not have the tag). */
 int month_file_buckets(struct month_file *file, const char *tag, enum history_level level, int64_t from_us, int64_t to_us,
-                       struct history_buckets *out, int64_t *until_us);
+                       struct history_buckets *out, int64_t *until_us, bool *step);
 /* A time span in which nothing was recorded: the daemon did not run, or the clock was set forward. */
 struct history_gap {
     int64_t from_us, to_us;

@@ -208,11 +208,10 @@ int month_file_left_out(struct month_file *file, const char *tag, int64_t from_u
 }
 
 int month_file_buckets(struct month_file *file, const char *tag, enum history_level level, int64_t from_us, int64_t to_us,
-                       struct history_buckets *out, int64_t *until_us)
+                       struct history_buckets *out, int64_t *until_us, bool *step)
 {
-    bool step;
     struct unit_change change;
-    int64_t id = month_find_tag(file, tag, unit_shown(file, tag), &step, &change), length_us = history_level_us[level];
+    int64_t id = month_find_tag(file, tag, unit_shown(file, tag), step, &change), length_us = history_level_us[level];
     *until_us = from_us;
     if (!id)
         return 0;

@@ -87,6 +87,10 @@ bool rollup_put(struct rollup *rollup, const struct history_point *point, struct
         open_bucket(rollup, next.t_us);
         if (rollup->has_last)
             take_part(rollup, &next, rollup->bucket.t_us > rollup->last.t_us ? rollup->bucket.t_us : rollup->last.t_us, next.t_us);
+        /* the point is at the bucket's start, and no line leads to it: the value before holds until then */
+        if (rollup->has_last && next.t_us == rollup->bucket.t_us && history_point_usable(&rollup->last) &&
+            !history_point_joined(&rollup->last, &next, rollup->step))
+            rollup->bucket.first = rollup->last.value;
     }
     rollup->last = next;
     rollup->has_last = true;
@@ -130,13 +134,17 @@ void rollup_bridge(struct history_bucket *into, const struct history_bucket *a, 
 {
     if (to_us <= from_us)
         return;
-    if (isnan(a->last) || isnan(b->first)) {
+    if (isnan(a->last)) {
         into->bad_us += to_us - from_us;
         return;
     }
-    double slope = (b->first - a->last) / (double)(b->t_us - end_us);
+    /* earlier versions stored no value in `first` if a point without a value is at the start of `b` */
+    double slope = isnan(b->first) ? 0 : (b->first - a->last) / (double)(b->t_us - end_us);
     double enter = a->last + slope * (double)(from_us - end_us), leave = a->last + slope * (double)(to_us - end_us);
     take_value(into, enter);
     take_value(into, leave);
+    if (isnan(into->first) && into->bad_us == 0)
+        into->first = enter;
+    into->last = leave;
     add_time(into, (enter + leave) / 2, to_us - from_us);
 }

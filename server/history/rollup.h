@@ -12,8 +12,8 @@ struct history_bucket {
     int64_t t_us;     /* start time of the bucket; a multiple of its length */
     double low, high; /* extremes of the line within the bucket, including where the line enters and leaves it; NaN: no usable value */
     double mean;      /* mean of the value over that time within the bucket in which there was a value */
-    /* first: value at the bucket's start, or of its first point if no line leads into the bucket; last: value at the bucket's end. NaN:
-       no value */
+    /* first: value at the bucket's start, before a step there, or of its first point if no line leads into the bucket; last: value at the
+       bucket's end. NaN: no value */
     double first, last;
     int64_t good_us;  /* microseconds with a value */
     int64_t bad_us;   /* microseconds without a value */

@@ -36,6 +36,10 @@ static void slow_truth(const struct history_point *points, int count, bool step,
         out->low = fmin(out->low, value);
         out->high = fmax(out->high, value);
     }
+    const struct history_point *left = at(points, count, begin_us - 1), *right = left + 1;
+    out->first = begin_us <= points[0].t_us || !history_point_usable(left) ? NAN
+                 : history_point_joined(left, right, step)                 ? history_point_between(left, right, begin_us)
+                                                                           : left->value;
     const struct history_point *before = at(points, count, begin_us + LENGTH - 1), *after = before + 1;
     if (history_point_usable(before))
         out->last = history_point_joined(before, after, step) ? history_point_between(before, after, begin_us + LENGTH) : before->value;
@@ -47,6 +51,7 @@ static void assert_like(const struct history_bucket *got, const struct history_b
     assert_int_equal(got->bad_us, wanted->bad_us);
     assert_int_equal(got->good_us, wanted->good_us);
     assert_true(isnan(got->last) == isnan(wanted->last) && (isnan(got->last) || fabs(got->last - wanted->last) < 1e-9));
+    assert_true(isnan(wanted->first) || fabs(got->first - wanted->first) < 1e-9);
     if (wanted->good_us == 0)
         return;
     assert_true(fabs(got->mean - wanted->mean) < 1e-9 * fabs(wanted->mean) + 1e-6);
@@ -61,6 +66,8 @@ static int make_points(struct history_point *points, unsigned seed)
     for (int i = 0; i < POINTS; i++) {
         bool bad = rand() % 7 == 0;
         t += 1000 + rand() % (rand() % 5 ? 3000 : 40000);
+        if (seed % 3 == 0 && i % 2) /* at the border of two buckets */
+            t += LENGTH - t % LENGTH;
         points[i] = (struct history_point){ t, bad ? NAN : rand() % 100, bad ? 0x80050000u : rand() % 9 ? 0 : 0x40900000u };
     }
     return POINTS;
@@ -107,6 +114,7 @@ TEST(a_bridge_is_a_straight_line)
     struct history_bucket into = { .low = 12, .high = 14, .mean = 13, .first = 12, .last = 14, .good_us = 100 * US_PER_S };
     rollup_bridge(&into, &a, 100 * US_PER_S, &b, 200 * US_PER_S, 300 * US_PER_S);
     assert_true(fabs(into.low - 10) < 1e-9 && fabs(into.high - 20) < 1e-9 && fabs(into.mean - 14) < 1e-9);
+    assert_true(fabs(into.last - 20) < 1e-9 && into.first == 12);
     a.last = NAN;
     rollup_bridge(&into, &a, 100 * US_PER_S, &b, 300 * US_PER_S, 340 * US_PER_S);
     assert_int_equal(into.bad_us, 40 * US_PER_S);

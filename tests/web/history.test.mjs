@@ -46,6 +46,8 @@ test('the line of intervals is that of their means, the band keeps spikes, and a
     const ended = { ...lost, points: [[0, 1, 2, 1, 2, null, 0, BAD_CODE]] };
     assert.equal(line(ended, 0, 40e6)[1].at(-1), null, 'the series ends with the interval: nothing is known afterwards');
     assert.deepEqual(gaps(lost, 0, 20e6), [{ from: 6, to: 20, severity: BAD }]);
+    const held = { ...ended, points: [[0, 5, 5, 5, 5, 5, 0, GOOD_CODE], [30e6, null, null, null, 5, null, 10e6, BAD_CODE]] };
+    assert.deepEqual(line(held, 0, 40e6), [[0, 5, 9.999998, 29.999999, 30], [5, 5, 5, 5, null]], 'held until it was lost');
     assert.deepEqual(bands(points([0, 5, GOOD_CODE])), [], 'points have no band');
     const apart = { step: false, bucket_us: 10e6, points: [[0, 1, 3, 2, 1, 3, 0, GOOD_CODE], [30e6, 5, 5, 5, 5, 5, 0, GOOD_CODE]] };
     assert.equal(bands(apart).length, 2, 'intervals that do not adjoin');
@@ -64,6 +66,8 @@ test('statistics are means over time, and say for which part of it they are', ()
     const { min, max, mean, known } = of(intervals, 0, 40e6);
     assert.deepEqual([min, max, known], [1, 99, 35 / 40]);
     assert.ok(Math.abs(mean - (5 * 10 + 5 * 20 + 8 * 5) / 35) < 1e-9, 'with the straight line between the intervals');
+    const bit = { step: true, bucket_us: 10e6, points: [[0, 0, 0, 0, 0, 0, 0, GOOD_CODE], [30e6, 0, 1, 1, 1, 1, 0, GOOD_CODE]] };
+    assert.equal(of(bit, 0, 40e6).mean, 1 / 4, 'a switch holds between intervals');
 });
 
 test('minimum and maximum include a value that is newer than the series', () => {

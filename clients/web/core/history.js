@@ -54,6 +54,8 @@ function putPoint(put, [us, value, quality], before, step) {
 // null) breaks the line, even at the end of the series.
 function putInterval(put, [us, low, , mean, first, last], length, before, after) {
     const adjoins = (other) => other && other[1] !== null && Math.abs(other[0] - us) <= length * 1.001;
+    if (low === null && first !== null) // the value before holds until the start of the interval
+        put(us - 1, first);
     if (low === null)
         return put(us, null);
     if (!adjoins(before) || before[5] === null)

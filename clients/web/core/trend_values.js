@@ -38,7 +38,7 @@ function pieces({ points, bucket_us: length, step }, fromUs, toUs) {
                 out.push({ from, to: from + (to - from) * known, first: mean, last: mean, mean, low, high });
             const until = next?.[0] ?? toUs;
             if (last !== null && until > us + length)
-                add(us + length, until, last, next?.[4] ?? last);
+                add(us + length, until, last, step ? last : next?.[4] ?? last);
         } else if (point[1] !== null && severityOf(point[2]) < BAD) {
             const until = next?.[0] ?? toUs, flat = step || !next || next[1] === null || next[2] !== point[2];
             add(point[0], until, point[1], flat ? point[1] : next[1]);
