@@ -86,9 +86,12 @@ static void play_lane(struct replay *replay, struct replay_lane *lane, int64_t n
             continue;
         double value = lane->series.value[lane->next];
         const struct plant_tag *tag = &replay->base.plant->tags[lane->tag];
-        struct sample sample = { .tag = lane->tag, .value = unit_change_value(&lane->change, value), .quality = QUALITY_BAD };
-        if (!isnan(value))
-            sample.quality = decode_quality(tag, unit_change_back(&tag->scale.change, sample.value));
+        struct sample sample = { .tag = lane->tag,
+                                 .value = unit_change_value(&lane->change, value),
+                                 .quality = lane->series.quality[lane->next] };
+        uint32_t own = isnan(value) ? QUALITY_BAD : decode_quality(tag, unit_change_back(&tag->scale.change, sample.value));
+        if (quality_is_worse(own, sample.quality))
+            sample.quality = own;
         store_write(replay->base.store, &sample, 1, due, now_utc_ns - (now_mono_ns - due));
         counter_inc(replay->samples, 1);
     }

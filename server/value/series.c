@@ -13,6 +13,7 @@
 #include "base/mem.h"
 #include "base/text/text.h"
 #include "base/text/timestamp.h"
+#include "value/quality.h"
 #include "value/state_word.h"
 
 enum { MAX_BYTES = 512 * 1024 * 1024, LONG_CELLS = 5 };
@@ -25,20 +26,38 @@ struct series_cell {
 
 struct series_lines {
     const char *path, *at;
+    char separator; /* of cells */
     int number;
     struct series_cell *cells;
     size_t count, capacity;
 };
 
+/* Begins to read the text of a file. The separator of its cells is the one that occurs most in the first line: `21,5` in a file with
+ * semicolons is one cell. */
+static struct series_lines lines_of(const char *path, const char *text)
+{
+    size_t most = 0;
+    struct series_lines lines = { .path = path, .at = strncmp(text, "\xEF\xBB\xBF", 3) ? text : text + 3, .separator = ',' };
+    for (const char *one = ",;\t"; *one; one++) {
+        size_t count = 0;
+        for (const char *at = lines.at; *at && *at != '\n'; at++)
+            count += *at == *one;
+        if (count > most)
+            lines.separator = *one;
+        most = count > most ? count : most;
+    }
+    return lines;
+}
+
 static bool next_line(struct series_lines *lines)
 {
     if (!*lines->at)
         return false;
-    const char *at = lines->at, *end = at + strcspn(at, "\n");
+    const char *at = lines->at, *end = at + strcspn(at, "\n"), ends[] = { lines->separator, '\r', '\n', 0 };
     lines->number++;
     lines->count = 0;
     for (;;) {
-        size_t length = strcspn(at, ",;\t\r\n");
+        size_t length = strcspn(at, ends);
         mem_grow(&lines->cells, &lines->capacity, lines->count + 1, sizeof(*lines->cells));
         bool quoted = length > 1 && *at == '"' && at[length - 1] == '"';
         lines->cells[lines->count++] = (struct series_cell){ at + quoted, length - 2 * quoted };
@@ -90,6 +109,18 @@ static bool value_of(const struct series_cell *cell, double *out)
     return state_word_is_bad(text, &quality);
 }
 
+/* Reads a quality: a status code such as 0x40900000, or a word. Uncertain if the cell is neither. */
+static uint32_t quality_of(const struct series_cell *cell)
+{
+    char text[40], *end;
+    uint32_t quality;
+    snprintf(text, sizeof(text), "%.*s", (int)(cell->length < sizeof(text) ? cell->length : sizeof(text) - 1), cell->at);
+    if (!*text || !strncasecmp(text, "good", 4))
+        return QUALITY_GOOD;
+    quality = (uint32_t)strtoul(text, &end, 0);
+    return *text == '0' && !*end ? quality : state_word_is_bad(text, &quality) ? quality : QUALITY_UNCERTAIN;
+}
+
 static double unit_of_time(const struct series_cell *name)
 {
     static const struct {
@@ -104,10 +135,12 @@ static double unit_of_time(const struct series_cell *name)
     return 0;
 }
 
-static void add(struct series *series, double time_s, double value)
+static void add(struct series *series, double time_s, double value, uint32_t quality)
 {
     mem_grow(&series->time_s, &series->capacity, series->count + 1, sizeof(double));
     mem_grow(&series->value, &series->value_capacity, series->count + 1, sizeof(double));
+    mem_grow(&series->quality, &series->quality_capacity, series->count + 1, sizeof(*series->quality));
+    series->quality[series->count] = isnan(value) && !quality_is_bad(quality) ? QUALITY_BAD : quality;
     series->time_s[series->count] = time_s;
     series->value[series->count++] = value;
 }
@@ -166,13 +199,27 @@ static bool tick(struct clock *clock, const struct series_cell *cell, double *ti
     return true;
 }
 
+/* Returns whether a line has more cells with a text than the header, for example because of `1,234` in a file with commas. */
+static bool has_surplus(const struct series_lines *lines, size_t columns)
+{
+    for (size_t i = columns; i < lines->count; i++)
+        if (lines->cells[i].length > 0)
+            return true;
+    return false;
+}
+
 static bool read_wide(struct series *series, struct series_lines *lines, size_t time_column, size_t column, struct clock *clock,
                       char why[200])
 {
     double time_s, value;
+    size_t columns = lines->count;
     while (next_line(lines)) {
         if (lines->count == 1 && lines->cells[0].length == 0)
             continue;
+        if (has_surplus(lines, columns)) {
+            snprintf(why, 200, "%s:%d: more cells than in the first line", lines->path, lines->number);
+            return false;
+        }
         bool short_line = lines->count <= column || lines->count <= time_column;
         if (short_line || !tick(clock, &lines->cells[time_column], &time_s)) {
             snprintf(why, 200, "%s:%d: expected a time not before that of the line above", lines->path, lines->number);
@@ -184,7 +231,7 @@ static bool read_wide(struct series *series, struct series_lines *lines, size_t 
             snprintf(why, 200, "%s:%d: %s: expected a number", lines->path, lines->number, series->name);
             return false;
         }
-        add(series, time_s, value);
+        add(series, time_s, value, QUALITY_GOOD);
     }
     return true;
 }
@@ -206,14 +253,14 @@ static bool read_long(struct series *series, struct series_lines *lines, struct 
             snprintf(why, 200, "%s:%d: %s: expected a number", lines->path, lines->number, series->name);
             return false;
         }
-        add(series, time_s, value);
+        add(series, time_s, value, QUALITY_GOOD);
     } while (next_line(lines));
     return true;
 }
 
 struct header {              /* indices of the columns in the file; if a column is missing, its index is the number of columns */
     size_t time, column;     /* wide form (series.h): the time column, and the column of the series */
-    size_t tag, value, unit; /* columns of the values form (series.h), with one value a line */
+    size_t tag, value, unit, quality; /* columns of the values form (series.h), with one value a line */
     bool of_values;
 };
 
@@ -240,13 +287,14 @@ static void scan_values(struct series_lines lines, const struct header *header, 
 static bool read_values(struct series *series, struct series_lines *lines, const struct header *header, struct clock *file, char why[200])
 {
     double time_s, value;
+    size_t columns = lines->count;
     scan_values(*lines, header, file);
     struct clock own = { .instants = true, .begun = true, .first_us = file->first_us };
     file->last_s = (double)(file->last_us - file->first_us) / 1e6;
     while (next_line(lines)) {
         if (lines->count == 1 && lines->cells[0].length == 0)
             continue;
-        if (lines->count <= header->time || lines->count <= header->tag || lines->count <= header->value) {
+        if (lines->count <= header->time || lines->count <= header->tag || lines->count <= header->value || has_surplus(lines, columns)) {
             snprintf(why, 200, "%s:%d: expected as many cells as in the first line", lines->path, lines->number);
             return false;
         }
@@ -268,7 +316,7 @@ static bool read_values(struct series *series, struct series_lines *lines, const
         }
         if (unit && !series->unit)
             series->unit = mem_printf("%.*s", (int)unit->length, unit->at);
-        add(series, time_s, value);
+        add(series, time_s, value, header->quality < lines->count ? quality_of(&lines->cells[header->quality]) : QUALITY_GOOD);
     }
     return true;
 }
@@ -276,7 +324,7 @@ static bool read_values(struct series *series, struct series_lines *lines, const
 /* Returns whether the first line below the header has a date and time in this column, whatever its header says. */
 static bool begins_with_instant(const struct series_lines *header, size_t column)
 {
-    struct series_lines next = { .at = header->at };
+    struct series_lines next = { .at = header->at, .separator = header->separator };
     int64_t t_us;
     while (next_line(&next) && next.count == 1 && next.cells[0].length == 0)
         continue;
@@ -292,7 +340,8 @@ static bool read_header(const struct series_lines *lines, const char *name, stru
                                .column = lines->count,
                                .tag = column_called(lines, "Tag"),
                                .value = column_called(lines, "Value"),
-                               .unit = column_called(lines, "Unit") };
+                               .unit = column_called(lines, "Unit"),
+                               .quality = column_called(lines, "Quality") };
     for (size_t i = lines->count; i-- > 0;)
         if (is(&lines->cells[i], name, strlen(name)))
             header->column = i;
@@ -322,7 +371,7 @@ bool series_read(struct series *series, const char *path, const char *name, bool
     *found = false;
     *series = (struct series){ .name = mem_strdup(name) };
     char *text = text_read_file(path, MAX_BYTES, &bytes);
-    struct series_lines lines = { .path = path, .at = !text ? "" : strncmp(text, "\xEF\xBB\xBF", 3) ? text : text + 3 };
+    struct series_lines lines = lines_of(path, text ? text : "");
     struct clock clock = { .unit_s = 0.001 };
     if (!text) {
         snprintf(why, 200, "%s: %s", path, strerror(errno));
@@ -359,6 +408,7 @@ void series_finish(struct series *series)
     mem_free(series->unit);
     mem_free(series->time_s);
     mem_free(series->value);
+    mem_free(series->quality);
     *series = (struct series){ 0 };
 }
 
@@ -424,7 +474,7 @@ bool series_list(struct series_names *names, const char *path, char why[200])
     bool good = true;
     *names = (struct series_names){ 0 };
     char *text = read_head(path, &names->whole, why);
-    struct series_lines lines = { .path = path, .at = !text ? "" : strncmp(text, "\xEF\xBB\xBF", 3) ? text : text + 3 };
+    struct series_lines lines = lines_of(path, text ? text : "");
     struct clock clock = { 0 };
     if (!text)
         return false;

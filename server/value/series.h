@@ -2,20 +2,22 @@
 /* Reads recorded series from CSV files; times count from the start of the file. Three forms are supported:
    wide: a header line; one column is the time, the others are series named by their headers. The name of the time column ends in _ms, _s,
    _min or _h. Or the column has dates and times (timestamp.h), and is called Time, Timestamp, UTC, DateTime or Date, or is the first one;
-   values: a header line with Tag, Time and Value, perhaps Unit; one value a line, as `plantcast history export` prints;
+   values: a header line with Tag, Time and Value, perhaps Quality and Unit; one value a line, as `plantcast history export` prints;
    long: no header, lines of `time in ms,type,entity,property,value,...`; a series is called `entity/property`.
    Dates and times without a zone are in the local zone of the process. Thread: one. */
 #ifndef VALUE_SERIES_H
 #define VALUE_SERIES_H
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 struct series {
     char *name;
     char *unit; /* unit stated in the lines of the file; NULL: none */
     /* time_s: times in seconds, ascending, 0 at the first line of the file; value: NaN where the file marks a value as missing */
     double *time_s, *value;
-    size_t count, capacity, value_capacity;
+    uint32_t *quality; /* OPC UA quality of each sample; Good, or Bad without a value, unless the lines of the file state another */
+    size_t count, capacity, value_capacity, quality_capacity;
     double length_s; /* duration of the whole file in seconds: its last time plus one interval; after it, a looping series starts again */
 };
 

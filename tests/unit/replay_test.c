@@ -182,6 +182,37 @@ static void check_series(const char *path, const char *name, size_t count, doubl
     series_finish(&series);
 }
 
+/* A cell must not be cut at a decimal comma or at a comma between thousands, which would give the columns other values. */
+CASE(commas_in_numbers_are_refused)
+{
+    static const char *const files[] = { "t_s;a;b\n0;21,5;3\n", "t_s\ta\tb\n0\t21,5\t3\n", "t_s,a,b\n0,1,234,3\n",
+                                         "Tag;Time;Value\na;2026-10-25T00:00:00Z;21,5\n", "0;temp;x;a;21,5\n" };
+    static const char *const errors[] = { "2: a: expected a number", "2: a: expected a number", "2: more cells than in the first line",
+                                          "2: a: expected a number", "1: x/a: expected a number" };
+    struct series series;
+    char why[200];
+    bool found;
+    for (size_t i = 0; i < sizeof(files) / sizeof(*files); i++) {
+        char *path = temp_write_text(s->c->folder, "series.csv", files[i]);
+        assert_false(series_read(&series, path, i == 4 ? "x/a" : "a", &found, why));
+        assert_non_null(strstr(why, errors[i]));
+    }
+    check_series(temp_write_text(s->c->folder, "series.csv", "t_s;a;\n0;21.5;;\n"), "a", 1, 0, 21.5); /* empty cells do no harm */
+}
+
+CASE(exported_qualities_are_replayed)
+{
+    play(s, "speed: 1000",
+         "Tag,Time,Value,Quality,Unit\nA,2026-10-25T00:00:00Z,1,0x00000000,K\nA,2026-10-25T00:00:01Z,2,0x40900000,K\n"
+         "A,2026-10-25T00:00:02Z,3,Bad,K\nA,2026-10-25T00:00:03Z,4,good,K\n",
+         "Tag Name,Address,Group,Asset,X,Y,Z\nA,,g,A,0,0,0\n");
+    wait_for_heard(s, 4);
+    const uint32_t wanted[] = { QUALITY_GOOD, QUALITY_UNCERTAIN_LAST_USABLE, QUALITY_BAD, QUALITY_GOOD };
+    for (int i = 0; i < 4; i++)
+        assert_int_equal(s->events.at[i].quality, wanted[i]);
+    assert_true(s->events.at[1].value == 2 && s->events.at[3].value == 4);
+}
+
 /* Timestamps as historians write them: with a zone, with an offset, or in local time with one hour of a night twice. */
 CASE(times_may_be_instants)
 {
