@@ -2,8 +2,8 @@
 #include "message/json_values.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
+
+#include "base/math/round_reading.h"
 
 json_t *number(double value)
 {
@@ -13,13 +13,9 @@ json_t *number(double value)
 json_t *reading_number(double value)
 {
     double size = fabs(value);
-    char text[32];
     if (size >= 1e7 && size < 9e15 && value == trunc(value)) /* an integer is exact, whatever the number of digits of json_text() */
         return json_integer((json_int_t)value);
-    if (!(size < 1e4))
-        return number(size < 1e12 ? round(value * 1000) / 1000 : value);
-    snprintf(text, sizeof(text), "%.7g", value);
-    return number(strtod(text, NULL));
+    return number(round_reading(value));
 }
 
 json_t *string(const char *text)

@@ -7,8 +7,7 @@
 /* Returns a number, never -0.0; null if the value is not finite. */
 json_t *number(double value);
 enum { READING_DIGITS = 15 }; /* digits with which json_text() must print the numbers of reading_number() */
-/* Returns a reading with seven significant digits and at least three decimals, so that large numbers such as counters keep all digits that
-   pages show. Like number() if the value is not finite. */
+/* Returns a reading rounded by round_reading(); like number() if the value is not finite. */
 json_t *reading_number(double value);
 /* Returns a string; null for NULL; "(not UTF-8)" for a text that is not UTF-8. */
 json_t *string(const char *text);

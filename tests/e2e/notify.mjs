@@ -81,9 +81,10 @@ notify:
             await until('it is counted', async () => await metric(plant, 'plantcast_notify_sent_total{recipient="ops"}') === 1);
             await plant.daemon.stop('SIGKILL');
             await plant.startDaemon();
-            await set(plant, 'TI-2', limits.high);
+            await set(plant, 'TI-2', 12345678);
             await until('the next mail', () => mail.mails.length > 1);
-            assert.match(mail.mails[1].subject, /TI-2/, 'the other alarm still stands, and is known');
+            assert.match(mail.mails[1].body, /TI-2 .*: raised at 12345678 °C/, 'with all digits');
+            assert.doesNotMatch(mail.mails[1].body, /TI-1/, 'the other alarm still stands, and is known');
             assert.notEqual(mail.mails[1].headers['message-id'], first.headers['message-id']);
         } finally {
             await mail.close();

@@ -251,6 +251,11 @@ CASE(large_readings_keep_their_digits)
         if (!strstr(text, row))
             fail_msg("expected %s in %s", row, text);
         mem_free(text);
+        const struct session_context context = { .plant = s->plant, .snapshot = snapshot };
+        text = reply_api_tags_text(&context, 0, 1);
+        if (!strstr(text, row = test_printf("\"value\":%s,", cases[i].text)))
+            fail_msg("expected %s in %s", row, text);
+        mem_free(text);
     }
     give(s, 1, 12345678, QUALITY_GOOD);
     char *alarms = alarms_text(NULL, s->alarm_service, s->plant, clock_utc_ns(), &(uint64_t){ 0 });

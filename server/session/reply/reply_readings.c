@@ -117,5 +117,5 @@ char *reply_api_tags_text(const struct session_context *context, size_t first, s
     }
     json_t *page = json_pack("{s:I,s:I,s:I,s:o}", "time_us", us(context->snapshot->taken_utc_ns), "total", (json_int_t)plant->tag_count,
                              "first", (json_int_t)first, "tags", list);
-    return json_text(page, DIGITS);
+    return json_text(page, READING_DIGITS);
 }

@@ -8,12 +8,13 @@
 #include "base/mem.h"
 #include "base/text/json_text.h"
 #include "message/json_fields.h"
+#include "message/json_values.h"
 #include "message/view_named.h"
 #include "plant/plant.h"
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-enum { LEAST_PX = 16, FILTERED_DIGITS = 9 };
+enum { LEAST_PX = 16 };
 
 /* --- views of the plant file ------------------------------------------------------------------------------------------------ */
 
@@ -219,7 +220,7 @@ char *session_scope_text(const struct session *session, char *text)
         return text;
     }
     mem_free(text);
-    return json_text(message, FILTERED_DIGITS);
+    return json_text(message, READING_DIGITS);
 }
 
 /* --- which messages may be sent --------------------------------------------------------------------------------------------- */

@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The digits with which messages to people and programs state a reading. Thread: any. */
+#ifndef BASE_MATH_ROUND_READING_H
+#define BASE_MATH_ROUND_READING_H
+
+/* Returns a finite reading with seven significant digits and at least three decimals, so that large numbers such as counters keep all
+   digits that pages show. Print it with %.15g. Never -0.0. */
+double round_reading(double value);
+
+#endif
