@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Restores alarm states of an earlier run, of the plant before a reload, or of another daemon; and counts alarms by state. */
+#include <math.h>
 #include <string.h>
 
 #include "alarm/alarms_impl.h"
@@ -69,6 +70,16 @@ static void adopt_seen(struct alarms *alarms, const struct alarms *before)
     }
 }
 
+/* Returns the value at which an alarm of the old plant was raised, in the tag's present unit; NAN if the unit cannot be converted. */
+static double value_in_unit(const struct alarms *alarms, const struct alarm *alarm, const struct alarms *before, const struct alarm *from)
+{
+    const char *was = from->tag < 0 ? NULL : before->plant->tags[from->tag].unit;
+    const char *is = alarm->tag < 0 ? NULL : alarms->plant->tags[alarm->tag].unit;
+    struct unit_change change = { 0 };
+    bool known = was && *was && is && *is;
+    return known && units_compare(was, is, &change) > UNITS_CONVERT ? NAN : unit_change_value(&change, from->value);
+}
+
 void alarms_adopt(struct alarms *alarms, const struct alarms *before)
 {
     alarms->begun_ns = before->begun_ns;
@@ -86,6 +97,7 @@ void alarms_adopt(struct alarms *alarms, const struct alarms *before)
         if (same_limit(alarm, from))
             alarm->condition = from->condition;
         take(alarms, index, from);
+        alarm->value = value_in_unit(alarms, alarm, before, from);
     }
 }
 

@@ -288,6 +288,12 @@ TEST(what_was_kept_is_taken_up)
     end(&s);
 }
 
+static void set_unit(struct stage *s, const char *unit)
+{
+    mem_free(s->plant->tags[0].unit);
+    s->plant->tags[0].unit = mem_strdup(unit);
+}
+
 TEST(a_reload_keeps_what_stays)
 {
     struct stage s, next;
@@ -295,10 +301,13 @@ TEST(a_reload_keeps_what_stays)
     hear(&s, 1, 0, 95, QUALITY_GOOD);
     hear(&s, 9, 1, 9, QUALITY_GOOD); /* PT's on-delay of 2 s is still running */
     begin(&next, ALARMS_LOCAL);
+    set_unit(&s, "°C");
+    set_unit(&next, "°F");
     alarms_adopt(next.alarms, s.alarms);
     assert_told(&next, "");
     assert_int_equal(next.told[0], ALARM_HH);
     assert_string_equal(word(&next, 0, ALARM_HH), "unacknowledged");
+    assert_true(fabs(alarms_at(next.alarms, alarms_find(next.alarms, 0, ALARM_HH))->value - 203) < 1e-9);
     memcpy(next.snapshot->readings, s.snapshot->readings, 5 * sizeof(struct reading));
     tick(&next, 11);
     assert_told(&next, "11 PT.H raise: normal > unacknowledged\n");
