@@ -212,7 +212,7 @@ test('a date field is by the clock of the plant', () => {
     assert.equal(at('2026-07-01', 'Europe/Berlin'), '2026-06-30T22:00:00.000Z');
     assert.equal(at('2026-10-25T02:30:00', 'Europe/Berlin'), '2026-10-25T00:30:00.000Z', 'the first of the hour that comes twice');
     assert.equal(at('2026-03-29T02:30:00', 'Europe/Berlin'), '2026-03-29T01:30:00.000Z', 'an hour that is left out: the one after it');
-    for (const bad of ['', 'noon', '2026-13-01T00:00', '26-1-1'])
+    for (const bad of ['', 'noon', '2026-13-01T00:00', '2026-02-30', '26-1-1'])
         assert.equal(fieldInstant(bad, 'UTC'), null, bad);
     assert.equal(fieldText(Date.parse('2026-11-21T22:27:02.9Z') * 1000, 'Asia/Seoul'), '2026-11-22T07:27:02');
     assert.equal(fieldInstant('2026-11-22T07:27:02', 'UTC'), Date.parse('2026-11-22T07:27:02Z') * 1000);

@@ -18,7 +18,7 @@ export function fieldText(us, timeZone) {
 export function fieldInstant(text, timeZone) {
     const [, date, time = '00:00', seconds = ''] = text.trim().match(/^(\d{4}-\d\d-\d\d)(?:[T ](\d\d:\d\d)(:\d\d)?(?:\.\d+)?)?$/) ?? [];
     const asUtc = date ? Date.parse(`${date}T${time}${seconds || ':00'}Z`) : NaN, clock = zoneClock(timeZone);
-    if (!Number.isFinite(asUtc))
+    if (!Number.isFinite(asUtc) || !new Date(`${date}T00:00Z`).toISOString().startsWith(date)) // 30 February
         return null;
     // UTC offsets a day before and a day after, because the clocks may change in between
     const offsets = [-86400e3, 86400e3].map((off) => offsetMs(clock, asUtc + off));
