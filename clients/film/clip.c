@@ -112,10 +112,10 @@ static bool turn(struct film *film, const json_t *stop)
 {
     struct snapshot_options *options = film->options;
     size_t own = options->arg_count;
-    bool good = tour_add_view(stop, options);
+    bool offline = film->offline.plant, good = tour_add_view(stop, offline, options);
     film->query.length = 0;
     good = good &&
-           (film->offline.plant ? offline_renderer_take_view(&film->offline, options, &film->view) : snapshot_query(options, &film->query));
+           (offline ? offline_renderer_take_view(&film->offline, options, &film->view) : snapshot_query(options, &film->query));
     while (options->arg_count > own)
         mem_free(options->args[--options->arg_count]);
     film->said = options->is_signed ? "" : tour_text(stop); /* a signed film gets no text, because drawing a text would invalidate the
@@ -205,7 +205,7 @@ static int from_daemon(struct film *film)
 {
     int code = 2;
     film->statements = film->options->is_signed ? film_statements_create() : NULL;
-    if (film->options->view && !saved_view_add_from_daemon(film->options))
+    if (film->options->view && !saved_view_add_from_daemon(film->options, false))
         code = 1;
     else if (daemon_url_parse(film->options->from, &film->url) && snapshot_query(film->options, &film->query)) {
         char *answer = film->options->tour ? ask_tours(film) : NULL;

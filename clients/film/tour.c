@@ -39,9 +39,10 @@ const char *tour_text(const json_t *stop)
     return saved_view_text(stop, "text");
 }
 
-bool tour_add_view(const json_t *stop, struct snapshot_options *options)
+bool tour_add_view(const json_t *stop, bool offline, struct snapshot_options *options)
 {
-    return saved_view_add_address(options, saved_view_text(stop, "id"), saved_view_text(stop, "view"));
+    const char *id = saved_view_text(stop, "id");
+    return offline ? saved_view_add_address(options, id, saved_view_text(stop, "view")) : snapshot_add_arg(options, "view", id);
 }
 
 static void write_instant(FILE *file, double s)

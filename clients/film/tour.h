@@ -15,8 +15,9 @@ json_t *tour_stops(const char *answer, const char *from, const char *id);
 double tour_dwell_s(const json_t *stop);
 /* Returns the text of a stop, which belongs to the stop; "" if it has none. */
 const char *tour_text(const json_t *stop);
-/* Adds the parameters of a stop's view to the options' arguments. Returns false with the reason printed. */
-bool tour_add_view(const json_t *stop, struct snapshot_options *options);
+/* Adds a stop's view to the options' arguments. offline: its parameters; otherwise its id, from which a daemon finds the parameters.
+   Returns false with the reason printed. */
+bool tour_add_view(const json_t *stop, bool offline, struct snapshot_options *options);
 /* Writes the texts of the stops as subtitles (WebVTT) to a file with the film's name and the extension .vtt. from_s: start time of each
    stop in seconds, and after the last one the end of the film. Returns false with the reason printed. */
 bool tour_write_subtitles(const json_t *stops, const double *from_s, const char *film);

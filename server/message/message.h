@@ -216,7 +216,7 @@ struct message {
     int width_px, height_px;         /* messages hello and resize: size of the view in pixels; 0: as in the resumed session */
     struct codec_list codecs;        /* messages hello and codecs: codecs that the client can decode; empty: as in the resumed session */
     double pixel_ratio;              /* messages hello and resize: device pixels per CSS pixel of the page; 0: not stated */
-    char named[NAMED_VIEW_ID_BYTES]; /* messages hello and look: id of a view in the plant file; empty: no view (only in hello) */
+    char named[NAMED_VIEW_ID_BYTES]; /* messages hello, look and params: id of a named view; empty: no view (only in hello and params) */
     struct camera camera;            /* camera, hello */
     uint32_t seq; /* sequence number of the messages camera, ack, fit, pick and look; message hello: sequence number of its camera */
     struct params_change params;     /* params, hello */

@@ -2,7 +2,10 @@
 /* Decides which messages each role may send. */
 #include "message/role.h"
 
+#include <string.h>
+
 #include "message/names.h"
+#include "message/view_address.h"
 
 const struct name names_role[] = {
     { "nobody", ROLE_NOBODY }, { "renderer", ROLE_RENDERER }, { "standby", ROLE_STANDBY },   { "open", ROLE_OPEN },
@@ -13,6 +16,15 @@ const struct name names_role[] = {
    expertise. */
 static const unsigned ENGINEERS = GIVEN_FILL | GIVEN_STRENGTH | GIVEN_DECAY | GIVEN_POWER | GIVEN_RADIUS | GIVEN_REACH | GIVEN_SENSORS;
 
+/* names of these parameters in queries */
+static const char *const ENGINEERS_NAMES[] = { "fill", "strength", "decay", "power", "radius_m", "reach_m", "sensors" };
+
+static bool refuse_params(struct message_error *error)
+{
+    message_refuse(error, "not_allowed", "fill, strength, decay, power, radius_m, reach_m, sensors", REFUSAL_ROLE_ENGINEER);
+    return false;
+}
+
 static bool params_allowed(enum role role, const struct params_change *change, struct message_error *error)
 {
     bool shared = change->baseline == BASELINE_SET || change->baseline == BASELINE_REMOVE || change->baseline == BASELINE_NOW;
@@ -20,11 +32,7 @@ static bool params_allowed(enum role role, const struct params_change *change, s
         message_refuse(error, "not_allowed", "baseline", REFUSAL_ROLE_OPERATOR);
         return false;
     }
-    if (role < ROLE_ENGINEER && (change->given & ENGINEERS)) {
-        message_refuse(error, "not_allowed", "fill, strength, decay, power, radius_m, reach_m, sensors", REFUSAL_ROLE_ENGINEER);
-        return false;
-    }
-    return true;
+    return role >= ROLE_ENGINEER || !(change->given & ENGINEERS) || refuse_params(error);
 }
 
 static bool alarm_allowed(enum role role, const struct message *message, struct message_error *error)
@@ -85,6 +93,36 @@ bool role_may_send(enum role role, const struct message *message, struct message
     if (message->type != MESSAGE_PARAMS && !message->hello.has_params)
         return true;
     return params_allowed(role, &message->params, error) && params_allowed(role, &message->split.right, error);
+}
+
+/* Returns whether an argument NAME=VALUE, or one of several separated by `;`, has the name of a parameter for engineers. */
+static bool is_for_engineers(const char *arg)
+{
+    size_t length = strcspn(arg, "=");
+    for (size_t i = 0; i < sizeof(ENGINEERS_NAMES) / sizeof(ENGINEERS_NAMES[0]); i++)
+        if (strlen(ENGINEERS_NAMES[i]) == length && !strncmp(arg, ENGINEERS_NAMES[i], length))
+            return true;
+    const char *next = strchr(arg, ';');
+    return next && is_for_engineers(next + 1);
+}
+
+bool role_may_ask(enum role role, const char *arg, struct message_error *error)
+{
+    const char *first = arg + (strncmp(arg, "split=", 6) ? 0 : 6);
+    return role >= ROLE_ENGINEER || !is_for_engineers(first) || refuse_params(error);
+}
+
+bool role_may_save(enum role role, const char *address, struct message_error *error)
+{
+    struct view_address fields;
+    struct message_error wrong;
+    bool good = true;
+    /* an address that the server cannot read is allowed, because the server never shows it */
+    if (view_address_read(&fields, address, &wrong))
+        for (size_t i = 0; i < fields.count && good; i++)
+            good = role_may_ask(role, fields.args[i], error);
+    view_address_finish(&fields);
+    return good;
 }
 
 const struct plant *role_plant(enum role role, const struct plant *plant, struct plant *copy)

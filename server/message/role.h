@@ -26,6 +26,13 @@ extern const struct name names_role[]; /* ends with a NULL text */
 /* Returns true if a client of that role may send the message. If not, *error receives the refusal to send. */
 bool role_may_send(enum role role, const struct message *message, struct message_error *error);
 
+/* Returns true if that role may use an argument NAME=VALUE in the query of a picture. If not, *error receives the refusal. */
+bool role_may_ask(enum role role, const char *arg, struct message_error *error);
+
+/* Returns true if that role may save a view with this address. Saved views are shown to all users with the rights of an engineer, so an
+   address with parameters for engineers needs an engineer. If not, *error receives the refusal. */
+bool role_may_save(enum role role, const char *address, struct message_error *error);
+
 /* Returns the plant in which names of a message from that role are looked up. For roles below viewer it is *copy, the same plant without
    tags, so that refusals do not reveal which tags exist. *copy shares everything else with `plant`. */
 const struct plant *role_plant(enum role role, const struct plant *plant, struct plant *copy);

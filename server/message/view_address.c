@@ -181,6 +181,48 @@ bool view_address_read(struct view_address *out, const char *address, struct mes
     return view_address_each(address, take, &(struct address_reading){ out, error });
 }
 
+static bool has_name(const char *arg, const char *name)
+{
+    size_t length = strcspn(arg, "=");
+    return strlen(name) == length && !strncmp(arg, name, length);
+}
+
+bool view_address_replaces(const char *given, const char *name)
+{
+    static const struct {
+        const char *given, *replaces;
+    } together[] = { { "camera", "projection" },
+                     { "camera", "height_m" },
+                     { "projection", "height_m" },
+                     { "fit", "camera" },
+                     { "fit", "projection" },
+                     { "fit", "height_m" },
+                     { "clip", "clip_box" },
+                     { "clip_box", "clip" } };
+    size_t length = strcspn(given, "=");
+    bool replaced = length == strcspn(name, "=") && !strncmp(given, name, length);
+    for (size_t i = 0; i < sizeof(together) / sizeof(together[0]); i++)
+        replaced = replaced || (has_name(given, together[i].given) && has_name(name, together[i].replaces));
+    return replaced;
+}
+
+bool view_address_set(struct view_address *address, const char *arg)
+{
+    size_t left = 0;
+    for (size_t i = 0; i < address->count; i++)
+        if (view_address_replaces(arg, address->args[i]))
+            mem_free(address->args[i]);
+        else
+            address->args[left++] = address->args[i];
+    address->count = left;
+    if (!strcmp(arg, "at=now")) /* the present, which has no argument */
+        return true;
+    if (left == VIEW_ADDRESS_ARGS)
+        return false;
+    address->args[address->count++] = mem_strdup(arg);
+    return true;
+}
+
 void view_address_finish(struct view_address *address)
 {
     for (size_t i = 0; i < address->count; i++)

@@ -146,8 +146,13 @@ static void set_camera(struct session *session, const struct message *message)
 
 static bool on_params(struct session *session, const struct message *message, struct message_error *error)
 {
-    if (!session_apply_params(session, message, &session->view, error))
+    struct view view = session->view;
+    if (message->named[0] && !session_look(session, message->named, &view, error))
         return false;
+    view.camera = session->view.camera;
+    if (!session_apply_params(session, message, &view, error))
+        return false;
+    session->view = view;
     session->view.params_seq = session->owed.params_seq = message->params.seq;
     session_record_params(session, message);
     session->owed.params = true;
@@ -262,11 +267,17 @@ static bool on_alarm(struct session *session, const struct message *message, str
     return true;
 }
 
-static void on_view_edit(struct session *session, const struct message *message, int64_t now_utc_ns)
+static bool on_view_edit(struct session *session, const struct message *message, int64_t now_utc_ns, struct message_error *error)
 {
+    struct named_views *views = session->context->services->named_views;
+    const char *address = message->view_edit.address;
+    /* an address that was saved before may be saved again: to move the view in the list, or to restore an earlier version */
+    if (message->type == MESSAGE_SAVE_VIEW && !named_views_have(views, address) && !role_may_save(session->identity.role, address, error))
+        return false;
     const struct kept_action action = session_kept_begin(session);
-    char *answer = view_edit_do(session->context->services->named_views, message, session_who(session), now_utc_ns / 1000);
+    char *answer = view_edit_do(views, message, session_who(session), now_utc_ns / 1000);
     session_kept_reply(session, &action, "view", session_view_what(message), answer);
+    return true;
 }
 
 static void on_share_view(struct session *session, const struct message *message, int64_t now_utc_ns)
@@ -373,7 +384,7 @@ static bool act(struct session *session, const struct message *message, int64_t 
     case MESSAGE_RESTORE_TAGS: return session_save_tags(session, message, error);
     case MESSAGE_LOOP_CHECK: return session_check_loop(session, message, error);
     case MESSAGE_SAVE_VIEW:
-    case MESSAGE_REMOVE_VIEW: on_view_edit(session, message, now_utc_ns); return true;
+    case MESSAGE_REMOVE_VIEW: return on_view_edit(session, message, now_utc_ns, error);
     case MESSAGE_SHARE_VIEW: on_share_view(session, message, now_utc_ns); return true;
     case MESSAGE_NOTE:
     case MESSAGE_REMOVE_NOTE: on_note(session, message, now_utc_ns); return true;

@@ -118,6 +118,10 @@ const struct pacer *session_take_shown(struct session *session);
 /* Records a measured round-trip time. */
 void session_on_pong(struct session *session, int64_t rtt_ns, int64_t now_ns);
 
+/* Returns the address of the view `id` if that user may see it: a view of the plant file, or a view that a user saved. The address is
+   valid until the saved views change. Returns NULL with *error, which names the member `about`, if there is none. */
+const char *session_scope_find_view(const struct plant_services *services, enum role role, const struct token_holder *holder,
+                                    const char *id, const char *about, struct message_error *error);
 /* Returns the plant file's views that a narrowed token allows, as a JSON array of {id, title}. The caller owns it. */
 json_t *session_scope_views(const struct session *session);
 

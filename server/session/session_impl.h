@@ -66,7 +66,7 @@ bool session_scope_allows(const struct session *session, const struct message *m
    after a plant reload. */
 void session_scope_begin(struct session *session);
 void session_scope_end(struct session *session);
-/* Sets the view to the one with this id in the plant file, at its present size. Returns false with *error if the token does not allow
+/* Sets the view to the named view with this id, at its present size. Returns false with *error if the token does not allow
    that view, or it cannot be shown. */
 bool session_look(struct session *session, const char *id, struct view *view, struct message_error *error);
 /* Works like session_look(), for a token narrowed to views; id "": shows the first view that the token allows. Closes the session if the

@@ -130,6 +130,31 @@ enum refusal_code named_views_remove(struct named_views *views, const char *id)
     return kept_list_put(&views->kept, list);
 }
 
+/* --- reading ---------------------------------------------------------------------------------------------------------------- */
+
+static const char *address_of(const json_t *view)
+{
+    return json_string_value(json_object_get(view, "view"));
+}
+
+const char *named_views_address(const struct named_views *views, const char *id)
+{
+    return address_of(json_array_get(views->kept.list, kept_list_find(views->kept.list, id)));
+}
+
+bool named_views_have(const struct named_views *views, const char *address)
+{
+    size_t i, k;
+    const json_t *view, *old;
+    json_array_foreach(views->kept.list, i, view)
+    {
+        if (!strcmp(address_of(view), address))
+            return true;
+        json_array_foreach(json_object_get(view, "before"), k, old) if (!strcmp(address_of(old), address)) return true;
+    }
+    return false;
+}
+
 /* --- messages --------------------------------------------------------------------------------------------------------------- */
 
 uint64_t named_views_number(const struct named_views *views)

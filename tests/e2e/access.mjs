@@ -287,6 +287,37 @@ test('each URL asks for its role', { skip }, async () => {
     }
 });
 
+test('a saved view has the rights of its author, for viewers too', { skip }, async () => {
+    await behindProxy('--tokens', tokensFile, '--history', path('views-history'));
+    const [viewer, operator, engineer] = await Promise.all(['viewer', 'operator', 'engineer'].map(async (role) => {
+        const client = await open();
+        await client.hello({ token: tokens[role] });
+        return client;
+    }));
+    let seq = 0;
+    const save = async (client, more, type) => {
+        client.say({ type: 'save_view', seq: ++seq, id: 'own', title: 'Own', view: 'power=3&split=fill:neighbours&look=flat', ...more });
+        return client.text(type);
+    };
+    assert.match((await save(operator, {}, 'error')).text, /role engineer/);
+    assert.match((await save(operator, { view: 'split=look:flat;power:3' }, 'error')).text, /role engineer/);
+    assert.equal((await save(operator, { id: 'plain', view: 'look=flat' }, 'view_saved')).kept, true);
+    assert.equal((await save(engineer, {}, 'view_saved')).kept, true);
+    assert.equal((await save(operator, { at: 0 }, 'view_saved')).kept, true, 'an operator may move the view');
+    viewer.say({ type: 'params', seq: ++seq, named: 'own', look: 'glossy' });
+    const { power, look, split } = await viewer.text('params');
+    assert.deepEqual([power, look, split.fill], [3, 'glossy', 'neighbours']);
+    viewer.say({ type: 'params', seq: ++seq, named: 'own', power: 4 });
+    assert.equal((await viewer.text('error')).code, 'not_allowed');
+    viewer.say({ type: 'look', seq: ++seq, named: 'own' });
+    assert.equal((await viewer.text('params')).look, 'flat');
+    viewer.say({ type: 'look', seq: ++seq, named: 'none' });
+    assert.equal((await viewer.text('error')).code, 'bad_field');
+    const picture = async (query) => (await ask(`/snapshot.png?view=own&width=64&height=64${query}`, { bearer: tokens.viewer })).status;
+    assert.deepEqual([await picture(''), await picture('&look=glossy'), await picture('&power=4')], [200, 200, 403]);
+    [viewer, operator, engineer].forEach((client) => client.close());
+});
+
 test('names, pages and proxies', { skip }, async () => {
     for (const [host, status] of [['plant.example', 200], ['plant.example:8443', 200], ['PLANT.example', 200], ['localhost', 200],
         ['evil.example', 403], ['plant.example.evil.example', 403], ['203.0.113.1', 403], ['a b', 403]])

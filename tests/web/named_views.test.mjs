@@ -36,9 +36,11 @@ test('colour bands of a view are the numbers of its group, because the legend dr
     assert.equal(breaksOf(), null);
 });
 
-test('who may not change the field is not made to ask for it', () => {
-    const { params } = viewOf(greeted('viewer').session, 'strength=2&power=3');
-    assert.deepEqual([params.strength, params.power, params.sensors], [undefined, undefined, undefined]);
+test('a viewer takes the parameters of the field from the saved view', () => {
+    const { params } = viewOf(greeted('viewer').session, 'strength=2&power=3', 'own');
+    assert.deepEqual([params.strength, params.power, params.sensors, params.named], [undefined, undefined, undefined, 'own']);
+    assert.equal(viewOf(greeted('viewer').session, 'strength=2').params.named, undefined);
+    assert.equal(viewOf(greeted('engineer').session, 'strength=2', 'own').params.strength, 2);
 });
 
 test('a plant that is loaded anew may have none any more', () => {

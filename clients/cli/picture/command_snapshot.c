@@ -9,7 +9,7 @@ static int from_daemon(struct snapshot_options *options)
 {
     struct text path = { 0 }, query = { 0 };
     int code = 2;
-    if (options->view && !saved_view_add_from_daemon(options)) {
+    if (options->view && !saved_view_add_from_daemon(options, !options->at)) {
         code = 1;
         goto end;
     }

@@ -16,28 +16,12 @@ const char *saved_view_text(const json_t *view, const char *name)
     return text ? text : "";
 }
 
-static bool is_given(const struct snapshot_options *options, size_t count, const char *name)
+/* Returns true if the command line, the first `count` arguments, replaces this argument of a view. */
+static bool is_replaced(const struct snapshot_options *options, size_t count, const char *arg)
 {
-    size_t length = strlen(name);
-    for (size_t i = 0; i < count; i++)
-        if (!strncmp(options->args[i], name, length) && options->args[i][length] == '=')
-            return true;
-    return false;
-}
-
-/* Returns true if the command line, the first `count` arguments, replaces this parameter of a view. */
-static bool is_replaced(const struct snapshot_options *options, size_t count, const char *name)
-{
-    static const struct {
-        const char *given, *replaces;
-    } together[] = { { "camera", "projection" },
-                     { "camera", "height_m" },
-                     { "projection", "height_m" },
-                     { "clip", "clip_box" },
-                     { "clip_box", "clip" } };
-    bool replaced = is_given(options, count, name) || (!strcmp(name, "baseline") && options->baseline);
-    for (size_t i = 0; i < sizeof(together) / sizeof(together[0]); i++)
-        replaced = replaced || (!strcmp(together[i].replaces, name) && is_given(options, count, together[i].given));
+    bool replaced = options->baseline && view_address_replaces("baseline", arg);
+    for (size_t i = 0; i < count && !replaced; i++)
+        replaced = view_address_replaces(options->args[i], arg);
     return replaced;
 }
 
@@ -51,9 +35,9 @@ bool saved_view_add_address(struct snapshot_options *options, const char *id, co
         fprintf(stderr, "plantcast: view '%s': %s\n", id, error.text);
     for (size_t i = 0; i < address.count && good; i++) {
         char *equals = strchr(address.args[i], '=');
-        *equals = 0;
-        if (!strcmp(address.args[i], "at") || is_replaced(options, given, address.args[i]))
+        if (view_address_replaces("at", address.args[i]) || is_replaced(options, given, address.args[i]))
             continue;
+        *equals = 0;
         good = snapshot_add_arg(options, address.args[i], equals + 1);
         if (!good)
             fprintf(stderr, "plantcast: view '%s': more than %d parameters, with those of the command line\n", id, SNAPSHOT_MAX);
@@ -87,16 +71,17 @@ static void print_unknown(const json_t *list, const char *from, const char *name
     json_array_foreach(list, i, view) fprintf(stderr, "  %-24s %s\n", saved_view_text(view, "id"), saved_view_text(view, "title"));
 }
 
-/* list: JSON array of the views; NULL: none. */
-static bool add_from(struct snapshot_options *options, const json_t *list)
+/* Finds the view that the command line names. list: JSON array of the views; NULL: none. Returns NULL, with the reason printed, if there is
+   none. */
+static const json_t *find_or_print(const struct snapshot_options *options, const json_t *list)
 {
     const json_t *view = find(list, options->view);
     if (!view)
         print_unknown(list, options->from, options->view);
-    return view && saved_view_add_address(options, saved_view_text(view, "id"), saved_view_text(view, "view"));
+    return view;
 }
 
-bool saved_view_add_from_daemon(struct snapshot_options *options)
+bool saved_view_add_from_daemon(struct snapshot_options *options, bool present)
 {
     struct daemon_url url;
     struct text body = { 0 };
@@ -104,8 +89,11 @@ bool saved_view_add_from_daemon(struct snapshot_options *options)
     const char *answer = body.at ? body.at : "";
     bool good = status == 200;
     if (good) {
+        /* the daemon adds the view's parameters, because the user's role may not permit them in a query */
         json_t *message = json_loads(answer, 0, NULL);
-        good = add_from(options, json_object_get(message, "list"));
+        const json_t *view = find_or_print(options, json_object_get(message, "list"));
+        good = view && snapshot_add_arg(options, "view", saved_view_text(view, "id")) &&
+               (!present || snapshot_add_arg(options, "at", "now"));
         json_decref(message);
     } else if (status == 403) {
         /* a token that permits only pictures of some views: the daemon decides which, by their ids */
@@ -122,7 +110,8 @@ bool saved_view_add_from_plant(struct snapshot_options *options, struct log *log
     char *folder = options->history ? mem_strdup(options->history) : plant_history_folder(plant);
     struct named_views *views = named_views_open(log, plant, folder, NULL);
     json_t *message = named_views_message(views, NULL);
-    bool good = add_from(options, json_object_get(message, "list"));
+    const json_t *view = find_or_print(options, json_object_get(message, "list"));
+    bool good = view && saved_view_add_address(options, saved_view_text(view, "id"), saved_view_text(view, "view"));
     json_decref(message);
     named_views_close(&views);
     mem_free(folder);

@@ -13,10 +13,11 @@ const char *saved_view_text(const json_t *view, const char *name);
    instant. All of options->args must come from the command line. id: name of the view in messages. Returns false with the reason
    printed. */
 bool saved_view_add_address(struct snapshot_options *options, const char *id, const char *address);
-/* Adds the parameters of the view options->view, from the list of the daemon options->from, to options->args. Returns false with the
-   reason printed. */
-bool saved_view_add_from_daemon(struct snapshot_options *options);
-/* Like saved_view_add_from_daemon(), with the views of the plant file and those in the history folder. */
+/* Finds the view options->view in the list of the daemon options->from, and adds its id to options->args. present: also asks for the
+   present, if the view shows the past. Returns false with the reason printed. */
+bool saved_view_add_from_daemon(struct snapshot_options *options, bool present);
+/* Finds the view options->view among those of the plant file and those in the history folder, and adds its parameters to options->args, as
+   saved_view_add_address() does. Returns false with the reason printed. */
 bool saved_view_add_from_plant(struct snapshot_options *options, struct log *log, const struct plant *plant);
 
 #endif

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Saved views: converts between their text, a session's state, and the query for a picture.
 import { addressOf, readAddress } from './address.js';
-import { snapshotQuery } from './query.js';
 import { ENGINEERS } from './session.js';
 
-const ID_CHARS = 48, NOWHERE = { eye: [], target: [], fov: 0 };
+const ID_CHARS = 48;
 
 // Returns the session's view as text, without the instant.
 export const textOf = (session, tag = null) => {
@@ -12,26 +11,20 @@ export const textOf = (session, tag = null) => {
     return addressOf({ camera, params, time: null, ownParams }, tag).slice(1);
 };
 
-// Returns { camera, params, tag } that bring a session from any state to the view. A view without a camera gets the home camera.
-export function viewOf(session, text) {
+// Returns { camera, params, tag } that bring a session from any state to the view. A view without a camera gets the home camera. id: id of
+// the saved view; from it, the server takes the parameters that only engineers may send.
+export function viewOf(session, text, id) {
     const { camera, params, tag } = readAddress(text), group = session.model.group(params.group) ?? session.group;
     const plain = { ...session.ownOf(group), range: null, ramp_interval: 0, breaks: group.breaks?.length ? group.breaks : null,
         split: null, selected: null, clip: null, sensors: null };
     const all = { ...plain, ...params };
-    if (session.role !== 'engineer')
+    if (session.role !== 'engineer') {
         ENGINEERS.forEach((name) => delete all[name]);
+        if (id)
+            all.named = id;
+    }
     const { width, height, pixel_ratio: ratio = 1 } = session.size;
     return { camera: camera ?? session.homeIn(width / ratio, height / ratio), params: all, tag };
-}
-
-// Returns the query for a thumbnail of a view; without a camera in the view, the server uses the home camera.
-export function pictureQuery(text, size) {
-    const { camera, params } = readAddress(text);
-    ENGINEERS.forEach((name) => delete params[name]);
-    const query = snapshotQuery({ carried: { ...params, selected: null }, camera: camera ?? NOWHERE, size, time: { atUs: null } });
-    if (!camera)
-        delete query.camera;
-    return query;
 }
 
 // Returns an id made from a title that no other view has.

@@ -69,8 +69,8 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
     const timeOf = (us) => zoneClock(words.model.plant.time_zone)(us / 1000).time;
     session.on('fitted', (camera) => session.setCamera(camera));
 
-    function look(text) {
-        const { camera, params } = viewOf(session, text);
+    function look(text, id) {
+        const { camera, params } = viewOf(session, text, id);
         session.setParams(params);
         session.setCamera(camera);
     }
@@ -97,7 +97,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
             session.setParams({ ...(tag.group ? { group: tag.group } : {}), clip: null, split: null, range: null });
             session.post({ type: 'fit', seq: ++session.fitSeq, id: tag.name });
         } else if (order?.view || view) {
-            look(order?.view || view.view);
+            look(order?.view || view.view, order?.view ? undefined : view.id);
         }
         [shown, changedAt] = [wanted, now];
     }

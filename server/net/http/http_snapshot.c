@@ -25,59 +25,51 @@ static struct params_context context_of(const struct server_context *server)
                                     .now_us = clock_plant_ns() / 1000 };
 }
 
-/* Finds a view of the plant file and checks that the token allows it. Returns NULL with *error. */
-static const struct named_view *find_view(const struct server_context *server, const struct token_holder *holder, const char *id,
-                                          struct message_error *error)
+static bool is_named(const char *arg, const char *name)
 {
-    if (!tokens_may_see(holder, id)) {
-        message_refuse_with(error, "not_allowed", "view", REFUSAL_TOKEN_VIEWS, "name=%.48s\nviews=%.150s", id, holder->views);
-        return NULL;
-    }
-    const struct named_view *named = named_view_find(server->params.plant.scene->plant, id);
-    if (!named)
-        message_refuse_with(error, "bad_field", "view", REFUSAL_NO_VIEW, "name=%.48s", id);
-    return named;
+    size_t length = strlen(name);
+    return !strncmp(arg, name, length) && arg[length] == '=';
 }
 
-/* Reads the address of a view of the plant file into *out, with the rights of the view's author. Of the query's arguments, only width,
-   height and language are added. Returns false with *error if the address is not valid. */
-static bool expand(const struct named_view *named, const struct args *args, struct view_address *out, struct message_error *error)
+/* Adds an argument of the query to those of a view. Returns false with *error if the user may not use it, or there is no room. */
+static bool add_own(struct view_address *out, const struct connection *connection, const char *arg, struct message_error *error)
 {
-    static const char *const mine[] = { "width", "height", "language" };
-    bool good = view_address_read(out, named->address, error);
-    for (size_t i = 0; i < args->count && good; i++) {
-        char name[48];
-        size_t length = strcspn(args->list[i], "=");
-        good = length == 4 && !strncmp(args->list[i], "view", length);
-        for (size_t k = 0; k < sizeof(mine) / sizeof(mine[0]) && !good; k++)
-            good = strlen(mine[k]) == length && !strncmp(args->list[i], mine[k], length);
-        if (!good)
-            message_fail(error, "bad_field", "argument '%s' is not allowed together with view; allowed are width, height and language",
-                         quoted(args->list[i], name));
+    char name[48];
+    bool of_size = is_named(arg, "width") || is_named(arg, "height") || is_named(arg, "language");
+    if (is_named(arg, "view"))
+        return true;
+    if ((connection->holder.views[0] || connection->role < ROLE_VIEWER) && !of_size) {
+        message_fail(error, "bad_field", "argument '%s' is not allowed together with view; allowed are width, height and language",
+                     quoted(arg, name));
+        return false;
     }
-    for (size_t k = 0; k < sizeof(mine) / sizeof(mine[0]) && good; k++) {
-        const char *value = arg_of(args, mine[k]);
-        good = !value || view_address_add(out, mine[k], value);
-    }
-    return good;
+    if (!role_may_ask(connection->role, arg, error))
+        return false;
+    if (view_address_set(out, arg))
+        return true;
+    message_fail(error, "bad_field", "view: the view and the query have too many arguments");
+    return false;
 }
 
-/* Reads the requested picture into *view. If the query names a view of the plant file, *address receives that view's full parameters (free
-   with view_address_finish()); otherwise the parameters stay in *args. Returns false with *error if the request is not valid. */
-static bool read_picture(struct server_context *server, struct lws *wsi, struct args *args, struct view_address *address, struct view *view,
-                         struct message_error *error)
+/* Reads the view or the place that a query asks for. If the query names a view, *address receives the view's arguments, which may be those
+   of an engineer, and the query's own, which the role must permit (free with view_address_finish()); otherwise the arguments stay in *args.
+   place: as for view_query_parse(). Returns false with *error if the request is not valid. */
+static bool read_query(struct server_context *server, struct lws *wsi, struct args *args, struct view_address *address, struct view *view,
+                       double place[2], struct message_error *error)
 {
     const struct params_context context = context_of(server);
     const struct connection *connection = connection_of(wsi);
-    const struct token_holder *holder = &connection->holder;
     if (!request_args(wsi, args, error))
         return false;
     const char *id = arg_of(args, "view");
-    if (!id && !holder->views[0])
-        return view_query_parse(&context, connection->role, args->list, args->count, view, NULL, error);
-    const struct named_view *named = find_view(server, holder, id ? id : "", error);
-    return named && expand(named, args, address, error) &&
-           view_query_parse(&context, ROLE_ENGINEER, (const char *const *)address->args, address->count, view, NULL, error);
+    if (!id && !connection->holder.views[0])
+        return view_query_parse(&context, connection->role, args->list, args->count, view, place, error);
+    const char *named =
+        session_scope_find_view(&server->params.plant, connection->role, &connection->holder, id ? id : "", "view", error);
+    bool good = named && view_address_read(address, named, error);
+    for (size_t i = 0; i < args->count && good; i++)
+        good = add_own(address, connection, args->list[i], error);
+    return good && view_query_parse(&context, ROLE_ENGINEER, (const char *const *)address->args, address->count, view, place, error);
 }
 
 static void keep_args(struct asked *asked, const char *const *list, size_t count)
@@ -160,7 +152,7 @@ int ask_snapshot(struct server_context *server, struct http_exchange *request)
     struct args args;
     int result;
     frame_request.overlay = connection_of(request->wsi)->role == ROLE_OPEN ? OVERLAY_BARE : OVERLAY_FULL;
-    if (read_picture(server, request->wsi, &args, &address, &frame_request.view, &error)) {
+    if (read_query(server, request->wsi, &args, &address, &frame_request.view, NULL, &error)) {
         bool named = address.count > 0;
         result = draw_picture(server, request, &frame_request, named ? (const char *const *)address.args : args.list,
                               named ? address.count : args.count);
@@ -251,9 +243,10 @@ int ask_pick(struct server_context *server, struct http_exchange *request)
     struct args args;
     double place[2];
     int result;
-    const struct params_context context = context_of(server);
-    if (!request_args(request->wsi, &args, &error) ||
-        !view_query_parse(&context, connection_of(request->wsi)->role, args.list, args.count, &query.view, place, &error))
+    struct view_address address = { .count = 0 };
+    bool good = read_query(server, request->wsi, &args, &address, &query.view, place, &error);
+    view_address_finish(&address);
+    if (!good)
         return request_answer_error(request, &error);
     if (!may_ask(server, request, &query.view, &result))
         return result;

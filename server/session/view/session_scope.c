@@ -18,33 +18,37 @@ enum { LEAST_PX = 16 };
 
 /* --- views of the plant file ------------------------------------------------------------------------------------------------ */
 
-static const struct named_view *find_view(const struct session *session, const char *id, struct message_error *error)
+const char *session_scope_find_view(const struct plant_services *services, enum role role, const struct token_holder *holder,
+                                    const char *id, const char *about, struct message_error *error)
 {
-    const struct token_holder *holder = &session->identity.holder;
+    bool sees_saved = role >= ROLE_VIEWER && !holder->views[0] && !holder->display && services->named_views;
     char name[48];
     if (!tokens_may_see(holder, id)) {
-        message_refuse_with(error, "not_allowed", "named", REFUSAL_TOKEN_VIEWS, "name=%s\nviews=%.150s", quoted(id, name), holder->views);
+        message_refuse_with(error, "not_allowed", about, REFUSAL_TOKEN_VIEWS, "name=%s\nviews=%.150s", quoted(id, name), holder->views);
         return NULL;
     }
-    const struct named_view *named = named_view_find(session->context->plant, id);
-    if (!named)
-        message_refuse_with(error, "bad_field", "named", REFUSAL_NO_VIEW, "name=%s", quoted(id, name));
-    return named;
+    const struct named_view *fixed = named_view_find(services->scene->plant, id);
+    const char *address = fixed ? fixed->address : sees_saved ? named_views_address(services->named_views, id) : NULL;
+    if (!address)
+        message_refuse_with(error, "bad_field", about, REFUSAL_NO_VIEW, "name=%s", quoted(id, name));
+    return address;
 }
 
 /* Reads a view as its author wrote it, with the author's rights; keeps the size of `view`. Returns false with *error if the view cannot be
    shown in a stream. */
-static bool read_view(const struct session *session, const struct named_view *named, struct view *view, struct message_error *error)
+static bool read_view(const struct session *session, const char *id, struct view *view, struct message_error *error)
 {
     const struct session_context *context = session->context;
     const struct params_context params = {
         .scene = context->services->scene, .baselines = context->services->baselines, .snapshot = session_snapshot(session), .bare = true
     };
     struct view read;
-    if (!view_named_read(&params, named->address, view->width_px, view->height_px, &read, error))
+    const char *address =
+        session_scope_find_view(context->services, session->identity.role, &session->identity.holder, id, "named", error);
+    if (!address || !view_named_read(&params, address, view->width_px, view->height_px, &read, error))
         return false;
     if (read.at_us) {
-        message_fail(error, "bad_field", "named: view '%.48s' shows a past instant; a stream shows the present", named->id);
+        message_fail(error, "bad_field", "named: view '%.48s' shows a past instant; a stream shows the present", id);
         return false;
     }
     const struct view before = *view;
@@ -62,8 +66,7 @@ static bool read_view(const struct session *session, const struct named_view *na
 
 bool session_look(struct session *session, const char *id, struct view *view, struct message_error *error)
 {
-    const struct named_view *named = find_view(session, id, error);
-    if (!named || !read_view(session, named, view, error))
+    if (!read_view(session, id, view, error))
         return false;
     snprintf(session->scope.named, sizeof(session->scope.named), "%s", id);
     return true;

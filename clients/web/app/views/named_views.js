@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The list of saved views: opening a view; with the right role also saving, reordering, and restoring earlier versions.
 import { ask } from '../../core/history.js';
-import { idFor, pictureQuery, textOf, viewOf } from '../../core/named_views.js';
+import { idFor, textOf, viewOf } from '../../core/named_views.js';
 import { zoneClock } from '../../core/format.js';
 import { refusalText } from '../../core/refusals.js';
 import { say } from '../../core/words.js';
@@ -38,15 +38,15 @@ export class NamedViews {
             this.tell(say('named.unknown', { id }));
             return;
         }
-        this.look(view.view, fly);
+        this.look(view.view, fly, id);
         if (view.wrong)
             this.tell(say('named.wrong', { why: refusalText(view.wrong, view.refusal) }));
         this.opened = id;
         this.mark();
     }
 
-    look(text, fly = true) {
-        const { session, modules } = this, { camera, params, tag } = viewOf(session, text), found = session.model.tag(tag);
+    look(text, fly = true, id = undefined) {
+        const { session, modules } = this, { camera, params, tag } = viewOf(session, text, id), found = session.model.tag(tag);
         session.setParams(params);
         if (!fly) {
             modules.there('cameraController')?.land(); // ends a running flight
@@ -153,11 +153,11 @@ export class NamedViews {
             return;
         this.drawing = true;
         for (const { view: text, id } of this.session.views.slice(0, MOST_PICTURES)) {
-            const query = pictureQuery(text, PICTURE), known = this.pictures.get(text);
+            const known = this.pictures.get(text);
             if (known && performance.now() - known.at < PICTURES_MS)
                 continue;
             try {
-                const url = URL.createObjectURL(await (await ask('snapshot.png', query, this.session.token)).blob());
+                const url = URL.createObjectURL(await (await ask('snapshot.png', { view: id, ...PICTURE }, this.session.token)).blob());
                 if (known)
                     URL.revokeObjectURL(known.url);
                 this.pictures.set(text, { url, at: performance.now() });
