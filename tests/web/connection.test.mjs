@@ -2,7 +2,9 @@
 // The connection's states, with a clock that the test advances.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { CHECK_MS, DEAD_MS, FIRST_WAIT_MS, JITTER, LONGEST_WAIT_MS, OPENING_MS, QUIET_MS } from '../../clients/web/core/connection.js';
+import {
+    CHECK_MS, DEAD_MS, EAGER_MS, FIRST_WAIT_MS, JITTER, LONGEST_WAIT_MS, OPENING_MS, QUIET_MS,
+} from '../../clients/web/core/connection.js';
 import { SPREAD_MS } from '../../clients/web/core/wall.js';
 import { makeConnection } from './fixtures.mjs';
 
@@ -37,6 +39,26 @@ test('waits 0.5, 1, 2, 4, 8, 8 seconds between tries', () => {
         assert.equal(sockets.length, n + 2);
     }
     assert.deepEqual(waits, [500, 1000, 2000, 4000, 8000, 8000]);
+});
+
+test('after a loss it waits at most 2 seconds between tries for 15 seconds, then longer', () => {
+    for (const dice of [0, 0.5, 1]) {
+        const bench = makeConnection({ random: () => dice }), { connection, sockets, clock } = bench;
+        connection.start();
+        sockets[0].accept();
+        connection.settle();
+        sockets[0].fail();
+        const lost = clock.now();
+        let tries = 0, longest = 0;
+        for (; clock.now() - lost < EAGER_MS; tries++) {
+            longest = Math.max(longest, waitOf(bench));
+            clock.advance(waitOf(bench));
+            sockets.at(-1).fail();
+        }
+        assert.ok(longest >= 1000 && longest <= 2000, `${longest} ms`);
+        assert.ok(tries >= 8);
+        assert.ok(waitOf(bench) >= LONGEST_WAIT_MS * (1 - JITTER));
+    }
 });
 
 test('jitter spreads the tries of many clients, within bounds', () => {

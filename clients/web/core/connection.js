@@ -4,6 +4,8 @@ import { SUBPROTOCOL } from './wire.js';
 import { say } from './words.js';
 
 export const FIRST_WAIT_MS = 500, LONGEST_WAIT_MS = 8000, JITTER = 0.25;
+// longest wait during the first EAGER_MS after a good connection was lost, because another core leads within 5 s
+export const EAGER_WAIT_MS = 1500, EAGER_MS = 15000;
 // interval of pings, which an idle server answers, too
 export const PING_MS = 2000;
 export const QUIET_MS = 5000;
@@ -18,26 +20,31 @@ const CLOSE_REASONS = {
 };
 
 export class Connection {
+    // stopped | connecting | open | waiting | barred (until retryNow() is called)
+    state = 'stopped';
+    // open, but silent for QUIET_MS
+    quiet = false;
+    // Why the last connection ended.
+    reason = '';
+    // Number of failed attempts since the last good connection.
+    tries = 0;
+    retryAt = null;
+    // Milliseconds to wait at least before the next attempt, as the server asked.
+    leastWait = 0;
+    // Time when the last good connection ended; undefined: none has, or the server works again.
+    lostAt;
+    // Time of the last user activity, by Date.now(), which continues while a machine sleeps.
+    activeAt = Date.now();
+    // Maximum random addition to the first wait after a loss.
+    spreadMs = 0;
+    unopened = 0;
+    blocked = '';
+
     // open(url, protocol) creates a WebSocket. clock: { now(), setTimeout(f, ms), clearTimeout(id) }. Handlers: onState(connection),
     // onOpen(), onText(string), onBytes(ArrayBuffer), onUnopened(): a second WebSocket in a row did not open; `blocked` has the reason to
-    // show. spreadMs: maximum random addition to each wait.
+    // show.
     constructor({ url, open, clock, random = Math.random }) {
-        Object.assign(this, { url, openSocket: open, clock, random, spreadMs: 0, unopened: 0, blocked: '' });
-        // stopped | connecting | open | waiting | barred (until retryNow() is called)
-        this.state = 'stopped';
-        // open, but silent for QUIET_MS
-        this.quiet = false;
-        // Why the last connection ended.
-        this.reason = '';
-        // Number of failed attempts since the last good connection.
-        this.tries = 0;
-        this.retryAt = null;
-        // Milliseconds to wait at least before the next attempt, as the server asked.
-        this.leastWait = 0;
-        // Time when the last good connection ended.
-        this.lostAt = null;
-        // Time of the last user activity, by Date.now(), which continues while a machine sleeps.
-        this.activeAt = Date.now();
+        Object.assign(this, { url, openSocket: open, clock, random });
         this.onState = this.onOpen = this.onText = this.onBytes = this.onUnopened = () => {};
     }
 
@@ -72,7 +79,7 @@ export class Connection {
     // Resets the increasing waits, once the server has proved that it works.
     settle() {
         this.tries = 0;
-        this.lostAt = null;
+        this.lostAt = undefined;
         this.reason = '';
     }
 
@@ -200,16 +207,17 @@ export class Connection {
     }
 
     lose(reason) {
-        const was = this.state;
+        const was = this.state, now = this.clock.now();
         this.drop();
         this.reason = reason;
         if (was === 'open')
-            this.lostAt ??= this.clock.now();
-        const usual = Math.min(LONGEST_WAIT_MS, FIRST_WAIT_MS * 2 ** this.tries);
-        const wait = Math.max(usual, this.leastWait) * (1 + JITTER * (2 * this.random() - 1)) + this.spreadMs * this.random();
+            this.lostAt ??= now;
+        const most = this.lostAt > now - EAGER_MS ? EAGER_WAIT_MS : LONGEST_WAIT_MS;
+        const usual = Math.min(most, FIRST_WAIT_MS * 2 ** this.tries);
+        const wait = Math.max(usual, this.leastWait) * (1 + JITTER * (2 * this.random() - 1)) +
+            (this.tries++ ? 0 : this.spreadMs * this.random());
         this.leastWait = 0;
-        this.tries++;
-        this.retryAt = this.clock.now() + wait;
+        this.retryAt = now + wait;
         this.timer = this.clock.setTimeout(() => this.connect(), wait);
         this.become('waiting');
     }
