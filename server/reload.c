@@ -35,6 +35,7 @@ struct reload {
     struct plant_import *import;   /* NULL: import is off */
     int64_t begun_ns;              /* monotonic time when the running reload was begun */
     uint64_t following;            /* `follows` of the running reload */
+    char expected[17];             /* `expects` of the running reload */
     char by[TOKEN_NAME_BYTES];     /* user who asked for the running reload */
     const struct tag_save *saving; /* tag list that the running reload saves; NULL: none */
     const char *kept;              /* path under which the previous version of the tag list is kept */
@@ -50,6 +51,7 @@ struct reload {
     bool asked, imports;
     /* connection that this daemon's core ends once the core has loaded the plant, too; 0: the reload does not wait for the core */
     uint64_t follows;
+    char expects[17];           /* hash that the configuration must have; "": any */
     char who[TOKEN_NAME_BYTES]; /* user who asked for the next reload */
     struct tag_save *save;      /* tag list that the next reload saves; NULL: none */
 };
@@ -301,6 +303,8 @@ static bool reload_now(struct reload *reload)
         net_call(reload->net, announce, reload->net);
     struct plant_runtime *before = *reload->runtime, *after = plant_runtime_read(reload->context, &diag);
     const char *why = after ? plant_needs_restart(before->plant, after->plant) : diag.errors ? NULL : "the log says why";
+    if (after && !why && reload->expected[0] && strcmp(after->plant->files.hash, reload->expected) != 0)
+        why = "plant file and tag list differ from the core's: copy them from the core to this machine, then reload";
     if (after && !why && !start_render_service(reload, after))
         why = "drawing the new plant failed; the log says why";
     if (after && !why && !wait_for_core(reload))
@@ -548,7 +552,7 @@ static void *run_leader(void *arg)
 static void *run(void *arg)
 {
     struct reload *reload = arg;
-    char who[TOKEN_NAME_BYTES];
+    char who[TOKEN_NAME_BYTES], expects[sizeof(reload->expects)];
     for (;;) {
         pthread_mutex_lock(&reload->thread.lock);
         while (!reload->asked && !reload->imports && !reload->save && !reload->thread.stopping)
@@ -559,6 +563,7 @@ static void *run(void *arg)
         uint64_t follows = reload->follows;
         reload->asked = reload->imports = false;
         reload->follows = 0;
+        snprintf(expects, sizeof(expects), "%s", reload->expects);
         reload->save = NULL;
         snprintf(who, sizeof(who), "%s", reload->who);
         pthread_mutex_unlock(&reload->thread.lock);
@@ -573,9 +578,11 @@ static void *run(void *arg)
         if (reload->import && plant_import_next(reload->import, &order))
             import_now(reload, &order);
         reload->following = follows;
+        memcpy(reload->expected, expects, sizeof(expects));
         if (asked)
             reload_settled(reload);
         reload->following = 0;
+        reload->expected[0] = 0;
     }
 }
 
@@ -612,21 +619,27 @@ void reload_destroy(struct reload **pointer)
     *pointer = NULL;
 }
 
-void reload_ask(struct reload *reload, const char *who)
+static void ask(struct reload *reload, const char *who, const char *expects)
 {
     pthread_mutex_lock(&reload->thread.lock);
     reload->asked = true;
+    snprintf(reload->expects, sizeof(reload->expects), "%s", expects);
     snprintf(reload->who, sizeof(reload->who), "%s", who);
     pthread_cond_signal(&reload->thread.wake);
     pthread_mutex_unlock(&reload->thread.lock);
 }
 
-void reload_follow(struct reload *reload, uint64_t session)
+void reload_ask(struct reload *reload, const char *who)
+{
+    ask(reload, who, "");
+}
+
+void reload_follow(struct reload *reload, uint64_t session, const char *configuration)
 {
     pthread_mutex_lock(&reload->thread.lock);
     reload->follows = session;
     pthread_mutex_unlock(&reload->thread.lock);
-    reload_ask(reload, "the core");
+    ask(reload, "the core", configuration ? configuration : "");
 }
 
 static void order(struct thread *thread, bool *order)

@@ -15,10 +15,11 @@ struct reload *reload_create(const struct plant_runtime_context *context, struct
 void reload_destroy(struct reload **reload);
 /* Asks for a reload and does not wait; if a reload is running, another one follows it. who: the user who asks, copied. Thread: any. */
 void reload_ask(struct reload *reload, const char *who);
-/* On a renderer, asks for a reload because its core loads the plant. The new plant is put in force once the core has ended the connection
-   `session` (core_link_session()), which it does to switch to its own new plant; if the core does not switch, the new plant is dropped.
-   session 0: the core has switched already. Does not wait. Thread: any. */
-void reload_follow(struct reload *reload, uint64_t session);
+/* On a renderer or a standby core, asks for a reload because its core loads the plant. The new plant is put in force once the core has
+   ended the connection `session` (core_link_session()), which it does to switch to its own new plant; if the core does not switch, the new
+   plant is dropped. session 0: the core has switched already. configuration: hash of the core's configuration; a plant with another hash
+   is dropped; NULL: not known. Does not wait. Thread: any. */
+void reload_follow(struct reload *reload, uint64_t session, const char *configuration);
 /* Makes this core take the lead from the core that it followed, even while a reload is reading or preparing; does not wait. Thread: any. */
 void reload_lead(struct reload *reload);
 /* Ends everything that only the leader of two cores may do (plant_runtime_end_leading()), for ever, and then calls net_on_lead_ended();

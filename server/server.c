@@ -156,9 +156,9 @@ static void ask_reload(void *arg, const char *who)
     reload_ask(((struct server *)arg)->reload, who);
 }
 
-static void follow_reload(void *arg, uint64_t session)
+static void follow_reload(void *arg, uint64_t session, const char *configuration)
 {
-    reload_follow(((struct server *)arg)->reload, session);
+    reload_follow(((struct server *)arg)->reload, session, configuration);
 }
 
 static void ask_save(void *arg, struct tag_save *save)
@@ -207,7 +207,7 @@ static bool start_net(struct server *server)
         .keeper = server->keeper,
         .end_leading = end_leading,
         .reload = ask_reload,
-        .follow = server->params.role == SERVER_RENDER ? follow_reload : NULL,
+        .follow = server->params.role == SERVER_RENDER || server->keeper ? follow_reload : NULL,
         .save = server->params.role == SERVER_RENDER ? NULL : ask_save,
         .import = server->import,
         .import_ordered = on_import_ordered,

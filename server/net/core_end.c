@@ -53,13 +53,13 @@ static void take_lists(struct server_context *server, const json_t *lists)
     streams_on_alarms(server);
 }
 
-static void follow(const struct server_context *server, uint64_t session)
+static void follow(const struct server_context *server, uint64_t session, const char *configuration)
 {
     if (server->params.follow)
-        server->params.follow(server->params.reload_arg, session);
+        server->params.follow(server->params.reload_arg, session, configuration);
 }
 
-/* Handles the core's refusal of this renderer because their configurations differ: loads this daemon's files again, since the core's new
+/* Handles the core's refusal of this daemon because their configurations differ: loads this daemon's files again, since the core's new
    files may be there by now. Tries once for each configuration that the core names. */
 static void take_refusal(struct server_context *server, const json_t *refusal)
 {
@@ -67,7 +67,28 @@ static void take_refusal(struct server_context *server, const json_t *refusal)
     if (!configuration || !strcmp(configuration, server->core.followed))
         return;
     snprintf(server->core.followed, sizeof(server->core.followed), "%s", configuration);
-    follow(server, 0);
+    server->core.reloads = false;
+    follow(server, 0, configuration);
+}
+
+/* Handles the core's acceptance of this daemon. If the leader has just loaded its plant, a standby now loads its own again: models may have
+   changed, although the configuration, which covers only plant file and tag list, is the same. */
+static void take_introduction(struct server_context *server, const json_t *message)
+{
+    take_key(server, message);
+    server->core.followed[0] = 0;
+    if (server->core.reloads)
+        follow(server, 0, server->session_context.plant->files.hash);
+    server->core.reloads = false;
+}
+
+/* Handles the core's message that it loads its plant. A renderer loads the plant at the same time. A standby waits until the leader uses
+   its new plant: if that plant makes the leader fail, the standby takes over with the old one. */
+static void take_reload(struct server_context *server)
+{
+    server->core.reloads = server->params.is_core;
+    if (!server->params.is_core)
+        follow(server, core_link_session(server->params.plant.core_link), NULL);
 }
 
 static void take(struct server_context *server, const char *text)
@@ -75,9 +96,9 @@ static void take(struct server_context *server, const char *text)
     json_t *message = json_loads(text, 0, NULL);
     const char *type = json_string_value(json_object_get(message, "type"));
     if (!strcmp(type, "core"))
-        take_key(server, message);
+        take_introduction(server, message);
     else if (!strcmp(type, "reloading"))
-        follow(server, core_link_session(server->params.plant.core_link));
+        take_reload(server);
     else if (!strcmp(type, "refused"))
         take_refusal(server, message);
     else

@@ -56,9 +56,9 @@ struct net_params {
     void (*end_leading)(void *arg);
     /* callback in the event loop that reloads the plant for user `who`; NULL: the plant cannot be reloaded */
     void (*reload)(void *arg, const char *who);
-    /* callback in the event loop that reloads the plant because this daemon's core reloads it. session: number of the connection
-       (core_link_session()) that the core then closes; 0: the core has reloaded already. NULL: this daemon is no renderer */
-    void (*follow)(void *arg, uint64_t session);
+    /* callback in the event loop that reloads the plant because this daemon's core reloads it, see reload_follow(). NULL: this daemon has
+       no core */
+    void (*follow)(void *arg, uint64_t session, const char *configuration);
     /* callback in the event loop that puts a saved tag list in force and takes ownership of `save`; NULL: tag lists cannot be saved */
     void (*save)(void *arg, struct tag_save *save);
     struct plant_import *import; /* service that imports plants; NULL: import is off */

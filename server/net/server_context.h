@@ -83,8 +83,9 @@ struct server_context {
         char key[2 * VIEW_TOKEN_KEY_BYTES + 1]; /* cores only: view token key that is sent to renderers, hexadecimal; "": none */
         char refused[400]; /* text of the last refusal of a renderer that was logged, so that a repetition is not logged */
         bool listed;       /* renderers only: true: the core has sent its lists (of views, notes and so on) since the plant was loaded */
-        /* configuration named by the core's last refusal of this renderer, which then loaded its files again to match that configuration */
+        /* configuration named by the core's last refusal of this daemon, which then loaded its files again to match that configuration */
         char followed[64];
+        bool reloads; /* standbys only: true: the leader announced a reload, and has not accepted or refused this core since */
         struct renderer_peer *renderers;        /* list of all connections to /core (renderers.c) */
         uint64_t told_number;                   /* sequence number of the last notifier state that was sent to a standby */
     } core;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A core that took over and is reloaded at once still reads the points that the other recorded during a cut; for a standby that keeps
-// reconnecting it reads them twice more at most.
+// A standby loads changed files when the leader does. A core that took over and is reloaded at once still reads the points that the other
+// recorded during a cut; for a standby that keeps reconnecting it reads them twice more at most.
 import assert from 'node:assert/strict';
-import { readFileSync, writeFileSync } from 'node:fs';
+import { copyFileSync, cpSync, readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { PostgresServer } from './support/postgres_server.mjs';
 import { long } from './support/promise.mjs';
@@ -42,7 +42,7 @@ test('what was recorded behind a cut is read although the plant is loaded anew m
     await sleep(2000);
     const to_us = Date.now() * 1000;
     await two.takeOver(t, core, kill(core, 'SIGKILL'));
-    writeFileSync(two.file, readFileSync(two.file, 'utf8').replace('max: 100 }', 'max: 101 }'));
+    change(two.file, 100, 101);
     other.program.child.kill('SIGHUP');
     await other.program.line(/reload: configuration/);
     assert.equal(other.program.said.match(READ), null, 'it was loaded anew before');
@@ -72,17 +72,46 @@ test('a standby that comes again and again does not have it read as often', { ..
     assert.ok(more >= 1 && more <= 2, `read ${more} times after ${RETURNS} returns`);
 });
 
-test('a core that the leader refused does not take over before it is loaded anew, and says so', options, async () => {
+// Gives a core plant file and prepared models of its own, as on a machine of its own, and restarts it.
+async function separate(core) {
+    const own = two.file.replace('two.yaml', 'own.yaml');
+    copyFileSync(two.file, own);
+    cpSync(two.file.replace('.yaml', '.prepared'), own.replace('.yaml', '.prepared'), { recursive: true });
+    await core.node.stop();
+    core.file = own;
+    await two.restart(core);
+}
+const change = (file, from, to) => writeFileSync(file, readFileSync(file, 'utf8').replace(`max: ${from} }`, `max: ${to} }`));
+
+test('a standby with the same changed files loads them when the leader does', options, async () => {
     const core = await two.leader(), other = two.other(core);
     await two.followed(core);
-    writeFileSync(two.file, readFileSync(two.file, 'utf8').replace('max: 101 }', 'max: 102 }'));
+    await separate(other);
+    await two.followed(core);
+    for (const file of [core.file, other.file])
+        change(file, 101, 102);
     core.program.child.kill('SIGHUP');
-    await core.program.line(/reload: configuration/);
+    await other.program.line(/reload: configuration \w+ in place of \w+, after [\d.]+ s, requested by the core/);
+    await two.followed(core);
+    // the same configuration again: models may have changed
+    other.program.said = '';
+    core.program.child.kill('SIGHUP');
+    await other.program.line(/reload: configuration (\w+) in place of \1, after [\d.]+ s, requested by the core/);
+    await two.followed(core);
+});
+
+test('a standby with other files keeps its own, does not take over before it is reloaded, and says so', options, async () => {
+    const core = await two.leader(), other = two.other(core);
+    change(core.file, 102, 103);
+    other.program.said = '';
+    core.program.child.kill('SIGHUP');
     await other.program.line(/configuration: the renderer has .*only confirms the leader's lease/);
+    await other.program.line(/reload: keeping the configuration \w+: plant file and tag list differ from the core's/);
     core.program.stopped = true;
     core.program.child.kill('SIGKILL');
     await other.program.line(/lease: no core leads, .*because the last leader refused this core \(configuration: /);
     assert.ok(!await two.ready(other));
+    change(other.file, 102, 103);
     other.program.said = '';
     other.program.child.kill('SIGHUP');
     await two.waitsFor('the other core leads', () => two.ready(other));
