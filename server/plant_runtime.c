@@ -3,7 +3,6 @@
 #include "plant_runtime.h"
 
 #include <string.h>
-#include <unistd.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -17,25 +16,13 @@
 
 char *plant_runtime_prepared_folder(const struct server_params *params, const struct plant *plant)
 {
-    static const char installed[] = "/etc/plantcast/", name[] = "/plant.yaml";
-    size_t length = strlen(params->plant_path), before = sizeof(installed) - 1, after = sizeof(name) - 1;
-    if (params->prepared)
-        return mem_strdup(params->prepared);
-    char *folder = plant_prepared_folder(plant);
-    if (access(folder, F_OK) == 0 || length <= before + after || strncmp(params->plant_path, installed, before) != 0 ||
-        strcmp(params->plant_path + length - after, name) != 0)
-        return folder;
-    mem_free(folder); /* folder into which the systemd service prepares the plant (plantcastd@.service) */
-    return mem_printf("/var/lib/plantcast/%.*s/prepared", (int)(length - before - after), params->plant_path + before);
+    return params->prepared ? mem_strdup(params->prepared) : plant_prepared_folder(plant);
 }
 
 struct scene *plant_runtime_open_scene(struct log *log, const struct server_params *params, const struct plant *plant)
 {
     char *folder = plant_runtime_prepared_folder(params, plant);
     struct scene *scene = scene_create(log, plant, folder);
-    if (!scene)
-        log_err(log, "%s: the prepared files in %s cannot be used; run plantcast-prep -o %s %s", params->plant_path, folder, folder,
-                params->plant_path);
     mem_free(folder);
     return scene;
 }

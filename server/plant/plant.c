@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 #include <xxhash.h>
 
 #include "base/math/search.h"
@@ -216,9 +217,34 @@ static char *beside(const struct plant *plant, const char *ending)
     return mem_printf("%s/%.*s.%s", plant->files.folder, end && end > name ? (int)(end - name) : (int)strlen(name), name, ending);
 }
 
+char *plant_service_folder(const struct plant *plant, const char *name)
+{
+    static const char installed[] = "/etc/plantcast/", file[] = "/plant.yaml";
+    const char *path = plant->files.path;
+    size_t length = strlen(path), before = sizeof(installed) - 1, after = sizeof(file) - 1;
+    if (length <= before + after || strncmp(path, installed, before) != 0 || strcmp(path + length - after, file) != 0)
+        return NULL;
+    return mem_printf("/var/lib/plantcast/%.*s/%s", (int)(length - before - after), path + before, name);
+}
+
+/* Returns `folder` if it exists or the plant is not that of a service, otherwise the service's folder. Takes ownership of `folder`. */
+static char *or_of_service(const struct plant *plant, char *folder, const char *name)
+{
+    char *own = access(folder, F_OK) == 0 ? NULL : plant_service_folder(plant, name);
+    if (!own)
+        return folder;
+    mem_free(folder);
+    return own;
+}
+
 char *plant_prepared_folder(const struct plant *plant)
 {
-    return beside(plant, "prepared");
+    return or_of_service(plant, beside(plant, "prepared"), "prepared");
+}
+
+char *plant_recorded_folder(const struct plant *plant)
+{
+    return or_of_service(plant, plant_history_folder(plant), "history");
 }
 
 char *plant_history_folder(const struct plant *plant)

@@ -19,12 +19,12 @@ static json_t *load(struct log *log, const char *path)
     size_t bytes;
     char *text = text_read_file(path, MANIFEST_MAX_BYTES, &bytes);
     if (!text) {
-        log_err(log, "%s: cannot be read: %s; run plantcast-prep", path, strerror(errno));
+        log_err(log, "%s: cannot be read: %s", path, strerror(errno));
         return NULL;
     }
     json_t *root = json_loadb(text, bytes, JSON_REJECT_DUPLICATES, &error);
     if (!root)
-        log_err(log, "%s:%d:%d: %s; run plantcast-prep", path, error.line, error.column, error.text);
+        log_err(log, "%s:%d:%d: %s", path, error.line, error.column, error.text);
     mem_free(text);
     return root;
 }
@@ -40,7 +40,7 @@ static bool read_entry(struct log *log, struct manifest *manifest, size_t index,
     const char *id = json_string_value(json_object_get(item, "id")), *file = json_string_value(json_object_get(item, "file"));
     const char *recipe = json_string_value(json_object_get(item, "recipe"));
     if (!id || !file_name_good(file) || !recipe) {
-        log_err(log, "%s: asset %zu: expected the members id, file and recipe; run plantcast-prep", manifest->path, index);
+        log_err(log, "%s: asset %zu: expected the members id, file and recipe", manifest->path, index);
         return false;
     }
     const char *surface = json_string_value(json_object_get(item, "surface"));
@@ -69,13 +69,13 @@ bool manifest_read(struct log *log, const char *folder, struct manifest *manifes
     json_t *root = load(log, manifest->path);
     bool good = root;
     if (good && json_integer_value(json_object_get(root, "format")) != MANIFEST_FORMAT) {
-        log_err(log, "%s: the prepared files are of another version; this program needs format %d; run plantcast-prep", manifest->path,
+        log_err(log, "%s: the prepared files are of another version; this program needs format %d", manifest->path,
                 MANIFEST_FORMAT);
         good = false;
     }
     const json_t *assets = json_object_get(root, "assets");
     if (good && !json_is_array(assets)) {
-        log_err(log, "%s: expected a list of assets; run plantcast-prep", manifest->path);
+        log_err(log, "%s: expected a list of assets", manifest->path);
         good = false;
     }
     if (good)

@@ -41,15 +41,15 @@ static bool sensors_fit(struct log *log, const struct plant *plant, const struct
 {
     const struct asset_view *view = &asset->file->view;
     if (view->header->sensor_count != count) {
-        log_err(log, "asset %s: the prepared file %s has %u sensors, the tag list has %zu; run plantcast-prep %s", asset->plant->id,
-                asset->file->path, view->header->sensor_count, count, plant->files.path);
+        log_err(log, "asset %s: the prepared file %s has %u sensors, the tag list has %zu", asset->plant->id, asset->file->path,
+                view->header->sensor_count, count);
         return false;
     }
     for (size_t i = 0; i < count; i++) {
         if (same_place(view->header, &view->sensors[i], &sensors[i]))
             continue;
-        log_err(log, "asset %s: the position of sensor %s in the prepared file %s differs from the tag list; run plantcast-prep %s",
-                asset->plant->id, plant->tags[sensors[i].tag].name, asset->file->path, plant->files.path);
+        log_err(log, "asset %s: the position of sensor %s in the prepared file %s differs from the tag list", asset->plant->id,
+                plant->tags[sensors[i].tag].name, asset->file->path);
         return false;
     }
     return true;
@@ -87,16 +87,15 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
         /* no sensors: plantcast-prep then writes no influence file, so none is required */
         bool heat = placed > 0 && group->heat && !has_entry(log, asset, g, INFLUENCE_HEAT, placed);
         if (heat || (placed > 0 && group->directed && !has_entry(log, asset, g, INFLUENCE_TRANSPORT, placed))) {
-            log_err(log, "asset %s: no usable prepared file with %s for group %s; run plantcast-prep %s", asset->plant->id,
-                    heat ? "distances by heat" : "directions", group->id, plant->files.path);
+            log_err(log, "asset %s: no usable prepared file with %s for group %s", asset->plant->id,
+                    heat ? "distances by heat" : "directions", group->id);
             return false;
         }
         for (int i = INTERPOLATION_HARMONIC; placed > 0 && i < INTERPOLATIONS; i++) {
             if (!plant_prepares(group, (enum interpolation)i))
                 continue;
             if (!asset_open_influence(log, asset->file)) {
-                log_err(log, "asset %s: no usable prepared file with the influence of the sensors; run plantcast-prep %s", asset->plant->id,
-                        plant->files.path);
+                log_err(log, "asset %s: no usable prepared file with the influence of the sensors", asset->plant->id);
                 return false;
             }
             const struct influence_entry *entry = influence_find(&asset->file->influence, (uint32_t)g, (uint32_t)i);
@@ -105,10 +104,8 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
             if (entry && entry->sensor_count == placed && entry->disc_m == group->disc_m && entry->decay_m == decay_m &&
                 (!gp || (entry->deviations && is_as_stated(gp, entry))))
                 continue;
-            log_err(log,
-                    "asset %s: the influence of the sensors of group %s was prepared with another tag list, disc_m, gp or wall; run "
-                    "plantcast-prep %s",
-                    asset->plant->id, group->id, plant->files.path);
+            log_err(log, "asset %s: the influence of the sensors of group %s was prepared with another tag list, disc_m, gp or wall",
+                    asset->plant->id, group->id);
             return false;
         }
     }
@@ -135,8 +132,8 @@ static bool recipe_fits(struct log *log, const struct plant *plant, uint64_t *ha
     }
     if (plant_recipe(asset, hashes[index]) == entry->recipe)
         return true;
-    log_err(log, "asset %s: the model %s, or the asset's nodes, units, scale or up, changed since the preparation; run plantcast-prep %s",
-            asset->id, asset->model, plant->files.path);
+    log_err(log, "asset %s: the model %s, or the asset's nodes, units, scale or up, changed since the preparation", asset->id,
+            asset->model);
     return false;
 }
 
@@ -190,10 +187,9 @@ static void place_sensor(const struct scene_asset *asset, int column, int tag, s
 
 /* Sets up an asset that plantcast-prep could not prepare. The asset is neither drawn nor part of the plant's box, but the scene has it,
    with the reason why it is missing. */
-static bool create_missing(struct log *log, const struct scene *scene, struct scene_asset *asset, const struct manifest_entry *entry)
+static bool create_missing(struct log *log, struct scene_asset *asset, const struct manifest_entry *entry)
 {
-    log_warn(log, "asset %s is missing: %s; repair the model and run plantcast-prep %s", asset->plant->id, entry->missing,
-             scene->plant->files.path);
+    log_warn(log, "asset %s is missing: %s; repair the model, then prepare the plant again", asset->plant->id, entry->missing);
     asset->missing = mem_strdup(entry->missing);
     asset->file = asset_stand_in();
     if (asset->file)
@@ -207,7 +203,7 @@ static bool create_asset(struct log *log, struct scene *scene, int index)
     struct scene_asset *asset = &scene->assets[index];
     struct plant_sensor *sensors = NULL;
     if (!asset->file) {
-        log_err(log, "asset %s: no usable prepared file; run plantcast-prep %s", asset->plant->id, scene->plant->files.path);
+        log_err(log, "asset %s: no usable prepared file", asset->plant->id);
         return false;
     }
     size_t count = plant_sensors(scene->plant, index, &sensors);
@@ -283,11 +279,11 @@ static bool find_file(struct file_uses *uses, const struct manifest *manifest, u
     asset->plant = &scene->plant->assets[index];
     const struct manifest_entry *entry = manifest_find(manifest, asset->plant->id);
     if (!entry) {
-        log_err(log, "asset %s is not in %s; run plantcast-prep %s", asset->plant->id, manifest->path, scene->plant->files.path);
+        log_err(log, "asset %s is not in %s", asset->plant->id, manifest->path);
         return false;
     }
     if (entry->missing)
-        return create_missing(log, scene, asset, entry);
+        return create_missing(log, asset, entry);
     if (!recipe_fits(log, scene->plant, hashes, index, entry))
         return false;
     uses->at[uses->count++] = (struct file_use){ entry->file, index, entry->resolved_levels };
@@ -332,7 +328,8 @@ static bool create_assets(struct log *log, struct scene *scene, const struct man
     return good;
 }
 
-struct scene *scene_create(struct log *log, const struct plant *plant, const char *prepared_folder)
+/* Works like scene_create(), but does not say how to prepare the plant. */
+static struct scene *create(struct log *log, const struct plant *plant, const char *prepared_folder)
 {
     struct manifest manifest;
     if (!manifest_read(log, prepared_folder, &manifest))
@@ -346,7 +343,7 @@ struct scene *scene_create(struct log *log, const struct plant *plant, const cha
     bool good = create_assets(log, scene, &manifest);
     manifest_finish(&manifest);
     if (good && !bound_missing(scene)) {
-        log_err(log, "%s: every asset is missing; run plantcast-prep %s", prepared_folder, plant->files.path);
+        log_err(log, "%s: every asset is missing", prepared_folder);
         good = false;
     }
     if (good) {
@@ -358,6 +355,20 @@ struct scene *scene_create(struct log *log, const struct plant *plant, const cha
     } else {
         scene_destroy(&scene);
     }
+    return scene;
+}
+
+struct scene *scene_create(struct log *log, const struct plant *plant, const char *prepared_folder)
+{
+    struct scene *scene = create(log, plant, prepared_folder);
+    char *own = scene ? NULL : plant_service_folder(plant, "prepared");
+    if (own && !strcmp(own, prepared_folder))
+        log_err(log, "%s: the prepared files in %s cannot be used; the service prepares them when it starts: restart it, or read its log",
+                plant->files.path, prepared_folder);
+    else if (!scene)
+        log_err(log, "%s: the prepared files in %s cannot be used; run plantcast-prep -o %s %s", plant->files.path, prepared_folder,
+                prepared_folder, plant->files.path);
+    mem_free(own);
     return scene;
 }
 

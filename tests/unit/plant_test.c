@@ -60,6 +60,24 @@ CASE(defaults_are_as_documented)
     mem_free(folder);
 }
 
+CASE(a_service_has_folders_of_its_own)
+{
+    struct plant plant = { .files.folder = (char *)"/etc/plantcast/none-here",
+                           .files.path = (char *)"/etc/plantcast/none-here/plant.yaml" };
+    char *prepared = plant_prepared_folder(&plant), *recorded = plant_recorded_folder(&plant), *history = plant_history_folder(&plant);
+    (void)f;
+    assert_string_equal(prepared, "/var/lib/plantcast/none-here/prepared");
+    assert_string_equal(recorded, "/var/lib/plantcast/none-here/history");
+    assert_string_equal(history, "/etc/plantcast/none-here/plant.history");
+    mem_free(prepared);
+    mem_free(recorded);
+    mem_free(history);
+    plant.files.path = (char *)"/etc/plantcast/none-here/other.yaml";
+    prepared = plant_prepared_folder(&plant);
+    assert_string_equal(prepared, "/etc/plantcast/none-here/other.prepared");
+    mem_free(prepared);
+}
+
 CASE(everything_is_read)
 {
     plant_case_load(f,

@@ -170,8 +170,9 @@ CASE(everything_is_in_its_place)
     assert_null(scene);
 }
 
-/* Asserts that creating the scene fails and that the log contains `words`. Redirects stderr, where the log writes, to a file meanwhile. */
-static void assert_refused(struct scene_fixture *f, const char *words)
+/* Asserts that creating the scene fails and that the log contains `words` and `hint`. Redirects stderr, where the log writes, to a file
+   meanwhile. */
+static void assert_refused_from(struct scene_fixture *f, const char *prepared, const char *words, const char *hint)
 {
     char *path = temp_path(f->folder, "log.txt");
     size_t bytes;
@@ -179,16 +180,33 @@ static void assert_refused(struct scene_fixture *f, const char *words)
     int kept = dup(STDERR_FILENO);
     assert_non_null(freopen(path, "w", stderr));
     struct log *log = test_log(); /* a new log, so that no message is suppressed as a repetition */
-    struct scene *scene = scene_create(log, f->plant, f->prepared);
+    struct scene *scene = scene_create(log, f->plant, prepared);
     fflush(stderr);
     dup2(kept, STDERR_FILENO);
     close(kept);
     char *text = text_read_file(path, 1 << 20, &bytes);
     assert_non_null(text);
     assert_null(scene);
-    if (!strstr(text, words) || !strstr(text, "run plantcast-prep"))
+    if (!strstr(text, words) || !strstr(text, hint))
         fail_msg("expected '%s' and what to do in: %s", words, text);
     mem_free(text);
+}
+
+static void assert_refused(struct scene_fixture *f, const char *words)
+{
+    assert_refused_from(f, f->prepared, words, "run plantcast-prep -o ");
+}
+
+CASE(a_service_prepares_by_itself)
+{
+    char *own = f->plant->files.path, *folder;
+    f->plant->files.path = mem_strdup("/etc/plantcast/none-here/plant.yaml");
+    folder = plant_service_folder(f->plant, "prepared");
+    assert_refused_from(f, folder, "manifest.json: cannot be read", "the service prepares them when it starts");
+    assert_refused_from(f, f->folder, "manifest.json: cannot be read", "run plantcast-prep -o ");
+    mem_free(folder);
+    mem_free(f->plant->files.path);
+    f->plant->files.path = own;
 }
 
 CASE(other_sensors_are_refused)
@@ -246,7 +264,7 @@ CASE(what_was_not_prepared_is_refused)
     assert_refused(f, "asset B: ");
     asset->up = asset->up == AXIS_Y ? AXIS_Z : AXIS_Y;
     asset->unit_m = 0.001;
-    assert_refused(f, "units, scale or up, changed since the preparation; run plantcast-prep");
+    assert_refused(f, "units, scale or up, changed since the preparation");
     asset->unit_m = 1;
     asset->nodes = mem_strdup("E-*");
     assert_refused(f, "asset B: ");

@@ -152,7 +152,7 @@ int offline_renderer_reopen(struct offline_renderer *offline, struct snapshot_op
 
 bool offline_renderer_open_history(struct offline_renderer *offline, const struct snapshot_options *options)
 {
-    char *folder = options->history ? mem_strdup(options->history) : plant_history_folder(offline->plant);
+    char *folder = options->history ? mem_strdup(options->history) : plant_recorded_folder(offline->plant);
     offline->history = folder;
     offline->reader = history_reader_create(offline->log, folder);
     offline->tags = history_tags(offline->plant);

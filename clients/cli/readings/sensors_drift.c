@@ -89,7 +89,7 @@ static int drift_in(const struct drift_options *options, const struct plant *pla
         return 2;
     }
     char *prepared = options->prepared ? mem_strdup(options->prepared) : plant_prepared_folder(plant);
-    char *folder = options->folder ? mem_strdup(options->folder) : plant_history_folder(plant);
+    char *folder = options->folder ? mem_strdup(options->folder) : plant_recorded_folder(plant);
     struct scene *scene = scene_create(log, plant, prepared);
     struct history_reader *reader = history_reader_create(log, folder);
     history_reader_show_by(reader, plant);
