@@ -5,7 +5,7 @@
 #include "base/text/diag.h"
 #include "preprocess/cache/folder.h"
 #include "preprocess/model/model_files.h"
-#include "preprocess/model/refusal.h"
+#include "plant/models/model_refusal.h"
 
 struct diff_side_tag {
     const char *name;

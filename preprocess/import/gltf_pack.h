@@ -2,7 +2,7 @@
 /* Packs a glTF model, its buffers and its images into one GLB file. Thread: any. */
 #ifndef PREPROCESS_IMPORT_GLTF_PACK_H
 #define PREPROCESS_IMPORT_GLTF_PACK_H
-#include "preprocess/model/refusal.h"
+#include "plant/models/model_refusal.h"
 
 /* Copies the model at `path` to the file `glb`. A GLB file that refers to no other file is copied unchanged; otherwise the buffers and
  * images that its URIs name are embedded. Returns false with the reason in why. */

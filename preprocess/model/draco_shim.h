@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "preprocess/model/refusal.h"
+#include "plant/models/model_refusal.h"
 
 #ifdef __cplusplus
 extern "C" {

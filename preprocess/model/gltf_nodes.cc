@@ -3,9 +3,11 @@
  * node. */
 #include "preprocess/model/gltf_impl.hh"
 
+#include <algorithm>
 #include <cmath>
 
 extern "C" {
+#include "plant/models/node_rules.h"
 #include "plant/models/transform.h"
 }
 
@@ -14,30 +16,25 @@ namespace gltf
 namespace
 {
 
-constexpr uint32_t MAX_NODES = 4'000'000, MAX_DEPTH = 512, ELEMENTS_PER_INSTANCE = 16;
+constexpr uint32_t ELEMENTS_PER_INSTANCE = 16;
 /* tolerance of a quaternion's length; rotations of instances stored as bytes deviate by up to 0.008 */
-constexpr double ROTATION_SLACK = 0.01, LEAST_ROTATION = 1e-6;
+constexpr double ROTATION_SLACK = 0.01;
 
-/* Checks a rotation, which glTF requires to be a unit quaternion. One of another length is normalised, as other programs do, and counted;
- * rounding is tolerated. */
-void check_rotation(gltf_work *w, const double q[4], const std::string &what)
+/* Throws if a rule of node_rules.h refuses the node: why is not NULL. */
+void check(const char *why, const std::string &what)
 {
-    double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    if (!(length >= LEAST_ROTATION))
-        refuse("%s: the rotation [%g, %g, %g, %g] is not a unit quaternion", what.c_str(), q[0], q[1], q[2], q[3]);
-    w->model->scaled_rotations += std::fabs(length - 1) > ROTATION_SLACK;
+    if (why)
+        refuse("%s: %s", what.c_str(), why);
 }
 
-void check_affine(double m[16], const std::string &what)
+/* Computes the transform of a node or an instance. glTF requires rotations to be unit quaternions. One of another length is normalised, as
+ * other programs do, and counted; rounding is tolerated. matrix: replaces the other three; nullptr: none. */
+void compose(gltf_work *w, const double t[3], const double q[4], const double s[3], const double *matrix, double out[16],
+             const std::string &what)
 {
-    for (int i = 0; i < 16; i++)
-        if (!std::isfinite(m[i]) || std::fabs(m[i]) > 1e15)
-            refuse("%s: the position of the node is not finite or exceeds 1e15", what.c_str());
-    for (int c = 0; c < 4; c++) {
-        if (std::fabs(m[4 * c + 3] - (c == 3)) > 1e-6)
-            refuse("%s: the last row of the matrix is not 0 0 0 1", what.c_str());
-        m[4 * c + 3] = c == 3;
-    }
+    check(node_rules_local(t, q, s, matrix, out), what);
+    double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    w->model->scaled_rotations += std::fabs(length - 1) > ROTATION_SLACK;
 }
 
 void take(const std::vector<double> &from, size_t count, double *to)
@@ -52,10 +49,7 @@ void local_of(gltf_work *w, const tinygltf::Node &node, double out[16], const st
     take(node.translation, 3, t);
     take(node.rotation, 4, q);
     take(node.scale, 3, s);
-    check_rotation(w, q, what);
-    transform_compose_quaternion(t, q, s, out);
-    take(node.matrix, 16, out);
-    check_affine(out, what);
+    compose(w, t, q, s, node.matrix.size() == 16 ? node.matrix.data() : nullptr, out, what);
 }
 
 struct node_order { /* working data while the scene's nodes are listed in depth-first order */
@@ -73,8 +67,8 @@ std::string node_what(const tinygltf::Model &m, int number)
 void add(node_order *tree, int number, int parent, int mesh, const double world[16])
 {
     const std::string &name = tree->w->parsed.nodes[static_cast<size_t>(number)].name;
-    if (tree->out.size() >= MAX_NODES)
-        refuse("more than %u nodes", MAX_NODES);
+    if (tree->out.size() >= NODE_MAX_COUNT)
+        refuse("more than %d nodes", NODE_MAX_COUNT);
     gltf_node node = {};
     node.parent = parent;
     node.mesh = mesh;
@@ -113,10 +107,9 @@ void add_instances(node_order *tree, int number, int parent, const tinygltf::Val
         for (int p = 0; p < 3; p++)
             if (used[p] >= 0)
                 values[static_cast<size_t>(used[p])].get(i, parts[p]);
-        check_rotation(tree->w, q, what);
-        transform_compose_quaternion(t, q, s, local);
+        compose(tree->w, t, q, s, nullptr, local, what);
         transform_multiply(tree->out[static_cast<size_t>(parent)].world, local, world);
-        check_affine(world, what);
+        check(node_rules_world(world), what);
         add(tree, number, parent, node.mesh, world);
     }
 }
@@ -126,19 +119,16 @@ void walk(node_order *tree, int number, int parent, const double parent_world[16
     std::string what = node_what(tree->w->parsed, number);
     if (tree->seen[static_cast<size_t>(number)])
         refuse("%s is part of a cycle or has two parents", what.c_str());
-    if (depth > MAX_DEPTH)
-        refuse("%s: nodes are nested deeper than %u levels", what.c_str(), MAX_DEPTH);
+    if (depth > NODE_MAX_DEPTH)
+        refuse("%s: nodes are nested deeper than %d levels", what.c_str(), NODE_MAX_DEPTH);
     tree->seen[static_cast<size_t>(number)] = 1;
     const tinygltf::Node &node = tree->w->parsed.nodes[static_cast<size_t>(number)];
-    if (node.skin >= 0 && node.mesh >= 0)
-        refuse("%s: skinned meshes are not supported", what.c_str());
-    for (double weight : node.weights)
-        if (weight != 0)
-            refuse("%s: morph targets are not supported", what.c_str());
+    bool morphs = std::any_of(node.weights.begin(), node.weights.end(), [](double weight) { return weight != 0; });
+    check(node_rules_shape(node.mesh >= 0, node.skin >= 0, morphs), what);
     double local[16], world[16];
     local_of(tree->w, node, local, what);
     transform_multiply(parent_world, local, world);
-    check_affine(world, what);
+    check(node_rules_world(world), what);
     int self = static_cast<int>(tree->out.size());
     auto instancing = node.extensions.find("EXT_mesh_gpu_instancing");
     bool instanced = instancing != node.extensions.end() && node.mesh >= 0;

@@ -9,7 +9,7 @@
 
 #include "base/mem.h"
 #include "preprocess/model/model_json.h"
-#include "preprocess/model/model_rules.h"
+#include "plant/models/model_rules.h"
 #include "preprocess/model/model_uri.h"
 
 #define MAX_ZERO_BYTES ((uint64_t)64 << 20) /* maximum bytes of accessors without a buffer view, which take no space in the file */

@@ -6,7 +6,7 @@
 #include "base/mem.h"
 #include "preprocess/model/draco_shim.h"
 #include "preprocess/model/model_document_impl.h"
-#include "preprocess/model/model_rules.h"
+#include "plant/models/model_rules.h"
 
 #define MODE_TRIANGLES 4
 

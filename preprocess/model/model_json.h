@@ -5,7 +5,7 @@
 #include <jansson.h>
 #include <stdint.h>
 
-#include "preprocess/model/refusal.h"
+#include "plant/models/model_refusal.h"
 
 struct model_bytes { /* a range of bytes owned by another object */
     const unsigned char *at;

@@ -4,7 +4,7 @@
 #define PREPROCESS_MODEL_URI_H
 #include <stddef.h>
 
-#include "preprocess/model/refusal.h"
+#include "plant/models/model_refusal.h"
 
 #define MODEL_MAX_BYTES ((size_t)4 << 30) /* maximum size of a model file, and of each file that it names */
 

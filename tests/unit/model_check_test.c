@@ -129,14 +129,20 @@ CASE(transforms_that_cannot_be_prepared_are_refused)
     static const struct {
         const char *transform, *why;
     } transforms[] = {
-        { "\"translation\":[1e16,0,0]", "has node 1 with a position that is not finite or exceeds 1e15" },
-        { "\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,-1e300,0,1]", "has node 1 with a position that is not finite or exceeds 1e15" },
-        { "\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,0]", "has node 1 whose matrix has a last row that is not 0 0 0 1" },
-        { "\"matrix\":[1,0,0,0]", "has node 1 whose matrix is not 16 numbers" },
-        { "\"rotation\":[0,0,0,0]", "has node 1 whose rotation is not a unit quaternion" },
-        { "\"rotation\":[0,0,1]", "has node 1 whose translation, rotation or scale is not 3, 4 or 3 numbers" },
-        { "\"scale\":[1,1,\"1\"]", "has node 1 whose translation, rotation or scale is not 3, 4 or 3 numbers" },
-        { "\"translation\":5", "has node 1 whose translation, rotation or scale is not 3, 4 or 3 numbers" },
+        { "\"translation\":[1e16,0,0]", "is not valid: node 1: the position of the node is not finite or exceeds 1e15" },
+        { "\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,-1e300,0,1]",
+          "is not valid: node 1: the position of the node is not finite or exceeds 1e15" },
+        { "\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,0]", "is not valid: node 1: the last row of the matrix is not 0 0 0 1" },
+        { "\"matrix\":[1,0,0,0]", "is not valid: node 1: matrix is not 16 numbers" },
+        { "\"rotation\":[0,0,0,0]", "is not valid: node 1: the rotation is not a unit quaternion" },
+        { "\"rotation\":[0,0,1]", "is not valid: node 1: rotation is not 4 numbers" },
+        { "\"scale\":[1,1,\"1\"]", "is not valid: node 1: scale is not 3 numbers" },
+        { "\"translation\":5", "is not valid: node 1: translation is not 3 numbers" },
+        { "\"mesh\":7", "is not valid: node 1: mesh: there is no mesh 7" },
+        { "\"mesh\":\"0\"", "is not valid: node 1: mesh is not a whole number" },
+        { "\"children\":[2]", "is not valid: node 1: children: there is no node 2" },
+        { "\"skin\":0", "is not valid: node 1: skin: there is no skin 0" },
+        { "\"weights\":[0,0.5]", "is not valid: node 1: morph targets are not supported" },
         { "\"rotation\":[0,0,2,0],\"scale\":null", NULL }, /* plantcast-prep normalises the rotation */
     };
     for (size_t i = 0; i < sizeof(transforms) / sizeof(*transforms); i++) {

@@ -7,7 +7,7 @@
 #include "plant/plant.h"
 #include "preprocess/import/plant_draft.h"
 #include "preprocess/import/revision/asset_edit.h"
-#include "preprocess/model/refusal.h"
+#include "plant/models/model_refusal.h"
 
 struct revision_model {
     /* paths of the old and the new model file; before NULL: the plant has no model of this name yet */

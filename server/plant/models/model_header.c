@@ -10,27 +10,22 @@
 
 #include "base/mem.h"
 #include "base/text/text.h"
+#include "plant/models/model_rules.h"
+#include "plant/models/node_rules.h"
 #include "plant/models/transform.h"
 #include "plant/parse/file_kind.h"
 
-enum { MAX_JSON_BYTES = 512 << 20, MAX_DEPTH = 512, GLB_HEAD_BYTES = 20 };
+enum { MAX_JSON_BYTES = 512 << 20, GLB_HEAD_BYTES = 20 };
 
 const struct model_box model_box_empty = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
-
-static const double MAX_COORDINATE = 1e15; /* limit of the numbers in the matrix of a node, as in plantcast-prep */
-/* least length of a rotation quaternion, and tolerance of a matrix's last row, as in plantcast-prep */
-static const double LEAST_ROTATION = 1e-6, MATRIX_SLACK = 1e-6;
 
 struct header_walk {
     struct model_header *header;
     const json_t *nodes, *meshes, *accessors;
     bool *seen;
     size_t capacity, box_capacity, origin_capacity;
-    char *why;
-    size_t why_bytes;
+    char why[MODEL_WHY_BYTES];
 };
-
-#define wrong(why, bytes, ...) (snprintf(why, bytes, __VA_ARGS__), false)
 
 /* --- the file ----------------------------------------------------------------------------------------------------------------- */
 
@@ -166,35 +161,32 @@ static struct model_box box_of_mesh(const struct header_walk *walk, const json_t
 
 /* --- nodes ---------------------------------------------------------------------------------------------------------------------- */
 
-/* Reads `count` numbers of a member; leaves `out` alone if the member is missing or null. Returns false if it is anything else. */
-static bool numbers_of(const json_t *object, const char *key, size_t count, double *out)
+/* Reads the numbers of a member; leaves `out` alone if the member is missing. */
+static bool numbers_of(const json_t *object, const char *key, double *out)
 {
     const json_t *list = json_object_get(object, key);
-    if (!list || json_is_null(list))
-        return true;
-    bool good = json_is_array(list) && json_array_size(list) == count;
-    for (size_t i = 0; i < count && good; i++) {
-        good = json_is_number(json_array_get(list, i));
+    for (size_t i = 0; i < json_array_size(list); i++)
         out[i] = json_number_value(json_array_get(list, i));
-    }
-    return good;
+    return list;
 }
 
-/* Reads the transform of a node. Returns NULL, or the error that plantcast-prep reports too. */
+/* Reads the transform of a node. Returns NULL, or the reason why the node is refused. */
 static const char *local_of(const json_t *node, double out[16])
 {
-    double t[3] = { 0, 0, 0 }, q[4] = { 0, 0, 0, 1 }, s[3] = { 1, 1, 1 };
-    if (!numbers_of(node, "translation", 3, t) || !numbers_of(node, "rotation", 4, q) || !numbers_of(node, "scale", 3, s))
-        return "whose translation, rotation or scale is not 3, 4 or 3 numbers";
-    if (!(sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]) >= LEAST_ROTATION))
-        return "whose rotation is not a unit quaternion";
-    transform_compose_quaternion(t, q, s, out);
-    if (!numbers_of(node, "matrix", 16, out))
-        return "whose matrix is not 16 numbers";
-    for (int column = 0; column < 4; column++)
-        if (!(fabs(out[4 * column + 3] - (column == 3)) <= MATRIX_SLACK))
-            return "whose matrix has a last row that is not 0 0 0 1";
-    return NULL;
+    double t[3] = { 0, 0, 0 }, q[4] = { 0, 0, 0, 1 }, s[3] = { 1, 1, 1 }, matrix[16];
+    numbers_of(node, "translation", t);
+    numbers_of(node, "rotation", q);
+    numbers_of(node, "scale", s);
+    return node_rules_local(t, q, s, numbers_of(node, "matrix", matrix) ? matrix : NULL, out);
+}
+
+static bool has_morph_weights(const json_t *node)
+{
+    const json_t *weights = json_object_get(node, "weights");
+    for (size_t i = 0; i < json_array_size(weights); i++)
+        if (json_number_value(json_array_get(weights, i)) != 0)
+            return true;
+    return false;
 }
 
 static const char *name_of(const json_t *object)
@@ -203,25 +195,28 @@ static const char *name_of(const json_t *object)
     return name ? name : "";
 }
 
-static bool walk_node(struct header_walk *walk, const json_t *reference, int parent, const double parent_world[16], int depth)
+/* Adds a node and its children. model_rules_check() has checked types and references. */
+static bool walk_node(struct header_walk *walk, size_t number, int parent, const double parent_world[16], int depth)
 {
     struct model_header *header = walk->header;
-    size_t number = (size_t)json_integer_value(reference), self = header->count;
+    size_t self = header->count;
     const json_t *node = json_array_get(walk->nodes, number), *mesh_number = json_object_get(node, "mesh");
     const json_t *children = json_object_get(node, "children");
-    if (!json_is_integer(reference) || !node || walk->seen[number] || depth > MAX_DEPTH)
-        return wrong(walk->why, walk->why_bytes,
-                     "the nodes of the model are not a tree: node %zu is missing, listed twice or nested too deep", number);
+    if (walk->seen[number] || depth > NODE_MAX_DEPTH)
+        return wrong(walk->why, "the nodes of the model are not a tree: node %zu is listed twice or nested too deep", number);
+    if (header->count >= NODE_MAX_COUNT)
+        return wrong(walk->why, "has more than %d nodes", NODE_MAX_COUNT);
     walk->seen[number] = true;
     const json_t *mesh = mesh_number ? json_array_get(walk->meshes, (size_t)json_integer_value(mesh_number)) : NULL;
     double local[16], world[16];
-    const char *error = local_of(node, local);
+    const char *error = node_rules_shape(mesh, json_object_get(node, "skin"), has_morph_weights(node));
+    error = error ? error : local_of(node, local);
+    if (!error) {
+        transform_multiply(parent_world, local, world);
+        error = node_rules_world(world);
+    }
     if (error)
-        return wrong(walk->why, walk->why_bytes, "has node %zu %s", number, error);
-    transform_multiply(parent_world, local, world);
-    for (int i = 0; i < 16; i++)
-        if (!(fabs(world[i]) <= MAX_COORDINATE))
-            return wrong(walk->why, walk->why_bytes, "has node %zu with a position that is not finite or exceeds 1e15", number);
+        return wrong(walk->why, "is not valid: node %zu: %s", number, error);
     mem_grow(&header->nodes, &walk->capacity, header->count + 1, sizeof(*header->nodes));
     mem_grow(&header->boxes, &walk->box_capacity, header->count + 1, sizeof(*header->boxes));
     header->partial |= mesh && json_object_get(json_object_get(node, "extensions"), "EXT_mesh_gpu_instancing");
@@ -231,7 +226,7 @@ static bool walk_node(struct header_walk *walk, const json_t *reference, int par
     header->nodes[header->count++] =
         (struct model_node){ .name = name_of(node), .mesh = name_of(mesh), .parent = parent, .number = (uint32_t)number };
     for (size_t i = 0; i < json_array_size(children); i++)
-        if (!walk_node(walk, json_array_get(children, i), (int)self, world, depth + 1))
+        if (!walk_node(walk, (size_t)json_integer_value(json_array_get(children, i)), (int)self, world, depth + 1))
             return false;
     header->nodes[self].end = (uint32_t)header->count;
     return true;
@@ -241,26 +236,23 @@ static bool walk_roots(struct header_walk *walk, const json_t *root)
 {
     const json_t *scenes = json_object_get(root, "scenes"), *chosen = json_object_get(root, "scene");
     const json_t *roots = json_object_get(json_array_get(scenes, chosen ? (size_t)json_integer_value(chosen) : 0), "nodes");
+    size_t count = json_array_size(walk->nodes);
     for (size_t i = 0; i < json_array_size(roots); i++)
-        if (!walk_node(walk, json_array_get(roots, i), -1, transform_identity, 0))
+        if (!walk_node(walk, (size_t)json_integer_value(json_array_get(roots, i)), -1, transform_identity, 0))
             return false;
     if (json_array_size(scenes) > 0)
         return true;
-    bool *child = mem_array(json_array_size(walk->nodes) + 1, sizeof(*child)), good = true;
-    for (size_t i = 0; i < json_array_size(walk->nodes); i++) {
+    bool *child = mem_array(count + 1, sizeof(*child)), good = true;
+    for (size_t i = 0; i < count; i++) {
         const json_t *children = json_object_get(json_array_get(walk->nodes, i), "children");
-        for (size_t c = 0; c < json_array_size(children); c++) {
-            size_t number = (size_t)json_integer_value(json_array_get(children, c));
-            if (number < json_array_size(walk->nodes))
-                child[number] = true;
-        }
+        for (size_t c = 0; c < json_array_size(children); c++)
+            child[json_integer_value(json_array_get(children, c))] = true;
     }
-    for (size_t i = 0; i < json_array_size(walk->nodes) && good; i++) {
-        json_t *number = json_integer((json_int_t)i);
-        good = child[i] || walk_node(walk, number, -1, transform_identity, 0);
-        json_decref(number);
-    }
+    for (size_t i = 0; i < count && good; i++)
+        good = child[i] || walk_node(walk, i, -1, transform_identity, 0);
     mem_free(child);
+    if (good && count > 0 && walk->header->count == 0)
+        good = wrong(walk->why, "is not valid: every node is the child of another node");
     return good;
 }
 
@@ -272,21 +264,24 @@ bool model_header_read(struct model_header *header, const char *path, char *why,
         return false;
     header->json = root;
     const char *version = json_string_value(json_object_get(json_object_get(root, "asset"), "version"));
-    struct header_walk walk = { .header = header,
-                                .nodes = json_object_get(root, "nodes"),
-                                .meshes = json_object_get(root, "meshes"),
-                                .accessors = json_object_get(root, "accessors"),
-                                .why = why,
-                                .why_bytes = why_bytes };
+    struct header_walk walk = { .header = header };
+    char invalid[MODEL_WHY_BYTES];
     bool good = version && version[0] == '2';
     if (!good)
-        snprintf(why, why_bytes, "is not glTF 2.0: its asset.version is '%.20s'", version ? version : "");
+        wrong(walk.why, "is not glTF 2.0: its asset.version is '%.20s'", version ? version : "");
+    else if (!model_rules_check(root, invalid)) /* may delete members of the document, so it comes before these are looked up */
+        good = wrong(walk.why, "is not valid: %.*s", MODEL_WHY_BYTES - 20, invalid);
+    walk.nodes = json_object_get(root, "nodes");
+    walk.meshes = json_object_get(root, "meshes");
+    walk.accessors = json_object_get(root, "accessors");
     walk.seen = mem_array(json_array_size(walk.nodes) + 1, sizeof(*walk.seen));
     good = good && walk_roots(&walk, root);
     mem_free(walk.seen);
-    if (!good)
-        model_header_finish(header);
-    return good;
+    if (good)
+        return true;
+    snprintf(why, why_bytes, "%s", walk.why);
+    model_header_finish(header);
+    return false;
 }
 
 static uint64_t count_of(const json_t *accessors, const json_t *number)

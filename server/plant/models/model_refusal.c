@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Formats the reason why a model is rejected. */
-#include "preprocess/model/refusal.h"
+#include "plant/models/model_refusal.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Formats error texts for rejected models: one line that names the object and the numbers. Thread: any. */
-#ifndef PREPROCESS_MODEL_REFUSAL_H
-#define PREPROCESS_MODEL_REFUSAL_H
+#ifndef PLANT_MODELS_MODEL_REFUSAL_H
+#define PLANT_MODELS_MODEL_REFUSAL_H
 #include <stdbool.h>
 
 #ifdef __cplusplus

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Validates the types and references of a glTF document, which the glTF library accepts unchecked or drops silently. Thread: any. */
-#ifndef PREPROCESS_MODEL_RULES_H
-#define PREPROCESS_MODEL_RULES_H
+#ifndef PLANT_MODELS_MODEL_RULES_H
+#define PLANT_MODELS_MODEL_RULES_H
 #include <jansson.h>
 
-#include "preprocess/model/refusal.h"
+#include "plant/models/model_refusal.h"
 
 /* Checks the version, required extensions, the type and range of every property that is read later, and that every index names an existing
    object. Rewrites whole numbers written as 3.0 to 3. Returns false with the reason in why. */

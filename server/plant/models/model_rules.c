@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The table of rules for properties of a glTF document. */
-#include "preprocess/model/model_rules.h"
+#include "plant/models/model_rules.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Checks transforms and shapes of nodes. */
+#include "plant/models/node_rules.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "plant/models/transform.h"
+
+/* limit of the numbers in a matrix; least length of a rotation quaternion; tolerance of a matrix's last row */
+static const double MAX_COORDINATE = 1e15, LEAST_ROTATION = 1e-6, MATRIX_SLACK = 1e-6;
+
+const char *node_rules_local(const double t[3], const double q[4], const double s[3], const double *matrix, double out[16])
+{
+    if (!(sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]) >= LEAST_ROTATION))
+        return "the rotation is not a unit quaternion";
+    transform_compose_quaternion(t, q, s, out);
+    if (matrix)
+        memcpy(out, matrix, 16 * sizeof(*out));
+    for (int column = 0; column < 4; column++) {
+        if (!(fabs(out[4 * column + 3] - (column == 3)) <= MATRIX_SLACK))
+            return "the last row of the matrix is not 0 0 0 1";
+        out[4 * column + 3] = column == 3;
+    }
+    return node_rules_world(out);
+}
+
+const char *node_rules_world(const double m[16])
+{
+    for (int i = 0; i < 16; i++)
+        if (!(fabs(m[i]) <= MAX_COORDINATE))
+            return "the position of the node is not finite or exceeds 1e15";
+    return NULL;
+}
+
+const char *node_rules_shape(bool has_mesh, bool has_skin, bool has_morph_weights)
+{
+    return has_mesh && has_skin ? "skinned meshes are not supported" : has_morph_weights ? "morph targets are not supported" : NULL;
+}
