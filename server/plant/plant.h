@@ -254,6 +254,11 @@ struct plant_quality_tag {
 };
 
 enum { PLANT_SENTINELS = 4 };
+struct opcua_deadband { /* smallest change of a node that the OPC UA server reports */
+    double value; /* 0: every change; NaN (only of a tag): that of its source */
+    bool percent; /* true: in percent of the node's EURange; false: in the node's unit */
+};
+
 struct tag_signal { /* address of a tag's value at its device, and its encoding there */
     char *address;  /* address as written: a register, a series name, a topic, or = and an expression */
     /* topic, path: parts of the address. MQTT: the full topic, and the path of the value in its payload ("": the source's default).
@@ -269,6 +274,7 @@ struct tag_signal { /* address of a tag's value at its device, and its encoding 
        single bits have NONE */
     enum byte_order byte_order;
     int scan_ms; /* interval in milliseconds at which the tag is read; 0: the source's poll_ms */
+    struct opcua_deadband opcua_deadband;
 };
 
 struct tag_scale { /* conversion from the raw value to the tag's unit */

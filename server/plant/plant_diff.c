@@ -119,7 +119,9 @@ static void compare_tags(struct plant_diff *diff, const struct plant *before, co
     add(what, sizeof(what),
         !same_text(a->unit, b->unit) || !same_text(a->scale.own_unit, b->scale.own_unit) || !same_text(a->description, b->description),
         "unit, description");
-    add(what, sizeof(what), !same_number(a->deadband, b->deadband), "deadband");
+    const struct opcua_deadband *opc_a = &a->signal.opcua_deadband, *opc_b = &b->signal.opcua_deadband;
+    add(what, sizeof(what),
+        !same_number(a->deadband, b->deadband) || !same_number(opc_a->value, opc_b->value) || opc_a->percent != opc_b->percent, "deadband");
     add(what, sizeof(what), !same_settings(&a->alarms.settings, &b->alarms.settings), "alarming");
     if (what[0])
         say(diff, "tag %s changed: %s", b->name, what);

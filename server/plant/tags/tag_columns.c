@@ -63,6 +63,7 @@ static const struct column_name column_names[] = {
     { "Mirrors", COL_MIRRORS },
     { "Place", COL_PLACE },
     { "Direction", COL_DIRECTION },
+    { "OPC Deadband", COL_OPC_DEADBAND },
 };
 enum { NAME_COUNT = sizeof(column_names) / sizeof(*column_names) };
 

@@ -256,6 +256,42 @@ static void read_sentinels(struct tag_wire *wire)
     mem_free(texts);
 }
 
+/* --- what the server reports ------------------------------------------------------------------------------------------------- */
+
+/* Reads a deadband: 0.5 (in the node's unit) or 2% (of the node's EURange). */
+static void read_opc_deadband(struct tag_wire *wire)
+{
+    struct plant_tag *tag = wire->tag;
+    struct opcua_deadband deadband = { .value = NAN };
+    const char *text = cell_text(wire->columns, COL_OPC_DEADBAND);
+    size_t length = strlen(text);
+    tag->signal.opcua_deadband = deadband;
+    if (length == 0)
+        return;
+    if (!comes_from(wire, "opcua")) {
+        cell_warning(wire->columns, COL_OPC_DEADBAND, "OPC Deadband has no effect on '%.60s': the tag's source is not of type opcua",
+                     tag->name);
+        return;
+    }
+    deadband.percent = text[length - 1] == '%';
+    length -= deadband.percent;
+    while (length > 0 && text[length - 1] == ' ')
+        length--;
+    char *number = mem_printf("%.*s", (int)length, text);
+    bool good = number_parse(number, &deadband.value) == NUMBER_GOOD && deadband.value >= 0 &&
+                deadband.value <= (deadband.percent ? 100 : PLANT_MAX_VALUE);
+    mem_free(number);
+    if (!good)
+        cell_error(wire->columns, COL_OPC_DEADBAND,
+                   "OPC Deadband: expected a number from 0 in the node's unit, such as 0.5, or a percentage of its EURange, such as 2%%; "
+                   "found '%.60s'",
+                   text);
+    else if (deadband.value > 0 && tag->signal.type == DATA_BIT)
+        cell_error(wire->columns, COL_OPC_DEADBAND, "OPC Deadband: a value of Data Type bool cannot have a deadband");
+    else
+        tag->signal.opcua_deadband = deadband;
+}
+
 void tag_wire_read(struct tag_columns *columns, const struct plant *plant, struct plant_tag *tag)
 {
     struct tag_wire wire = { plant, columns, tag };
@@ -263,4 +299,5 @@ void tag_wire_read(struct tag_columns *columns, const struct plant *plant, struc
     read_scaling(&wire);
     read_ne43(&wire);
     read_sentinels(&wire);
+    read_opc_deadband(&wire);
 }

@@ -16,7 +16,7 @@ static const int64_t CONNECT_NS = 15 * NS_PER_S, SUBSCRIBE_NS = 60 * NS_PER_S;
 /* interval at which nodes that the server refused are requested again */
 static const int64_t SERVE_NS = NS_PER_S, RETRY_NS = 30 * NS_PER_S;
 static const int64_t SKEW_NS = 5 * NS_PER_S, SKEW_SAID_NS = 60 * NS_PER_S;
-enum { REFUSALS_SAID = 8 }; /* refused nodes logged per session */
+enum { REFUSALS_SAID = 8 }; /* refused nodes, and refused deadbands, logged per session */
 
 struct opcua_source {
     struct source base;
@@ -26,7 +26,7 @@ struct opcua_source {
     struct stamped_writer writer;
     struct host_turn turn;
     bool link_up, link_known;
-    int refusals_said;
+    int refusals_said, deadbands_said;
     bool *wrong; /* by node: true: its last value was not a number, and this was logged */
     int64_t skew_said_ns;
 };
@@ -82,6 +82,17 @@ static void on_refused(void *arg, size_t index, uint32_t status, const char *why
                  opcua->refusals_said == REFUSALS_SAID ? "; further refusals are not logged" : "");
 }
 
+/* Logs a refused deadband of the tag list. One of the source is not logged, because it is meant for those nodes that support it. */
+static void on_deadband_refused(void *arg, size_t index, const char *why)
+{
+    struct opcua_source *opcua = arg;
+    const struct opcua_node *node = &opcua->nodes.at[index];
+    if (node->own_deadband && ++opcua->deadbands_said <= REFUSALS_SAID)
+        log_warn(opcua->base.log, "source %s: nsu=%.80s;%.80s: the server refuses the OPC Deadband %.9g%s (%s) and reports every change%s",
+                 opcua->base.config->id, node->name_space, node->id, node->deadband.value, node->deadband.percent ? "%" : "", why,
+                 opcua->deadbands_said == REFUSALS_SAID ? "; further refusals are not logged" : "");
+}
+
 /* --- the link --------------------------------------------------------------------------------------------------------------- */
 
 /* Marks all readings of the source as lost, because values may have changed unnoticed while the server could not be reached. */
@@ -134,9 +145,9 @@ static int serve(struct opcua_source *opcua, struct opcua_client *client, char w
 /* Runs one session until it ends. Returns -ECANCELED when the source must stop, else another negative code with the reason in `why`. */
 static int run_session(struct opcua_source *opcua, char why[200])
 {
-    const struct opcua_events events = { .arg = opcua, .value = on_value, .refused = on_refused };
+    const struct opcua_events events = { .arg = opcua, .value = on_value, .refused = on_refused, .deadband_refused = on_deadband_refused };
     struct opcua_client *client = opcua_client_create(opcua->base.config, opcua->turn.index, &opcua->nodes, &events, why);
-    opcua->refusals_said = 0;
+    opcua->refusals_said = opcua->deadbands_said = 0;
     int status = client ? opcua_client_connect(client, opcua->base.stop_fd, clock_mono_ns() + CONNECT_NS, why) : -EINVAL;
     if (status == 0) {
         counter_inc(opcua->connects, 1);

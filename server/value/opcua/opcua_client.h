@@ -14,6 +14,8 @@ struct opcua_events {
     void *arg;
     void (*value)(void *arg, size_t node, const UA_DataValue *value); /* `node`: index in opcua_nodes */
     void (*refused)(void *arg, size_t node, uint32_t status, const char *why);
+    /* the server refuses the node's deadband, so the node is subscribed without one */
+    void (*deadband_refused)(void *arg, size_t node, const char *why);
 };
 
 /* Creates a client and reads the certificate and login files that the source names; sends nothing yet. Returns NULL with the reason in

@@ -2,10 +2,31 @@
 /* Groups tags by node: sorts them by node, then by array element. */
 #include "value/opcua/opcua_nodes.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "value/source_tags.h"
+
+/* Returns the deadband of a tag: its own, or that of its source. */
+static struct opcua_deadband deadband_of(const struct plant_opcua *source, const struct plant_tag *tag)
+{
+    if (!isnan(tag->signal.opcua_deadband.value))
+        return tag->signal.opcua_deadband;
+    bool percent = source->deadband_percent > 0;
+    return (struct opcua_deadband){ percent ? source->deadband_percent : source->deadband, percent };
+}
+
+static void take_deadband(struct opcua_node *node, const struct plant_opcua *source, const struct plant_tag *tag)
+{
+    struct opcua_deadband deadband = deadband_of(source, tag);
+    bool is_first = node->tag_count == 0, differs = deadband.percent != node->deadband.percent;
+    if (is_first || (!differs && deadband.value < node->deadband.value))
+        node->deadband = deadband;
+    else if (differs)
+        node->deadband.value = 0;
+    node->own_deadband |= !isnan(tag->signal.opcua_deadband.value);
+}
 
 void opcua_nodes_init(struct opcua_nodes *nodes, const struct plant *plant, int source)
 {
@@ -22,6 +43,7 @@ void opcua_nodes_init(struct opcua_nodes *nodes, const struct plant *plant, int 
                 .name_space = tag->signal.topic, .id = tag->signal.path, .tags = &nodes->tags[i], .sampling_ms = sampling_ms
             };
         }
+        take_deadband(node, &plant->sources[source].opcua, tag);
         node->tag_count++;
         node->sampling_ms = sampling_ms < node->sampling_ms ? sampling_ms : node->sampling_ms;
     }

@@ -12,6 +12,9 @@ struct opcua_node {
     const int *tags;             /* indices in plant->tags */
     size_t tag_count;
     int sampling_ms; /* sampling interval in milliseconds: the shortest one that any of the node's tags requests */
+    /* deadband: the smallest one of the node's tags, or of the source; if one tag states percent and another does not: none */
+    struct opcua_deadband deadband;
+    bool own_deadband; /* true: the tag list states the deadband; false: the source does */
 };
 
 struct opcua_nodes {

@@ -123,9 +123,10 @@ static bool node_id(const struct opcua_client *client, size_t node, UA_NodeId *o
 
 static bool has_deadband(const struct opcua_client *client, size_t node)
 {
-    return (client->source->opcua.deadband > 0 || client->source->opcua.deadband_percent > 0) && !client->no_filter[node];
+    return client->nodes->at[node].deadband.value > 0 && !client->no_filter[node];
 }
 
+/* Fills the request for a node. *filter: receives the node's deadband, and must outlive the request. */
 static void fill_item(const struct opcua_client *client, size_t node, UA_DataChangeFilter *filter, UA_MonitoredItemCreateRequest *out)
 {
     out->itemToMonitor.attributeId = UA_ATTRIBUTEID_VALUE;
@@ -133,8 +134,13 @@ static void fill_item(const struct opcua_client *client, size_t node, UA_DataCha
     out->requestedParameters.samplingInterval = client->nodes->at[node].sampling_ms;
     out->requestedParameters.queueSize = (UA_UInt32)client->source->opcua.queue;
     out->requestedParameters.discardOldest = true;
-    if (has_deadband(client, node))
-        UA_ExtensionObject_setValueNoDelete(&out->requestedParameters.filter, filter, &UA_TYPES[UA_TYPES_DATACHANGEFILTER]);
+    if (!has_deadband(client, node))
+        return;
+    const struct opcua_deadband *deadband = &client->nodes->at[node].deadband;
+    *filter = (UA_DataChangeFilter){ .trigger = UA_DATACHANGETRIGGER_STATUSVALUE,
+                                     .deadbandType = deadband->percent ? UA_DEADBANDTYPE_PERCENT : UA_DEADBANDTYPE_ABSOLUTE,
+                                     .deadbandValue = deadband->value };
+    UA_ExtensionObject_setValueNoDelete(&out->requestedParameters.filter, filter, &UA_TYPES[UA_TYPES_DATACHANGEFILTER]);
 }
 
 static void refuse(struct opcua_client *client, size_t node, UA_StatusCode status)
@@ -153,6 +159,7 @@ static void take_result(struct opcua_client *client, size_t node, UA_StatusCode 
         client->refused_count--;
     } else if (of_filter && has_deadband(client, node)) {
         client->no_filter[node] = true;
+        client->events->deadband_refused(client->events->arg, node, UA_StatusCode_name(status));
     } else {
         refuse(client, node, status);
     }
@@ -193,7 +200,7 @@ static int create_items(struct opcua_client *client, const size_t *batch, UA_Mon
 
 /* Collects the next nodes that are not subscribed yet, from index *at on. Nodes that cannot be requested are marked as refused. Returns the
  * number of nodes collected. */
-static size_t gather(struct opcua_client *client, size_t *at, UA_DataChangeFilter *filter, size_t *batch,
+static size_t gather(struct opcua_client *client, size_t *at, UA_DataChangeFilter *filters, size_t *batch,
                      UA_MonitoredItemCreateRequest *items)
 {
     size_t count = 0;
@@ -205,7 +212,7 @@ static size_t gather(struct opcua_client *client, size_t *at, UA_DataChangeFilte
             refuse(client, *at, NO_SUCH_NODE);
             continue;
         }
-        fill_item(client, *at, filter, &items[count]);
+        fill_item(client, *at, &filters[count], &items[count]);
         batch[count++] = *at;
     }
     return count;
@@ -213,18 +220,16 @@ static size_t gather(struct opcua_client *client, size_t *at, UA_DataChangeFilte
 
 static int ask_for_refused(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
-    const struct plant_opcua *opcua = &client->source->opcua;
-    UA_DataChangeFilter filter = { .trigger = UA_DATACHANGETRIGGER_STATUSVALUE,
-                                   .deadbandType = opcua->deadband > 0 ? UA_DEADBANDTYPE_ABSOLUTE : UA_DEADBANDTYPE_PERCENT,
-                                   .deadbandValue = opcua->deadband > 0 ? opcua->deadband : opcua->deadband_percent };
+    UA_DataChangeFilter *filters = mem_array(client->max_items, sizeof(*filters));
     UA_MonitoredItemCreateRequest *items = mem_array(client->max_items, sizeof(*items));
     size_t *batch = mem_array(client->max_items, sizeof(*batch)), at = 0, count;
     int status = 0;
-    while (status == 0 && (count = gather(client, &at, &filter, batch, items)) > 0) {
+    while (status == 0 && (count = gather(client, &at, filters, batch, items)) > 0) {
         status = create_items(client, batch, items, count, stop_fd, deadline_mono_ns, why);
         for (size_t i = 0; i < count; i++)
             UA_NodeId_clear(&items[i].itemToMonitor.nodeId);
     }
+    mem_free(filters);
     mem_free(items);
     mem_free(batch);
     return status;

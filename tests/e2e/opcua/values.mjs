@@ -100,6 +100,29 @@ test('a deadband is the server\'s to apply; a node that cannot have one is read 
     await until('B', { ...good, value: 65 });
 });
 
+test('a tag may have a deadband of its own; one that the server refuses is logged', options, async () => {
+    await server.anew();
+    const rows = ROWS.map((row) => `${row},${{ 'TI-1': '5', 'TI-2': '10%', 'PI-1': '0' }[row.split(',')[0]] ?? ''}`);
+    await plant.run(`${server.security()}, deadband: 20`, [...rows, `B,${NODE}Bounded,,,,,,,,,,,,,,20 %`], ',OPC Deadband');
+    await said(/s=TI-2: the server refuses the OPC Deadband 10% \(Bad\w+\) and reports every change/); // a node without EURange
+    assert.doesNotMatch(plant.daemon.said, /s=XS-1: the server refuses/, 'the deadband of the source is for nodes that support it');
+    await until('B', { ...good, value: 50 });
+    await until('TI-1', { ...good, value: 20 });
+    await server.set('TI-1', 24);
+    await server.set('Bounded', 68);
+    await server.set('TI-2', 22);
+    await until('TI-2', { ...good, value: 22 });
+    await server.set('PI-1', 13834);
+    while ((await plant.tags())['PI-1'].value === 5)
+        await sleep(20);
+    const tags = await plant.tags();
+    assert.deepEqual([tags['TI-1'].value, tags.B.value], [20, 50], 'changes within the deadband');
+    await server.set('TI-1', 26);
+    await until('TI-1', { ...good, value: 26 });
+    await server.set('Bounded', 71);
+    await until('B', { ...good, value: 71 });
+});
+
 test('a server that is full is tried again until it has room', options, async () => {
     await server.anew({ sessions: 1 });
     await plant.run(server.security(), ROWS);
@@ -170,8 +193,8 @@ test('nothing that writes or calls is linked, or could be sent', options, () => 
 });
 
 test('what cannot be is said of the plant file', options, () => {
-    const refused = (keys, row = ROWS[0]) => {
-        plant.write(keys, [row]);
+    const refused = (keys, row = ROWS[0], more = '') => {
+        plant.write(keys, [row], more);
         const { code, err } = runProgram('plantcastd', ['--check', plant.file]);
         assert.equal(code, 1, err);
         return err;
@@ -186,5 +209,9 @@ test('what cannot be is said of the plant file', options, () => {
     assert.match(refused('security: none, namespace: urn:x', 'A,q=X,,,,,,,,,,,,,'),
         /tags\.csv:2:3: error: Address: 'q=X': expected nsu=URI/);
     assert.match(refused('security: none', 'A,[x]nsu=urn:x;i=5,,,,,,,,,,,,,'), /expected an element/);
+    const opc = (type, deadband) => refused('security: none', `A,nsu=urn:x;s=A,${type},,,,,,,,,,,,,${deadband}`, ',OPC Deadband');
+    for (const deadband of ['-1', 'x', '101%', '%', '1 bar'])
+        assert.match(opc('', deadband), /tags\.csv:2:\d+: error: OPC Deadband: expected a number from 0 in the node's unit/);
+    assert.match(opc('bool', '1'), /OPC Deadband: a value of Data Type bool cannot have a deadband/);
     assert.match(refused('security: none', 'A,nsu=urn:x;i=5000000000,,,,,,,,,,,,,'), /expected nsu=URI/);
 });

@@ -20,8 +20,8 @@ export class PublishedPlant {
     get folder() { return this.plant.folder; }
     get daemon() { return this.plant.daemon; }
 
-    // Writes the plant file and the tag list with the source's keys and the rows.
-    write(keys, rows) {
+    // Writes the plant file and the tag list with the source's keys and the rows. more: more columns of the tag list's header.
+    write(keys, rows, more = '') {
         writeFileSync(this.file, `plant: { name: Two boxes }
 assets:
   - { id: E-101, model: box.gltf }
@@ -33,7 +33,7 @@ sources:
   - ${this.broker.source(keys)}
 tags: tags.csv
 `);
-        writeFileSync(join(this.folder, 'tags.csv'), `${[HEAD, ...rows].join('\n')}\n`);
+        writeFileSync(join(this.folder, 'tags.csv'), `${[HEAD + more, ...rows].join('\n')}\n`);
     }
 
     // Writes and prepares the plant, and starts a daemon that need not reach its server.
@@ -49,8 +49,8 @@ tags: tags.csv
     }
 
     // Writes and prepares the plant, and starts a daemon; waits until it has subscribed.
-    async run(keys, rows) {
-        this.write(keys, rows);
+    async run(keys, rows, more = '') {
+        this.write(keys, rows, more);
         const prepared = this.plant.prepare();
         assert.equal(prepared.code, 0, prepared.err);
         await this.plant.startDaemon();
