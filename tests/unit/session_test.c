@@ -888,6 +888,21 @@ CASE(tags_come_whole_then_by_change_then_nothing)
     expect(f, "");
 }
 
+CASE(large_readings_keep_all_digits)
+{
+    f->snapshot->readings[1] = (struct reading){ .value = 12345678.531, .quality = QUALITY_GOOD };
+    char *text = reply_api_tags_text(&f->context, 1, 1);
+    assert_non_null(strstr(text, "\"value\":12345678.531,"));
+    mem_free(text);
+    /* the text for a display is filtered, and written again */
+    f->session->identity.holder.display = 1;
+    f->session->scope.tags = mem_array(f->context.plant->tag_count + 1, sizeof(*f->session->scope.tags));
+    f->session->scope.tags[1] = true;
+    text = session_scope_text(f->session, mem_strdup("{\"type\":\"tags\",\"values\":[[0,5.0],[1,12345678.531]]}"));
+    assert_string_equal(text, "{\"type\":\"tags\",\"values\":[[1,12345678.531]]}");
+    mem_free(text);
+}
+
 CASE(what_is_shown_is_confirmed)
 {
     greet(f);
