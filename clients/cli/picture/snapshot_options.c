@@ -112,8 +112,8 @@ static const char view_usage[] =
     "                          PARAM of --ramp, --radius and --reach: ramp_interval, radius_m and reach_m\n";
 static const char offline_usage[] =
     "Only with a plant file (offline):\n"
-    "  --history FOLDER        folder of recorded readings (default: from the plant file, else PLANT.history)\n"
-    "  --prepared FOLDER       output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml)\n"
+    "  --history FOLDER        folder of recorded readings (default: from the plant file, PLANT.history or the service's)\n"
+    "  --prepared FOLDER       output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml, or the service's)\n"
     "  --tier still|moving     quality of the picture: as of a still or a moving camera (default: still)\n"
     "  --no-overlay            leave out legend, markers of sensors and clock\n"
     "  --field WHERE           where the field is computed: vertices (fast), or per-fragment (at each pixel;\n"

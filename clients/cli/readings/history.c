@@ -39,7 +39,7 @@ static void print_usage(FILE *out)
           "\n"
           "export prints recorded readings as CSV that import can read (default: of the last hour).\n"
           "\n"
-          "  --folder DIR     folder of recorded readings (default: from the plant file, else PLANT.history)\n"
+          "  --folder DIR     folder of recorded readings (default: from the plant file, PLANT.history or the service's)\n"
           "  --start INSTANT  instant that the number 0 in the time column represents\n"
           "  --unit UNIT      unit of numbers in the time column: ms, s, min or h\n"
           "  --longest-gap TIME  longest time between two readings of a tag, such as 90s, 15min, 8h or 2d\n"

@@ -33,7 +33,7 @@ static void print_usage(FILE *out)
           "  --add N            number of sensors to propose\n"
           "  --group ID         sensor group of the new sensors (default: first group of the plant file)\n"
           "  --asset ID         propose positions only on this asset (default: all assets with sensors of the group)\n"
-          "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml)\n"
+          "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml, or the service's)\n"
           "  --csv              print the proposed positions as CSV instead of text\n",
           out);
 }

@@ -42,7 +42,7 @@ static void print_usage(FILE *out)
           "  --within M         only sensors at most M metres from the surface of their asset\n"
           "  --confidence C     only sensors whose match to their asset has at least this confidence, 0 to 1\n"
           "                     (confidences of matches are in matches.csv next to the tag list)\n"
-          "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml)\n"
+          "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml, or the service's)\n"
           "  --dry-run          print the names of the sensors that would be accepted, and change nothing\n"
           "  --undo LIST.N      restore the kept tag list LIST.N, if only the column `Place` has changed since\n"
           "Exit status: 0 success, 1 no sensor was accepted or the tag list cannot be written.\n",

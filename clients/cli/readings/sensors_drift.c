@@ -27,8 +27,8 @@ static void print_usage(FILE *out)
           "\n"
           "  --to INSTANT       end of the week, such as 2026-11-20T10:00:00Z or -1d for a day ago (default: now)\n"
           "  --group ID         sensor group to check (default: all groups)\n"
-          "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml)\n"
-          "  --folder DIR       folder of recorded readings (default: from the plant file, else PLANT.history)\n"
+          "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml, or the service's)\n"
+          "  --folder DIR       folder of recorded readings (default: from the plant file, PLANT.history or the service's)\n"
           "Output: CSV with columns tag, verdict (found, none or unknown), change, error, scatter, unit, hours, cause.\n"
           "cause says what is missing for a verdict. A number that cannot be computed is empty.\n"
           "Exit status: 0 no sensor drifts, 1 a sensor drifts.\n",
