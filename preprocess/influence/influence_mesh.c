@@ -13,6 +13,9 @@
 /* maximum number of points added per sensor; if the disc's radius is so small that more would be needed, edges stay longer than GRADING
  * allows */
 #define MAX_ADDED 1000
+/* Mesh edges are split where they cross the rim of a disc, so that the disc's points reach its rim. Points whose distance from the rim is
+ * below this share of the radius count as on it, which avoids very short edges. */
+#define RIM_SLACK 0.02
 #define MAX_ADDED_EVENLY 400000 /* maximum number of points added to make edges short everywhere (edge_m below INFINITY) */
 
 /* --- refinement near sensors ------------------------------------------------------------------------------------------------- */
@@ -102,22 +105,65 @@ static void cut_triangle(struct halving *halving, size_t t)
     }
 }
 
+/* Writes the point between a (inside a disc) and b (outside) where the edge crosses the disc's rim. */
+static void find_crossing(const struct influence_mesh *mesh, const double a[3], const double b[3], double radius_m, double out[3])
+{
+    double low = 0, high = 1;
+    for (int i = 0; i < 12; i++) {
+        double middle = (low + high) / 2;
+        for (int axis = 0; axis < 3; axis++)
+            out[axis] = a[axis] + middle * (b[axis] - a[axis]);
+        *(nearest_m(mesh, out) < radius_m ? &low : &high) = middle;
+    }
+}
+
+/* Marks the edges that cross the rim of a disc, to be split where they cross it. */
+static void mark_rims(struct halving *halving)
+{
+    const struct trimesh *mesh = &halving->of->mesh;
+    const double inside_m = (1 - RIM_SLACK) * halving->radius_m, outside_m = (1 + RIM_SLACK) * halving->radius_m;
+    for (size_t t = 0, count = mesh->tri_count; t < count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t a = mesh->tris[t][i], b = mesh->tris[t][(i + 1) % 3];
+            const bool turned = halving->near_m[a] > halving->near_m[b];
+            const uint32_t inner = turned ? b : a, outer = turned ? a : b;
+            if (!(halving->near_m[inner] < inside_m && halving->near_m[outer] > outside_m))
+                continue;
+            size_t before = halving->edges.count;
+            uint32_t edge = edge_table_add(&halving->edges, a, b);
+            if (edge < before)
+                continue;
+            mem_grow(&halving->middle, &halving->middle_capacity, edge + 1, sizeof(*halving->middle));
+            halving->middle[edge] = add_middle(halving, a, b);
+            find_crossing(halving->of, mesh->points[inner], mesh->points[outer], halving->radius_m,
+                          halving->of->mesh.points[halving->middle[edge]]);
+            halving->near_m[halving->middle[edge]] = halving->radius_m;
+        }
+}
+
+/* Splits edges where `mark` says. Returns the number of points added. */
+static size_t split_edges(struct halving *halving, void (*mark)(struct halving *halving))
+{
+    const struct trimesh *mesh = &halving->of->mesh;
+    size_t before = mesh->point_count;
+    edge_table_init(&halving->edges, 1024);
+    mark(halving);
+    for (size_t t = 0, count = mesh->tri_count; halving->edges.count && t < count; t++)
+        cut_triangle(halving, t);
+    edge_table_finish(&halving->edges);
+    return mesh->point_count - before;
+}
+
 static void refine(struct influence_mesh *mesh, double radius_m, double edge_m)
 {
     struct halving halving = { .of = mesh, .radius_m = radius_m, .edge_m = edge_m };
-    size_t before;
     halving.limit = mesh->mesh.point_count + MAX_ADDED * mesh->source_count + (isfinite(edge_m) ? MAX_ADDED_EVENLY : 0);
     mem_grow(&halving.near_m, &halving.near_capacity, mesh->mesh.point_count, sizeof(*halving.near_m));
     for (size_t p = 0; p < mesh->mesh.point_count; p++)
         halving.near_m[p] = nearest_m(mesh, mesh->mesh.points[p]);
-    do {
-        before = mesh->mesh.point_count;
-        edge_table_init(&halving.edges, 1024);
-        mark_edges(&halving);
-        for (size_t t = 0, count = mesh->mesh.tri_count; halving.edges.count && t < count; t++)
-            cut_triangle(&halving, t);
-        edge_table_finish(&halving.edges);
-    } while (mesh->mesh.point_count > before);
+    while (split_edges(&halving, mark_edges) > 0)
+        ;
+    split_edges(&halving, mark_rims);
     mem_free(halving.near_m);
     mem_free(halving.middle);
     for (size_t t = 0; t < mesh->mesh.tri_count; t++)
@@ -212,7 +258,7 @@ static void spread_disc(struct influence_mesh *mesh, size_t sensor, double radiu
         for (uint32_t f = mesh->fan_first[disc->points[next]], p = disc->points[next]; f < mesh->fan_first[p + 1]; f++)
             for (int i = 0; i < 3; i++) {
                 uint32_t to = from->tris[mesh->fans[f]][i];
-                if (seen[to] || vec_distance(from->points[to], place_m) > radius_m)
+                if (seen[to] || vec_distance(from->points[to], place_m) > (1 + RIM_SLACK) * radius_m)
                     continue;
                 seen[to] = 1;
                 mem_grow(&disc->points, &capacity, disc->count + 1, sizeof(*disc->points));

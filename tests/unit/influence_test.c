@@ -130,7 +130,7 @@ TEST(test_sphere_between_caps)
         worst = fmax(worst, fabs(value_at(&s, readings, v) - expected));
     }
     print_message("sphere: worst difference %.4f of what the caps differ by\n", worst);
-    assert_true(worst < 0.03); /* a disc of few vertices is slightly smaller than its radius says */
+    assert_true(worst < 0.003);
     finish(&s);
 }
 
