@@ -97,7 +97,7 @@ for (const [lang, decimal, date] of READERS.slice(sweep(0, 1))) {
     });
 }
 
-test('titles of the alarm list and the journal are whole, also when they say the order', options, async () => {
+test('titles and present values of the alarm list and the journal are whole, also when titles say the order', options, async () => {
     for (const lang of ['en', 'ko', 'de']) {
         const { page, close } = await openPage(`${url}?lang=${lang}`, { viewport: { width: 1920, height: 900 } });
         try {
@@ -114,6 +114,12 @@ test('titles of the alarm list and the journal are whole, also when they say the
                         return title.clientWidth > 1 && title.scrollWidth > title.clientWidth;
                     }).map(({ textContent }) => textContent), tab);
                     assert.deepEqual(cut, [], `${lang}, ${tab}, ${width}`);
+                    const [needed, room] = await page.locator(`#${tab}-list td[data-col=now]`).first().evaluate((cell) => {
+                        cell.firstChild.data = '200.00'; // wider than the other values; the unit is as wide as a velocity's
+                        cell.querySelector('small').textContent = 'mm/s';
+                        return [cell.scrollWidth, cell.clientWidth];
+                    });
+                    assert.ok(needed <= room, `${lang}, ${tab}, ${width}: a value of ${needed} pixels is cut at ${room}`);
                 }
                 await page.setViewportSize({ width: 1920, height: 900 });
             }

@@ -64,20 +64,23 @@ function textsOf(model, tag) {
     return { unit: unitText(tag.unit || group?.unit), text: (value) => (value === null ? '' : numberText(value, decimals)) };
 }
 
-// Returns the present value as text. It is a dash while the past is shown, or if `fresh` is false: no messages arrive from the server.
-function nowText({ model, time }, tag, fresh) {
+// Returns the present value and its unit as texts. The value is a dash while the past is shown, or if `fresh` is false: no messages arrive
+// from the server.
+function nowTexts({ model, time }, tag, fresh) {
     const { text, unit } = textsOf(model, tag), reading = tag.index === null ? null : model.readings[tag.index];
     if (!reading)
-        return '';
-    return !fresh || time.atUs !== null ? '–' : reading.quality === 'bad' ? say('novalue') : `${text(reading.value)} ${unit}`;
+        return [''];
+    return !fresh || time.atUs !== null ? ['–'] : reading.quality === 'bad' ? [say('novalue')] : [text(reading.value), unit];
 }
 
 // Updates the cells that change by themselves: the present value and the age.
 export function refreshCells(session, element, row, fresh) {
-    const now = session.clockUs();
-    const value = element.querySelector('[data-col=now]');
-    setText(value, nowText(session, row.tag, fresh));
-    value.title = value.textContent;
+    const now = session.clockUs(), cell = element.querySelector('[data-col=now]');
+    const [value, unit = ''] = nowTexts(session, row.tag, fresh), text = unit ? `${value} ${unit}` : value;
+    if (cell.title !== text) {
+        cell.title = text;
+        cell.replaceChildren(value, ...unit ? [' ', make('small', {}, unit)] : []);
+    }
     setText(element.querySelector('[data-col=since]'), row.us === null || now === null ? '' : ageText((now - row.us) / 1000));
 }
 
