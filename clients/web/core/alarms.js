@@ -7,7 +7,7 @@ export const ALARM_COLOURS = [['#af0c4a', '#fff'], ['#ffff96', '#1b1300'], ['#b6
 const CALLS = ['unacknowledged', 'active', 'returned', 'latched', 'acknowledged']; // annunciated states
 
 export const calls = (state) => CALLS.includes(state);
-const isWaiting = (state) => state === 'unacknowledged' || state === 'returned';
+export const isWaiting = (state) => state === 'unacknowledged' || state === 'returned';
 export const isGone = (state) => state === 'returned' || state === 'latched'; // returned to normal: drawn hollow
 // Makes an object that takes the place of a tag in the alarms of a device.
 const deviceOf = (name) => ({ name, index: null, group: null, asset: null, description: '' });

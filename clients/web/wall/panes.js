@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The panes of a wall, by kind. Each is { element, tick(now) }. Panes with views and trends contain the normal page in an iframe.
 import { byEquipment } from '../core/alarm_call.js';
-import { isGone } from '../core/alarms.js';
+import { isGone, isWaiting } from '../core/alarms.js';
 import { ageText, decimalsFor, numberText, qualityText, quantityText, unitText, zoneClock } from '../core/format.js';
 import { health } from '../core/health.js';
 import { refusalText } from '../core/refusals.js';
@@ -116,9 +116,12 @@ function ViewsPane(pane, context) {
         return Boolean(group) && params.group !== group;
     }
 
-    // Shows the alarm's state and the value now, which may change while the alarm's position is shown.
+    // Shows the alarm's state, its tag's other alarms that are unacknowledged, and the value now. All may change while the alarm's
+    // position is shown.
     function sayNow(alarm) {
-        setText(words.querySelector('.now'), [say(`state.${alarm.state}`), nowText(session, alarm),
+        const others = alarm.others.filter(({ state }) => isWaiting(state))
+            .map(({ kind, state }) => `${say(`kind.${kind}`)}: ${say(`state.${state}`)}`);
+        setText(words.querySelector('.now'), [say(`state.${alarm.state}`), ...isWaiting(alarm.state) ? [] : others, nowText(session, alarm),
             say('walls.since', { time: timeOf(session, alarm.raisedUs) })].filter(Boolean).join(' · '));
     }
 

@@ -75,6 +75,14 @@ test('an alarm says at which value it was raised, and the present one', options,
     await waitForText(wall.page, '.pane.alarms .what', 'now 42\\.0 °C');
     await waitForText(wall.page, '.pane.views h2', 'now 42\\.0 °C');
     await shoot(wall.page, 'present-wall');
+    await plant.tell('set TI-1 95.5');
+    await waitForText(wall.page, '.pane.views h2', 'High-high TI-1 Unacknowledged · ');
+    await desk.page.evaluate(async () => {
+        const { actOnAlarm } = await import('/core/requests.js');
+        actOnAlarm(globalThis.plantcast.session, 'acknowledge', [['TI-1', 'HH']]);
+    });
+    await waitForText(wall.page, '.pane.views h2', 'High-high TI-1 Acknowledged · High: Unacknowledged · ');
+    await plant.tell('set TI-1 42');
 });
 
 test('a note is shown at an instant if it was there then', options, async () => {
