@@ -42,9 +42,12 @@ static void check_vector(const char *name)
     for (size_t i = 0; i < count; i++) {
         const json_t *item = json_array_get(list, i);
         items[i] = (struct label_item){ at(item, 0),      at(item, 1),      at(item, 2),     at(item, 3), at(item, 5),
-                                        (int)at(item, 4), (int)at(item, 6), at(item, 7) > 0, LABEL_NONE }; /* left out: no ring */
+                                        (int)at(item, 4), (int)at(item, 6), at(item, 7) > 0, /* left out: no ring */
+                                        LABEL_NONE,       LABEL_NONE };
         if (json_array_size(item) > 8)
             items[i].callout = (int)at(item, 8);
+        if (json_array_size(item) > 9)
+            items[i].asset = (int)at(item, 9);
     }
     for (size_t i = 0; i < blocked_count; i++)
         boxes[i] = box_of(json_array_get(blocked, i));
@@ -100,7 +103,8 @@ TEST(many_labels_do_not_overlap)
                                         .depth_m = 1 + synthetic_random_unit(&seed),
                                         .rank = i % 4 - 1,
                                         .held = LABEL_NONE,
-                                        .callout = LABEL_NONE };
+                                        .callout = LABEL_NONE,
+                                        .asset = LABEL_NONE };
     labels_place(items, COUNT, &(struct label_area){ .box = { 0, 0, 1920, 1080 }, .unit = 1 }, places);
     int shown = 0;
     for (int i = 0; i < COUNT; i++) {

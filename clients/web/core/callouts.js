@@ -7,7 +7,8 @@ import { boxAt, CLEARANCE, hasArea, meets, SLOTS } from './labels.js';
 // STILL_CLOSE
 const CLOSE = 26, STILL_CLOSE = 34;
 // MOST_GROUPS: maximum number of labels; the distances grow by the factor FARTHER until the number is met
-const MOST_GROUPS = 24, FARTHER = 1.25;
+const MOST_GROUPS = 24, FARTHER = 1.25; // more rings than MOST_GROUPS are a flood
+const MOST_LEADS = 4; // maximum number of leader lines of a call-out; if more rings are as near, only the nearest has one
 const STEP_X = 24, STEP_Y = 15, STEPS = 60; // units: spacing of the grid of candidate positions around the centre of the rings
 // units: largest distance of a label from the bounding box of its rings, unless it is the only label that remains; also the largest
 // distance from a call-out to the centre of a ring with a leader line
@@ -42,9 +43,26 @@ function components(count, linked) {
     return [...out.values()];
 }
 
-function group(members, measure) {
+function boundsOf(members) {
     const xs = members.map(({ x }) => x), ys = members.map(({ y }) => y);
-    const [left, right, top, bottom] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+    return [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+}
+
+// Returns for each item the position by which it is grouped: its own, or in a flood the centre of all rings of its equipment, so that they
+// share a call-out.
+function anchorsOf(items) {
+    const all = new Map();
+    for (const item of items.length > MOST_GROUPS ? items : [])
+        all.set(item.tag?.asset, [...(all.get(item.tag?.asset) ?? []), item]);
+    const centres = new Map([...all].filter(([asset]) => asset).map(([asset, members]) => {
+        const [left, right, top, bottom] = boundsOf(members);
+        return [asset, { x: (left + right) / 2, y: (top + bottom) / 2 }];
+    }));
+    return items.map((item) => centres.get(item.tag?.asset) ?? item);
+}
+
+function group(members, measure) {
+    const [left, right, top, bottom] = boundsOf(members);
     const [one] = members, alone = members.length === 1, { width, height } = alone ? one : measure(members);
     // the ring whose previous position is reused: its previous label was of the same kind (own label or call-out)
     const before = members.find(({ callout }) => (callout === undefined) === alone);
@@ -72,8 +90,9 @@ const placeable = (items, area, unit) => (hasArea(area) && unit > 0 && unit < In
 export function placeRings(all, { area, unit, taken, measure }) {
     const order = placeable(all, area, unit);
     let lists, least = unit;
+    const anchors = anchorsOf(order);
     const close = (i, k) => {
-        const a = order[i], b = order[k], did = a.callout !== undefined && a.callout === b.callout;
+        const a = anchors[i], b = anchors[k], did = order[i].callout !== undefined && order[i].callout === order[k].callout;
         return (a.x - b.x) ** 2 + (a.y - b.y) ** 2 < ((did ? STILL_CLOSE : CLOSE) * least) ** 2;
     };
     for (let n = 0; (lists = components(order.length, close)).length > MOST_GROUPS && n < MOST_GROWTHS; n++)
@@ -98,12 +117,13 @@ export function placeRings(all, { area, unit, taken, measure }) {
         groups = joined;
     }
 
-    // Adds the members of a call-out that have a leader line: those near its box, or else the nearest. Many long lines would hide the
-    // plant.
+    // Adds the members of a call-out that have a leader line: those near its box, or the nearest if none or too many are near. More or
+    // longer lines would hide the plant.
     function withLeads(one) {
         const { members, box } = one, far = members.map(({ x, y }) =>
             Math.hypot(Math.max(box.left - x, x - box.right, 0), Math.max(box.top - y, y - box.bottom, 0)));
-        const most = Math.max(FARTHEST * unit, Math.min(...far));
+        const nearest = Math.min(...far), near = far.filter((distance) => distance <= FARTHEST * unit).length;
+        const most = near > MOST_LEADS ? nearest : Math.max(FARTHEST * unit, nearest);
         return members.length > 1 ? { ...one, leads: new Set(members.filter((_, i) => far[i] <= most)) } : one;
     }
 

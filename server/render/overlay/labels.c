@@ -120,11 +120,15 @@ static double label_distance(const struct label_item *item, const struct label_b
 
 bool labels_has_leader(const struct label_item *items, const struct label_place *places, size_t count, double unit, size_t i)
 {
-    double nearest = INFINITY;
+    double nearest = INFINITY, farthest = LABEL_FARTHEST * unit;
+    int near = 0;
     if (places[i].callout == LABEL_NONE)
         return places[i].slot >= LABEL_FIRST_FAR;
     for (size_t k = 0; k < count; k++)
-        if (places[k].callout == places[i].callout)
-            nearest = fmin(nearest, label_distance(&items[k], &places[k].box));
-    return label_distance(&items[i], &places[i].box) <= fmax(nearest, LABEL_FARTHEST * unit);
+        if (places[k].callout == places[i].callout) {
+            double distance = label_distance(&items[k], &places[k].box);
+            nearest = fmin(nearest, distance);
+            near += distance <= farthest;
+        }
+    return label_distance(&items[i], &places[i].box) <= (near > LABEL_MOST_LEADS ? nearest : fmax(nearest, farthest));
 }

@@ -10,6 +10,7 @@ struct label_box {
 };
 
 enum { LABEL_NONE = -1, LABEL_SLOTS = 16, LABEL_FIRST_FAR = 8, LABEL_MOST_BAD = 12 };
+enum { LABEL_MOST_LEADS = 4 }; /* leader lines of a call-out; if more rings are as near, only the nearest has one */
 enum { LABEL_FARTHEST = 60 }; /* u: largest distance of a label from the box around its rings, if other labels
                                   remain; longest leader line of a call-out, if it has a ring as near */
 enum label_rank { LABEL_NOT_WANTED = -1, LABEL_PLAIN, LABEL_DOUBTFUL, LABEL_BAD, LABEL_BEYOND };
@@ -21,6 +22,7 @@ struct label_item {             /* one per visible marker */
     int held;    /* slot (candidate position around the marker) of its label in the previous frame, or LABEL_NONE */
     bool ring;   /* true: the marker has an alarm ring; its rank is then LABEL_BEYOND */
     int callout; /* call-out (label shared by several alarm rings) that contained the item in the previous frame, or LABEL_NONE */
+    int asset;   /* equipment of the marker's tag: in a flood of alarms, rings of the same asset share a call-out; LABEL_NONE: none */
 };
 struct label_area {
     struct label_box box;
@@ -42,7 +44,7 @@ struct label_place {
 void labels_place(const struct label_item *items, size_t count, const struct label_area *area, struct label_place *places);
 
 /* Returns whether a leader line connects item i with its label. places: from labels_place(). A call-out has leader lines to the rings near
-   it, or else to the nearest: many long lines would hide the plant. */
+   it, or only to the nearest if none or too many are near: more or longer lines would hide the plant. */
 bool labels_has_leader(const struct label_item *items, const struct label_place *places, size_t count, double unit, size_t i);
 
 #endif

@@ -11,7 +11,7 @@
    shared a call-out in the previous frame */
 static const double CLOSE = 26, STILL_CLOSE = 34;
 static const double GROWTH = 1.25; /* factor by which CLOSE and STILL_CLOSE grow, repeatedly, until at most MAX_GROUPS labels remain */
-enum { MAX_GROUPS = 24 };
+enum { MAX_GROUPS = 24 }; /* more alarm rings are a flood */
 /* Grid of further label positions around the centre of the rings, tried nearest first. STEP_X, STEP_Y: spacing in units; STEPS: number of
    steps to each side of the centre. */
 enum { STEP_X = 24, STEP_Y = 15, STEPS = 60, SIDE = 2 * STEPS + 1, OFFSETS = SIDE * SIDE, NOWHERE = -2, FORCED = 1000000 };
@@ -36,6 +36,7 @@ struct rings {
     size_t count, group_count;
     double least; /* pixels per unit of CLOSE and STILL_CLOSE; more than the size of a unit if that would leave too many labels */
     struct ring_group *groups;
+    double (*anchors)[2];   /* by index in `order`: position by which the ring is grouped */
     int *group_of;          /* by index in `order`: index of the group that contains the item's alarm ring */
     int *members;           /* indices of the items (markers) of all groups of alarm rings, group after group */
     struct offset *offsets; /* sorted by distance */
@@ -65,11 +66,33 @@ static const struct label_item *ring_at(const struct rings *rings, size_t i)
     return &rings->layout->items[rings->order[i]];
 }
 
+/* Sets the position by which each ring is grouped: its own, or in a flood the centre of all rings of its equipment, so that they share a
+   call-out. */
+static void set_anchors(const struct rings *rings)
+{
+    for (size_t i = 0; i < rings->count; i++) {
+        const struct label_item *one = ring_at(rings, i);
+        double left = one->x, right = one->x, top = one->y, bottom = one->y;
+        for (size_t k = 0; k < rings->count && rings->count > MAX_GROUPS && one->asset != LABEL_NONE; k++) {
+            const struct label_item *other = ring_at(rings, k);
+            if (other->asset != one->asset)
+                continue;
+            left = fmin(left, other->x);
+            right = fmax(right, other->x);
+            top = fmin(top, other->y);
+            bottom = fmax(bottom, other->y);
+        }
+        rings->anchors[i][0] = (left + right) / 2;
+        rings->anchors[i][1] = (top + bottom) / 2;
+    }
+}
+
 static bool are_close(const struct rings *rings, size_t i, size_t k)
 {
     const struct label_item *a = ring_at(rings, i), *b = ring_at(rings, k);
     bool did = a->callout != LABEL_NONE && a->callout == b->callout;
-    double least = (did ? STILL_CLOSE : CLOSE) * rings->least, dx = a->x - b->x, dy = a->y - b->y;
+    double least = (did ? STILL_CLOSE : CLOSE) * rings->least;
+    double dx = rings->anchors[i][0] - rings->anchors[k][0], dy = rings->anchors[i][1] - rings->anchors[k][1];
     return dx * dx + dy * dy < least * least;
 }
 
@@ -267,9 +290,11 @@ void layout_place_rings(struct label_layout *layout, const int *order, size_t co
     struct rings rings = { .layout = layout, .order = order, .count = count };
     int *first = mem_array(count, sizeof(*first));
     rings.groups = mem_array(count, sizeof(*rings.groups));
+    rings.anchors = mem_array(count, sizeof(*rings.anchors));
     rings.group_of = mem_array(count, sizeof(*rings.group_of));
     rings.members = mem_array(count, sizeof(*rings.members));
     rings.offsets = count ? make_offsets() : NULL;
+    set_anchors(&rings);
     for (rings.least = layout->area->unit; join_close(&rings, first) > MAX_GROUPS; rings.least *= GROWTH) {
     }
     make_groups(&rings, first);
@@ -287,6 +312,7 @@ void layout_place_rings(struct label_layout *layout, const int *order, size_t co
     for (size_t i = 0; i < rings.group_count; i++)
         layout_set(layout, rings.groups[i].members, rings.groups[i].count, &rings.groups[i].box, rings.groups[i].slot);
     mem_free(rings.groups);
+    mem_free(rings.anchors);
     mem_free(rings.group_of);
     mem_free(rings.members);
     mem_free(rings.offsets);

@@ -232,6 +232,7 @@ static void add_wanted(struct pen *pen, const struct frame_marker *marker, struc
     item->height = 0.95 * pen->text_px + 2 * pad;
     item->depth_m = depth_of(pen, marker->tag);
     item->ring = has_alarm(pen, marker);
+    item->asset = tag->asset;
     item->rank = item->ring                                                                        ? LABEL_BEYOND
                  : marker->occluded || is_elsewhere(pen, marker)                                   ? LABEL_NOT_WANTED
                  : is_bad(marker)                                                                  ? LABEL_BAD
@@ -246,13 +247,15 @@ struct callout_text {
     char what[200], worst[200];
 };
 
-/* Writes a call-out's text: the asset if all alarms are on one, the number of alarms, and the most severe. */
+/* Writes a call-out's text: the asset with the most alarms if it has several, the number of other assets, the number of alarms, and the
+   most severe. */
 static void write_callout(const struct marker_labels *wanted, const int *members, size_t count, struct callout_text *text)
 {
     const struct pen *pen = wanted->pen;
     const struct plant *plant = pen->scene->plant;
     const struct reading *readings = pen->snapshot->readings;
-    int asset = plant->tags[wanted->tags[members[0]]].asset, worst = -1, least = 0;
+    int worst = -1, least = 0, most = -1, assets = 0;
+    int *counts = mem_array(plant->asset_count, sizeof(*counts)); /* number of alarms by asset */
     for (size_t i = 0; i < count; i++) {
         int tag = wanted->tags[members[i]], word = (int)readings[tag].alarm_status;
         /* in a call-out, alarms that have returned to normal or are latched rank behind all others */
@@ -262,14 +265,20 @@ static void write_callout(const struct marker_labels *wanted, const int *members
             worst = tag;
             least = grave;
         }
-        if (plant->tags[tag].asset != asset)
-            asset = -1;
+        if (plant->tags[tag].asset >= 0 && counts[plant->tags[tag].asset]++ == 0)
+            assets++;
     }
-    const char *where = asset >= 0 ? plant->assets[asset].tag : "";
-    char number[24], alarms[60], grave[140];
+    for (size_t i = 0; i < plant->asset_count; i++)
+        if (counts[i] > 1 && (most < 0 || counts[i] > counts[most]))
+            most = (int)i;
+    mem_free(counts);
+    const char *where = most >= 0 ? plant->assets[most].tag : "";
+    char others[24] = "", number[24], alarms[60], grave[140];
+    if (*where && assets > 1)
+        snprintf(others, sizeof(others), " +%d", assets - 1);
     snprintf(number, sizeof(number), "%zu", count);
     pen_say(pen, WORD_ALARMS, number, NULL, alarms, sizeof(alarms));
-    snprintf(text->what, sizeof(text->what), "%.120s%s%s", where, *where ? ", " : "", alarms);
+    snprintf(text->what, sizeof(text->what), "%.110s%s%s%s", where, others, *where ? ", " : "", alarms);
     snprintf(grave, sizeof(grave), "%s %.120s", alarm_kind_name((enum alarm_kind)readings[worst].alarm), plant->tags[worst].name);
     pen_say(pen, WORD_WORST, grave, NULL, text->worst, sizeof(text->worst));
 }

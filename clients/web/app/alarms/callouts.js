@@ -25,13 +25,16 @@ export class Callouts {
         return since && [[kind, 700, null], [say('alarms.since', { time: since }), 400, INK_2]];
     }
 
-    // Returns the two lines of a call-out for several alarms, in the format of the overlay's labels; the first line names the most urgent
-    // alarm.
+    // Returns the two lines of a call-out for several alarms, in the format of the overlay's labels. The first line names the equipment
+    // with the most alarms, if it has several, and the number of the others. The second line names the most urgent alarm.
     lines(members) {
-        const [worst] = [...members].sort(byGravity), { model } = this.session;
-        const assets = new Set(members.map(({ tag }) => tag.asset)), count = say('callout.count', { count: members.length });
+        const [worst] = [...members].sort(byGravity), { model } = this.session, counts = new Map();
+        for (const { tag } of [...members].sort((a, b) => a.tag.index - b.tag.index))
+            counts.set(tag.asset, (counts.get(tag.asset) ?? 0) + 1);
+        const [[most, many]] = [...counts].sort((a, b) => b[1] - a[1]), others = counts.size > 1 ? ` +${counts.size - 1}` : '';
+        const where = most && many > 1 ? `${model.asset(most)?.tag || most}${others}, ` : '';
+        const count = say('callout.count', { count: members.length });
         const since = heldSince(this.session, { tag: worst.tag, kind: worst.alarm.kind });
-        const where = assets.size === 1 ? `${model.asset(worst.tag.asset)?.tag || worst.tag.asset}, ` : '';
         return {
             alarm: worst.alarm,
             first: [[`${where}${count}`, 650, INK]],
