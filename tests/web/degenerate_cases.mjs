@@ -20,6 +20,7 @@ import * as measure from '../../clients/web/core/measure.js';
 import * as meters from '../../clients/web/core/meters.js';
 import * as nearest from '../../clients/web/core/nearest.js';
 import * as patterns from '../../clients/web/core/patterns.js';
+import * as pins from '../../clients/web/core/pins.js';
 import * as query from '../../clients/web/core/query.js';
 import * as scroll from '../../clients/web/core/scroll.js';
 import * as section from '../../clients/web/core/section.js';
@@ -38,8 +39,8 @@ import * as drift from '../../clients/web/app/cards/drift.js';
 import * as toolbar from '../../clients/web/app/toolbar/toolbar.js';
 
 const MODULES = { address, approach, callouts, camera, camera_flight: cameraFlight, camera_moves: cameraMoves, clip_gizmo: clipGizmo,
-    declutter, format, gestures, history, instant, labels, legend, list_window: listWindow, measure, meters, nearest, patterns, query,
-    scroll, section, split_view: splitView, sun, timings, trend_range: trendRange, trend_values: trendValues, vector, wall, wire,
+    declutter, format, gestures, history, instant, labels, legend, list_window: listWindow, measure, meters, nearest, patterns, pins,
+    query, scroll, section, split_view: splitView, sun, timings, trend_range: trendRange, trend_values: trendValues, vector, wall, wire,
     'app/alarm_bar': alarmBar, 'app/chart_style': chartStyle, 'app/drift': drift, 'app/toolbar': toolbar };
 globalThis.devicePixelRatio = 1; // charts are drawn in device pixels
 export const CASES = [];
@@ -82,6 +83,8 @@ add('labels', 'boxAt', [rings[0], 3, 1], ENDS);
 add('labels', 'leaderLine', [rings[0], { left: 60, top: 40 }, 5], ENDS);
 add('labels', 'meets', [area, area], ENDS);
 add('labels', 'hasArea', [area], ENDS);
+add('pins', 'placePin', [{ x: 20, y: 30, wide: 60, high: 20 }, area, [{ left: 0, top: 0, right: 40, bottom: 20 }],
+    [{ left: 10, top: 20, right: 36, bottom: 46 }]], ENDS);
 add('declutter', 'thinOut', [rings.map(({ x, y, depth }) => ({ x, y, depth, occluded: false, kept: false, held: true })), 1],
     { call: (items, unit) => declutter.thinOut(items, unit).length });
 add('nearest', 'halfAt', [{ split: {} }, 640, 100], ENDS);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Alarms in the picture: every alarm ring has a label or a call-out, however small the picture, and none of these covers a legend.
+// Alarms in the picture: every alarm ring has a label or a call-out, however small the picture, and none of these covers a legend. No ring
+// is drawn over a note.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { demo } from './demo.mjs';
@@ -29,6 +30,15 @@ before(async () => {
     plant = await demo();
     for (const tag of ALARMS)
         await plant.ask(`set ${tag} 200`);
+    const { page, close } = await openPage(plant.url);
+    await waitForPicture(page);
+    await page.evaluate(() => {
+        const { session } = globalThis.plantcast, add = (note) => session.post({ type: 'note', seq: ++session.toldSeq, ...note });
+        add({ text: 'Manhole open', tag: 'TE-162' });
+        add({ text: 'Seal drips, the tray is emptied each hour', asset: 'K-101' });
+    });
+    await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 2);
+    await close();
 });
 
 const look = (page) => page.evaluate(() => {
@@ -37,7 +47,12 @@ const look = (page) => page.evaluate(() => {
     const legends = overlay.blocked();
     const over = rings.map(placeOf).filter((place) => place && legends.some((box) => place.left < box.right &&
         box.left < place.left + place.width && place.top < box.bottom && box.top < place.top + place.height));
+    const viewport = document.getElementById('viewport').getBoundingClientRect(), { unit } = overlay;
+    const pins = [...document.querySelectorAll('.note-pin')].map((pin) => pin.getBoundingClientRect());
+    const hides = ({ x, y }) => pins.some(({ left, right, top, bottom }) => viewport.left + (x - 12) * unit < right &&
+        left < viewport.left + (x + 12) * unit && viewport.top + (y - 12) * unit < bottom && top < viewport.top + (y + 12) * unit);
     return {
+        pins: pins.filter(({ width }) => width > 0).length, hidden: rings.filter(hides).length,
         rings: rings.length, without: rings.filter((ring) => !placeOf(ring)).map(({ tag }) => tag.name), over: over.length,
         callouts: new Set(rings.map((ring) => placeOf(ring)?.callout).filter((id) => id !== undefined)).size,
     };
@@ -49,6 +64,7 @@ for (const [name, { query = '', ...screen }] of Object.entries(SCREENS))
         try {
             await waitForPicture(page);
             await page.waitForFunction((least) => globalThis.plantcast.overlay.callouts &&
+                document.querySelectorAll('.note-pin').length === 2 &&
                 globalThis.plantcast.overlay.markers.filter(({ alarm }) => alarm).length >= least, ALARMS.length - 2);
             await settle(page);
             for (const group of ['temperature', 'vibration']) {
@@ -56,7 +72,8 @@ for (const [name, { query = '', ...screen }] of Object.entries(SCREENS))
                 await settle(page);
                 const seen = await look(page);
                 t.diagnostic(`${group}: ${seen.rings} rings, ${seen.callouts} call-outs`);
-                assert.deepEqual({ without: seen.without, over: seen.over }, { without: [], over: 0 });
+                const { pins, hidden, without, over } = seen;
+                assert.deepEqual({ pins, hidden, without, over }, { pins: 2, hidden: 0, without: [], over: 0 });
                 assert.ok(seen.callouts > 0);
             }
             await shoot(page, `rings-${name.replace(/\W+/g, '-')}`);

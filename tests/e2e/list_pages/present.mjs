@@ -145,22 +145,26 @@ test('a note for the whole shift needs no place; its author changes and ends it'
     await page.keyboard.press('Escape');
 });
 
-test('the pins of notes cover neither each other nor the right half, and are whole', options, async () => {
+test('the pins of notes cover neither each other nor a legend nor the right half, and are whole', options, async () => {
     const { page } = desk;
     const texts = ['Manhole open', 'Seal drips, the tray is emptied each hour by the outside operator of the shift', 'Hot'];
     await page.evaluate((all) => {
-        const { session } = globalThis.plantcast;
+        const { session } = globalThis.plantcast, target = session.model.tag('TI-1').position, [x, y, z] = target;
+        session.setCamera({ ...session.camera, eye: [x + 6, y - 6, z + 4], target }); // in the middle of each half
         all.forEach((text) => session.post({ type: 'note', seq: ++session.toldSeq, text, tag: 'TI-1' }));
     }, texts);
-    // Returns pins that overlap another pin, leave the left half, or are cut. On a phone, the list of notes has the whole text.
+    // Returns pins that overlap another pin or a legend, leave the left half, or are cut. On a phone, the list of notes has the whole
+    // text.
     const amiss = () => page.evaluate(() => {
         const view = document.getElementById('viewport').getBoundingClientRect(), { split } = globalThis.plantcast.session.shown;
         const right = split ? view.left + view.width / 2 : view.right;
         const pins = [...document.querySelectorAll('.note-pin')]
             .map((e) => [e.textContent, e.getBoundingClientRect(), e.firstChild]);
+        const legends = [...document.querySelectorAll('.legend')].map((e) => ['legend', e.getBoundingClientRect()]);
         return pins.filter(([, a, text], i) => a.width === 0 || a.left < view.left - 1 || a.right > right + 1 || a.top < view.top - 1 ||
             (innerWidth > 719 && text.scrollHeight > text.clientHeight + 1) || text.scrollWidth > text.clientWidth + 1 ||
-            pins.slice(i + 1).some(([, b]) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom))
+            [...pins.slice(i + 1), ...legends].some(([, b]) => a.left < b.right && b.left < a.right && a.top < b.bottom &&
+                b.top < a.bottom))
             .map(([text]) => text);
     });
     const screen = page.viewportSize();

@@ -3,7 +3,9 @@
 // a user at another computer (a desk) points.
 import { projector } from '../../core/camera.js';
 import { ask } from '../../core/history.js';
+import { meets } from '../../core/labels.js';
 import { aboutText, endText, inForce, isOfPlant, placeOf, whereOf, whereText } from '../../core/notes.js';
+import { placePin } from '../../core/pins.js';
 import { refusalText } from '../../core/refusals.js';
 import { halves } from '../../core/split_view.js';
 import { say } from '../../core/words.js';
@@ -12,11 +14,13 @@ import { byId, make, setText, setVariable } from '../common/dom.js';
 
 const UNTIL = ['shift', 'day', 'week', 'ever'], HOURS = { shift: 8, day: 24, week: 168 };
 const MAY = ['operator', 'engineer'], POINTS_MS = 4000, TICK_MS = 500, LONGEST = 130;
-const STEM = 9, GAP = 2; // units: length of a pin's stem, as in the style sheet; space between two pins
+const RING = 13, MARK = 6; // units: radius of an alarm ring with its rims, and of other markers
+// elements over the picture that stay where they are, so that pins keep off them
+const FIXED = '.legend, .banner, .simulated-note, .chip, .split-bar, #plant-notes, .moment';
 
 export class Notes {
-    constructor({ session, selection, viewport, modules, hangs, tell, flyToTag, selectAsset }) {
-        Object.assign(this, { session, selection, viewport, modules, hangs, flyToTag, selectAsset });
+    constructor({ session, selection, viewport, overlay, modules, hangs, tell, flyToTag, selectAsset }) {
+        Object.assign(this, { session, selection, viewport, overlay, modules, hangs, flyToTag, selectAsset });
         this.pins = new Map(); // pins of notes: id -> { element, position }
         // on a wall: mark at the position at which a user at another computer points: { element, position, until }; null: nobody points
         this.pointer = null;
@@ -227,50 +231,60 @@ export class Notes {
 
     // positions that follow the picture
 
-    // Places the pins. A pin that would cover another is lifted, and its stem becomes longer; if the picture has no room above, the pin is
-    // lowered. A pin that would leave the left half is moved to the left. The newest pins are placed first, so that only older pins, which
-    // are drawn below the others, get longer stems.
+    // Places the pins in the left half. The newest pins are placed first, so that only older pins, which are drawn below the others, get
+    // longer stems. While the camera moves, a pin keeps its distance from its point as long as it covers nothing, so that it does not jump.
     show() {
         const { picture, shown } = this.session, half = picture && halves(shown, picture.shownWidth)[0];
         const project = half && projector(picture.camera, half.width, picture.fullHeight), { width, height } = this.viewport;
-        const unit = this.scale, right = half && ((half.left + half.width) * width) / picture.shownWidth / unit, boxes = [];
-        for (const pin of [...(this.pointer ? [this.pointer] : []), ...[...this.pins.values()].reverse()]) {
+        const unit = this.scale, wide = width / unit, high = height / unit;
+        const pins = [...(this.pointer ? [this.pointer] : []), ...[...this.pins.values()].reverse()];
+        const area = half && { left: 0, top: 0, right: ((half.left + half.width) * wide) / picture.shownWidth, bottom: high };
+        const [fixed, rings, marks] = pins.length > 0 && half ? [this.fixed(unit), ...this.markers()] : [[]];
+        for (const pin of pins) {
             const { element, position } = pin, at = project?.(position);
-            const x = at && ((half.left + at[0]) * width) / picture.shownWidth / unit;
-            const y = at && (at[1] * height) / picture.fullHeight / unit;
-            element.hidden = !at || x < 0 || y < 0 || x > width / unit || y > height / unit || at[0] > half.width;
+            const x = at && ((half.left + at[0]) * wide) / picture.shownWidth, y = at && (at[1] * high) / picture.fullHeight;
+            element.hidden = !at || x < 0 || y < 0 || x > wide || y > high || at[0] > half.width;
             if (element.hidden)
                 continue;
-            if (pin.right !== right) { // measures the pin only if the space for it has changed
-                setVariable(element, '--most', `${right - 4}px`);
-                Object.assign(pin, { right, wide: element.offsetWidth, high: element.offsetHeight });
+            if (pin.right !== area.right) { // measures the pin only if the space for it has changed
+                setVariable(element, '--most', `${area.right - 4}px`);
+                Object.assign(pin, { right: area.right, wide: element.offsetWidth, high: element.offsetHeight });
             }
-            const shift = Math.max(-x, Math.min(0, right - pin.wide - x)), lift = liftOf({ ...pin, x: x + shift, y }, boxes);
-            boxes.push({ left: x + shift, right: x + shift + pin.wide, top: y - STEM - lift - pin.high, bottom: y - STEM - lift });
-            for (const [name, px] of Object.entries({ left: x, top: y, shift, lift }))
-                setVariable(element, `--${name}`, `${px}px`);
+            const [left, top] = picture.still || !pin.offset ? [-1, -1] : [x + pin.offset[0], y + pin.offset[1]];
+            const kept = { left, top, right: left + pin.wide, bottom: top + pin.high };
+            const isFree = left >= 0 && top >= 0 && kept.right <= area.right && kept.bottom <= area.bottom &&
+                ![...fixed, ...rings].some((other) => meets(kept, other));
+            const box = isFree ? kept : placePin({ ...pin, x, y }, area, fixed, rings, marks);
+            pin.offset = [box.left - x, box.top - y];
+            element.classList.toggle('over', rings.some((ring) => meets(ring, box)));
+            fixed.push(box);
+            const fromX = Math.max(box.left, Math.min(box.right, x)), fromY = Math.max(box.top, Math.min(box.bottom, y));
+            const px = { left: box.left, top: box.top, 'from-x': fromX - box.left - 1, 'from-y': fromY - box.top - 1,
+                stem: Math.hypot(x - fromX, y - fromY) };
+            for (const [name, value] of Object.entries(px))
+                setVariable(element, `--${name}`, `${value}px`);
+            setVariable(element, '--turn', `${Math.atan2(fromX - x, y - fromY)}rad`);
         }
+    }
+
+    // Returns the boxes, in units, of the elements over the picture that pins keep off.
+    fixed(unit) {
+        const { element } = this.viewport, origin = element.getBoundingClientRect();
+        return [...element.querySelectorAll(FIXED)].map((one) => one.getBoundingClientRect()).filter((box) => box.width > 0)
+            .map(({ left, right, top, bottom }) => ({ left: (left - origin.left) / unit, right: (right - origin.left) / unit,
+                top: (top - origin.top) / unit, bottom: (bottom - origin.top) / unit }));
+    }
+
+    // Returns the boxes, in units, of the alarm rings and of the other markers in the left half.
+    markers() {
+        const boxes = (markers, radius) => markers.filter(({ half }) => half === 0)
+            .map(({ x, y }) => ({ left: x - radius, right: x + radius, top: y - radius, bottom: y + radius }));
+        return [boxes(this.overlay.project().filter(({ alarm }) => alarm), RING),
+            boxes(this.overlay.markers.filter(({ alarm }) => !alarm), MARK)];
     }
 
     // Scale of the pins, which are larger on a wall.
     get scale() {
         return document.body.classList.contains('wall') ? Number(document.body.style.getPropertyValue('--wall')) || 1 : 1;
     }
-}
-
-// Returns how much higher a pin must be to cover none of the boxes; negative: how much lower, because the picture has no room above.
-// x, y: left end and foot of its stem.
-function liftOf({ x, y, wide, high }, boxes) {
-    const under = (lift) => boxes.find(({ left, right, top, bottom }) => left < x + wide && x < right &&
-        top < y - STEM - lift && y - STEM - lift - high < bottom);
-    const most = y - STEM - high, least = Math.min(0, most); // lift at the upper edge of the picture; lift of a pin alone
-    let lift = least;
-    for (let box = under(lift); box; box = under(lift))
-        lift = y - STEM - box.top + GAP;
-    if (lift <= most)
-        return lift;
-    lift = least;
-    for (let box = under(lift); box; box = under(lift))
-        lift = most - box.bottom - GAP;
-    return lift;
 }

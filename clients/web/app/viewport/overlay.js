@@ -161,7 +161,7 @@ export class Overlay {
     // Returns the boxes of the HTML elements that lie over the picture.
     blocked() {
         const origin = this.viewport.element.getBoundingClientRect();
-        const over = '.legend, .banner, .card, .simulated-note, .chip, .note-pin, #plant-notes, .moment';
+        const over = '.legend, .banner, .card, .simulated-note, .chip, .note-pin, #plant-notes, .moment, .split-bar';
         const boxes = [...this.viewport.element.querySelectorAll(over)]
             .map((e) => e.getBoundingClientRect());
         const { unit } = this;
