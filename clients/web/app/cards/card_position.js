@@ -49,14 +49,15 @@ export function placeInPicture({ picture, shown }, { width, height }, position, 
     return at ? [((part.left + at[0]) * width) / picture.shownWidth, (at[1] * height) / picture.fullHeight] : null;
 }
 
-// Positions the card next to the point `at` ([x, y] in CSS pixels), clear of the status banner and the legend. If `at` is null, the card
-// stands in a corner. Other visible markers of `overlay` stay uncovered where there is room.
+// Positions the card next to the point `at` ([x, y] in CSS pixels), clear of the status banner, the legend and the plate of the moment
+// before an alarm. If `at` is null, the card stands in a corner. Other visible markers of `overlay` stay uncovered where there is room.
 const places = new WeakMap(); // card's element -> { of (the object that the card describes), place (the card's last position) }
 export function standBeside(element, { width, height }, at, overlay, of) {
     const banner = byId('banner'), legend = byId('legend'), lies = legend.offsetWidth > width / 2;
     const above = banner.hidden ? 0 : banner.offsetTop + banner.offsetHeight, strip = lies ? legend.offsetTop + legend.offsetHeight : 0;
     const beside = lies || legend.hidden || legend.offsetLeft <= 0 ? width : legend.offsetLeft;
-    const free = { left: RIM_PX, top: RIM_PX + Math.max(above, strip), right: beside - RIM_PX, bottom: height - RIM_PX };
+    const moment = byId('moment'), most = moment && !moment.hidden && moment.offsetTop > above + TALLEST_PX ? moment.offsetTop : height;
+    const free = { left: RIM_PX, top: RIM_PX + Math.max(above, strip), right: beside - RIM_PX, bottom: most - RIM_PX };
     const marks = overlay.markers.filter(({ tag, occluded, alarm }) => tag !== of && (alarm || !occluded)).map((marker) => {
         const { x, y } = overlay.placeOf(marker);
         return [x, y, Boolean(marker.alarm)];
