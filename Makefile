@@ -56,7 +56,7 @@ $(build)/open62541/open62541.mk: deploy/open62541 deploy/open62541.patch
 endif
 defines += $(if $(opcua_libs),-DPLANTCAST_OPCUA)
 pkg_cflags := $(shell pkg-config --cflags $(packages) 2>/dev/null) $(opcua_cflags)
-pkg_libs   := $(shell pkg-config --libs $(packages) 2>/dev/null) -lflann -lcholmod -lopenblas -lmeshoptimizer -ltinygltf -ldraco \
+pkg_libs   := $(shell pkg-config --libs $(packages) 2>/dev/null) -lflann -lcholmod -llapack -lblas -lmeshoptimizer -ltinygltf -ldraco \
               -lyuv $(opcua_libs) -lm -ldl
 
 # All other goals stop here with a list of the missing development packages.

@@ -2,16 +2,20 @@
 /* Assembles finite element matrices from the contributions of single triangles. */
 #include "surface/geodesic/laplacian.h"
 
-#include <cblas.h>
+#include <dlfcn.h>
 #include <pthread.h>
 
 #include "base/math/vec.h"
 #include "base/mem.h"
 
 static pthread_once_t blas_once = PTHREAD_ONCE_INIT;
+/* Lets OpenBLAS use one thread, because the workers use all cores already. Other BLAS libraries do not have this function. */
 static void blas_alone(void)
 {
-    openblas_set_num_threads(1); /* one thread for BLAS, because the workers use all cores already */
+    void (*set_threads)(int count);
+    *(void **)&set_threads = dlsym(RTLD_DEFAULT, "openblas_set_num_threads");
+    if (set_threads)
+        set_threads(1);
 }
 
 void laplacian_start(cholmod_common *common)
