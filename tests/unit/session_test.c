@@ -903,6 +903,28 @@ CASE(large_readings_keep_all_digits)
     mem_free(text);
 }
 
+CASE(a_viewer_opens_saved_views_and_keeps_no_baseline)
+{
+    json_t *list = json_array();
+    static const char *const views[][2] = { { "own", "power=3" }, { "now", "show=difference&baseline=now" } };
+    for (size_t i = 0; i < 2; i++)
+        json_array_append_new(list, json_pack("{s:s,s:s,s:s,s:s,s:i,s:[]}", "id", views[i][0], "title", "View", "view", views[i][1], "by",
+                                              "kim", "time_us", 5, "before"));
+    greet(f);
+    assert_true(named_views_mirror(f->services.named_views, list));
+    json_decref(list);
+    f->session->identity.role = ROLE_VIEWER;
+    say(f, "{\"type\":\"params\",\"seq\":1,\"named\":\"own\"}");
+    assert_true(f->session->view.field.power == 3);
+    while (hear(f)) /* the views and the parameters */
+        ;
+    say(f, "{\"type\":\"params\",\"seq\":2,\"named\":\"own\",\"power\":4}");
+    expect_error(f, "not_allowed");
+    say(f, "{\"type\":\"look\",\"seq\":3,\"named\":\"now\"}");
+    expect_error(f, "bad_field");
+    assert_true(f->session->view.field.power == 3);
+}
+
 CASE(what_is_shown_is_confirmed)
 {
     greet(f);

@@ -39,9 +39,8 @@ const char *session_scope_find_view(const struct plant_services *services, enum 
 static bool read_view(const struct session *session, const char *id, struct view *view, struct message_error *error)
 {
     const struct session_context *context = session->context;
-    const struct params_context params = {
-        .scene = context->services->scene, .baselines = context->services->baselines, .snapshot = session_snapshot(session), .bare = true
-    };
+    /* without readings: opening a view must not keep a baseline, which needs the role operator */
+    const struct params_context params = { .scene = context->services->scene, .baselines = context->services->baselines, .bare = true };
     struct view read;
     const char *address =
         session_scope_find_view(context->services, session->identity.role, &session->identity.holder, id, "named", error);
