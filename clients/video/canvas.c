@@ -56,7 +56,7 @@ static void draw_card(cairo_t *cairo, const struct canvas *canvas, const struct 
     cairo_fill(cairo);
     centred(cairo, look->headline, px, true, width, 0.5 * height - 0.8 * px);
     if (look->since_us) {
-        char *time = time_text(look, look->since_us, "%Y-%m-%d %H:%M:%S %Z"), *text = video_say(video_language(), VIDEO_SINCE, time, NULL);
+        char *time = time_text(look, look->since_us, "%Y-%m-%d %H:%M:%S %Z"), *text = video_say(look->words, VIDEO_SINCE, time, NULL);
         centred(cairo, text, 0.8 * px, false, width, 0.5 * height + 1.0 * px);
         g_free(text);
         g_free(time);
@@ -67,13 +67,13 @@ static void draw_card(cairo_t *cairo, const struct canvas *canvas, const struct 
 static char *age_text(const struct shown *look)
 {
     if (!look->picture)
-        return video_say(video_language(), VIDEO_NO_PICTURE, NULL, NULL);
+        return video_say(look->words, VIDEO_NO_PICTURE, NULL, NULL);
     if (look->age_ms < 0)
         return g_strdup("");
     double age_s = (double)look->age_ms / 1000;
     char number[32];
     g_snprintf(number, sizeof(number), "%.0f", ceil(age_s < 120 ? age_s : age_s / 60));
-    return video_say(video_language(), age_s < 120 ? VIDEO_AGE_S : VIDEO_AGE_MIN, number, NULL);
+    return video_say(look->words, age_s < 120 ? VIDEO_AGE_S : VIDEO_AGE_MIN, number, NULL);
 }
 
 /* Draws the strip below the picture: clock and age at the right, which always fit, and the title in the room that is left. */

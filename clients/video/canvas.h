@@ -7,6 +7,8 @@
 #include <glib.h>
 #include <stdbool.h>
 
+#include "render/view.h"
+
 struct shown {                /* content to draw in a frame; owned by the source (source.h), valid until its next call */
     cairo_surface_t *picture; /* picture to draw; NULL: the text card is shown */
     const char *headline, *detail; /* texts of the card: the state in large letters, and below it the reason */
@@ -14,6 +16,7 @@ struct shown {                /* content to draw in a frame; owned by the source
     const char *title;
     gint64 age_ms;   /* age of the oldest value in the picture; -1: it has no values */
     GTimeZone *zone; /* time zone of the plant */
+    enum language words; /* language of card and strip */
 };
 
 struct canvas {

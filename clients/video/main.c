@@ -10,9 +10,10 @@
 #include "branch.h"
 #include "encoder.h"
 #include "metrics.h"
+#include "render/overlay/overlay_words.h"
+#include "render/overlay/text_face.h"
 #include "rtsp.h"
 #include "source.h"
-#include "video_words.h"
 
 struct video_program {
     struct video_options options;
@@ -192,7 +193,9 @@ int main(int argc, char **argv)
     signal(SIGPIPE, SIG_IGN);
     int code = options_read(&program.options, &argc, &argv);
     if (code < 0) {
-        video_choose_language(program.options.language);
+        if (!text_face_has(overlay_word(program.options.words, WORD_NO_DATA)))
+            fprintf(stderr, "no installed font has the letters of --language %s: boxes are shown instead; install fonts-nanum\n",
+                    program.options.language);
         gst_init(NULL, NULL);
         code = run(&program);
     }

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "render/overlay/overlay_words.h"
 #include "version.h"
 
 enum { MIN_PX = 320, MAX_PX = 4096, MIN_HEIGHT_PX = 180, MIN_FPS = 5, MAX_FPS = 30, SRT_LEAST_CHARS = 10, SRT_MOST_CHARS = 79 };
@@ -125,12 +126,12 @@ static bool is_loopback(const char *address)
     return !strcmp(address, "::1") || (inet_pton(AF_INET, address, &four) == 1 && ntohl(four.s_addr) >> 24 == 127);
 }
 
-static int check_together(const struct video_options *options, bool open_readers)
+static int check_together(struct video_options *options, bool open_readers)
 {
     unsigned char address[16];
     if (options->view && options->query)
         return wrong("--view and --query exclude each other");
-    if (strcmp(options->language, "en") != 0 && strcmp(options->language, "ko") != 0 && strcmp(options->language, "de") != 0)
+    if (!overlay_language_find(options->language, &options->words))
         return wrong("--language %s: expected en, ko or de", options->language);
     if (!options->rtsp_port && !options->srt_port)
         return wrong("no output: give --rtsp, --srt or both");

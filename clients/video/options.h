@@ -5,6 +5,8 @@
 #include <glib.h>
 #include <stdbool.h>
 
+#include "render/view.h"
+
 enum { OPTIONS_MOST_READERS = 512 };
 
 struct video_options {
@@ -12,6 +14,7 @@ struct video_options {
     char *view, *query;    /* view: id of a saved view; query: parameters as /snapshot.png takes them. If both are NULL, the video shows
                               the whole plant */
     char *language;        /* language of text cards, strip and legend: en, ko or de */
+    enum language words;   /* the same language */
     char *token, *ca_path, *token_path; /* NULL: not given */
     char *listen;                       /* listening address of all outputs */
     int width_px, height_px, fps, kbps, every_ms;

@@ -66,8 +66,8 @@ static void keep(char *said, char *out, gsize size)
 static void fail(struct video_source *source, enum video_word headline, enum video_word detail, const char *a, const char *b)
 {
     char said[sizeof(source->said)];
-    keep(video_say(video_language(), headline, NULL, NULL), source->headline, sizeof(source->headline));
-    keep(video_say(video_language(), detail, a, b), source->detail, sizeof(source->detail));
+    keep(video_say(source->options->words, headline, NULL, NULL), source->headline, sizeof(source->headline));
+    keep(video_say(source->options->words, detail, a, b), source->detail, sizeof(source->detail));
     keep(video_say(LANGUAGE_EN, detail, a, b), said, sizeof(said));
     if (strcmp(source->said, said) != 0)
         fprintf(stderr, "plantcast-video: %s: %s\n", source->options->url, said);
@@ -179,7 +179,7 @@ static void take_views(struct video_source *source, const json_t *o)
     }
     if (!found) {
         g_clear_pointer(&source->view, g_free);
-        char *none = video_say(video_language(), VIDEO_NONE, NULL, NULL);
+        char *none = video_say(source->options->words, VIDEO_NONE, NULL, NULL);
         fail(source, VIDEO_NO_VIEW, VIDEO_VIEWS, source->options->view, names->len ? names->str : none);
         g_free(none);
         bar(source);
@@ -364,7 +364,9 @@ void source_look(struct video_source *source, struct shown *out)
     bool young = source->picture && !source->barred && now_us - source->picture_us < OLDEST_US;
     bool frozen = young && source->age_ms < 0 && source->valued;
     const char *title = source->view_title ? source->view_title : source->limited ? source->options->view : "";
-    *out = (struct shown){ .title = title, .zone = source->zone, .headline = source->headline, .detail = source->detail, .age_ms = -1 };
+    *out = (struct shown){ .title = title, .zone = source->zone, .words = source->options->words, .age_ms = -1 };
+    out->headline = source->headline;
+    out->detail = source->detail;
     if (young && !frozen) {
         if (source->since_us)
             fprintf(stderr, "plantcast-video: %s: pictures arrive again\n", source->options->url);
@@ -406,8 +408,8 @@ struct video_source *source_create(const struct video_options *options)
     }
     if (options->token)
         http_request_authorize(&source->http, "Bearer ", options->token);
-    keep(video_say(video_language(), VIDEO_STARTING, NULL, NULL), source->headline, sizeof(source->headline));
-    keep(video_say(video_language(), VIDEO_NOTHING_YET, NULL, NULL), source->detail, sizeof(source->detail));
+    keep(video_say(source->options->words, VIDEO_STARTING, NULL, NULL), source->headline, sizeof(source->headline));
+    keep(video_say(source->options->words, VIDEO_NOTHING_YET, NULL, NULL), source->detail, sizeof(source->detail));
     return source;
 }
 

@@ -11,11 +11,6 @@
 enum video_word { VIDEO_WORDS(VIDEO_MEMBER) VIDEO_WORDS };
 #undef VIDEO_MEMBER
 
-/* Chooses the language of text cards and strip: en, ko or de. Prints a warning if no installed font has its letters. Call it before any
-   other function. */
-void video_choose_language(const char *language);
-enum language video_language(void); /* returns the chosen language; English if none was chosen */
-
 /* Returns the text of `word` (g_free). a and b replace its placeholders in this order; NULL for a placeholder that the text does not
    have. */
 char *video_say(enum language language, enum video_word word, const char *a, const char *b);
