@@ -34,7 +34,7 @@ struct modbus_link {
      * handle descriptors from FD_SETSIZE on, and the daemon may have that many files open when it reconnects. */
     int slot_fd;
     bool open;
-    bool suspect; /* true (serial line only): an abandoned request may still be answered, so the next answer may belong to that request */
+    bool suspect; /* true (RTU frames only): an abandoned request may still be answered, so the next answer may belong to that request */
     int host;     /* index in source->hosts of the host that is used now */
     int answers;  /* of this connection */
     bool any_unit;
@@ -371,12 +371,17 @@ int modbus_link_read(struct modbus_link *link, int unit, enum register_table tab
     if (!can_ask_unit(link, unit))
         return MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE;
     int status = -ETIMEDOUT;
-    if (!link->suspect || clear_line(link, &question, words))
+    bool was_suspect = link->suspect, cleared = was_suspect && clear_line(link, &question, words);
+    if (!was_suspect || cleared)
         status = ask(link, &question, words);
     if (status == -EBADMSG)
         status = ask_again(link, &question, words);
     if (status >= 0 && link->answers++ == 0)
         link->first_answered_ns = clock_mono_ns();
+    /* A serial device server may send the late answer over the next connection. Exception: after clear_line(), the device may be one that
+       answers only one request per connection. */
+    if (link->modbus && !cleared && (status == -ETIMEDOUT || status == -EPROTO))
+        link->suspect = true;
     if (status < 0)
         close_link(link);
     return status == -EBADMSG ? -EPROTO : status;

@@ -183,6 +183,23 @@ static bool answers_at_its_age(struct device_thread *t, size_t index)
     return t->of[index].answers++ > 0 || !device->first_late_ms || !stopped_within(t, device->first_late_ms);
 }
 
+static void accept_client(struct device_thread *t)
+{
+    t->of[t->client_count].since_ns = t->of[t->client_count].heard_ns = clock_mono_ns();
+    t->of[t->client_count].answers = 0;
+    t->clients[t->client_count++] = accept4(t->listen_fd, NULL, NULL, SOCK_CLOEXEC);
+    atomic_fetch_add(&t->device->connections, 1);
+}
+
+/* Directs the answer to the newest connection, as a serial device server does, which forwards the bytes of its serial line. */
+static void turn_to_newest(struct device_thread *t)
+{
+    struct pollfd pending = { .fd = t->listen_fd, .events = POLLIN };
+    while (t->client_count < MAX_CLIENTS && poll(&pending, 1, 0) > 0)
+        accept_client(t);
+    modbus_set_socket(t->modbus, t->clients[t->client_count - 1]);
+}
+
 /* Answers a request. Returns false if the connection must be reset. */
 static bool answer(struct device_thread *t, int fd, const uint8_t *request, int bytes)
 {
@@ -217,6 +234,8 @@ static bool answer(struct device_thread *t, int fd, const uint8_t *request, int 
     }
     if (manner == DEVICE_LATE && stopped_within(t, device->late_ms))
         return true;
+    if (manner == DEVICE_LATE && device->wire == DEVICE_RTU_TCP)
+        turn_to_newest(t);
     if (manner == DEVICE_BEHIND)
         reply_wrong(t, fd, request, bytes, 1);
     modbus_reply(t->modbus, request, bytes, t->mapping);
@@ -284,12 +303,9 @@ static void *device_main(void *arg)
         for (size_t i = count; i-- > 0;)
             if (fds[2 + i].revents)
                 serve(t, i);
-        if (fds[1].revents && t->client_count < MAX_CLIENTS) {
-            t->of[t->client_count].since_ns = t->of[t->client_count].heard_ns = clock_mono_ns();
-            t->of[t->client_count].answers = 0;
-            t->clients[t->client_count++] = accept4(t->listen_fd, NULL, NULL, SOCK_CLOEXEC);
-            atomic_fetch_add(&t->device->connections, 1);
-        }
+        struct pollfd pending = { .fd = t->listen_fd, .events = POLLIN };
+        if (fds[1].revents && t->client_count < MAX_CLIENTS && poll(&pending, 1, 0) > 0)
+            accept_client(t);
     }
 }
 

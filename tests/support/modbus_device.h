@@ -11,7 +11,7 @@ enum device_manner {
     DEVICE_GOOD,
     DEVICE_SILENT,      /* accepts requests and never answers */
     DEVICE_DRIPPING,    /* sends one byte every 0.3 s */
-    DEVICE_LATE,        /* answers after late_ms, on the same connection */
+    DEVICE_LATE,        /* answers after late_ms, on the same connection; with DEVICE_RTU_TCP on the newest one */
     DEVICE_TWICE,       /* follows each answer, after late_ms, by one with the same transaction number and wrong values */
     DEVICE_BEHIND,      /* precedes each answer by one with the previous request's transaction number and wrong values */
     DEVICE_RESETTING,   /* accepts a request, then resets the connection */

@@ -85,6 +85,33 @@ CASE(late_replies_do_not_poison_a_serial_line)
     check_late_rtu(s, DEVICE_LINE);
 }
 
+/* A serial device server sends the answer to an abandoned request over the next connection, on which another block is requested. */
+CASE(late_replies_do_not_poison_the_next_connection)
+{
+    modbus_case_add_registers(s, 1);
+    plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16);
+    use_wire(s, DEVICE_RTU_TCP);
+    s->plant->sources[0].timeout_ms = 200;
+    s->device.late_ms = 300;
+    modbus_case_start(s);
+    modbus_case_expect(s, 1, QUALITY_GOOD, 3);
+    for (int round = 0; round < 5; round++) {
+        int before = s->device.requests;
+        s->device.manner = DEVICE_LATE;
+        while (s->device.requests == before)
+            sleep_ns(NS_PER_MS);
+        s->device.manner = DEVICE_GOOD;
+        while (s->device.requests < before + 8) {
+            for (int tag = 0; tag < 2; tag++)
+                if (!quality_is_bad(modbus_case_look(s, tag)->quality))
+                    assert_true(modbus_case_look(s, tag)->value == tag * 500);
+            sleep_ns(NS_PER_MS);
+        }
+    }
+    for (int tag = 0; tag < 2; tag++)
+        modbus_case_expect(s, tag, QUALITY_GOOD, 8);
+}
+
 CASE(an_absent_line_is_tried_again)
 {
     modbus_case_add_registers(s, 1);
