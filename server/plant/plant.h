@@ -270,8 +270,8 @@ struct tag_signal { /* address of a tag's value at its device, and its encoding 
     int register_index; /* number of the first register, counted from 0 as in Modbus messages */
     int bit;            /* number of the bit within the register; -1: the value is the whole register */
     enum data_type type;
-    /* byte order. Values of 32 and 64 bits always have one; values of 16 bits have NONE (standard order) unless the tag's row states one;
-       single bits have NONE */
+    /* byte order. Values of 32 and 64 bits always have one; values of 16 bits and bits of a register have NONE (standard order) unless the
+       tag's row states one */
     enum byte_order byte_order;
     int scan_ms; /* interval in milliseconds at which the tag is read; 0: the source's poll_ms */
     struct opcua_deadband opcua_deadband;

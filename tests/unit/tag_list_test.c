@@ -75,11 +75,14 @@ CASE(byte_orders_are_resolved)
                     "E,400005#BL,DWord,cdab,plc1\n"
                     "F,400007,Short,,plc2\n"
                     "G,400007,Short,DCBA,plc1\n"
-                    "H,400009,LBCD,,plc1\n");
+                    "H,400009,LBCD,,plc1\n"
+                    "I,400010.3,Boolean,BADC,plc2\n"
+                    "J,400010.4,Boolean,,plc2\n");
     plant_case_assert_loaded(c, 0);
     static const enum byte_order orders[] = { BYTE_ORDER_ABCD, BYTE_ORDER_DCBA, BYTE_ORDER_BADC, BYTE_ORDER_CDAB,
-                                              BYTE_ORDER_CDAB, BYTE_ORDER_NONE, BYTE_ORDER_DCBA, BYTE_ORDER_ABCD };
-    for (int i = 0; i < 8; i++)
+                                              BYTE_ORDER_CDAB, BYTE_ORDER_NONE, BYTE_ORDER_DCBA, BYTE_ORDER_ABCD,
+                                              BYTE_ORDER_BADC, BYTE_ORDER_NONE };
+    for (int i = 0; i < 10; i++)
         assert_int_equal(c->plant->tags[i].signal.byte_order, orders[i]);
     assert_int_equal(c->plant->tags[0].signal.register_index, 0);
     assert_int_equal(c->plant->tags[1].signal.register_index, 1); /* address_base 0 */

@@ -46,9 +46,9 @@ static void read_byte_order(struct tag_wire *wire, const struct modbus_address *
 {
     struct plant_tag *tag = wire->tag;
     enum byte_order order;
-    if (!read_stated_order(wire, address, &order) || tag->signal.type == DATA_BIT)
+    if (!read_stated_order(wire, address, &order))
         return;
-    int registers = data_type_registers(tag->signal.type);
+    int registers = tag->signal.type == DATA_BIT ? 1 : data_type_registers(tag->signal.type);
     if (!order && registers > 1 && tag->source >= 0)
         order = wire->plant->sources[tag->source].byte_order;
     tag->signal.byte_order = order;
