@@ -81,7 +81,7 @@ int devices_find(const struct devices *devices, const char *name)
 
 enum device_status device_status_of(uint32_t quality)
 {
-    switch (quality) {
+    switch (quality_code(quality)) {
     case QUALITY_BAD_WAITING: return DEVICE_UNKNOWN;
     case QUALITY_BAD_NO_COMMUNICATION:
     case QUALITY_BAD_COMMUNICATION_ERROR:

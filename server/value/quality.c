@@ -27,7 +27,7 @@ static const struct {
 const char *quality_name(uint32_t q)
 {
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
-        if (names[i].code == q)
+        if (names[i].code == quality_code(q))
             return names[i].name;
     return quality_is_good(q) ? "Good" : quality_is_uncertain(q) ? "Uncertain" : "Bad";
 }

@@ -25,6 +25,11 @@ enum {
 #define QUALITY_BAD_SENSOR_FAILURE 0x808C0000u
 #define QUALITY_BAD_OUT_OF_SERVICE 0x808D0000u
 
+/* Returns a status code without its info bits, such as those for a limit that was reached or a queue that overflowed. */
+static inline uint32_t quality_code(uint32_t q)
+{
+    return q & 0xFFFF0000u;
+}
 static inline bool quality_is_good(uint32_t q)
 {
     return (q >> 30) == 0;

@@ -3,6 +3,7 @@
 #include "tests/support/test.h"
 
 #include "alarm/alarms.h"
+#include "alarm/devices.h"
 #include "tests/support/plant_by_hand.h"
 #include "value/quality.h"
 
@@ -558,6 +559,15 @@ TEST(what_a_device_carries_outlives_us)
         end(&next);
     }
     end(&s);
+}
+
+/* A server may add info bits to a status code, such as those of a limit. */
+TEST(info_bits_do_not_hide_a_quality)
+{
+    assert_string_equal(quality_name(QUALITY_UNCERTAIN_UNITS_EXCEEDED | 0x0500), "Uncertain_EngineeringUnitsExceeded");
+    assert_string_equal(quality_name(0x0480), "Good");
+    assert_int_equal(device_status_of(QUALITY_BAD_NO_COMMUNICATION | 0x0400), DEVICE_GONE);
+    assert_int_equal(device_status_of(QUALITY_UNCERTAIN_UNITS_EXCEEDED | 0x0500), DEVICE_USABLE);
 }
 
 /* A device whose tags have no limits still gets an alarm when it is lost: nothing else would report the loss. */
