@@ -95,6 +95,26 @@ test('history has no gap where the tag stays', options, async () => {
     assert.ok(series[0].points.slice(begins).every(([, value]) => value !== null), JSON.stringify(series[0].points));
 });
 
+test('points in a unit that cannot be converted are left out, and come back with their unit', options, async () => {
+    const files = [[plant.file, readFileSync(plant.file, 'utf8')], [tagsFile, readFileSync(tagsFile, 'utf8')]];
+    const series = async () => (await (await fetch(url('/api/v1/history?tags=PI-1&from=-10m'))).json()).series[0];
+    const begins = async () => until('a value', async () => (await series()).points.find(([, value]) => value !== null)?.[0]);
+    const first = await begins();
+    writeFileSync(plant.file, files[0][1].replace('unit: bar', 'unit: psig'));
+    writeFileSync(tagsFile, files[1][1].replaceAll(',bar,', ',psig,'));
+    const changedUs = Date.now() * 1000;
+    assert.equal((await reload()).status, 200);
+    const since = await begins();
+    assert.equal((await series()).unit, 'psig');
+    assert.ok(since >= changedUs, `a point from ${(changedUs - since) / 1e6} s before the change`);
+    await plant.daemon.line(/PI-1: \d+ points in 'bar' are left out.* because 'bar' cannot be converted to 'psig'/);
+    for (const [path, text] of files)
+        writeFileSync(path, text);
+    assert.equal((await reload()).status, 200);
+    await until('the first points', async () => (await series()).points.some(([t]) => t === first));
+    assert.equal((await series()).unit, 'bar');
+});
+
 test('who may not, and from where it may not be', options, async () => {
     assert.equal((await fetch(url('/api/v1/reload'))).status, 404, 'GET changes nothing');
     const foreign = await fetch(url('/api/v1/reload'), { method: 'POST', headers: { Origin: 'http://elsewhere.example' } });
