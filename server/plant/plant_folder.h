@@ -53,7 +53,7 @@ struct revision_record {
    revision_record_finish() even after an error. */
 int revision_record_read(struct revision_record *record, const char *folder, const char *name);
 void revision_record_finish(struct revision_record *record);
-/* Continue a pending revision, or one that is being undone. This program must have locked the folder. */
+/* Finish applying, or undoing, a revision that an earlier run began. This program must have locked the folder. */
 int revision_go_on_applying(const char *folder);
 int revision_go_on_undoing(const char *folder);
 /* Returns the path of one version ("old" or "new") of a file in a record; free with mem_free(). `name` may be an absolute path. */

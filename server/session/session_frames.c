@@ -15,12 +15,12 @@ static const int64_t LOADED_STILL_NS = 1000 * NS_PER_MS;
 static const int64_t LOADED_SHARE_NS = 3 * NS_PER_S;
 /* maximum time for which a refined frame is postponed while other sessions' cameras move */
 static const int64_t MAX_POSTPONE_NS = 10 * NS_PER_S;
-/* expected transfer time above which a refined frame is sent in two stages: a draft, then full quality */
+/* if the expected transfer of a refined frame takes longer, it is sent in two stages: a draft, then full quality */
 static const int64_t SLOW_STILL_NS = 500 * NS_PER_MS;
 static const int64_t FULL_QUALITY_DELAY_NS = 1000 * NS_PER_MS; /* delay before the second stage */
 /* maximum time for which the first frame waits for the first bandwidth measurement */
 static const int64_t MAX_START_WAIT_NS = 1000 * NS_PER_MS;
-/* expected transfer time of the bytes not sent yet above which a refined frame is cut short if its view has changed */
+/* if the view has changed, and sending the rest of a refined frame takes longer, the rest is not sent */
 static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;
 static const int64_t RETRY_DELAY_NS = 2000 * NS_PER_MS; /* delay before a frame that failed for lack of memory is requested again */
 /* assumed ratio between the sizes of a refined frame and of a preview, used until a refined frame was sent */

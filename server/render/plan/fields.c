@@ -162,7 +162,7 @@ static bool upload(struct fields *fields, struct fields_entry *entry)
     return entry->uploaded = true;
 }
 
-/* Reads the sensors' present directions. Trials have none: directions at trial positions are unknown. */
+/* Reads the present directions of the sensors' arrows. Sensors on trial positions have no arrow, because their direction is unknown. */
 static void take_directions(struct fields *fields, struct fields_entry *entry, const struct fields_ask *ask)
 {
     const struct scene *scene = field_scene(fields->field);

@@ -82,7 +82,8 @@ static void on_refused(void *arg, size_t index, uint32_t status, const char *why
                  opcua->refusals_said == REFUSALS_SAID ? "; further refusals are not logged" : "");
 }
 
-/* Logs a refused deadband of the tag list. One of the source is not logged, because it is meant for those nodes that support it. */
+/* Logs a refused deadband of the tag list. A refused deadband of the plant file's source is not logged, because it
+   applies only to nodes that support one. */
 static void on_deadband_refused(void *arg, size_t index, const char *why)
 {
     struct opcua_source *opcua = arg;

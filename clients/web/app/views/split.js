@@ -67,7 +67,7 @@ export class Split {
             fillSelect(select, choices[name], right[name]);
             if (!ENGINEERS.includes(name))
                 continue;
-            // a choice that is neither the left half's nor the group's own is shown to everybody, also where there is little room
+            // People who may not change it see it only if it differs from the left half, or from the defaults of another group.
             const differs = right[name] !== (right.group === params.group ? params : group)[name];
             select.disabled = role !== 'engineer';
             select.parentElement.hidden = select.disabled && !differs;
