@@ -56,7 +56,7 @@ static void answer(struct agent *agent)
     close(fd);
 }
 
-static void *run(void *arg)
+static void *agent_main(void *arg)
 {
     struct agent *agent = arg;
     while (!thread_is_stopping(&agent->thread)) {
@@ -93,7 +93,7 @@ struct agent *agent_start(struct log *log, const char *address, int port)
     agent->fd = open_port(address, port);
     if (agent->fd < 0)
         log_err(log, "agent port %d: %s", port, strerror(-agent->fd));
-    if (agent->fd < 0 || agent->stop_fd < 0 || !thread_start(&agent->thread, log, "agent", run, agent))
+    if (agent->fd < 0 || agent->stop_fd < 0 || !thread_start(&agent->thread, log, "agent", agent_main, agent))
         agent_stop(&agent);
     return agent;
 }

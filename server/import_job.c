@@ -95,7 +95,7 @@ void import_job_end(struct import_job **pointer)
     *pointer = NULL;
 }
 
-static void add(struct arguments *list, const char *argument)
+static void add_argument(struct arguments *list, const char *argument)
 {
     mem_grow(&list->at, &list->capacity, list->count + 2, sizeof(*list->at));
     list->at[list->count++] = argument;
@@ -107,7 +107,7 @@ static void add_own(struct arguments *list, char *argument)
 {
     mem_grow(&list->own, &list->own_capacity, list->owned + 1, sizeof(*list->own));
     list->own[list->owned++] = argument;
-    add(list, argument);
+    add_argument(list, argument);
 }
 
 static void arguments_finish(struct arguments *list)
@@ -153,7 +153,7 @@ static struct helper_params params_of(struct import_job *job, enum import_phase 
     };
 }
 
-static char *run(struct import_job *job, struct arguments *list, enum import_phase phase, char **remark)
+static char *run_program(struct import_job *job, struct arguments *list, enum import_phase phase, char **remark)
 {
     struct helper_params params = params_of(job, phase);
     params.arguments = list->at;
@@ -165,7 +165,7 @@ static char *run(struct import_job *job, struct arguments *list, enum import_pha
 
 static void add_limit(struct arguments *list, const char *option, int64_t limit)
 {
-    add(list, option);
+    add_argument(list, option);
     add_own(list, mem_printf("%" PRId64, limit));
 }
 
@@ -180,15 +180,15 @@ static void add_limits(struct arguments *list, const struct import_job *job)
    lock. */
 static void add_lent(struct arguments *list)
 {
-    add(list, "--folder-lent");
+    add_argument(list, "--folder-lent");
     add_own(list, mem_printf("%d", HELPER_LENT));
 }
 
 static void add_option(struct arguments *list, const char *option, const char *value)
 {
     if (*value) {
-        add(list, option);
-        add(list, value);
+        add_argument(list, option);
+        add_argument(list, value);
     }
 }
 
@@ -198,13 +198,13 @@ static char *read_models(struct import_job *job, const struct import_order *orde
 {
     struct arguments list = { 0 };
     size_t models = 0;
-    add(&list, "plantcast-import");
+    add_argument(&list, "plantcast-import");
     if (order->anew)
-        add(&list, "--anew");
+        add_argument(&list, "--anew");
     add_lent(&list);
     add_limits(&list, job);
-    add(&list, "-o");
-    add(&list, job->folder);
+    add_argument(&list, "-o");
+    add_argument(&list, job->folder);
     add_option(&list, "--units", order->units);
     add_option(&list, "--mesh-units", order->mesh_units);
     add_option(&list, "--up", order->up);
@@ -215,14 +215,14 @@ static char *read_models(struct import_job *job, const struct import_order *orde
             add_export(&list, job, exports->at[i].name);
             models++;
         }
-    char *why = models > 0 ? run(job, &list, IMPORT_READING, remark) : mem_strdup("no model has been uploaded yet");
+    char *why = models > 0 ? run_program(job, &list, IMPORT_READING, remark) : mem_strdup("no model has been uploaded yet");
     arguments_finish(&list);
     return why;
 }
 
 static void add_source(struct arguments *list, const struct import_source *source)
 {
-    add(list, "--modbus");
+    add_argument(list, "--modbus");
     add_own(list, mem_printf("%s%s%s", source->host, *source->port ? ":" : "", source->port));
     add_option(list, "--unit", source->unit);
     add_option(list, "--byte-order", source->order);
@@ -244,21 +244,21 @@ static char *match_tags(struct import_job *job, const struct import_order *order
     struct arguments list = { 0 };
     const char *tags = find_tags(exports);
     char *decisions = mem_printf("%s/%s", plant_import_exports(job->params.import), plant_import_decisions());
-    add(&list, "plantcast-match");
+    add_argument(&list, "plantcast-match");
     if (order->decides) {
-        add(&list, "--decide");
-        add(&list, decisions);
+        add_argument(&list, "--decide");
+        add_argument(&list, decisions);
     }
     add_lent(&list);
     add_limits(&list, job);
     add_option(&list, "--encoding", order->encoding);
     if (*order->source.host)
         add_source(&list, &order->source);
-    add(&list, job->params.plant_path);
+    add_argument(&list, job->params.plant_path);
     char *why = NULL;
     if (tags) {
         add_export(&list, job, tags);
-        why = run(job, &list, IMPORT_MATCHING, NULL);
+        why = run_program(job, &list, IMPORT_MATCHING, NULL);
     } else if (!order->models) {
         why = mem_strdup("no tag list has been uploaded yet");
     }
@@ -342,14 +342,14 @@ char *import_job_undo(struct import_job *job)
         return NULL;
     }
     put_texts(job, &job->read);
-    add(&list, "plantcast-import");
-    add(&list, "--undo");
-    add(&list, "--force");
+    add_argument(&list, "plantcast-import");
+    add_argument(&list, "--undo");
+    add_argument(&list, "--force");
     add_lent(&list);
-    add(&list, "-o");
-    add(&list, job->folder);
+    add_argument(&list, "-o");
+    add_argument(&list, job->folder);
     job->undoes = true;
-    char *why = run(job, &list, IMPORT_READING, NULL);
+    char *why = run_program(job, &list, IMPORT_READING, NULL);
     arguments_finish(&list);
     job->undoes = false;
     return why;

@@ -549,7 +549,7 @@ static void *run_leader(void *arg)
 
 /* --- life cycle -------------------------------------------------------------------------------------------------------- */
 
-static void *run(void *arg)
+static void *reload_main(void *arg)
 {
     struct reload *reload = arg;
     char who[TOKEN_NAME_BYTES], expects[sizeof(reload->expects)];
@@ -598,7 +598,7 @@ struct reload *reload_create(const struct plant_runtime_context *context, struct
     pthread_mutex_init(&reload->put_lock, NULL);
     thread_init(&reload->thread);
     thread_init(&reload->leader);
-    if (!thread_start(&reload->thread, context->log, "reload", run, reload) ||
+    if (!thread_start(&reload->thread, context->log, "reload", reload_main, reload) ||
         (context->keeper && !thread_start(&reload->leader, context->log, "leader", run_leader, reload)))
         reload_destroy(&reload);
     return reload;

@@ -30,7 +30,7 @@ struct film {
 };
 
 /* Appends a picture. The first call creates the file, because the first picture gives the film its size. Returns false on failure. */
-static bool add(struct film *film, uint8_t *bgrx, int width_px, int height_px, int stride_bytes)
+static bool add_picture(struct film *film, uint8_t *bgrx, int width_px, int height_px, int stride_bytes)
 {
     if (!film->video)
         film->video = video_create(film->options->out, width_px, height_px, film->options->fps, film->options->is_signed);
@@ -46,7 +46,7 @@ static bool draw(struct film *film, int64_t at_us)
     if (!offline_renderer_seek(&film->offline, at_us, &film->view))
         return false;
     struct frame *frame = offline_renderer_draw(&film->offline, film->options, &film->view);
-    bool good = frame && add(film, frame->bgrx, frame->width_px, frame->height_px, frame->stride_bytes);
+    bool good = frame && add_picture(film, frame->bgrx, frame->width_px, frame->height_px, frame->stride_bytes);
     frame_unref(&frame);
     return good;
 }
@@ -61,7 +61,7 @@ static bool add_png(struct film *film, const struct text *body)
     image.format = PNG_FORMAT_BGRA;
     int stride = (int)PNG_IMAGE_ROW_STRIDE(image), width_px = (int)image.width, height_px = (int)image.height;
     uint8_t *bgrx = mem_array(image.height, (size_t)stride);
-    bool good = png_image_finish_read(&image, NULL, bgrx, stride, NULL) && add(film, bgrx, width_px, height_px, stride);
+    bool good = png_image_finish_read(&image, NULL, bgrx, stride, NULL) && add_picture(film, bgrx, width_px, height_px, stride);
     mem_free(bgrx);
     return good;
 }

@@ -168,7 +168,7 @@ static void end(struct video_program *program)
     g_main_loop_unref(program->loop);
 }
 
-static int run(struct video_program *program)
+static int serve_video(struct video_program *program)
 {
     program->loop = g_main_loop_new(NULL, FALSE);
     program->code = begin(program) ? 0 : 1;
@@ -197,7 +197,7 @@ int main(int argc, char **argv)
             fprintf(stderr, "no installed font has the letters of --language %s: boxes are shown instead; install fonts-nanum\n",
                     program.options.language);
         gst_init(NULL, NULL);
-        code = run(&program);
+        code = serve_video(&program);
     }
     options_finish(&program.options);
     return code;

@@ -218,7 +218,7 @@ static bool listen_and_serve(struct sim *sim, const struct sim_options *options)
     return good;
 }
 
-static int run(struct sim_options *options)
+static int run_sim(struct sim_options *options)
 {
     struct diag diag = { 0 };
     struct sim sim = { 0 };
@@ -248,7 +248,7 @@ int main(int argc, char **argv)
     if (status == -1)
         print_help();
     else if (status == EXIT_SUCCESS)
-        status = run(&options);
+        status = run_sim(&options);
     sim_map_finish(&options.map);
     return status > 0 ? status : EXIT_SUCCESS;
 }

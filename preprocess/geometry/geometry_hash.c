@@ -14,7 +14,7 @@ struct hashing {
     uint32_t textures;
 };
 
-static void add(struct hashing *h, const void *bytes, size_t count)
+static void hash_bytes(struct hashing *h, const void *bytes, size_t count)
 {
     XXH3_64bits_update(&h->state, &count, sizeof(count)); /* the length separates consecutive fields */
     if (count)
@@ -39,7 +39,7 @@ static void add_texture(struct hashing *h, uint32_t number)
     const struct gltf_texture *texture = &model->textures[number];
     add_number(h, (uint32_t)texture->srgb << 1 | texture->wrap_repeat);
     if (texture->image < model->image_count)
-        add(h, model->images[texture->image].bytes, model->images[texture->image].size);
+        hash_bytes(h, model->images[texture->image].bytes, model->images[texture->image].size);
 }
 
 static void add_material(struct hashing *h, int material)
@@ -55,19 +55,19 @@ static void add_material(struct hashing *h, int material)
         *textures[i] = 0;
     }
     plain.name = 0;
-    add(h, &plain, sizeof(plain));
-    add(h, h->model->material_names[material], strlen(h->model->material_names[material]));
+    hash_bytes(h, &plain, sizeof(plain));
+    hash_bytes(h, h->model->material_names[material], strlen(h->model->material_names[material]));
 }
 
 static void add_primitive(struct hashing *h, const struct gltf_primitive *primitive)
 {
     size_t vertices = primitive->vertex_count;
-    add(h, primitive->positions, vertices * sizeof(*primitive->positions));
-    add(h, primitive->normals, primitive->normals ? vertices * sizeof(*primitive->normals) : 0);
-    add(h, primitive->texcoords, primitive->texcoords ? vertices * sizeof(*primitive->texcoords) : 0);
-    add(h, primitive->second_texcoords, primitive->second_texcoords ? vertices * sizeof(*primitive->second_texcoords) : 0);
-    add(h, primitive->colors, primitive->colors ? vertices * sizeof(*primitive->colors) : 0);
-    add(h, primitive->indices, primitive->index_count * sizeof(*primitive->indices));
+    hash_bytes(h, primitive->positions, vertices * sizeof(*primitive->positions));
+    hash_bytes(h, primitive->normals, primitive->normals ? vertices * sizeof(*primitive->normals) : 0);
+    hash_bytes(h, primitive->texcoords, primitive->texcoords ? vertices * sizeof(*primitive->texcoords) : 0);
+    hash_bytes(h, primitive->second_texcoords, primitive->second_texcoords ? vertices * sizeof(*primitive->second_texcoords) : 0);
+    hash_bytes(h, primitive->colors, primitive->colors ? vertices * sizeof(*primitive->colors) : 0);
+    hash_bytes(h, primitive->indices, primitive->index_count * sizeof(*primitive->indices));
 }
 
 bool geometry_hash(uint64_t *out, const struct gltf_model *model, const struct geometry_params *params, char why[MODEL_WHY_BYTES])
@@ -81,15 +81,15 @@ bool geometry_hash(uint64_t *out, const struct gltf_model *model, const struct g
     h.texture = mem_array(model->texture_count + 1u, sizeof(*h.texture));
     /* adds the counts of nodes, lines and points to the hash, because the report shows them: if they change, the report is outdated */
     const uint32_t numbers[3] = { counts.node_count, counts.skipped_lines, counts.skipped_points };
-    add(&h, numbers, sizeof(numbers));
+    hash_bytes(&h, numbers, sizeof(numbers));
     for (size_t i = 0; good && i < parts.count; i++) {
         const struct node_primitive *part = &parts.at[i], *before = i ? part - 1 : NULL;
         bool same_node = before && before->node == part->node;
         bool same_material = before && before->primitive->material == part->primitive->material;
         add_number(&h, (uint32_t)same_node << 1 | same_material);
         if (!same_node) {
-            add(&h, part->node->world, sizeof(part->node->world));
-            add(&h, part->node->name, strlen(part->node->name));
+            hash_bytes(&h, part->node->world, sizeof(part->node->world));
+            hash_bytes(&h, part->node->name, strlen(part->node->name));
         }
         if (!same_material)
             add_material(&h, part->primitive->material);

@@ -216,7 +216,7 @@ static int bring_in(const struct import_command *import)
     return status == 0 && plant_draft_write(&draft) == 0 ? 0 : 1;
 }
 
-static int run(struct import_command *import)
+static int run_import(struct import_command *import)
 {
     int status = work_folder_begin(&import->work, import->folder);
     if (status != 0)
@@ -322,7 +322,7 @@ int command_import(int argc, char **argv)
     if (confine_lacks(lacks))
         fprintf(stderr, "plantcast import: warning: this kernel has %s\n", lacks);
     import.name = import.name ? import.name : stem;
-    int status = run(&import);
+    int status = run_import(&import);
     mem_free(stem);
     return status;
 }

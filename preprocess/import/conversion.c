@@ -215,8 +215,8 @@ static int check(void *arg)
     return good ? 0 : 1;
 }
 
-static bool run(const struct model_reading *reading, struct child_params *child, struct child_paths *paths, struct text *said,
-                char why[CONVERSION_WHY_BYTES])
+static bool run_reading(const struct model_reading *reading, struct child_params *child, struct child_paths *paths, struct text *said,
+                        char why[CONVERSION_WHY_BYTES])
 {
     char reason[CHILD_WHY_BYTES], *name = mem_printf("the %s reader", reading->format->name);
     child->name = name;
@@ -257,7 +257,7 @@ static char *unpacked(const struct model_reading *packed, const char *ending, st
     unpacking.output = path;
     child_paths_add(&paths, packed->path, CONFINE_READ);
     child_paths_add(&paths, packed->folder, CONFINE_WRITE);
-    if (!run(packed, &(struct child_params){ .call = unpack_model, .arg = &unpacking }, &paths, said, why)) {
+    if (!run_reading(packed, &(struct child_params){ .call = unpack_model, .arg = &unpacking }, &paths, said, why)) {
         mem_free(path);
         path = NULL;
     }
@@ -298,7 +298,7 @@ static bool ask_encoding(const struct model_reading *reading, char encoding[CHAR
     struct model_reading asking = *reading;
     asking.encoding = shared;
     child_paths_add(&paths, reading->path, CONFINE_READ);
-    bool good = run(reading, &(struct child_params){ .call = find_encoding, .arg = &asking }, &paths, said, why);
+    bool good = run_reading(reading, &(struct child_params){ .call = find_encoding, .arg = &asking }, &paths, said, why);
     size_t length = strnlen(shared, CHARSET_NAME_BYTES);
     if (good && length > 0 && length < CHARSET_NAME_BYTES) {
         memcpy(encoding, shared, length + 1);
@@ -326,7 +326,7 @@ static bool build_curved_solids(const struct model_reading *reading, const char 
     child_paths_add(&paths, reading->path, CONFINE_READ);
     child_paths_add(&paths, reading->folder, CONFINE_WRITE);
     child_paths_add(&paths, program, CONFINE_EXECUTE);
-    bool built = run(reading, &(struct child_params){ .argv = argv }, &paths, said, why);
+    bool built = run_reading(reading, &(struct child_params){ .argv = argv }, &paths, said, why);
     bool interrupted = !built && !strcmp(why, "interrupted");
     if (!built && !interrupted)
         text_add(said, "error\t1\tOpen CASCADE: %s; pipes and curved solids are imported with the coarser shapes of web-ifc\n", why);
@@ -359,7 +359,7 @@ static bool run_reader(const struct model_reading *reading, const struct reader_
     const char *const rest[] = { reader->program,           reading->path,                   reading->output, chord,
                                  units ? units : "-", params->up ? params->up : "-", reader->encoding, NULL };
     memcpy(argv + count, rest, sizeof(rest));
-    bool good = run(reading, &(struct child_params){ .argv = argv }, paths, said, why);
+    bool good = run_reading(reading, &(struct child_params){ .argv = argv }, paths, said, why);
     mem_free(chord);
     mem_free(memory);
     return good;
@@ -420,7 +420,7 @@ static bool take_output(const struct model_reading *reading, const char *glb, st
         return fail(why, "the output of the %s reader is not a regular file", reading->format->name);
     struct child_paths paths = { 0 };
     child_paths_add(&paths, reading->output, CONFINE_READ);
-    bool good = run(reading, &(struct child_params){ .call = check, .arg = (void *)(uintptr_t)reading }, &paths, said, why);
+    bool good = run_reading(reading, &(struct child_params){ .call = check, .arg = (void *)(uintptr_t)reading }, &paths, said, why);
     if (good && rename(reading->output, glb) != 0)
         good = fail(why, "%s", strerror(errno));
     return good;
@@ -451,7 +451,8 @@ static bool read_model(const struct import_format *format, const char *path, con
     if (input && format->beside)
         child_paths_add_beside(&paths, input, format->beside);
     if (good)
-        good = format->reader == FORMAT_PROGRAM ? run_program(&reading, &paths, said, why) : run(&reading, &ourselves, &paths, said, why);
+        good = format->reader == FORMAT_PROGRAM ? run_program(&reading, &paths, said, why)
+                                                : run_reading(&reading, &ourselves, &paths, said, why);
     good = good && take_output(&reading, glb, said, why);
     child_paths_finish(&paths);
     work_folder_remove(own);

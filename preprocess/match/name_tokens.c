@@ -54,7 +54,7 @@ void name_tokens_read(struct name_tokens *tokens, const char *text)
     mem_free(folded);
 }
 
-static void add(char key[NAME_KEY_BYTES], size_t *length, const char *text)
+static void add_to_key(char key[NAME_KEY_BYTES], size_t *length, const char *text)
 {
     size_t count = strlen(text);
     if (*length + count < NAME_KEY_BYTES) {
@@ -69,8 +69,8 @@ void name_tokens_key(const struct name_tokens *tokens, int from, int to, char ke
     key[0] = 0;
     for (int i = from; i < to; i++) {
         if (i > from && tokens->at[i].digits && tokens->at[i - 1].digits)
-            add(key, &length, ".");
-        add(key, &length, tokens->at[i].text);
+            add_to_key(key, &length, ".");
+        add_to_key(key, &length, tokens->at[i].text);
     }
 }
 
@@ -80,8 +80,8 @@ void name_tokens_folded(const struct name_tokens *tokens, int from, int to, char
     key[0] = 0;
     for (int i = from; i < to; i++) {
         for (size_t zeros = strlen(tokens->at[i].text); tokens->at[i].digits && zeros < (size_t)tokens->at[i].raw_length; zeros++)
-            add(key, &length, "0");
-        add(key, &length, tokens->at[i].text);
+            add_to_key(key, &length, "0");
+        add_to_key(key, &length, tokens->at[i].text);
     }
     for (char *c = key; *c; c++)
         *c = *c == 'O' ? '0' : *c == 'I' || *c == 'L' ? '1' : *c;
@@ -94,10 +94,10 @@ void name_tokens_split(const struct name_tokens *tokens, int from, int to, char 
     for (int i = from; i < to; i++)
         if (tokens->at[i].digits) {
             if (digit_length > 0)
-                add(digits, &digit_length, ".");
-            add(digits, &digit_length, tokens->at[i].text);
+                add_to_key(digits, &digit_length, ".");
+            add_to_key(digits, &digit_length, tokens->at[i].text);
         } else {
-            add(letters, &letter_length, tokens->at[i].text);
+            add_to_key(letters, &letter_length, tokens->at[i].text);
         }
 }
 

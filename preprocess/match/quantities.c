@@ -144,7 +144,7 @@ static void make_id(const struct quantities *quantities, const char *name, char 
     }
 }
 
-static struct quantity *add(struct quantities *quantities, const char *id, const char *name, const char *unit, bool is_new)
+static struct quantity *add_quantity(struct quantities *quantities, const char *id, const char *name, const char *unit, bool is_new)
 {
     mem_grow(&quantities->at, &quantities->capacity, quantities->count + 1, sizeof(*quantities->at));
     struct quantity *quantity = &quantities->at[quantities->count++];
@@ -209,7 +209,7 @@ static void take(struct quantities *quantities, const struct tag_export *list, s
     int at = find(quantities, name, unit);
     if (at < 0) {
         make_id(quantities, name, id);
-        add(quantities, id, name, written(unit), true);
+        add_quantity(quantities, id, name, written(unit), true);
         at = (int)quantities->count - 1;
     }
     quantities->of_tag[i] = at;
@@ -224,7 +224,7 @@ void quantities_find(struct quantities *quantities, const struct plant *plant, c
     quantities->of_tag = mem_array(list->count, sizeof(*quantities->of_tag));
     for (size_t g = 0; g < plant->group_count; g++)
         if (!unused || strcmp(unused, plant->groups[g].id) != 0)
-            add(quantities, plant->groups[g].id, plant->groups[g].quantity, plant->groups[g].unit, false);
+            add_quantity(quantities, plant->groups[g].id, plant->groups[g].quantity, plant->groups[g].unit, false);
     /* second round: tags without a unit come last, because they join groups that other tags have created */
     for (int blank = 0; blank < 2; blank++)
         for (size_t i = 0; i < list->count; i++) {

@@ -33,7 +33,7 @@ struct concerns {
     size_t count, capacity;
 };
 
-static void add(struct concerns *concerns, const struct prepare_asset *asset, double weight, char *text)
+static void add_concern(struct concerns *concerns, const struct prepare_asset *asset, double weight, char *text)
 {
     mem_grow(&concerns->at, &concerns->capacity, concerns->count + 1, sizeof(*concerns->at));
     concerns->at[concerns->count++] = (struct report_concern){ .asset = asset, .text = text, .weight = weight };
@@ -45,8 +45,9 @@ static void add_sensors(struct concerns *concerns, const struct prepare *prepare
         double distance_m = (double)asset->surface_distances_m[s];
         const struct plant_tag *tag = &prepare->plant->tags[asset->sensors[s].tag];
         if (distance_m > asset->far_m && !tag->place.assumed)
-            add(concerns, asset, 1000 + distance_m / asset->far_m,
-                mem_printf("sensor %s is %.3f m from the surface of the asset (more than %.3f m)", tag->name, distance_m, asset->far_m));
+            add_concern(concerns, asset, 1000 + distance_m / asset->far_m,
+                        mem_printf("sensor %s is %.3f m from the surface of the asset (more than %.3f m)", tag->name, distance_m,
+                                   asset->far_m));
     }
 }
 
@@ -54,25 +55,26 @@ static void add_numbers(struct concerns *concerns, const struct prepare_asset *a
 {
     const struct build_report *r = &asset->report;
     if (r->stray[0])
-        add(concerns, asset, 1e5, mem_strdup(r->stray));
+        add_concern(concerns, asset, 1e5, mem_strdup(r->stray));
     if (r->unreachable_vertices > r->surface.hidden_vertices) {
         double share = (double)r->unreachable_vertices / (double)(r->vertices ? r->vertices : 1);
-        add(concerns, asset, 100 * (1 + share),
-            mem_printf("no sensor reaches %s of the asset's %s vertices (%.1f %%); the surface is in %zu pieces",
-                       text_table_number(r->unreachable_vertices).text, text_table_number(r->vertices).text, 100 * share,
-                       r->surface.components_after));
+        add_concern(concerns, asset, 100 * (1 + share),
+                    mem_printf("no sensor reaches %s of the asset's %s vertices (%.1f %%); the surface is in %zu pieces",
+                               text_table_number(r->unreachable_vertices).text, text_table_number(r->vertices).text, 100 * share,
+                               r->surface.components_after));
     }
     if (r->surface.heat_disagreement > METHODS_DIFFER)
-        add(concerns, asset, 10 * (1 + r->surface.heat_disagreement),
+        add_concern(
+            concerns, asset, 10 * (1 + r->surface.heat_disagreement),
             mem_printf(
                 "two methods of measuring distances on the asset differ by %.1f %%: the surface may be torn or joined in wrong places",
                 100 * r->surface.heat_disagreement));
     const struct level_left *left = &r->levels[0].left[LEVEL_LIMIT_TRIANGLES];
     if (r->level_count && (double)left->steps > FIELD_SLACK)
-        add(concerns, asset, 1 + (double)left->steps / 255,
-            mem_printf("in close views, values err by up to %.1f steps of colour (1/255 of the range) along %s edges, because the "
-                       "asset has reached its limit of triangles",
-                       (double)left->steps, text_table_number(left->edges).text));
+        add_concern(concerns, asset, 1 + (double)left->steps / 255,
+                    mem_printf("in close views, values err by up to %.1f steps of colour (1/255 of the range) along %s edges, because the "
+                               "asset has reached its limit of triangles",
+                               (double)left->steps, text_table_number(left->edges).text));
 }
 
 /* Reports the bend (interpolation error inside triangles) of harmonic, fin and gp fields: these triangles are not refined for these fields,
@@ -81,12 +83,14 @@ static void add_bend(struct concerns *concerns, const struct prepare_asset *asse
 {
     const struct bend_report *bend = &asset->report.bend;
     if (bend->over_share > BENT_SHARE)
-        add(concerns, asset, 1 + bend->steps / 255,
+        add_concern(
+            concerns, asset, 1 + bend->steps / 255,
             mem_printf("inside triangles, the interpolations harmonic, fin or gp may err by over a step of colour (1/255 of the range) on "
                        "%.3g %% of the asset's surface, by up to %.1f steps",
                        100 * bend->over_share, bend->steps));
     if (bend->unmeasured > 0 || bend->unknown_share > BENT_SHARE)
-        add(concerns, asset, 1,
+        add_concern(
+            concerns, asset, 1,
             mem_printf("the error of the interpolations harmonic, fin or gp inside triangles is unknown on %.3g %% of the asset's surface",
                        bend->unmeasured > 0 ? 100 : 100 * bend->unknown_share));
 }
@@ -104,7 +108,8 @@ static void add_powers(struct concerns *concerns, const struct prepare *prepare,
             sensors += tag->group == (int)g && !tag->place.assumed;
         }
         if (sensors > 1 && group->interpolation == INTERPOLATION_SHEPARD && group->power >= HIGH_POWER)
-            add(concerns, asset, 1 + steps / 255,
+            add_concern(
+                concerns, asset, 1 + steps / 255,
                 mem_printf("values of group '%s' on the surface may err by up to %.0f steps of colour (1/255 of the range): power %g "
                            "amplifies distance errors of %.1f %%",
                            group->id, steps, group->power, 100 * DISTANCE_ERROR));
@@ -127,7 +132,7 @@ static void add_sizes(struct concerns *concerns, const struct prepare *prepare)
         /* true: the asset's size comes from pieces far from its main part, which are a problem of their own in the report */
         bool stray = asset->reported && asset->report.stray[0];
         if (!stray && asset_longest_m(asset->size_m) > 0 && asset_size_doubtful(asset->plant, asset->size_m, median_m, why))
-            add(concerns, asset, 1e6, mem_strdup(why));
+            add_concern(concerns, asset, 1e6, mem_strdup(why));
     }
     mem_free(longest_m);
 }
@@ -146,7 +151,7 @@ struct report_concern *report_concerns(const struct prepare *prepare, size_t *co
     for (size_t i = 0; i < prepare->asset_count; i++) {
         const struct prepare_asset *asset = &prepare->assets[i];
         if (asset->wanted && asset->state == PREPARE_FAILED)
-            add(&concerns, asset, 1e9, mem_strdup("the asset could not be prepared: see the errors"));
+            add_concern(&concerns, asset, 1e9, mem_strdup("the asset could not be prepared: see the errors"));
         add_sensors(&concerns, prepare, asset);
         if (asset->reported && asset->state != PREPARE_SHARED)
             add_numbers(&concerns, asset), add_bend(&concerns, asset);

@@ -186,7 +186,7 @@ static void tick(struct alarm_service *service)
     tell(service, number);
 }
 
-static void *run(void *arg)
+static void *alarm_service_main(void *arg)
 {
     struct alarm_service *service = arg;
     int64_t next_ns = clock_mono_ns();
@@ -263,7 +263,7 @@ struct alarm_service *alarm_service_start(const struct alarm_service_params *par
     if (params->before)
         adopt(service, params->before);
     service->params.before = NULL;
-    if (!good || !thread_start(&service->thread, params->log, "alarms", run, service))
+    if (!good || !thread_start(&service->thread, params->log, "alarms", alarm_service_main, service))
         alarm_service_stop(&service);
     return service;
 }

@@ -135,7 +135,7 @@ static bool wait_for_work(struct journal *journal, bool *urgent)
     return !stopping;
 }
 
-static void *run(void *arg)
+static void *journal_main(void *arg)
 {
     struct journal *journal = arg;
     bool urgent;
@@ -282,7 +282,7 @@ struct journal *journal_start(const struct journal_params *params, struct alarms
     journal->keep_days = params->keep_days;
     add_counters(journal, params->counters);
     restore_all(journal, alarms, now);
-    if (!thread_start(&journal->thread, params->log, "alarms: journal", run, journal))
+    if (!thread_start(&journal->thread, params->log, "alarms: journal", journal_main, journal))
         journal_stop(&journal);
     return journal;
 }

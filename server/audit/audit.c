@@ -209,7 +209,7 @@ static void say_lost(struct audit *audit)
     mem_free(what);
 }
 
-static void *run(void *arg)
+static void *audit_main(void *arg)
 {
     struct audit *audit = arg;
     pthread_mutex_lock(&audit->thread.lock);
@@ -267,7 +267,7 @@ static bool start(struct audit *audit)
         log_err(params->log, "audit: %s: %s", params->path, strerror(-error));
     if (error || (params->syslog && !(audit->syslog = audit_syslog_start(params))))
         return false;
-    return thread_start(&audit->thread, params->log, "audit", run, audit);
+    return thread_start(&audit->thread, params->log, "audit", audit_main, audit);
 }
 
 struct audit *audit_start(const struct audit_params *params)

@@ -152,7 +152,7 @@ static void free_first(struct audit_syslog *syslog)
     mem_free(first);
 }
 
-static void *run(void *arg)
+static void *audit_syslog_main(void *arg)
 {
     struct audit_syslog *syslog = arg;
     pthread_mutex_lock(&syslog->lock);
@@ -208,7 +208,7 @@ struct audit_syslog *audit_syslog_start(const struct audit_params *params)
     counter_set(syslog->good, 1);
     pthread_mutex_init(&syslog->lock, NULL);
     clock_cond_init(&syslog->wake);
-    if (curl_global_init(CURL_GLOBAL_DEFAULT) == CURLE_OK && pthread_create(&syslog->thread, NULL, run, syslog) == 0)
+    if (curl_global_init(CURL_GLOBAL_DEFAULT) == CURLE_OK && pthread_create(&syslog->thread, NULL, audit_syslog_main, syslog) == 0)
         return syslog;
     log_err(params->log, "audit: sending to the syslog server cannot start: libcurl or a thread failed");
     mem_free(syslog->url);

@@ -73,7 +73,7 @@ json_t *refusal_json(const struct refusal *refusal)
     return json_pack("{s:s,s:o}", "code", rows[refusal->code].code, "args", args);
 }
 
-static void add(json_t *answer, const char *text, const char *member, const struct refusal *refusal)
+static void add_refusal(json_t *answer, const char *text, const char *member, const struct refusal *refusal)
 {
     char words[REFUSAL_TEXT_BYTES];
     refusal_text(refusal, words);
@@ -84,15 +84,15 @@ static void add(json_t *answer, const char *text, const char *member, const stru
 
 void refusal_add(json_t *answer, enum refusal_code code)
 {
-    add(answer, "why", "refusal", &(struct refusal){ .code = code });
+    add_refusal(answer, "why", "refusal", &(struct refusal){ .code = code });
 }
 
 void refusal_add_with(json_t *answer, const struct refusal *refusal)
 {
-    add(answer, "why", "refusal", refusal);
+    add_refusal(answer, "why", "refusal", refusal);
 }
 
 void refusal_add_unaudited(json_t *answer, enum refusal_code code)
 {
-    add(answer, "unaudited", "unaudited_refusal", &(struct refusal){ .code = code });
+    add_refusal(answer, "unaudited", "unaudited_refusal", &(struct refusal){ .code = code });
 }

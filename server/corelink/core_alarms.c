@@ -10,7 +10,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 
-static void add(void *arg, const struct alarm *alarm)
+static void add_alarm(void *arg, const struct alarm *alarm)
 {
     const struct alarm_state *state = &alarm->state;
     json_t *one = json_pack("{s:s,s:s,s:b,s:b,s:b,s:i,s:b,s:b,s:I,s:I,s:I,s:s,s:s}", "name", alarm->name, "kind",
@@ -26,7 +26,7 @@ static void add(void *arg, const struct alarm *alarm)
 json_t *core_alarms_message(struct alarm_service *service, uint64_t since, int64_t now_utc_ns, uint64_t *number)
 {
     json_t *list = json_array();
-    *number = alarm_service_changes(service, since, add, list);
+    *number = alarm_service_changes(service, since, add_alarm, list);
     return json_pack("{s:s,s:b,s:I,s:o}", "type", "alarms", "whole", since == 0, "utc", (json_int_t)now_utc_ns, "list", list);
 }
 

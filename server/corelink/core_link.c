@@ -721,7 +721,7 @@ static int64_t take_turn(struct core_link *link)
     return host_turn_next_ns(&link->turn, link->params.url_count, clock_mono_ns());
 }
 
-static void *run(void *arg)
+static void *core_link_main(void *arg)
 {
     struct core_link *link = arg;
     while (!thread_is_stopping(&link->thread)) {
@@ -785,7 +785,7 @@ struct core_link *core_link_start(const struct core_link_params *params)
     link->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (link->stop_fd < 0)
         log_err(params->log, "core: eventfd: %s", strerror(errno));
-    if (link->stop_fd < 0 || !read_token(link) || !thread_start(&link->thread, params->log, "core", run, link))
+    if (link->stop_fd < 0 || !read_token(link) || !thread_start(&link->thread, params->log, "core", core_link_main, link))
         core_link_stop(&link);
     return link;
 }

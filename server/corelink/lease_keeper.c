@@ -415,7 +415,7 @@ static int64_t take_turn(struct lease_keeper *keeper)
     return leads && !keeper->told_lost && last_ns > began_ns && last_ns < next_ns ? last_ns : next_ns;
 }
 
-static void *run(void *arg)
+static void *lease_keeper_main(void *arg)
 {
     struct lease_keeper *keeper = arg;
     bool stopping = false, gave = false;
@@ -592,7 +592,7 @@ struct lease_keeper *lease_keeper_create(const struct lease_keeper_params *param
 
 bool lease_keeper_start(struct lease_keeper *keeper)
 {
-    return thread_start(&keeper->thread, keeper->params.log, "lease", run, keeper);
+    return thread_start(&keeper->thread, keeper->params.log, "lease", lease_keeper_main, keeper);
 }
 
 static void give_back(struct lease_keeper *keeper)

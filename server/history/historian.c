@@ -609,7 +609,7 @@ static void take_spool(struct historian *historian)
     spool_places_free(places);
 }
 
-static void *run(void *arg)
+static void *historian_main(void *arg)
 {
     struct historian *historian = arg;
     int64_t next_ns = clock_mono_ns();
@@ -685,7 +685,7 @@ struct historian *historian_start(const struct historian_params *params)
     }
     if (!params->stands_by)
         store_listen(params->store, on_sample, historian);
-    if (!thread_start(&historian->thread, params->log, "history", run, historian))
+    if (!thread_start(&historian->thread, params->log, "history", historian_main, historian))
         historian_stop(&historian);
     return historian;
 }

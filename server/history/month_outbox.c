@@ -30,7 +30,7 @@ struct month_outbox {
     struct database db;
 };
 
-static int run(struct month_outbox *outbox, enum statement which, const char *doing)
+static int run_statement(struct month_outbox *outbox, enum statement which, const char *doing)
 {
     return database_fail(&outbox->db, database_run(&outbox->db, database_statement(&outbox->db, which)), doing);
 }
@@ -144,7 +144,7 @@ static int take_all(struct month_outbox *outbox, enum statement which, size_t mo
 int month_outbox_read(struct month_outbox *outbox, size_t most, struct month_outbox_batch *batch)
 {
     month_outbox_batch_finish(batch);
-    int error = run(outbox, BEGIN, "cannot be read");
+    int error = run_statement(outbox, BEGIN, "cannot be read");
     if (error)
         return error;
     error = take_all(outbox, ROWS, most, take_point, batch);
@@ -154,7 +154,7 @@ int month_outbox_read(struct month_outbox *outbox, size_t most, struct month_out
         error = take_all(outbox, TAGS, 0, take_tag, batch);
     if (!error)
         error = take_all(outbox, EVENTS, 0, take_event, batch);
-    int ended = run(outbox, COMMIT, "cannot be read");
+    int ended = run_statement(outbox, COMMIT, "cannot be read");
     return error ? error : ended;
 }
 

@@ -80,7 +80,7 @@ void recorder_destroy(struct recorder **recorder)
     *recorder = NULL;
 }
 
-static void add(struct recorder_rows *rows, int tag, const struct history_point *points, int count)
+static void add_points(struct recorder_rows *rows, int tag, const struct history_point *points, int count)
 {
     mem_grow(&rows->at, &rows->capacity, rows->count + (size_t)count, sizeof(*rows->at));
     for (int i = 0; i < count; i++)
@@ -91,7 +91,7 @@ void recorder_put(struct recorder *recorder, int tag, const struct history_point
 {
     struct recorder_lane *lane = &recorder->lanes[tag];
     struct history_point points[SWINGING_DOOR_MAX_POINTS];
-    add(kept, tag, points, swinging_door_put(&lane->door, &lane->params, sample, points));
+    add_points(kept, tag, points, swinging_door_put(&lane->door, &lane->params, sample, points));
     lane->quality = sample->quality;
     if (!lane->touched)
         recorder->touched[recorder->touched_count++] = tag;
@@ -123,7 +123,7 @@ void recorder_held(struct recorder *recorder, struct recorder_rows *held)
            the writer is killed */
         if (!swinging_door_held(&lane->door, &point))
             point = lane->door.anchor;
-        add(held, recorder->touched[i], &point, 1);
+        add_points(held, recorder->touched[i], &point, 1);
     }
     recorder->touched_count = 0;
 }
@@ -131,7 +131,7 @@ void recorder_held(struct recorder *recorder, struct recorder_rows *held)
 void recorder_end_tag(struct recorder *recorder, int tag, struct recorder_rows *kept)
 {
     struct history_point points[SWINGING_DOOR_MAX_POINTS];
-    add(kept, tag, points, swinging_door_end(&recorder->lanes[tag].door, &recorder->lanes[tag].params, points));
+    add_points(kept, tag, points, swinging_door_end(&recorder->lanes[tag].door, &recorder->lanes[tag].params, points));
 }
 
 void recorder_end(struct recorder *recorder, struct recorder_rows *kept)

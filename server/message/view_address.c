@@ -124,7 +124,7 @@ static bool add_split(struct view_address *out, char *value)
     return view_address_add(out, "split", strcmp(value, "same") != 0 ? value : "");
 }
 
-static bool add(struct view_address *out, const char *name, char *value, struct message_error *error)
+static bool add_field(struct view_address *out, const char *name, char *value, struct message_error *error)
 {
     bool good = true, known = true;
     size_t i = 0, count = sizeof(names) / sizeof(names[0]);
@@ -172,7 +172,7 @@ struct address_reading {
 static bool take(void *arg, const char *name, char *value)
 {
     const struct address_reading *reading = arg;
-    return add(reading->out, name, value, reading->error);
+    return add_field(reading->out, name, value, reading->error);
 }
 
 bool view_address_read(struct view_address *out, const char *address, struct message_error *error)

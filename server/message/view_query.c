@@ -151,7 +151,7 @@ static json_t *lines(const char *text)
     return NULL;
 }
 
-static bool add(json_t *o, const char *arg, struct message_error *error);
+static bool add_argument(json_t *o, const char *arg, struct message_error *error);
 
 /* Reads NAME=VALUE;... */
 static json_t *split(const char *text, struct message_error *error)
@@ -160,7 +160,7 @@ static json_t *split(const char *text, struct message_error *error)
     char *copy = mem_strdup(text), *rest = copy;
     bool good = true;
     for (char *item; good && (item = strsep(&rest, ";"));)
-        good = !*item || add(all, item, error);
+        good = !*item || add_argument(all, item, error);
     mem_free(copy);
     if (good)
         return all;
@@ -230,7 +230,7 @@ static json_t *value_of(enum query_kind kind, const char *text, struct message_e
     return NULL;
 }
 
-static bool add(json_t *o, const char *arg, struct message_error *error)
+static bool add_argument(json_t *o, const char *arg, struct message_error *error)
 {
     size_t n = strcspn(arg, "=");
     char name[48];
@@ -307,7 +307,7 @@ bool view_query_parse(const struct params_context *context, enum role role, cons
     json_t *o = json_object();
     bool good = true;
     for (size_t i = 0; i < count && good; i++)
-        good = add(o, args[i], error);
+        good = add_argument(o, args[i], error);
     if (good && !place && (json_object_get(o, "x") || json_object_get(o, "y"))) {
         message_fail(error, "bad_field", "x, y: only for a pick");
         good = false;

@@ -82,7 +82,7 @@ static void sign(struct picture_signer *signer, struct signing *signing)
     *packet = packet_ref(signer->last_signed);
 }
 
-static void *run(void *arg)
+static void *picture_signer_main(void *arg)
 {
     struct picture_signer *signer = arg;
     pthread_mutex_lock(&signer->thread.lock);
@@ -115,7 +115,7 @@ struct picture_signer *picture_signer_create(struct log *log, const struct signi
     signer->arg = arg;
     thread_init(&signer->thread);
     pthread_cond_init(&signer->settled, NULL);
-    if (!thread_start(&signer->thread, log, "signing of pictures", run, signer))
+    if (!thread_start(&signer->thread, log, "signing of pictures", picture_signer_main, signer))
         picture_signer_destroy(&signer);
     return signer;
 }

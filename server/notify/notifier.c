@@ -209,7 +209,7 @@ static void count(struct notifier *notifier)
     notifier->lost_before = lost;
 }
 
-static void *run(void *arg)
+static void *notifier_main(void *arg)
 {
     struct notifier *notifier = arg;
     while (!atomic_load(&notifier->stopping)) {
@@ -268,7 +268,7 @@ struct notifier *notifier_start(const struct notifier_params *params)
     notifier->delivery = delivery_create(params->log, params->plant->notify);
     if (notifier->delivery)
         alarm_service_listen(params->alarm_service, wake, notifier);
-    int error = notifier->delivery ? pthread_create(&notifier->thread, NULL, run, notifier) : 0;
+    int error = notifier->delivery ? pthread_create(&notifier->thread, NULL, notifier_main, notifier) : 0;
     notifier->started = notifier->delivery && !error;
     if (error)
         log_err(params->log, "notify: cannot start a thread: %s", strerror(error));

@@ -192,7 +192,7 @@ static int run_session(struct publisher *publisher, char why[200])
     return status;
 }
 
-static void *run(void *arg)
+static void *publisher_main(void *arg)
 {
     struct publisher *publisher = arg;
     const struct plant_source *broker = &publisher->params.plant->publish->broker;
@@ -249,7 +249,7 @@ struct publisher *publisher_start(const struct publisher_params *params)
     publisher->messages =
         counters_add(params->counters, "plantcast_publish_messages_total", "counter", "Readings and alarms published to the broker.");
     make_topics(publisher);
-    int error = publisher->stop_fd < 0 ? errno : pthread_create(&publisher->thread, NULL, run, publisher);
+    int error = publisher->stop_fd < 0 ? errno : pthread_create(&publisher->thread, NULL, publisher_main, publisher);
     publisher->started = !error;
     if (error) {
         log_err(params->log, "publish: cannot start a thread: %s", strerror(error));

@@ -37,7 +37,7 @@ static bool same_number(double a, double b)
 
 /* --- tags ------------------------------------------------------------------------------------------------------------------- */
 
-static void add(char *what, size_t size, bool differs, const char *name)
+static void add_difference(char *what, size_t size, bool differs, const char *name)
 {
     size_t n = strlen(what);
     if (differs)
@@ -106,23 +106,25 @@ static void compare_tags(struct plant_diff *diff, const struct plant *before, co
     char what[300] = "";
     compare_limits(diff, a, b);
     bool same_address = same_text(a->signal.address, b->signal.address);
-    add(what, sizeof(what),
-        !same_address || a->signal.type != b->signal.type || a->signal.byte_order != b->signal.byte_order, "address");
-    add(what, sizeof(what), !same_text(source_of(before, a), source_of(after, b)), "source");
-    add(what, sizeof(what), !same_text(group_of(before, a), group_of(after, b)), "group");
-    add(what, sizeof(what), !same_text(asset_of(before, a), asset_of(after, b)), "asset");
-    add(what, sizeof(what), !same_place(&a->place, &b->place), "place");
-    add(what, sizeof(what), !same_direction(before, a, after, b), "direction");
-    add(what, sizeof(what), !same_scale(&a->scale, &b->scale), "scaling");
-    add(what, sizeof(what), a->signal.scan_ms != b->signal.scan_ms || a->validity.stale_s != b->validity.stale_s, "timing");
-    add(what, sizeof(what), a->strength != b->strength || a->decay != b->decay, "strength, decay");
-    add(what, sizeof(what),
-        !same_text(a->unit, b->unit) || !same_text(a->scale.own_unit, b->scale.own_unit) || !same_text(a->description, b->description),
-        "unit, description");
+    add_difference(what, sizeof(what), !same_address || a->signal.type != b->signal.type || a->signal.byte_order != b->signal.byte_order,
+                   "address");
+    add_difference(what, sizeof(what), !same_text(source_of(before, a), source_of(after, b)), "source");
+    add_difference(what, sizeof(what), !same_text(group_of(before, a), group_of(after, b)), "group");
+    add_difference(what, sizeof(what), !same_text(asset_of(before, a), asset_of(after, b)), "asset");
+    add_difference(what, sizeof(what), !same_place(&a->place, &b->place), "place");
+    add_difference(what, sizeof(what), !same_direction(before, a, after, b), "direction");
+    add_difference(what, sizeof(what), !same_scale(&a->scale, &b->scale), "scaling");
+    add_difference(what, sizeof(what), a->signal.scan_ms != b->signal.scan_ms || a->validity.stale_s != b->validity.stale_s, "timing");
+    add_difference(what, sizeof(what), a->strength != b->strength || a->decay != b->decay, "strength, decay");
+    add_difference(what, sizeof(what),
+                   !same_text(a->unit, b->unit) || !same_text(a->scale.own_unit, b->scale.own_unit) ||
+                       !same_text(a->description, b->description),
+                   "unit, description");
     const struct opcua_deadband *opc_a = &a->signal.opcua_deadband, *opc_b = &b->signal.opcua_deadband;
-    add(what, sizeof(what),
-        !same_number(a->deadband, b->deadband) || !same_number(opc_a->value, opc_b->value) || opc_a->percent != opc_b->percent, "deadband");
-    add(what, sizeof(what), !same_settings(&a->alarms.settings, &b->alarms.settings), "alarming");
+    add_difference(what, sizeof(what),
+                   !same_number(a->deadband, b->deadband) || !same_number(opc_a->value, opc_b->value) || opc_a->percent != opc_b->percent,
+                   "deadband");
+    add_difference(what, sizeof(what), !same_settings(&a->alarms.settings, &b->alarms.settings), "alarming");
     if (what[0])
         say(diff, "tag %s changed: %s", b->name, what);
 }

@@ -174,7 +174,7 @@ static void give_answer(struct history_loader *loader, const struct wanted_insta
     loader->params.notify(loader->params.notify_arg);
 }
 
-static void *run(void *arg)
+static void *history_loader_main(void *arg)
 {
     struct history_loader *loader = arg;
     struct wanted_instant wanted;
@@ -200,7 +200,7 @@ struct history_loader *history_loader_create(const struct history_loader_params 
     loader->tags = history_tags(params->plant);
     loader->last = &loader->answers;
     thread_init(&loader->thread);
-    if ((!loader->reader && !loader->core) || !thread_start(&loader->thread, params->log, "history: instants", run, loader))
+    if ((!loader->reader && !loader->core) || !thread_start(&loader->thread, params->log, "history: instants", history_loader_main, loader))
         history_loader_destroy(&loader);
     return loader;
 }

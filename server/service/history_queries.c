@@ -251,7 +251,7 @@ struct query_worker {
     int index;
 };
 
-static void *run(void *arg)
+static void *history_queries_main(void *arg)
 {
     struct query_worker *worker = arg;
     struct history_queries *queries = worker->queries;
@@ -309,7 +309,7 @@ struct history_queries *history_queries_create(struct log *log, const struct pla
     for (int i = 0, error = 0; i < THREADS && !error; i++) {
         struct query_worker *worker = mem_new(sizeof(*worker));
         *worker = (struct query_worker){ queries, i };
-        error = pthread_create(&queries->threads[i], NULL, run, worker);
+        error = pthread_create(&queries->threads[i], NULL, history_queries_main, worker);
         queries->thread_count += !error;
         if (!error)
             continue;

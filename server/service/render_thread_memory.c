@@ -17,7 +17,7 @@ static const int64_t TRIM_NS = 5 * NS_PER_S; /* minimum time between two trims *
 /* speed at which the recorded peak of other memory decays: at each measurement it loses 1 / FADES of its excess over the present value */
 static const size_t FADES = 64;
 
-static counter *add(struct render_service *service, const char *of)
+static counter *add_counter(struct render_service *service, const char *of)
 {
     char *name = mem_printf("plantcast_memory_bytes{of=\"%s\"}", of);
     counter *added = counters_add(service->params.counters, name, "gauge",
@@ -28,9 +28,9 @@ static counter *add(struct render_service *service, const char *of)
 
 void render_thread_memory_init(struct thread_memory *memory, struct render_service *service)
 {
-    *memory = (struct thread_memory){ .fields = add(service, "fields"), .frames = add(service, "frames") };
+    *memory = (struct thread_memory){ .fields = add_counter(service, "fields"), .frames = add_counter(service, "frames") };
     for (int i = 0; i < RENDER_STORES; i++)
-        memory->stores[i] = add(service, render_store_names[i]);
+        memory->stores[i] = add_counter(service, render_store_names[i]);
     memory->bound = counters_add(service->params.counters, "plantcast_memory_bound_bytes", "gauge",
                                  "Limit in bytes of all caches together (--memory); the picture being drawn is not included.");
 }

@@ -135,7 +135,7 @@ static double unit_of_time(const struct series_cell *name)
     return 0;
 }
 
-static void add(struct series *series, double time_s, double value, uint32_t quality)
+static void add_value(struct series *series, double time_s, double value, uint32_t quality)
 {
     mem_grow(&series->time_s, &series->capacity, series->count + 1, sizeof(double));
     mem_grow(&series->value, &series->value_capacity, series->count + 1, sizeof(double));
@@ -231,7 +231,7 @@ static bool read_wide(struct series *series, struct series_lines *lines, size_t 
             snprintf(why, 200, "%s:%d: %s: expected a number", lines->path, lines->number, series->name);
             return false;
         }
-        add(series, time_s, value, QUALITY_GOOD);
+        add_value(series, time_s, value, QUALITY_GOOD);
     }
     return true;
 }
@@ -253,7 +253,7 @@ static bool read_long(struct series *series, struct series_lines *lines, struct 
             snprintf(why, 200, "%s:%d: %s: expected a number", lines->path, lines->number, series->name);
             return false;
         }
-        add(series, time_s, value, QUALITY_GOOD);
+        add_value(series, time_s, value, QUALITY_GOOD);
     } while (next_line(lines));
     return true;
 }
@@ -316,7 +316,7 @@ static bool read_values(struct series *series, struct series_lines *lines, const
         }
         if (unit && !series->unit)
             series->unit = mem_printf("%.*s", (int)unit->length, unit->at);
-        add(series, time_s, value, header->quality < lines->count ? quality_of(&lines->cells[header->quality]) : QUALITY_GOOD);
+        add_value(series, time_s, value, header->quality < lines->count ? quality_of(&lines->cells[header->quality]) : QUALITY_GOOD);
     }
     return true;
 }

@@ -51,7 +51,7 @@ static int64_t mono_of(const struct stamped_writer *writer, int tag, int64_t utc
 
 /* Adds a sample to the batch. A batch contains samples of one time, at most as many as there are tags; if the sample does not fit, the
  * batch is written first. */
-static void add(struct stamped_writer *writer, const struct sample *sample, int64_t utc_ns)
+static void add_sample(struct stamped_writer *writer, const struct sample *sample, int64_t utc_ns)
 {
     int64_t mono_ns = mono_of(writer, sample->tag, utc_ns);
     if (utc_ns != writer->at_utc_ns || mono_ns != writer->at_mono_ns || writer->count == writer->plant->tag_count)
@@ -87,11 +87,11 @@ void stamped_writer_add(struct stamped_writer *writer, int tag, const struct sta
     writer->last[tag].is_stated = value->utc_ns != 0;
     if (in_order && utc_ns < writer->last[tag].utc_ns)
         utc_ns = writer->last[tag].utc_ns;
-    add(writer, &sample, utc_ns < writer->utc_ns ? utc_ns : writer->utc_ns);
+    add_sample(writer, &sample, utc_ns < writer->utc_ns ? utc_ns : writer->utc_ns);
 }
 
 void stamped_writer_add_bad(struct stamped_writer *writer, int tag, uint32_t quality)
 {
     const struct sample sample = { .tag = tag, .quality = quality };
-    add(writer, &sample, bad_since_ns(writer, tag));
+    add_sample(writer, &sample, bad_since_ns(writer, tag));
 }

@@ -263,7 +263,7 @@ static int begin_due(struct other_plants *others)
     return (int)((next_ns - now_ns) / NS_PER_MS) + 1;
 }
 
-static void *run(void *arg)
+static void *other_plants_main(void *arg)
 {
     struct other_plants *others = arg;
     while (!atomic_load(&others->stopping))
@@ -335,7 +335,7 @@ struct other_plants *other_plants_start(struct log *log, const struct plant *pla
     for (size_t i = 0; i < others->count; i++)
         others->at[i].plant = &plant->screens.other_plants[i];
     bool usable = curl_global_init(CURL_GLOBAL_DEFAULT) == CURLE_OK && (others->multi = curl_multi_init());
-    others->started = usable && pthread_create(&others->thread, NULL, run, others) == 0;
+    others->started = usable && pthread_create(&others->thread, NULL, other_plants_main, others) == 0;
     if (!others->started) {
         log_err(log, "pictures of other plants cannot be requested: %s", usable ? "no thread" : "libcurl cannot be used");
         other_plants_stop(&others);

@@ -126,7 +126,7 @@ static bool is_ours(const char *name)
 
 typedef bool copier(struct log *log, const char *from, const char *to);
 
-static bool add(struct backup_job *job, copier *copy, const char *from, const char *name)
+static bool add_to_copy(struct backup_job *job, copier *copy, const char *from, const char *name)
 {
     char *to = mem_printf("%s/%s", job->folder, name), hash[COPY_HASH_BYTES];
     long long bytes;
@@ -147,18 +147,18 @@ static bool add_history(struct backup_job *job, const char *folder)
         char name[MONTH_NAME_BYTES];
         month_name(months[i], name);
         char *from = mem_printf("%s/%s", folder, name);
-        good = add(job, copy_database, from, name);
+        good = add_to_copy(job, copy_database, from, name);
         mem_free(from);
     }
     mem_free(months);
     char *journal = mem_printf("%s/" JOURNAL_FILE, folder), *loop_checks = mem_printf("%s/" LOOP_CHECKS_FILE, folder);
     if (good && access(journal, F_OK) == 0)
-        good = add(job, copy_database, journal, JOURNAL_FILE);
+        good = add_to_copy(job, copy_database, journal, JOURNAL_FILE);
     if (good && access(loop_checks, F_OK) == 0)
-        good = add(job, copy_file, loop_checks, LOOP_CHECKS_FILE);
+        good = add_to_copy(job, copy_file, loop_checks, LOOP_CHECKS_FILE);
     for (int i = 0; i < LISTS && good; i++) {
         char *from = mem_printf("%s/%s", folder, lists[i]);
-        good = access(from, F_OK) != 0 || add(job, copy_file, from, lists[i]);
+        good = access(from, F_OK) != 0 || add_to_copy(job, copy_file, from, lists[i]);
         mem_free(from);
     }
     mem_free(journal);
@@ -176,7 +176,7 @@ static bool add_service(struct backup_job *job)
     json_array_foreach(job->added, i, path)
     {
         const char *from = json_string_value(path);
-        good = good && add(job, copy_file, from, text_base_name(from)) &&
+        good = good && add_to_copy(job, copy_file, from, text_base_name(from)) &&
                json_object_set_new(json_array_get(job->files, json_array_size(job->files) - 1), "service", json_true()) == 0;
     }
     return good;
@@ -242,7 +242,7 @@ static bool back_up(struct backup_job *job, const struct plant *plant, const cha
     else if (mkdir(part, 0700) != 0)
         say(part, strerror(errno));
     else {
-        good = add(job, copy_file, plant->files.path, PLANT_FILE) && add(job, copy_file, plant->files.tags_path, tags) &&
+        good = add_to_copy(job, copy_file, plant->files.path, PLANT_FILE) && add_to_copy(job, copy_file, plant->files.tags_path, tags) &&
                add_history(job, history) && add_service(job) && write_manifest(job, plant);
         if (good && rename(part, out) != 0)
             good = say(out, strerror(errno));
@@ -520,7 +520,7 @@ static int back_up_plant(struct backup_job *job, const char *plant_path, const c
     return good ? 0 : 1;
 }
 
-static int run(int argc, char **argv, int (*command)(int argc, char **argv, struct backup_job *job))
+static int run_command(int argc, char **argv, int (*command)(int argc, char **argv, struct backup_job *job))
 {
     struct backup_job job = { .log = log_create(LOG_WARN), .files = json_array(), .added = json_array() };
     /* reference to the whole manifest's array, which is released at the end: restore and verify replace job.files by an array inside the
@@ -572,7 +572,7 @@ int cmd_backup(int argc, char **argv)
         run_beside("-backup", "plantcast-server", argv);
         return 1;
     }
-    return run(argc, argv, run_backup);
+    return run_command(argc, argv, run_backup);
 }
 
 int cmd_restore(int argc, char **argv)
@@ -582,5 +582,5 @@ int cmd_restore(int argc, char **argv)
         run_beside("-restore", "plantcast-server", argv);
         return 1;
     }
-    return run(argc, argv, run_restore);
+    return run_command(argc, argv, run_restore);
 }

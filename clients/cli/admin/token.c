@@ -145,7 +145,7 @@ static bool has_name(const char *lines, const char *name)
     return false;
 }
 
-static int add(const char *path, struct token_holder *holder)
+static int add_token(const char *path, struct token_holder *holder)
 {
     char token[TOKEN_MAX_CHARS + 1], *old = read_file(path, true);
     struct text text = { 0 };
@@ -272,7 +272,7 @@ int cmd_token(int argc, char **argv)
         return 2;
     }
     if (count == 2 && !strcmp(what, "add") && holder.role != ROLE_NOBODY && holder.name[0])
-        return add(path, &holder);
+        return add_token(path, &holder);
     if (count == 2 && !strcmp(what, "list"))
         return list(path);
     if (count == 3 && !strcmp(what, "revoke"))

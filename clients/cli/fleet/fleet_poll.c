@@ -183,7 +183,7 @@ static int64_t begin_due(struct fleet_poll *poll, int64_t now_ns)
     return next_ns;
 }
 
-static void *run(void *arg)
+static void *fleet_poll_main(void *arg)
 {
     struct fleet_poll *poll = arg;
     while (!atomic_load(&poll->stopping)) {
@@ -214,7 +214,7 @@ struct fleet_poll *fleet_poll_start(const struct fleet_file *file)
     curl_global_init(CURL_GLOBAL_DEFAULT);
     poll->multi = curl_multi_init();
     curl_multi_setopt(poll->multi, CURLMOPT_MAXCONNECTS, (long)(file->count + AT_ONCE));
-    poll->started = pthread_create(&poll->thread, NULL, run, poll) == 0;
+    poll->started = pthread_create(&poll->thread, NULL, fleet_poll_main, poll) == 0;
     if (!poll->started) {
         fprintf(stderr, "plantcast: cannot start a thread\n");
         fleet_poll_stop(&poll);

@@ -223,7 +223,7 @@ static int run_locked(const struct accept_options *options)
 }
 
 /* Locks the plant's folder, since a daemon or an import may be replacing the list. */
-static int run(const struct accept_options *options)
+static int accept_positions(const struct accept_options *options)
 {
     if (options->dry_run)
         return run_locked(options);
@@ -271,5 +271,5 @@ int cmd_sensors_accept(int argc, char **argv)
         return 2;
     }
     options.plant = argv[optind];
-    return run(&options);
+    return accept_positions(&options);
 }

@@ -67,7 +67,7 @@ static struct viewer *make_viewer(struct probe *probe, int index)
                                                   .start_deg = moves || probe->spread ? 360.0 * index / probe->sessions : 0 });
 }
 
-static int run(struct probe *probe)
+static int run_probe(struct probe *probe)
 {
     bool good = true;
     probe->watching = probe->sessions - probe->stalled;
@@ -175,5 +175,5 @@ int cmd_probe(int argc, char **argv)
     probe.url_text = argv[optind];
     if (!decodes(&probe))
         return 1;
-    return daemon_url_parse(probe.url_text, &probe.url) ? run(&probe) : 2;
+    return daemon_url_parse(probe.url_text, &probe.url) ? run_probe(&probe) : 2;
 }

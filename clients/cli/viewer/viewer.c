@@ -13,7 +13,7 @@
 enum { MAX_MESSAGE_BYTES = WIRE_MAX_PAYLOAD_BYTES + WIRE_FRAME_HEADER_BYTES };
 static const int64_t FRAME_TIMEOUT_NS = 20 * NS_PER_S; /* timeout for the first frame, and for each further frame while the camera orbits */
 
-static void add(struct latency_samples *samples, double ms)
+static void add_sample(struct latency_samples *samples, double ms)
 {
     mem_grow(&samples->at, &samples->capacity, samples->count + 1, sizeof(*samples->at));
     samples->at[samples->count++] = ms;
@@ -99,7 +99,7 @@ static void record_input(struct viewer *viewer, uint32_t camera_seq, int64_t now
         return;
     for (; viewer->shown_camera_seq < camera_seq; viewer->shown_camera_seq++)
         if (viewer->camera_seq - viewer->shown_camera_seq <= SENT_RING)
-            add(&viewer->result.input, (double)(now_ns - viewer->sent_ns[(viewer->shown_camera_seq + 1) % SENT_RING]) / 1e6);
+            add_sample(&viewer->result.input, (double)(now_ns - viewer->sent_ns[(viewer->shown_camera_seq + 1) % SENT_RING]) / 1e6);
 }
 
 /* Records how much later than its leader this follower shows the camera of the frame. */
@@ -113,7 +113,7 @@ static void record_behind(struct viewer *viewer, const struct wire_frame *frame,
         const double *eye = lead->cameras[number % LEAD_CAMERAS].eye;
         if (fabs(eye[0] - frame->eye_m[0]) > 1e-4 || fabs(eye[1] - frame->eye_m[1]) > 1e-4)
             continue;
-        add(&viewer->result.behind, (double)(now_ns - lead->cameras[number % LEAD_CAMERAS].sent_ns) / 1e6);
+        add_sample(&viewer->result.behind, (double)(now_ns - lead->cameras[number % LEAD_CAMERAS].sent_ns) / 1e6);
         break;
     }
     pthread_mutex_unlock(&lead->lock);
@@ -127,9 +127,9 @@ static void record_network(struct viewer *viewer, const struct wire_frame *frame
         return;
     double here_us = (double)(clock_utc_ns() / 1000 + viewer->offset_us) - (double)frame->sent_time_us;
     double made_us = (double)frame->wait_us + frame->field_us + frame->render_us + frame->encode_us;
-    add(&result->stages[STAGE_NETWORK], fmax(here_us / 1e3 - (double)viewer->decode_ns / 1e6, 0));
+    add_sample(&result->stages[STAGE_NETWORK], fmax(here_us / 1e3 - (double)viewer->decode_ns / 1e6, 0));
     if (frame->flags & WIRE_FLAG_DATA)
-        add(&result->sensor, (made_us + fmax(here_us, 0)) / 1e3);
+        add_sample(&result->sensor, (made_us + fmax(here_us, 0)) / 1e3);
 }
 
 static void record(struct viewer *viewer, const struct wire_frame *frame, int64_t now_ns)
@@ -137,11 +137,11 @@ static void record(struct viewer *viewer, const struct wire_frame *frame, int64_
     struct viewer_result *result = &viewer->result;
     const uint32_t stages_us[] = { frame->wait_us, frame->field_us, frame->render_us, frame->encode_us };
     for (int i = 0; i < STAGE_NETWORK; i++)
-        add(&result->stages[i], stages_us[i] / 1000.0);
-    add(&result->stages[STAGE_DECODE], (double)viewer->decode_ns / 1e6);
+        add_sample(&result->stages[i], stages_us[i] / 1000.0);
+    add_sample(&result->stages[STAGE_DECODE], (double)viewer->decode_ns / 1e6);
     if (!result->frames) {
         result->first_ns = now_ns;
-        add(&result->first, (double)(now_ns - viewer->begin_ns) / 1e6);
+        add_sample(&result->first, (double)(now_ns - viewer->begin_ns) / 1e6);
     }
     result->frames++;
     result->still_frames += (frame->flags & WIRE_FLAG_STILL) != 0;

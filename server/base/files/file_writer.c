@@ -51,7 +51,7 @@ static void put_done(struct file_writer *writer, struct file_job *job, int error
         }
 }
 
-static void *run(void *arg)
+static void *file_writer_main(void *arg)
 {
     struct file_writer *writer = arg;
     struct thread *thread = &writer->thread;
@@ -84,7 +84,7 @@ struct file_writer *file_writer_start(struct log *log, void (*notify)(void *arg)
     thread_init(&writer->thread);
     writer->notify = notify;
     writer->arg = arg;
-    if (!thread_start(&writer->thread, log, "file writer", run, writer))
+    if (!thread_start(&writer->thread, log, "file writer", file_writer_main, writer))
         file_writer_destroy(&writer);
     return writer;
 }

@@ -86,14 +86,14 @@ static const int command_calls[] = {
 #endif
 };
 
-static void add(struct filter_program *program, unsigned code, uint32_t value, unsigned if_true, unsigned if_false)
+static void add_instruction(struct filter_program *program, unsigned code, uint32_t value, unsigned if_true, unsigned if_false)
 {
     program->at[program->count++] = (struct sock_filter){ (uint16_t)code, (uint8_t)if_true, (uint8_t)if_false, value };
 }
 
 static void answer(struct filter_program *program, uint32_t value)
 {
-    add(program, BPF_RET | BPF_K, value, 0, 0);
+    add_instruction(program, BPF_RET | BPF_K, value, 0, 0);
 }
 
 static void refuse(struct filter_program *program)
@@ -104,7 +104,7 @@ static void refuse(struct filter_program *program)
 static void allow(struct filter_program *program, const int *calls, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        add(program, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)calls[i], 0, 1);
+        add_instruction(program, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)calls[i], 0, 1);
         answer(program, SECCOMP_RET_ALLOW);
     }
 }
@@ -114,10 +114,10 @@ static void allow(struct filter_program *program, const int *calls, size_t count
    otherwise a match is refused. Both supported processors are little-endian. */
 static void decide(struct filter_program *program, int call, int argument, unsigned test, const struct values *values, bool allowed)
 {
-    add(program, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)call, 0, (unsigned)(2 + 2 * values->count));
-    add(program, BPF_LD | BPF_W | BPF_ABS, (uint32_t)(offsetof(struct seccomp_data, args) + 8 * (size_t)argument), 0, 0);
+    add_instruction(program, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)call, 0, (unsigned)(2 + 2 * values->count));
+    add_instruction(program, BPF_LD | BPF_W | BPF_ABS, (uint32_t)(offsetof(struct seccomp_data, args) + 8 * (size_t)argument), 0, 0);
     for (int i = 0; i < values->count; i++) {
-        add(program, BPF_JMP | test | BPF_K, values->at[i], 0, 1);
+        add_instruction(program, BPF_JMP | test | BPF_K, values->at[i], 0, 1);
         answer(program, allowed ? SECCOMP_RET_ALLOW : SECCOMP_RET_ERRNO | EPERM);
     }
     answer(program, allowed ? SECCOMP_RET_ERRNO | EPERM : SECCOMP_RET_ALLOW);
@@ -126,10 +126,10 @@ static void decide(struct filter_program *program, int call, int argument, unsig
 /* Refuses O_TRUNC on files that are opened only for reading, which Landlock before ABI 3 would allow. */
 static void refuse_emptying(struct filter_program *program, int call, int flags_argument)
 {
-    add(program, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)call, 0, 5);
-    add(program, BPF_LD | BPF_W | BPF_ABS, (uint32_t)(offsetof(struct seccomp_data, args) + 8 * (size_t)flags_argument), 0, 0);
-    add(program, BPF_ALU | BPF_AND | BPF_K, O_TRUNC | O_ACCMODE, 0, 0);
-    add(program, BPF_JMP | BPF_JEQ | BPF_K, O_TRUNC | O_RDONLY, 0, 1);
+    add_instruction(program, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)call, 0, 5);
+    add_instruction(program, BPF_LD | BPF_W | BPF_ABS, (uint32_t)(offsetof(struct seccomp_data, args) + 8 * (size_t)flags_argument), 0, 0);
+    add_instruction(program, BPF_ALU | BPF_AND | BPF_K, O_TRUNC | O_ACCMODE, 0, 0);
+    add_instruction(program, BPF_JMP | BPF_JEQ | BPF_K, O_TRUNC | O_RDONLY, 0, 1);
     refuse(program);
     answer(program, SECCOMP_RET_ALLOW);
 }
@@ -167,15 +167,15 @@ static void decide_by_arguments(struct filter_program *program, enum confine_rol
 int confine_calls(enum confine_role role, bool notifies)
 {
     struct filter_program program = { .count = 0 };
-    add(&program, BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, arch), 0, 0);
-    add(&program, BPF_JMP | BPF_JEQ | BPF_K, OWN_ARCH, 1, 0);
+    add_instruction(&program, BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, arch), 0, 0);
+    add_instruction(&program, BPF_JMP | BPF_JEQ | BPF_K, OWN_ARCH, 1, 0);
     answer(&program, SECCOMP_RET_ERRNO | ENOSYS);
-    add(&program, BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr), 0, 0);
-    add(&program, BPF_JMP | BPF_JGE | BPF_K, FIRST_NEWER_CALL, 0, 1);
+    add_instruction(&program, BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr), 0, 0);
+    add_instruction(&program, BPF_JMP | BPF_JGE | BPF_K, FIRST_NEWER_CALL, 0, 1);
     answer(&program, SECCOMP_RET_ERRNO | ENOSYS);
     /* refuses clone3() and openat2(), because a filter cannot see their flags, which are in memory */
-    add(&program, BPF_JMP | BPF_JEQ | BPF_K, SYS_clone3, 1, 0);
-    add(&program, BPF_JMP | BPF_JEQ | BPF_K, SYS_openat2, 0, 1);
+    add_instruction(&program, BPF_JMP | BPF_JEQ | BPF_K, SYS_clone3, 1, 0);
+    add_instruction(&program, BPF_JMP | BPF_JEQ | BPF_K, SYS_openat2, 0, 1);
     answer(&program, SECCOMP_RET_ERRNO | ENOSYS);
     refuse_emptying(&program, SYS_openat, 2);
 #ifdef __x86_64__

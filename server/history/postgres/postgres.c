@@ -371,7 +371,7 @@ static void send_all(struct postgres *postgres)
     }
 }
 
-static void *run(void *arg)
+static void *postgres_main(void *arg)
 {
     struct postgres *postgres = arg;
     struct pollfd fd = { .fd = postgres->stop_fd, .events = POLLIN };
@@ -521,7 +521,7 @@ struct postgres *postgres_start(const struct postgres_params *params)
     postgres_restore_init(&postgres->restore, params->log, params->plant, postgres->tags, postgres->folder);
     postgres->restore.begins = params->stands_by;
     add_counters(postgres, params->counters);
-    int error = postgres->stop_fd < 0 ? errno : pthread_create(&postgres->thread, NULL, run, postgres);
+    int error = postgres->stop_fd < 0 ? errno : pthread_create(&postgres->thread, NULL, postgres_main, postgres);
     postgres->started = !error;
     if (error) {
         log_err(params->log, "history: cannot start the thread for PostgreSQL: %s", strerror(error));

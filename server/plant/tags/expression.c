@@ -132,7 +132,7 @@ static char peek(struct expression_parser *parser)
     return *parser->p;
 }
 
-static bool add(struct expression_parser *parser, struct expression_step step)
+static bool add_step(struct expression_parser *parser, struct expression_step step)
 {
     if (parser->out->count == MAX_STEPS)
         return fail(parser, "expected a shorter expression%s", "");
@@ -156,7 +156,7 @@ static bool parse_number(struct expression_parser *parser)
     if (!good)
         return fail(parser, "expected a number such as 1.5%s", "");
     parser->p += length;
-    return add(parser, (struct expression_step){ .operation = OP_NUMBER, .number = number });
+    return add_step(parser, (struct expression_step){ .operation = OP_NUMBER, .number = number });
 }
 
 static bool add_input(struct expression_parser *parser, int found)
@@ -169,7 +169,7 @@ static bool add_input(struct expression_parser *parser, int found)
         return fail(parser, "expected fewer tags%s", "");
     if (i == out->input_count)
         out->inputs[out->input_count++] = found;
-    return add(parser, (struct expression_step){ .operation = OP_INPUT, .index = (int)i });
+    return add_step(parser, (struct expression_step){ .operation = OP_INPUT, .index = (int)i });
 }
 
 static bool parse_name(struct expression_parser *parser)
@@ -204,7 +204,7 @@ static bool parse_arguments(struct expression_parser *parser, int function)
     if (count < functions[function].least || count > functions[function].most)
         return fail(parser, "wrong number of arguments for %s", functions[function].name);
     parser->p++;
-    return add(parser, (struct expression_step){ .operation = OP_FUNCTION, .index = function, .arguments = count });
+    return add_step(parser, (struct expression_step){ .operation = OP_FUNCTION, .index = function, .arguments = count });
 }
 
 static bool parse_call(struct expression_parser *parser)
@@ -248,7 +248,7 @@ static bool parse_power(struct expression_parser *parser)
     if (peek(parser) != '^')
         return true;
     parser->p++;
-    return parse_signed(parser) && add(parser, (struct expression_step){ .operation = OP_POWER });
+    return parse_signed(parser) && add_step(parser, (struct expression_step){ .operation = OP_POWER });
 }
 
 static bool parse_signed(struct expression_parser *parser)
@@ -258,7 +258,7 @@ static bool parse_signed(struct expression_parser *parser)
     bool negative = peek(parser) == '-', good;
     if (negative)
         parser->p++;
-    good = negative ? parse_signed(parser) && add(parser, (struct expression_step){ .operation = OP_NEGATE }) : parse_power(parser);
+    good = negative ? parse_signed(parser) && add_step(parser, (struct expression_step){ .operation = OP_NEGATE }) : parse_power(parser);
     parser->depth--;
     return good;
 }
@@ -268,7 +268,7 @@ static bool parse_product(struct expression_parser *parser)
     bool good = parse_signed(parser);
     for (char next; good && ((next = peek(parser)) == '*' || next == '/');) {
         parser->p++;
-        good = parse_signed(parser) && add(parser, (struct expression_step){ .operation = next == '*' ? OP_MULTIPLY : OP_DIVIDE });
+        good = parse_signed(parser) && add_step(parser, (struct expression_step){ .operation = next == '*' ? OP_MULTIPLY : OP_DIVIDE });
     }
     return good;
 }
@@ -278,7 +278,7 @@ static bool parse_sum(struct expression_parser *parser)
     bool good = parse_product(parser);
     for (char next; good && ((next = peek(parser)) == '+' || next == '-');) {
         parser->p++;
-        good = parse_product(parser) && add(parser, (struct expression_step){ .operation = next == '+' ? OP_ADD : OP_SUBTRACT });
+        good = parse_product(parser) && add_step(parser, (struct expression_step){ .operation = next == '+' ? OP_ADD : OP_SUBTRACT });
     }
     return good;
 }

@@ -46,7 +46,7 @@ static char *read_form(const char *text, struct plant_quality_tag *out)
     return length > 0 ? mem_printf("%.*s", (int)length, name) : NULL;
 }
 
-static void add(struct tag_links *links, struct tag_columns *columns, enum tag_column cell, size_t tag, char *to)
+static void add_link(struct tag_links *links, struct tag_columns *columns, enum tag_column cell, size_t tag, char *to)
 {
     int column = columns->at[cell];
     mem_grow(&links->at, &links->capacity, links->count + 1, sizeof(*links->at));
@@ -62,7 +62,7 @@ static void add_direction(struct tag_links *links, struct tag_columns *columns, 
     int count = 0;
     for (at += strspn(at, " "); *at && count < 4; count++) {
         size_t length = strcspn(at, " ");
-        add(links, columns, COL_DIRECTION, tag, mem_printf("%.*s", (int)length, at));
+        add_link(links, columns, COL_DIRECTION, tag, mem_printf("%.*s", (int)length, at));
         links->at[links->count - 1].direction = true;
         at += length + strspn(at + length, " ");
     }
@@ -82,7 +82,7 @@ void tag_links_add(struct tag_links *links, struct tag_links *derived, struct ta
     struct plant_quality_tag *quality = &plant->tags[tag].validity.quality;
     const char *text = cell_text(columns, COL_QUALITY_TAG);
     if (tag_is_derived(columns))
-        add(derived, columns, COL_ADDRESS, tag, NULL);
+        add_link(derived, columns, COL_ADDRESS, tag, NULL);
     add_direction(links, columns, tag);
     if (!*text)
         return;
@@ -92,7 +92,7 @@ void tag_links_add(struct tag_links *links, struct tag_links *derived, struct ta
                    "Quality Tag: expected TAG, !TAG, TAG&MASK or TAG&MASK=VALUE, such as ST-101&0x0C=0x04, found '%.60s'", text);
         return;
     }
-    add(links, columns, COL_QUALITY_TAG, tag, name);
+    add_link(links, columns, COL_QUALITY_TAG, tag, name);
 }
 
 static void report_unknown(const struct plant *plant, struct diag *diag, const char *path, int line, int column, const char *what,

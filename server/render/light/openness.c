@@ -118,7 +118,7 @@ struct openness_writer {
     uint8_t *bytes;
 };
 
-static void *run(void *arg)
+static void *openness_main(void *arg)
 {
     const struct openness_writer *writer = arg;
     const struct atomic_file_part part = { writer->bytes, writer->count };
@@ -160,7 +160,7 @@ struct openness_writer *openness_write(const struct gpu_scene *gpu_scene, struct
     for (size_t i = 0; i < gpu_scene->scene->asset_count; at += slices[i]->count, i++)
         read_slice(writer->bytes + at, slices[i]);
     thread_init(&writer->thread);
-    if (!thread_start(&writer->thread, writer->log, "openness", run, writer))
+    if (!thread_start(&writer->thread, writer->log, "openness", openness_main, writer))
         openness_writer_finish(&writer);
     return writer;
 }

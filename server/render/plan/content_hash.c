@@ -5,7 +5,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-static void add(XXH3_state_t *state, const void *bytes, size_t count)
+static void hash_bytes(XXH3_state_t *state, const void *bytes, size_t count)
 {
     XXH3_64bits_update(state, bytes, count);
 }
@@ -15,17 +15,17 @@ static void add_field_params(XXH3_state_t *state, const struct field_params *par
     int32_t choices[] = { params->group, (int32_t)params->show,     params->sensor,        params->interpolation, params->distance,
                           params->fill,  (int32_t)params->baseline, (int32_t)params->trial };
     double numbers[] = { params->strength, params->decay, params->power, params->radius_m, params->reach_m };
-    add(state, choices, sizeof(choices));
-    add(state, numbers, sizeof(numbers));
-    add(state, params->overrides, params->override_count * sizeof(*params->overrides));
+    hash_bytes(state, choices, sizeof(choices));
+    hash_bytes(state, numbers, sizeof(numbers));
+    hash_bytes(state, params->overrides, params->override_count * sizeof(*params->overrides));
 }
 
 static void add_color_scale(XXH3_state_t *state, const struct color_scale *color_scale)
 {
     int32_t choices[] = { color_scale->log, color_scale->break_count, color_scale->line_count };
-    add(state, choices, sizeof(choices));
-    add(state, color_scale->breaks, (size_t)color_scale->break_count * sizeof(*color_scale->breaks));
-    add(state, color_scale->lines, (size_t)color_scale->line_count * sizeof(*color_scale->lines));
+    hash_bytes(state, choices, sizeof(choices));
+    hash_bytes(state, color_scale->breaks, (size_t)color_scale->break_count * sizeof(*color_scale->breaks));
+    hash_bytes(state, color_scale->lines, (size_t)color_scale->line_count * sizeof(*color_scale->lines));
 }
 
 /* Hashes the visibility of all assets, even of those outside the view, because a hidden asset casts no shadow. */
@@ -36,9 +36,9 @@ static void add_visibility(XXH3_state_t *state, const struct frame_plan *plan)
     if (visibility->hidden.count + visibility->isolated.count + visibility->ghosts.count > 0)
         for (size_t i = 0; i < plan->gpu_scene->scene->asset_count; i++) {
             uint8_t look = (uint8_t)visibility_of(visibility, (int)i);
-            add(state, &look, sizeof(look));
+            hash_bytes(state, &look, sizeof(look));
         }
-    add(state, visibility->clip.planes, planes * sizeof(visibility->clip.planes[0]));
+    hash_bytes(state, visibility->clip.planes, planes * sizeof(visibility->clip.planes[0]));
 }
 
 /* Hashes everything that a frame shows except the field and its colours. */
@@ -49,26 +49,26 @@ static void add_shape(XXH3_state_t *state, const struct frame_plan *plan)
                           view->selected_asset,     view->environment, (int32_t)view->field.trial, view->dark,
                           (int32_t)view->directions };
     double numbers[] = { view->camera.fov_deg, view->camera.height_m };
-    add(state, choices, sizeof(choices));
-    add(state, numbers, sizeof(numbers));
-    add(state, view->camera.eye_m, sizeof(view->camera.eye_m));
-    add(state, view->camera.target_m, sizeof(view->camera.target_m));
-    add(state, view->camera.up, sizeof(view->camera.up));
-    add(state, view->light_dir, sizeof(view->light_dir));
-    add(state, plan->lit_by.towards, sizeof(plan->lit_by.towards));
-    add(state, &plan->lit_by.environment, sizeof(plan->lit_by.environment));
-    add(state, &plan->lit_by.rough, sizeof(plan->lit_by.rough));
+    hash_bytes(state, choices, sizeof(choices));
+    hash_bytes(state, numbers, sizeof(numbers));
+    hash_bytes(state, view->camera.eye_m, sizeof(view->camera.eye_m));
+    hash_bytes(state, view->camera.target_m, sizeof(view->camera.target_m));
+    hash_bytes(state, view->camera.up, sizeof(view->camera.up));
+    hash_bytes(state, view->light_dir, sizeof(view->light_dir));
+    hash_bytes(state, plan->lit_by.towards, sizeof(plan->lit_by.towards));
+    hash_bytes(state, &plan->lit_by.environment, sizeof(plan->lit_by.environment));
+    hash_bytes(state, &plan->lit_by.rough, sizeof(plan->lit_by.rough));
     bool own_shadows = visibility_equal(&plan->lit_by.shown, &view->visibility);
-    add(state, &own_shadows, sizeof(own_shadows));
+    hash_bytes(state, &own_shadows, sizeof(own_shadows));
     add_visibility(state, plan);
 }
 
 static void add_colors(XXH3_state_t *state, const struct view *view)
 {
     double numbers[] = { view->colormap, view->ramp_interval, view->range_min, view->range_max };
-    add(state, numbers, sizeof(numbers));
+    hash_bytes(state, numbers, sizeof(numbers));
     /* the instant is hashed because a frame carries its time: equal pixels at two instants are two frames */
-    add(state, &view->at_us, sizeof(view->at_us));
+    hash_bytes(state, &view->at_us, sizeof(view->at_us));
     add_field_params(state, &view->field);
     add_color_scale(state, &view->color_scale);
 }
@@ -84,7 +84,7 @@ uint64_t content_hash(const struct frame_plan *plan)
         int asset = plan->visible[i];
         const struct fields_entry *entry = plan->fields[asset];
         uint64_t one[3] = { (uint64_t)asset, entry ? entry->content : 0, entry ? entry->directions_content : 0 };
-        add(&state, one, sizeof(one));
+        hash_bytes(&state, one, sizeof(one));
     }
     return XXH3_64bits_digest(&state);
 }
@@ -97,7 +97,7 @@ uint64_t content_hash_shape(const struct frame_plan *plan)
     add_shape(&state, plan);
     for (size_t i = 0; i < plan->visible_count; i++) {
         int one[2] = { plan->visible[i], plan->fields[plan->visible[i]] != NULL };
-        add(&state, one, sizeof(one));
+        hash_bytes(&state, one, sizeof(one));
     }
     return XXH3_64bits_digest(&state);
 }
