@@ -371,7 +371,7 @@ static bool read_ifc(const struct model_reading *reading, struct reader_program 
 {
     char *list = mem_printf("%s/asked.txt", reading->folder);
     bool good = ask_encoding(reading, reader->encoding, said, why), again = good;
-    if (reading->params->encoding)
+    if (*reading->params->encoding)
         snprintf(reader->encoding, sizeof(reader->encoding), "%s", reading->params->encoding);
     for (int pass = 0; again && pass < 2; pass++) {
         struct text heard = { 0 };
@@ -400,7 +400,7 @@ static bool run_program(const struct model_reading *reading, struct child_paths 
     } else if (!strcmp(format->name, "IFC")) {
         good = read_ifc(reading, &reader, said, why);
     } else {
-        snprintf(reader.encoding, sizeof(reader.encoding), "%s", reading->params->encoding ? reading->params->encoding : "-");
+        snprintf(reader.encoding, sizeof(reader.encoding), "%s", *reading->params->encoding ? reading->params->encoding : "-");
         good = run_reader(reading, &reader, paths, said, why);
     }
     child_paths_finish(paths);

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/text/charset.h"
 #include "base/text/text.h"
 
 enum { CONVERSION_WHY_BYTES = 512 };
@@ -14,8 +15,8 @@ struct conversion_params {
     double chord_m;
     const char *units, *up; /* units and up axis to assume for formats that do not state them; NULL: guess and print the guess */
     const char *mesh_units; /* units to assume for OBJ, STL, PLY and 3DS if `units` is NULL; NULL: guess and print the guess */
-    /* encoding of names in the model; NULL: the encoding that the file states, else a detected one, which is printed */
-    const char *encoding;
+    /* encoding of names in the model; "": the encoding that the file states, else a detected one, which is printed */
+    char encoding[CHARSET_NAME_BYTES];
     bool keep_covered;   /* RVM: true keeps faces that the face of a neighbouring primitive covers; false leaves them out */
     int timeout_s;       /* time limit for an external reader program, seconds */
     size_t memory_bytes; /* memory limit for an external reader program, bytes */

@@ -10,7 +10,7 @@
 struct charset_choice encoding_choose(const char *text, size_t length, const char *asked, const char *said)
 {
     struct charset_choice found = charset_find(text, length), named = { .ascii = found.ascii };
-    if (asked)
+    if (asked && *asked)
         return charset_resolve(asked, named.name) ? named : found;
     bool legacy = !found.ascii && strncmp(found.name, "UTF-", 4) != 0;
     return legacy && said && *said && charset_resolve(said, named.name) && charset_fits(text, length, named.name) ? named : found;

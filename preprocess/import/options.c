@@ -42,7 +42,6 @@ static bool number(const char *value, double least, double most, double *out)
 
 bool options_take(struct conversion_params *params, const char *command, int option, const char *value)
 {
-    static char encoding[CHARSET_NAME_BYTES];
     const char *wanted = NULL, *name = NULL;
     double taken;
     switch (option) {
@@ -63,8 +62,8 @@ bool options_take(struct conversion_params *params, const char *command, int opt
         name = "mesh-units", wanted = (params->mesh_units = one_of("m mm cm in ft", value)) ? NULL : "expected m, mm, cm, in or ft";
         break;
     case 'e':
-        name = "encoding", wanted = charset_resolve(value, encoding) ? NULL : "unknown encoding: iconv --list prints the known names";
-        params->encoding = encoding;
+        name = "encoding";
+        wanted = charset_resolve(value, params->encoding) ? NULL : "unknown encoding: iconv --list prints the known names";
         break;
     case 'U': name = "up", wanted = (params->up = one_of("y z", value)) ? NULL : "expected y or z"; break;
     case 'k': params->keep_covered = true; return true;
