@@ -2,7 +2,6 @@
 /* Replaces a plant's files and keeps their previous versions. */
 #include "preprocess/import/revision/anew.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -77,13 +76,10 @@ static int add_texts(struct revision_making *making, const struct plant_draft *d
 
 static int apply(const struct revision_making *making)
 {
-    const char *folder = making->params->folder, *changed;
-    int status = revision_files_apply(folder, making->params->work, making->files, making->file_count, &changed);
+    const char *folder = making->params->folder;
+    int status = revision_files_replace(folder, making->params->work, making->files, making->file_count);
     if (status != 0)
-        return status == -ESTALE
-                   ? import_fail(changed,
-                       "this file was changed by another program during the import, so nothing was written: run the command again")
-                   : import_fail(folder, strerror(-status));
+        return status;
     for (size_t i = 0; i < TEXTS; i++)
         if (making->texts[i].kept)
             printf("%s/%s: written; the previous version is kept as %s\n", folder, making->texts[i].name, making->texts[i].kept);

@@ -183,7 +183,6 @@ static const char *if_other(const char *text, const char *before)
 /* Replaces the files, plant.yaml last. In this order the daemon can load the folder even if it reads it between two replacements. */
 static int apply(struct revising *r)
 {
-    const char *changed;
     r->files = mem_array(r->model_count + MAX_OWN_FILES, sizeof(*r->files));
     for (; r->file_count < r->model_count; r->file_count++)
         r->files[r->file_count] =
@@ -198,14 +197,7 @@ static int apply(struct revising *r)
     }
     if (status == 0)
         status = add_text(r, "plant.yaml", if_other(r->revision.plant_text, r->plant_text), r->plant_text);
-    if (status != 0)
-        return status;
-    status = revision_files_apply(r->params->folder, r->params->work, r->files, r->file_count, &changed);
-    return status == 0 ? 0
-           : status == -ESTALE
-               ? import_fail(changed,
-                             "this file was changed by another program during the import, so nothing was written: run the command again")
-               : import_fail(r->params->folder, strerror(-status));
+    return status == 0 ? revision_files_replace(r->params->folder, r->params->work, r->files, r->file_count) : status;
 }
 
 static int plan(struct revising *r)

@@ -15,6 +15,7 @@
 #include "base/mem.h"
 #include "plant/plant_folder.h"
 #include "plant/recipe.h"
+#include "preprocess/import/import_fail.h"
 
 static const size_t max_text_bytes = (size_t)64 << 20;
 
@@ -127,6 +128,16 @@ int revision_files_apply(const char *folder, const char *work, const struct revi
     mem_free(path);
     mem_free(begun);
     return status;
+}
+
+int revision_files_replace(const char *folder, const char *work, const struct revision_file *files, size_t count)
+{
+    const char *changed;
+    int status = revision_files_apply(folder, work, files, count, &changed);
+    if (status == -ESTALE)
+        return import_fail(changed,
+                           "this file was changed by another program during the import, so nothing was written: run the command again");
+    return status == 0 ? 0 : import_fail(folder, strerror(-status));
 }
 
 /* --- undoing -------------------------------------------------------------------------------------------------------------------- */
