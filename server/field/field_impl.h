@@ -30,8 +30,6 @@ struct field {
 /* Returns the layout of the sensors of params' group on the asset, created if needed. NULL: there are none. params must come from
    field_params_of(). */
 struct field_layout *field_layout(struct field *field, int asset, const struct field_params *params);
-/* Returns the layout in which the sensors are at the trial's positions. */
-struct field_layout *field_trial_layout(struct field *field, int asset, const struct field_params *params);
 /* Frees all trial layouts. */
 void field_trials_finish(struct field *field);
 /* Returns the state for these parameters, found or created, without updating it. NULL if the asset has no sensor of the group, or when out

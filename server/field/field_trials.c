@@ -113,18 +113,13 @@ const struct field_params *field_params_of(struct field *field, int asset, const
     return blind_params(even_params(field, asset, trial_params(field, asset, params, room), room), room);
 }
 
-struct field_layout *field_trial_layout(struct field *field, int asset, const struct field_params *params)
-{
-    return find(field, asset, params)->layout;
-}
-
 struct field_layout *field_layout(struct field *field, int asset, const struct field_params *params)
 {
     struct field_layout **at = &field->layouts[(size_t)asset * field->scene->plant->group_count + (size_t)params->group];
     if (params->trial && interpolation_is_prepared(params->interpolation) && params->show != SHOW_DISTANCE)
         return NULL; /* prepared interpolations do not exist for trial positions: shows no data, not the previous field */
     if (params->trial)
-        return field_trial_layout(field, asset, params);
+        return find(field, asset, params)->layout;
     if (!*at)
         *at = layout_create(field->scene, asset, params->group, NULL);
     return *at;

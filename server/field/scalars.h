@@ -9,7 +9,7 @@ struct scalar {
     /* value of the field in engineering units; may exceed MIN and MAX. Finite even where there is no data, so that it can be
        interpolated */
     float value;
-    /* distance beyond the border between data and no data, encoded by weights_lacking(). Above 127: no data. A distance is stored and
+    /* distance beyond the border between data and no data, encoded by weights_lacking_at(). Above 127: no data. A distance is stored and
        not a flag, so that the border is exact when interpolated between vertices */
     uint8_t lacking;
     /* proportional to the fraction of the weight that is on Uncertain sensors, so that the border at 127 is exact after interpolation,

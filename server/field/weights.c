@@ -359,7 +359,8 @@ static const float *distances(const struct weights *weights, size_t sensor, size
     return layout_distances(weights->layout, weights->distance, sensor, begin, count, scratch);
 }
 
-uint8_t weights_lacking(const struct weights *weights, float beyond_m)
+/* Encodes a distance in metres beyond the border of the data (negative: inside) as struct scalar's `lacking`. */
+static uint8_t encode_lacking(const struct weights *weights, float beyond_m)
 {
     float steps = beyond_m * weights->steps_per_m;
     if (beyond_m > 0)
@@ -374,8 +375,8 @@ uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool fi
         return 0;
     if (near_m == INFINITY)
         return 255;
-    uint8_t reach = weights->reach_m < INFINITY ? weights_lacking(weights, near_m - weights->reach_m) : 0;
-    uint8_t share = weights->beyond_m ? weights_lacking(weights, weights->beyond_m[vertex]) : 0;
+    uint8_t reach = weights->reach_m < INFINITY ? encode_lacking(weights, near_m - weights->reach_m) : 0;
+    uint8_t share = weights->beyond_m ? encode_lacking(weights, weights->beyond_m[vertex]) : 0;
     reach = share > reach ? share : reach;
     return filled || weights->lost[vertex] < reach ? reach : weights->lost[vertex];
 }
@@ -447,7 +448,7 @@ static void nearest(struct weights *weights, size_t begin, size_t count)
         if (weights->beyond_m[begin + j] > 0)
             weights->place[begin + j] = PLACE_NOBODY;
     for (size_t j = 0; j < count; j++)
-        weights->lost[begin + j] = lost_m[j] < INFINITY ? weights_lacking(weights, near_m[j] - lost_m[j]) : 0;
+        weights->lost[begin + j] = lost_m[j] < INFINITY ? encode_lacking(weights, near_m[j] - lost_m[j]) : 0;
 }
 
 void weights_prepare(struct weights *weights, size_t begin, size_t count)

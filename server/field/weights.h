@@ -57,7 +57,7 @@ struct weights {
     float *total;                /* sum of the weights of each vertex */
     uint8_t *place;              /* by vertex: enum place */
     uint8_t *lost;               /* for each vertex: how much nearer the nearest lost sensor is than the nearest usable one, encoded by
-                                    weights_lacking() */
+                                    encode_lacking() in weights.c */
     uint8_t *known; /* for each block: which of its arrays near_m, place, top and total are filled (bits of enum weights_known) */
     const float *prepared;       /* [member][vertex]: prepared weights from the asset's influence file; NULL: weights are computed from
                                     distances */
@@ -117,8 +117,6 @@ size_t weights_keep(struct weights *weights, size_t bytes);
 /* Frees the cached columns. */
 void weights_drop_columns(struct weights *weights);
 
-/* Encodes a distance in metres beyond the border of the data (negative: inside) as struct scalar's `lacking`. */
-uint8_t weights_lacking(const struct weights *weights, float beyond_m);
 /* Returns a vertex's byte for struct scalar's `lacking`. filled: true: areas around lost sensors have data. The vertex must be prepared. */
 uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool filled);
 /* Computes the missing arrays among near_m, top and place for a block of vertices (begin: a multiple of KERNEL_BLOCK; count <=

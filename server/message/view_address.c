@@ -145,7 +145,11 @@ static bool add_field(struct view_address *out, const char *name, char *value, s
     return good && known;
 }
 
-bool view_address_each(const char *address, view_address_field *take, void *arg)
+/* Callback that receives one field of the address, decoded; value "": the field has no value. Returns false to stop. */
+typedef bool field_fn(void *arg, const char *name, char *value);
+
+/* Calls `take` for each field of an address. Returns false if `take` returned false, after which no more fields are passed. */
+static bool each_field(const char *address, field_fn *take, void *arg)
 {
     char *copy = mem_strdup(address), *rest = copy;
     bool good = true;
@@ -178,7 +182,7 @@ static bool take(void *arg, const char *name, char *value)
 bool view_address_read(struct view_address *out, const char *address, struct message_error *error)
 {
     *out = (struct view_address){ .count = 0 };
-    return view_address_each(address, take, &(struct address_reading){ out, error });
+    return each_field(address, take, &(struct address_reading){ out, error });
 }
 
 static bool has_name(const char *arg, const char *name)

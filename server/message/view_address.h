@@ -7,11 +7,6 @@
 
 #include "message/message_error.h"
 
-/* Callback that receives one field of the address, decoded; value "": the field has no value. Returns false to stop. */
-typedef bool view_address_field(void *arg, const char *name, char *value);
-/* Calls `take` for each field of an address. Returns false if `take` returned false, after which no more fields are passed. */
-bool view_address_each(const char *address, view_address_field *take, void *arg);
-
 enum { VIEW_ADDRESS_ARGS = 40 };
 
 struct view_address {

@@ -42,7 +42,4 @@ void charset_encoder_close(struct charset_encoder *encoder);
 /* Converts a UTF-8 text. Returns the number of bytes written; 0: the encoding is unknown or lacks a character, or `out` is too small. */
 size_t charset_encode(struct charset_encoder *encoder, const char *utf8, size_t count, unsigned char *out, size_t out_bytes);
 
-/* For charset_find() and its tests: chooses among the encodings other than UTF-8 and UTF-16, by statistical models of each. */
-struct charset_choice charset_find_legacy(const char *bytes, size_t count);
-
 #endif

@@ -399,7 +399,7 @@ static bool says_the_same(const char *sample, size_t count, const char *a, const
     return same;
 }
 
-struct charset_choice charset_find_legacy(const char *bytes, size_t count)
+static struct charset_choice find_legacy(const char *bytes, size_t count)
 {
     enum { WIDE = sizeof(wide_models) / sizeof(*wide_models), NARROW = sizeof(narrow_models) / sizeof(*narrow_models) };
     static const double vote = 2.5, sure = 3;
@@ -491,7 +491,7 @@ struct charset_choice charset_find(const char *bytes, size_t count)
         if (choice.ascii && has_escape(bytes, count))
             name = "ISO-2022-JP";
         else if (invalid * 4 > characters) /* a text that is mostly valid counts as UTF-8, since it may be damaged or truncated */
-            return charset_find_legacy(bytes, count);
+            return find_legacy(bytes, count);
     }
     if (name) {
         snprintf(choice.name, sizeof(choice.name), "%s", name);

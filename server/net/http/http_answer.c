@@ -268,7 +268,8 @@ struct http_exchange *request_find(const struct server_context *server, uint64_t
     return request;
 }
 
-void asked_free(struct asked **asked)
+/* Frees the data about the frame or pick for which a request waits. &NULL is allowed; sets *asked to NULL. */
+static void asked_free(struct asked **asked)
 {
     if (!*asked)
         return;

@@ -96,8 +96,6 @@ const char *arg_of(const struct args *args, const char *name);
 /* Makes the request wait: its answer is given later, outside of the request's own libwebsockets callback. Sets request->client, the id
    under which the waiting request is found. */
 void request_await(struct server_context *server, struct http_exchange *request);
-/* Frees the data about the frame or pick for which a request waits. &NULL is allowed; sets *asked to NULL. */
-void asked_free(struct asked **asked);
 /* Returns the request that waits under that id; NULL: none. */
 struct http_exchange *request_find(const struct server_context *server, uint64_t client);
 /* Ends the request's waiting; does nothing if it does not wait. */
