@@ -213,23 +213,29 @@ static void report_left_out(struct history_reader *reader, int tag, const struct
     reader->told[tag] = true;
 }
 
+struct month_request { /* part of a series to read from a month's file */
+    const char *tag;
+    int level; /* level of buckets; -1: points */
+    int64_t from_us, to_us;
+};
+
 /* left_out: receives the points that are left out; NULL: they are not counted */
-static int read_month(struct history_reader *reader, int month, const char *tag, int level, int64_t from_us, int64_t to_us,
-                      struct gather *gather, struct history_left_out *left_out)
+static int read_month(struct history_reader *reader, int month, const struct month_request *of, struct gather *gather,
+                      struct history_left_out *left_out)
 {
     struct history_series *out = gather->out;
     int error;
     struct month_file *file = open_month(reader, month, &error);
     if (!file || (error = month_file_begin_read(file)))
         return error;
-    if (level >= 0) {
-        error = add_month(file, tag, level, from_us, to_us, gather);
+    if (of->level >= 0) {
+        error = add_month(file, of->tag, of->level, of->from_us, of->to_us, gather);
     } else {
-        error = month_file_points(file, tag, from_us, to_us, &out->points);
+        error = month_file_points(file, of->tag, of->from_us, of->to_us, &out->points);
         out->step |= out->points.step;
     }
     if (!error && left_out)
-        error = month_file_left_out(file, tag, from_us, to_us, left_out);
+        error = month_file_left_out(file, of->tag, of->from_us, of->to_us, left_out);
     month_file_end_read(file);
     return error;
 }
@@ -252,7 +258,8 @@ int history_series(struct history_reader *reader, const char *tag, int64_t from_
         bool leads = i + 1 < count && months[i] < first && months[i + 1] >= first;
         bool follows = i > 0 && months[i] > last && months[i - 1] <= last;
         if ((months[i] >= first && months[i] <= last) || leads || (level < 0 && follows))
-            error = read_month(reader, months[i], tag, level, from_us, to_us, &gather, counts ? &left_out : NULL);
+            error = read_month(reader, months[i], &(struct month_request){ tag, level, from_us, to_us }, &gather,
+                               counts ? &left_out : NULL);
     }
     if (counts)
         report_left_out(reader, index, &left_out);
