@@ -65,7 +65,7 @@ struct prep_options {
     size_t memory_bytes; /* memory in bytes of the machine that will serve the plant; 0: the memory of this machine */
 };
 
-static atomic_bool interrupted;
+static atomic_bool interrupted; /* global, because a signal handler gets no argument */
 
 /* At the first signal, the current asset is finished if that takes no longer than GRACE_S, and the next run continues after it. At the
  * second signal, the program ends immediately. Ending is safe at any time, because files get their names only when complete. */

@@ -160,7 +160,7 @@ static bool open_port(struct sim_port *port, const char *address, int number, si
     return status == 0;
 }
 
-static int stop_fd = -1; /* eventfd; readable when the program must end */
+static int stop_fd = -1; /* eventfd; readable when the program must end; global, because a signal handler gets no argument */
 
 static void on_signal(int number)
 {

@@ -24,6 +24,7 @@ static const struct attempt attempts[] = {
 };
 enum { ATTEMPTS = sizeof(attempts) / sizeof(attempts[0]) };
 
+/* Contexts of this process. EGL cannot be used while a context of OSMesa exists, so all contexts must be of one kind. */
 static struct {
     pthread_mutex_t lock; /* held while any thread creates or destroys a context */
     /* --- below: under lock */
@@ -168,7 +169,7 @@ void gl_destroy(struct gl **gl)
     *gl = NULL;
 }
 
-static _Thread_local unsigned shortages;
+static _Thread_local unsigned shortages; /* GL keeps its errors by thread, too */
 
 static GLenum next_error(void)
 {

@@ -29,6 +29,7 @@ struct fleet_answer { /* response of one connection */
     size_t bytes, sent;
 };
 
+/* global, because a signal handler gets no argument */
 static struct lws_context *_Atomic serving;
 static atomic_bool ending;
 

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <strings.h>
 
-static locale_t c_locale;
+static locale_t c_locale; /* the C locale; created once per process, never freed */
 static pthread_once_t c_locale_once = PTHREAD_ONCE_INIT;
 
 static void make_c_locale(void)
