@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The two experiments of the paper at 1920x1080: many instances with 5 sensors each, and many sensors on one instance. All readings
    change ten times per second while the camera swings; each row is one JSON line, followed by a row for brute force (all triangles of
-   the finest level, and the paper's sum over all sensors per fragment).
-   usage: paper_bench [cpu|gpu [INSTANCES SENSORS]]   runs only these rows, 0: none; gpu: only on an EGL device that is hardware */
+   the finest level, and the paper's sum over all sensors per fragment). For distances in a straight line, only rows with few and with many
+   sensors are measured, without brute force.
+   usage: paper_bench [cpu|gpu [INSTANCES SENSORS [SUFFIX]]]
+   runs only these rows, 0: none; SUFFIX: only rows with this ending, such as _euclidean; gpu: only on an EGL device that is hardware */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,10 +36,14 @@ static const double SWING_RAD = 6 * M_PI / 180, FOV_DEG = 15, WANTED_COVERAGE = 
 
 struct paper_model {
     const char *path, *nodes, *up, *suffix; /* suffix: ending of the rows' names */
+    const char *keys;                       /* keys of the group in the plant file: interpolation and distance; NULL: defaults */
 };
 static const struct paper_model models[] = {
-    { DEMO_MODEL, "E-101", "y", "" },
-    { PLANT_MODEL, NULL, "y", "_5parts" },
+    { DEMO_MODEL, "E-101", "y", "", NULL },
+    { PLANT_MODEL, NULL, "y", "_5parts", NULL },
+    { DEMO_MODEL, "E-101", "y", "_euclidean", "distance: euclidean" },
+    { PLANT_MODEL, NULL, "y", "_5parts_euclidean", "distance: euclidean" },
+    { DEMO_MODEL, "E-101", "y", "_paper_euclidean", "interpolation: paper, distance: euclidean" },
 };
 
 struct paper_bench {
@@ -222,9 +228,13 @@ static void write_scene(const struct paper_bench *bench, const char *folder)
 static bool bench_init(struct paper_bench *bench, const struct paper_model *model, int instances, int sensors)
 {
     char *folder = mem_printf(FOLDER "/crowd%s-%dx%d", model->suffix, instances, sensors), *path = realpath(model->path, NULL);
-    struct crowd_params params = {
-        .folder = folder, .model = path, .nodes = model->nodes, .up = model->up, .instances = instances, .sensors = sensors
-    };
+    struct crowd_params params = { .folder = folder,
+                                   .model = path,
+                                   .nodes = model->nodes,
+                                   .up = model->up,
+                                   .keys = model->keys,
+                                   .instances = instances,
+                                   .sensors = sensors };
     bool good = path && crowd_init(&bench->crowd, bench->log, bench->workers, &params);
     if (good) {
         bench->field = field_create(bench->workers, bench->crowd.scene);
@@ -400,7 +410,8 @@ static void measure(struct paper_bench *bench, const struct paper_model *model, 
             run_flow(bench, series);
             print_row(bench, flow_name, series, goal_ms);
         }
-        measure_brute(bench, brute_name, sensors, series);
+        if (!model->keys)
+            measure_brute(bench, brute_name, sensors, series);
     }
     bench_finish(bench);
     mem_free(name);
@@ -427,14 +438,16 @@ static void measure_model(struct paper_bench *bench, const struct paper_model *m
     for (int i = 0; i < INSTANCE_GOALS; i++) {
         const struct goal *goal = &instance_goals[i];
         bench->brute_sensors = 0;
-        if (instances < 0 || instances == goal->count)
+        if (!model->keys && (instances < 0 || instances == goal->count))
             measure(bench, model, "instances", goal->count, 5, gpu ? goal->gpu_ms : goal->cpu_ms[model - models]);
     }
     bench->brute_sensors = 0;
     bench->few_ms = 0;
-    for (int i = 0; i < SENSOR_GOALS; i++)
-        if (sensors < 0 || sensors == sensor_goals[i].count)
-            measure(bench, model, "sensors", 1, sensor_goals[i].count, gpu ? sensor_goals[i].gpu_ms : 0);
+    for (int i = 0; i < SENSOR_GOALS; i++) {
+        const int count = sensor_goals[i].count;
+        if (sensors < 0 ? !model->keys || count == FEW_SENSORS || count == MANY_SENSORS : sensors == count)
+            measure(bench, model, "sensors", 1, count, gpu && !model->keys ? sensor_goals[i].gpu_ms : 0);
+    }
 }
 
 int main(int argc, char **argv)
@@ -450,7 +463,8 @@ int main(int argc, char **argv)
         print_missing("render_instances_1_ms", "no EGL device is hardware");
     else
         for (size_t m = 0; m < sizeof(models) / sizeof(models[0]); m++)
-            measure_model(&bench, &models[m], gpu, instances, sensors);
+            if (argc <= 4 || !strcmp(argv[4], models[m].suffix))
+                measure_model(&bench, &models[m], gpu, instances, sensors);
     gl_destroy(&bench.gl);
     workers_destroy(&bench.workers);
     log_destroy(&bench.log);

@@ -62,9 +62,11 @@ static bool write_files(const struct crowd_params *params, const struct places *
 {
     struct text yaml = { 0 }, tags = { 0 };
     char *yaml_path = test_printf("%s/plant.yaml", params->folder), *tags_path = test_printf("%s/tags.csv", params->folder);
-    text_add(&yaml, "plant: { name: Crowd, time_zone: UTC }\n"
-                    "groups:\n  - { id: t, unit: K, min: 0, max: 100 }\n"
-                    "tags: tags.csv\nassets:\n");
+    text_add(&yaml,
+             "plant: { name: Crowd, time_zone: UTC }\n"
+             "groups:\n  - { id: t, unit: K, min: 0, max: 100%s%s }\n"
+             "tags: tags.csv\nassets:\n",
+             params->keys ? ", " : "", params->keys ? params->keys : "");
     text_add(&tags, "Tag Name,Group,Asset,X,Y,Z\n");
     for (int i = 0; i < params->instances; i++) {
         add_instance(&yaml, params, places, i);

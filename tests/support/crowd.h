@@ -12,6 +12,7 @@ struct crowd_params {
     const char *folder;       /* folder in which the plant is written and prepared; earlier results in it are reused */
     const char *model;        /* glTF or GLB file */
     const char *nodes, *up;   /* the model's nodes and its upward axis, as in a plant file; nodes NULL: the whole model */
+    const char *keys;         /* further keys of the group in the plant file, such as "distance: euclidean"; NULL: none */
     int instances, sensors;   /* sensors: number on each instance, spread evenly over its surface */
 };
 
