@@ -22,14 +22,14 @@ void run_beside(const char *ending, const char *package, char **argv)
             errno == ENOENT ? package : "");
 }
 
-void run_film(int argc, char **argv)
+void run_film(const struct daemon_access *access, int argc, char **argv)
 {
 #ifdef PLANTCAST_H264
-    char **line = daemon_command_line(argc, argv);
-    run_beside("-film", "plantcast-h264", line);
+    char **line = access ? daemon_command_line(access, argc, argv) : NULL;
+    run_beside("-film", "plantcast-h264", line ? line : argv);
     mem_free(line);
 #else
-    (void)argc;
+    (void)access, (void)argc;
     fprintf(stderr, "plantcast: %s: films need H.264, but this program was built without H.264 (CODECS=jpeg)\n", argv[0]);
 #endif
 }

@@ -5,12 +5,14 @@
 #define CLI_COMMANDS_H
 #include <stdbool.h>
 
+struct daemon_access; /* clients/link/daemon.h */
+
 /* Takes one picture: offline from a plant file, or from a daemon. */
-int cmd_snapshot(int argc, char **argv);
+int cmd_snapshot(const struct daemon_access *access, int argc, char **argv);
 /* Connects many viewers to a daemon and prints a table of latencies. */
-int cmd_probe(int argc, char **argv);
+int cmd_probe(const struct daemon_access *access, int argc, char **argv);
 /* Prints the tags of a daemon with their values, qualities and ages. */
-int cmd_tags(int argc, char **argv);
+int cmd_tags(const struct daemon_access *access, int argc, char **argv);
 /* Reads one address of a field device and prints its value in every type and byte order. address_base: number of the first register, 0
    or 1; -1: not given. rtu: use RTU frames over the connection. Returns the exit code. */
 int tags_probe(const char *device, const char *address, int address_base, bool rtu);
@@ -19,7 +21,7 @@ int tags_browse(int argc, char **argv);
 /* Imports recorded series into a plant's history, or exports them as CSV. */
 int cmd_history(int argc, char **argv);
 /* Reports whether a daemon is ready. */
-int cmd_ready(int argc, char **argv);
+int cmd_ready(const struct daemon_access *access, int argc, char **argv);
 /* Makes a daemon on this machine send its sessions to other daemons. */
 int cmd_drain(int argc, char **argv);
 /* Begins or ends the maintenance of a standby core. */
@@ -47,12 +49,12 @@ int cmd_token(int argc, char **argv);
    argv[0]. Helpers keep large dependencies and parsers of untrusted input out of this program. Returns only if the helper cannot be run,
    with the reason printed. package: Debian package that has the helper. */
 void run_beside(const char *ending, const char *package, char **argv);
-/* Replaces this process by plantcast-film and passes on the options that all commands share. Returns only if that cannot be run, with
-   the reason printed. */
-void run_film(int argc, char **argv);
+/* Replaces this process by plantcast-film and passes on the options that all commands share; access NULL: there are none. Returns only if
+   that cannot be run, with the reason printed. */
+void run_film(const struct daemon_access *access, int argc, char **argv);
 
 /* Fetches `path` (with its query, such as "/snapshot.png?width=640&group=temperature") from the daemon at url (http://HOST:PORT/).
    Writes the response to the file `out`, or prints it if `out` is NULL. Returns 0, or 1 with the reason printed. */
-int daemon_download(const char *url, const char *path, const char *out);
+int daemon_download(const struct daemon_access *access, const char *url, const char *path, const char *out);
 
 #endif

@@ -27,37 +27,38 @@ static int cmd_init(int argc, char **argv)
     return 1;
 }
 
-static int cmd_clip(int argc, char **argv)
+static int cmd_clip(const struct daemon_access *access, int argc, char **argv)
 {
-    run_film(argc, argv);
+    run_film(access, argc, argv);
     return 1;
 }
 
 static const struct cli_command {
     const char *name, *help;
-    int (*run)(int argc, char **argv);
+    int (*run)(int argc, char **argv); /* NULL: the command connects to a daemon */
+    int (*connect)(const struct daemon_access *access, int argc, char **argv);
 } commands[] = {
-    { "snapshot", "draw one picture of a plant as PNG, from a plant file or through a running daemon", cmd_snapshot },
-    { "clip", "make a film (MP4) of recorded readings", cmd_clip },
-    { "import", "convert CAD exports into the folder of a plant: models, names, attributes and plant file", cmd_import },
-    { "nodes", "list the nodes (parts) of a CAD model with their sizes and properties", cmd_import },
-    { "match", "match a control system's tag list to the equipment of an imported plant", cmd_match },
-    { "probe", "open many sessions on a daemon and print frame rates and latencies", cmd_probe },
-    { "tags", "print the tags that a daemon serves, with their present values", cmd_tags },
-    { "init", "set up the systemd service plantcastd@NAME with a certificate and first tokens", cmd_init },
-    { "ready", "check whether a daemon serves pictures (exit status 0: yes)", cmd_ready },
-    { "drain", "move all user sessions of a daemon on this machine to other daemons", cmd_drain },
-    { "standby", "begin or end maintenance of a standby core, during which the other core leads alone", cmd_standby },
-    { "reload", "make a daemon on this machine reload its plant file and tag list", cmd_reload },
-    { "history", "import readings into the recorded history of a plant, or export recorded readings as CSV", cmd_history },
-    { "backup", "back up a plant, or all files of a service plantcastd@NAME, also while the daemon runs", cmd_backup },
-    { "restore", "restore a backup that `plantcast backup` made", cmd_restore },
-    { "fleet", "serve one overview page and one /metrics for the daemons of many plants", cmd_fleet },
-    { "token", "create, list and revoke the tokens with which users and programs sign in", cmd_token },
-    { "sensors", "suggest positions for more sensors, detect sensors that drift, accept assumed positions", cmd_sensors },
-    { "verify", "check the signature of a picture or film; redraw the picture and compare", cmd_verify },
-    { "read", "print the value at a pixel of a picture or screenshot that has a legend strip", cmd_read },
-    { "audit", "check whether an audit trail was altered", cmd_audit },
+    { "snapshot", "draw one picture of a plant as PNG, from a plant file or through a running daemon", NULL, cmd_snapshot },
+    { "clip", "make a film (MP4) of recorded readings", NULL, cmd_clip },
+    { "import", "convert CAD exports into the folder of a plant: models, names, attributes and plant file", cmd_import, NULL },
+    { "nodes", "list the nodes (parts) of a CAD model with their sizes and properties", cmd_import, NULL },
+    { "match", "match a control system's tag list to the equipment of an imported plant", cmd_match, NULL },
+    { "probe", "open many sessions on a daemon and print frame rates and latencies", NULL, cmd_probe },
+    { "tags", "print the tags that a daemon serves, with their present values", NULL, cmd_tags },
+    { "init", "set up the systemd service plantcastd@NAME with a certificate and first tokens", cmd_init, NULL },
+    { "ready", "check whether a daemon serves pictures (exit status 0: yes)", NULL, cmd_ready },
+    { "drain", "move all user sessions of a daemon on this machine to other daemons", cmd_drain, NULL },
+    { "standby", "begin or end maintenance of a standby core, during which the other core leads alone", cmd_standby, NULL },
+    { "reload", "make a daemon on this machine reload its plant file and tag list", cmd_reload, NULL },
+    { "history", "import readings into the recorded history of a plant, or export recorded readings as CSV", cmd_history, NULL },
+    { "backup", "back up a plant, or all files of a service plantcastd@NAME, also while the daemon runs", cmd_backup, NULL },
+    { "restore", "restore a backup that `plantcast backup` made", cmd_restore, NULL },
+    { "fleet", "serve one overview page and one /metrics for the daemons of many plants", cmd_fleet, NULL },
+    { "token", "create, list and revoke the tokens with which users and programs sign in", cmd_token, NULL },
+    { "sensors", "suggest positions for more sensors, detect sensors that drift, accept assumed positions", cmd_sensors, NULL },
+    { "verify", "check the signature of a picture or film; redraw the picture and compare", cmd_verify, NULL },
+    { "read", "print the value at a pixel of a picture or screenshot that has a legend strip", cmd_read, NULL },
+    { "audit", "check whether an audit trail was altered", cmd_audit, NULL },
 };
 enum { COMMANDS = sizeof(commands) / sizeof(commands[0]) };
 
@@ -74,6 +75,7 @@ static void print_usage(FILE *out)
 
 int main(int argc, char **argv)
 {
+    struct daemon_access access;
     if (argc < 2) {
         print_usage(stderr);
         return 2;
@@ -82,11 +84,11 @@ int main(int argc, char **argv)
         print_usage(stdout);
         return 0;
     }
-    if (!daemon_take_options(&argc, argv))
+    if (!daemon_take_options(&argc, argv, &access))
         return 2;
     for (int i = 0; i < COMMANDS; i++)
         if (!strcmp(argv[1], commands[i].name))
-            return commands[i].run(argc - 1, argv + 1);
+            return commands[i].run ? commands[i].run(argc - 1, argv + 1) : commands[i].connect(&access, argc - 1, argv + 1);
     fprintf(stderr, "plantcast: '%s' is not a command\n", argv[1]);
     print_usage(stderr);
     return 2;

@@ -207,7 +207,7 @@ static int from_daemon(struct film *film)
     film->statements = film->options->is_signed ? film_statements_create() : NULL;
     if (film->options->view && !saved_view_add_from_daemon(film->options, false))
         code = 1;
-    else if (daemon_url_parse(film->options->from, &film->url) && snapshot_query(film->options, &film->query)) {
+    else if (daemon_url_parse(film->options->from, film->options->access, &film->url) && snapshot_query(film->options, &film->query)) {
         char *answer = film->options->tour ? ask_tours(film) : NULL;
         code = (answer || !film->options->tour) && make_of(film, download, answer) ? 0 : 1;
     }
@@ -216,10 +216,11 @@ static int from_daemon(struct film *film)
     return code;
 }
 
-int command_clip(int argc, char **argv)
+int command_clip(const struct daemon_access *access, int argc, char **argv)
 {
     struct snapshot_options options;
     int code = snapshot_parse(argc, argv, true, &options);
+    options.access = access;
     struct film film = { .options = &options, .said = "" };
     bool daemon = code < 0 && strstr(options.from, "://");
     if (code < 0 && options.is_signed && !daemon) {

@@ -8,7 +8,8 @@
 
 int main(int argc, char **argv)
 {
-    if (!daemon_take_options(&argc, argv))
+    struct daemon_access access;
+    if (!daemon_take_options(&argc, argv, &access))
         return 2;
-    return !strcmp(argv[0], "verify") ? command_verify(argc, argv) : command_clip(argc, argv);
+    return !strcmp(argv[0], "verify") ? command_verify(argc, argv) : command_clip(&access, argc, argv);
 }

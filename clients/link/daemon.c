@@ -8,25 +8,21 @@
 
 #include "base/files/secret.h"
 #include "base/mem.h"
-#include "message/message.h"
 
 enum { MAX_BODY_BYTES = 256 * 1024 * 1024, RECEIVE_BYTES = 16 * 1024 };
 
-static char authorization[TOKEN_MAX_CHARS + 16]; /* value of the HTTP header Authorization; empty: there is no token */
-static const char *ca_path, *token_path;
-
 /* Reads the token from the first line of the file of --token-file. Returns false with the reason printed. */
-static bool read_token(void)
+static bool read_token(struct daemon_access *access)
 {
     size_t count;
-    char *text = text_read_file(token_path, 4096, &count);
+    char *text = text_read_file(access->token_path, 4096, &count);
     int error = text ? 0 : errno;
     size_t n = text ? strcspn(text, " \t\r\n") : 0;
     bool good = n > 0 && n <= TOKEN_MAX_CHARS;
     if (good)
-        snprintf(authorization, sizeof(authorization), "Bearer %.*s", (int)n, text);
+        snprintf(access->authorization, sizeof(access->authorization), "Bearer %.*s", (int)n, text);
     else
-        fprintf(stderr, "plantcast: %s: %s\n", token_path, error ? strerror(error) : "its first line is not a token");
+        fprintf(stderr, "plantcast: %s: %s\n", access->token_path, error ? strerror(error) : "its first line is not a token");
     secret_forget(text);
     return good;
 }
@@ -43,18 +39,19 @@ static const char *value_of(const char *name, int argc, char **argv, int *i)
     return argv[*i][n] == 0 && *i + 1 < argc ? argv[++*i] : NULL;
 }
 
-bool daemon_take_options(int *argc, char **argv)
+bool daemon_take_options(int *argc, char **argv, struct daemon_access *access)
 {
     int kept = 0;
+    *access = (struct daemon_access){ .token_path = NULL };
     for (int i = 0; i < *argc; i++) {
         const char *token = value_of("--token-file", *argc, argv, &i);
         const char *ca = token ? NULL : value_of("--ca", *argc, argv, &i);
         if (token)
-            token_path = token;
-        if (token && !read_token())
+            access->token_path = token;
+        if (token && !read_token(access))
             return false;
         if (ca)
-            ca_path = ca;
+            access->ca_path = ca;
         if (!token && !ca)
             argv[kept++] = argv[i];
     }
@@ -63,27 +60,22 @@ bool daemon_take_options(int *argc, char **argv)
     return true;
 }
 
-char **daemon_command_line(int argc, char **argv)
+char **daemon_command_line(const struct daemon_access *access, int argc, char **argv)
 {
     char **all = mem_array((size_t)argc + 5, sizeof(*all));
     int count = 0;
     all[count++] = argv[0];
-    if (token_path) {
+    if (access->token_path) {
         all[count++] = "--token-file";
-        all[count++] = (char *)token_path;
+        all[count++] = (char *)access->token_path;
     }
-    if (ca_path) {
+    if (access->ca_path) {
         all[count++] = "--ca";
-        all[count++] = (char *)ca_path;
+        all[count++] = (char *)access->ca_path;
     }
     for (int i = 1; i < argc; i++)
         all[count++] = argv[i];
     return all;
-}
-
-const char *daemon_authorization(void)
-{
-    return authorization[0] ? authorization : NULL;
 }
 
 /* Stores the path prefix under which a proxy serves the daemon. path: without the leading slash. Returns false if it is too long or has
@@ -99,10 +91,11 @@ static bool take_base(struct daemon_url *url, const char *path)
     return true;
 }
 
-bool daemon_url_parse(const char *text, struct daemon_url *url)
+bool daemon_url_parse(const char *text, const struct daemon_access *access, struct daemon_url *url)
 {
     const char *scheme, *host, *path;
     char *copy = mem_strdup(text);
+    url->access = access;
     bool good =
         lws_parse_uri(copy, &scheme, &host, &url->port, &path) == 0 && host[0] && strlen(host) < sizeof(url->host) && take_base(url, path);
     url->tls = good && (!strcmp(scheme, "https") || !strcmp(scheme, "wss"));
@@ -121,7 +114,7 @@ void daemon_prepare_context(const struct daemon_url *url, struct lws_context_cre
     if (!url->tls)
         return;
     info->options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
-    info->client_ssl_ca_filepath = ca_path;
+    info->client_ssl_ca_filepath = url->access->ca_path;
 }
 
 void daemon_prepare_connection(const struct daemon_url *url, struct lws_client_connect_info *info)
@@ -132,18 +125,18 @@ void daemon_prepare_connection(const struct daemon_url *url, struct lws_client_c
     info->alpn = "http/1.1";
 }
 
-int daemon_add_token(struct lws *wsi, void *in, size_t len)
+int daemon_add_token(const struct daemon_access *access, struct lws *wsi, void *in, size_t len)
 {
     unsigned char **at = in, *end = *at + len;
-    if (!authorization[0])
+    const char *value = access->authorization;
+    if (!*value)
         return 0;
-    return lws_add_http_header_by_token(wsi, WSI_TOKEN_HTTP_AUTHORIZATION, (unsigned char *)authorization, (int)strlen(authorization), at,
-                                        end)
-               ? -1
-               : 0;
+    int failed = lws_add_http_header_by_token(wsi, WSI_TOKEN_HTTP_AUTHORIZATION, (const unsigned char *)value, (int)strlen(value), at, end);
+    return failed ? -1 : 0;
 }
 
 struct exchange {
+    const struct daemon_access *access;
     int status;
     bool done;
     struct text *body;
@@ -156,7 +149,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
     char buffer[LWS_PRE + RECEIVE_BYTES], *at = buffer + LWS_PRE;
     int room = RECEIVE_BYTES;
     switch (reason) {
-    case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER: return daemon_add_token(wsi, in, len);
+    case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER: return daemon_add_token(exchange->access, wsi, in, len);
     case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
         snprintf(exchange->why, sizeof(exchange->why), "%s", in ? (const char *)in : "no connection");
         exchange->done = true;
@@ -181,7 +174,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 int daemon_get(const struct daemon_url *url, const char *path, struct text *body)
 {
     static const struct lws_protocols protocols[] = { { .name = "http", .callback = on_event }, { 0 } };
-    struct exchange exchange = { .body = body };
+    struct exchange exchange = { .access = url->access, .body = body };
     struct lws_context_creation_info info = {
         .port = CONTEXT_PORT_NO_LISTEN,
         .protocols = protocols,

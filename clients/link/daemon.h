@@ -7,27 +7,33 @@
 
 #include "access/access.h"
 #include "base/text/text.h"
+#include "message/message.h"
+
+struct daemon_access {                        /* values of the options --token-file and --ca */
+    char authorization[TOKEN_MAX_CHARS + 16]; /* value of the HTTP header Authorization; empty: there is no token */
+    const char *token_path, *ca_path;         /* file of the token; file of trusted certificates; NULL: not given */
+};
 
 struct daemon_url {
     char host[256];
     int port;
     bool tls;
     char base[256]; /* path prefix if a proxy serves the daemon below a path, such as "/b"; else empty */
+    const struct daemon_access *access;
 };
 
-/* Removes the options --token-file and --ca, which all commands share, from the command line, and stores their values. Returns false
-   with the reason printed. Call it before any thread starts. */
-bool daemon_take_options(int *argc, char **argv);
+/* Moves the options --token-file and --ca, which all commands share, from the command line to *access. Returns false with the reason
+   printed. */
+bool daemon_take_options(int *argc, char **argv, struct daemon_access *access);
 /* Returns the command line with the options that daemon_take_options() removed, NULL-terminated, for starting another program. The
    caller frees the array (mem_free), but not its strings. */
-char **daemon_command_line(int argc, char **argv);
-/* Parses http://HOST[:PORT][/BASE][/] or the same with https, ws or wss. Returns false with the reason printed. */
-bool daemon_url_parse(const char *text, struct daemon_url *url);
+char **daemon_command_line(const struct daemon_access *access, int argc, char **argv);
+/* Parses http://HOST[:PORT][/BASE][/] or the same with https, ws or wss. `access` must outlive *url. Returns false with the reason
+   printed. */
+bool daemon_url_parse(const char *text, const struct daemon_access *access, struct daemon_url *url);
 /* Requests GET path and appends the body of the response to *body (zero-initialised; free with text_finish()). Returns the HTTP status,
    or 0 with the reason printed if there was no answer. */
 int daemon_get(const struct daemon_url *url, const char *path, struct text *body);
-/* Returns the value of the HTTP header Authorization, a static string; NULL: there is no token. */
-const char *daemon_authorization(void);
 
 /* Sets the TLS and CA options that this URL needs in the creation info of a libwebsockets client context. */
 void daemon_prepare_context(const struct daemon_url *url, struct lws_context_creation_info *info);
@@ -35,6 +41,6 @@ void daemon_prepare_context(const struct daemon_url *url, struct lws_context_cre
 void daemon_prepare_connection(const struct daemon_url *url, struct lws_client_connect_info *info);
 /* Adds the HTTP header with the token; call it on LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER. Returns 0, or -1 if the header does not
    fit. */
-int daemon_add_token(struct lws *wsi, void *in, size_t len);
+int daemon_add_token(const struct daemon_access *access, struct lws *wsi, void *in, size_t len);
 
 #endif

@@ -7,11 +7,11 @@
 #include "clients/cli/commands.h"
 #include "clients/link/daemon.h"
 
-int daemon_download(const char *url_text, const char *path, const char *out)
+int daemon_download(const struct daemon_access *access, const char *url_text, const char *path, const char *out)
 {
     struct daemon_url url;
     struct text body = { 0 };
-    if (!daemon_url_parse(url_text, &url))
+    if (!daemon_url_parse(url_text, access, &url))
         return 1;
     int status = daemon_get(&url, path, &body), result = 1;
     if (status == 200) {

@@ -14,7 +14,7 @@ static const char usage[] =
     "Also checks that a WebSocket to the daemon can be opened, which a reverse proxy may block.\n"
     "If the daemon is not ready, prints the reason. Exit status: 0 ready, 1 not ready.\n";
 
-int cmd_ready(int argc, char **argv)
+int cmd_ready(const struct daemon_access *access, int argc, char **argv)
 {
     struct daemon_url url;
     struct text body = { 0 };
@@ -23,7 +23,7 @@ int cmd_ready(int argc, char **argv)
         fputs(usage, help ? stdout : stderr);
         return help ? 0 : 2;
     }
-    if (!daemon_url_parse(argv[1], &url))
+    if (!daemon_url_parse(argv[1], access, &url))
         return 2;
     int status = daemon_get(&url, "/readyz", &body);
     if (status && status != 200)

@@ -19,22 +19,23 @@ static int from_daemon(struct snapshot_options *options)
     code = 0;
     if (options->pick) {
         text_add(&path, "/api/v1/pick?x=%.17g&y=%.17g%s", options->place_px[0], options->place_px[1], rest);
-        code = daemon_download(options->from, path.at, NULL);
+        code = daemon_download(options->access, options->from, path.at, NULL);
         path.length = 0;
     }
     text_add(&path, "/snapshot.png%s%s", *rest ? "?" : "", *rest ? rest + 1 : "");
     if (options->out && code == 0)
-        code = daemon_download(options->from, path.at, options->out);
+        code = daemon_download(options->access, options->from, path.at, options->out);
 end:
     text_finish(&path);
     text_finish(&query);
     return code;
 }
 
-int cmd_snapshot(int argc, char **argv)
+int cmd_snapshot(const struct daemon_access *access, int argc, char **argv)
 {
     struct snapshot_options options;
     int code = snapshot_parse(argc, argv, false, &options);
+    options.access = access;
     if (code < 0)
         code = strstr(options.from, "://") ? from_daemon(&options) : snapshot_offline(&options);
     snapshot_options_finish(&options);

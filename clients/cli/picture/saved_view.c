@@ -85,7 +85,7 @@ bool saved_view_add_from_daemon(struct snapshot_options *options, bool present)
 {
     struct daemon_url url;
     struct text body = { 0 };
-    int status = daemon_url_parse(options->from, &url) ? daemon_get(&url, "/api/v1/views", &body) : 0;
+    int status = daemon_url_parse(options->from, options->access, &url) ? daemon_get(&url, "/api/v1/views", &body) : 0;
     const char *answer = body.at ? body.at : "";
     bool good = status == 200;
     if (good) {

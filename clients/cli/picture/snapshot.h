@@ -9,8 +9,11 @@
 #include "base/text/text.h"
 #include "gpu/gl.h"
 
+struct daemon_access; /* clients/link/daemon.h */
+
 enum { SNAPSHOT_MAX = 64 };
 struct snapshot_options {
+    const struct daemon_access *access; /* for requests to a daemon */
     const char *from, *out;   /* from: plant file, or URL of a daemon; out: file to write, NULL if only a pick is requested */
     char *args[SNAPSHOT_MAX]; /* parameters of the view as NAME=VALUE, as in the query of /snapshot.png; owned by the struct */
     size_t arg_count;

@@ -91,6 +91,6 @@ int cmd_verify(int argc, char **argv)
         return code;
     if (!is_film(options.path))
         return verify(&options);
-    run_film(argc, argv);
+    run_film(NULL, argc, argv);
     return 2;
 }

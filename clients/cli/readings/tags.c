@@ -127,7 +127,7 @@ static json_t *fetch_all(const struct daemon_url *url, const char *name)
     return all;
 }
 
-int cmd_tags(int argc, char **argv)
+int cmd_tags(const struct daemon_access *access, int argc, char **argv)
 {
     static const struct option options[] = { { "json", no_argument, NULL, 'j' },          { "help", no_argument, NULL, 'h' },
                                              { "probe", required_argument, NULL, 'p' },   { "rtu", no_argument, NULL, 'r' },
@@ -158,7 +158,7 @@ int cmd_tags(int argc, char **argv)
     }
     if (device)
         return tags_probe(device, argv[optind], address_base, rtu);
-    if (!daemon_url_parse(argv[optind], &url))
+    if (!daemon_url_parse(argv[optind], access, &url))
         return 2;
     json_t *all = fetch_all(&url, argv[optind]);
     if (all && as_json)

@@ -132,7 +132,7 @@ static bool take_option(int option, struct probe *probe)
     }
 }
 
-int cmd_probe(int argc, char **argv)
+int cmd_probe(const struct daemon_access *access, int argc, char **argv)
 {
     static const struct option options[] = {
         { "sessions", required_argument, NULL, 'n' },
@@ -175,5 +175,5 @@ int cmd_probe(int argc, char **argv)
     probe.url_text = argv[optind];
     if (!decodes(&probe))
         return 1;
-    return daemon_url_parse(probe.url_text, &probe.url) ? run_probe(&probe) : 2;
+    return daemon_url_parse(probe.url_text, access, &probe.url) ? run_probe(&probe) : 2;
 }

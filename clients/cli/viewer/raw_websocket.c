@@ -63,7 +63,7 @@ static int open_socket(const struct daemon_url *url, const char **why)
 
 struct raw_websocket *raw_websocket_connect(const struct daemon_url *url, const char **why)
 {
-    const char *authorization = daemon_authorization();
+    const char *authorization = url->access->authorization;
     bool six = strchr(url->host, ':') != NULL;
     int fd = open_socket(url, why);
     if (fd < 0)
@@ -73,8 +73,8 @@ struct raw_websocket *raw_websocket_connect(const struct daemon_url *url, const 
     snprintf(raw->request, sizeof(raw->request),
              "GET %s/stream HTTP/1.1\r\nHost: %s%s%s:%d\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Key: %s\r\n"
              "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: %s\r\n%s%s%s\r\n",
-             url->base, six ? "[" : "", url->host, six ? "]" : "", url->port, KEY, WIRE_SUBPROTOCOL, authorization ? "Authorization: " : "",
-             authorization ? authorization : "", authorization ? "\r\n" : "");
+             url->base, six ? "[" : "", url->host, six ? "]" : "", url->port, KEY, WIRE_SUBPROTOCOL,
+             *authorization ? "Authorization: " : "", authorization, *authorization ? "\r\n" : "");
     return raw;
 }
 

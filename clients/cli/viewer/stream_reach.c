@@ -41,6 +41,7 @@ bool stream_is_blocked(const struct daemon_url *url)
 }
 
 struct handshake {
+    const struct daemon_access *access;
     bool done, open;
 };
 
@@ -48,7 +49,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 {
     struct handshake *handshake = user;
     switch (reason) {
-    case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER: return daemon_add_token(wsi, in, len);
+    case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER: return daemon_add_token(handshake->access, wsi, in, len);
     case LWS_CALLBACK_CLIENT_ESTABLISHED: handshake->open = handshake->done = true; return -1;
     case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
     case LWS_CALLBACK_CLIENT_CLOSED: handshake->done = true; return 0;
@@ -59,7 +60,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 static bool handshake_opens(const struct daemon_url *url)
 {
     static const struct lws_protocols protocols[] = { { .name = WIRE_SUBPROTOCOL, .callback = on_event }, { 0 } };
-    struct handshake handshake = { 0 };
+    struct handshake handshake = { .access = url->access };
     struct lws_context_creation_info info = {
         .port = CONTEXT_PORT_NO_LISTEN, .protocols = protocols, .gid = -1, .uid = -1, .timeout_secs = OPEN_S
     };

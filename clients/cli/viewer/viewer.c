@@ -287,7 +287,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 {
     struct viewer *viewer = user;
     switch (reason) {
-    case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER: return daemon_add_token(wsi, in, len);
+    case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER: return daemon_add_token(viewer->params.url->access, wsi, in, len);
     case LWS_CALLBACK_CLIENT_CONNECTION_ERROR: viewer_fail(viewer, in ? (const char *)in : "no connection"); break;
     case LWS_CALLBACK_CLIENT_ESTABLISHED:
         viewer->wsi = wsi;
