@@ -59,6 +59,7 @@ struct plant_runtime *plant_runtime_read(const struct plant_runtime_context *con
     warn_of_far_sensors(context->log, runtime->services.scene);
     view_named_check_all(runtime->services.scene, warn_of_view, (void *)context);
     runtime->services.store = store_create(runtime->plant);
+    runtime->services.clock = context->clock;
     runtime->services.baselines = baselines_create();
     runtime->services.snapshot_cache = snapshot_cache_create();
     if (!runtime->plant->history.off && params->role != SERVER_RENDER)
@@ -96,6 +97,7 @@ static bool start_alarm_service(struct plant_runtime *runtime, struct alarm_serv
         .counters = context->counters,
         .plant = runtime->plant,
         .store = runtime->services.store,
+        .clock = runtime->services.clock,
         .folder = runtime->services.history_folder,
         .keep_days = runtime->plant->history.keep_days,
         .mirrors = follows(runtime),
@@ -131,7 +133,7 @@ static bool start_publisher(struct plant_runtime *runtime)
 static bool start_other_plants(struct plant_runtime *runtime)
 {
     return runtime->plant->screens.other_plant_count == 0 ||
-           (runtime->services.other_plants = other_plants_start(runtime->context->log, runtime->plant));
+           (runtime->services.other_plants = other_plants_start(runtime->context->log, runtime->plant, runtime->services.clock));
 }
 
 /* Creates the service for placing sensors from data that is already loaded; it starts no work before a session uses it. */
@@ -190,6 +192,7 @@ static bool start_core_link(struct plant_runtime *runtime)
                                        .counters = context->counters,
                                        .plant = runtime->plant,
                                        .store = runtime->services.store,
+                                       .clock = runtime->services.clock,
                                        .alarm_service = runtime->services.alarm_service,
                                        .url_count = server->core_count,
                                        .token_path = server->core_token,
@@ -228,7 +231,7 @@ bool plant_runtime_lead(struct plant_runtime *runtime)
 {
     core_link_stop(&runtime->services.core_link);
     *runtime->context->follows = false;
-    clock_follow(0);
+    clock_follow(runtime->services.clock, 0);
     if (runtime->services.historian)
         historian_lead(runtime->services.historian);
     alarm_service_lead(runtime->services.alarm_service);
@@ -252,6 +255,7 @@ bool plant_runtime_start_render_service(struct plant_runtime *runtime, const str
         .gl_device = server->has_gl_device ? &server->gl_device : NULL,
         .scene = runtime->services.scene,
         .store = runtime->services.store,
+        .clock = runtime->services.clock,
         .baselines = runtime->services.baselines,
         .snapshot_cache = runtime->services.snapshot_cache,
         .trials = placing_trials(runtime->services.placing),

@@ -22,6 +22,7 @@ struct plant_runtime_context { /* parts that a reload keeps */
     struct audit *audit;             /* writer of the audit trail; NULL: nothing is recorded */
     struct file_writer *file_writer; /* writes what users change */
     struct workers *workers;
+    struct plant_clock *clock;   /* the plant's clock */
     struct lease_keeper *keeper; /* lease keeper of a core in a pair (leader or standby); NULL: there is no pair */
     bool *follows;               /* true: another core polls devices and owns the alarms; plant_runtime_lead() sets it to false */
     void (*notify)(void *arg);   /* callback on any thread when frames or alarm changes can be collected */

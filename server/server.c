@@ -45,6 +45,7 @@ struct server {
     struct log *log;
     struct counters *counters;
     struct workers *workers;
+    struct plant_clock clock;
     struct plant_runtime_context context;
     struct plant_runtime *runtime;
     struct reload *reload;
@@ -64,6 +65,7 @@ struct server {
     int64_t begun_ns; /* monotonic time when the daemon began to start */
 };
 
+/* global, because a signal handler gets no argument */
 static struct net *_Atomic to_stop;
 static _Atomic bool preparing, told_to_end;
 
@@ -452,6 +454,7 @@ static bool server_start(struct server *server)
     server->context = (struct plant_runtime_context){ .params = &server->params,
                                                       .log = server->log,
                                                       .counters = server->counters,
+                                                      .clock = &server->clock,
                                                       .notify = on_pictures,
                                                       .notify_arg = server,
                                                       .follows = &server->follows };

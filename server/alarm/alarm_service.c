@@ -161,7 +161,7 @@ static void tick(struct alarm_service *service)
     int64_t now_ns = clock_mono_ns();
     bool due = now_ns - service->counted_ns >= NS_PER_S;
     take_events(service);
-    store_snapshot(service->params.store, now_ns, clock_plant_ns(), service->snapshot);
+    store_snapshot(service->params.store, now_ns, clock_plant_ns(service->params.clock), service->snapshot);
     bool asks = service->journal && journal_asks(service->journal);
     pthread_mutex_lock(&service->thread.lock);
     if (!service->params.mirrors) {

@@ -14,6 +14,7 @@ struct alarm_service_params {
     struct counters *counters;
     const struct plant *plant;
     struct store *store; /* plant and store must outlive the service */
+    const struct plant_clock *clock; /* clock of the readings */
     const char *folder;  /* folder of the journal; NULL: no journal, so states are lost when the daemon ends */
     double keep_days;
     /* true: alarm states come from a core (alarm_service_mirror) and not from samples: nothing is evaluated, and tags in the store get

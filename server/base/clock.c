@@ -3,6 +3,7 @@
 #include "base/clock.h"
 
 #include <errno.h>
+#include <stdatomic.h>
 #include <time.h>
 
 static int64_t read_ns(clockid_t id)
@@ -22,16 +23,14 @@ int64_t clock_utc_ns(void)
     return read_ns(CLOCK_REALTIME);
 }
 
-static _Atomic int64_t core_ahead_ns;
-
-void clock_follow(int64_t ahead_ns)
+void clock_follow(struct plant_clock *clock, int64_t ahead_ns)
 {
-    core_ahead_ns = ahead_ns;
+    atomic_store(&clock->ahead_ns, ahead_ns);
 }
 
-int64_t clock_plant_ns(void)
+int64_t clock_plant_ns(const struct plant_clock *clock)
 {
-    return clock_utc_ns() + core_ahead_ns;
+    return clock_utc_ns() + (clock ? atomic_load(&clock->ahead_ns) : 0);
 }
 
 int64_t clock_work_ns(void)

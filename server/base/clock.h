@@ -11,11 +11,16 @@
 
 int64_t clock_mono_ns(void); /* Returns monotonic time, for ages and deadlines. */
 int64_t clock_utc_ns(void);  /* Returns UTC since 1970, for stored times and for access control. */
+
+struct plant_clock {          /* the plant's clock; zero-initialise */
+    _Atomic int64_t ahead_ns; /* time that the plant's clock is ahead of this machine's UTC clock */
+};
 /* Returns the plant's UTC: the core's clock on a node that follows a core, else clock_utc_ns(). Readings, alarms, notes and the actions
-   of users have times of this clock. */
-int64_t clock_plant_ns(void);
+   of users have times of this clock. NULL: clock_utc_ns(). */
+int64_t clock_plant_ns(const struct plant_clock *clock);
 /* Sets how many nanoseconds the plant's clock is ahead of this machine's UTC clock; 0: clock_plant_ns() equals clock_utc_ns(). */
-void clock_follow(int64_t ahead_ns);
+void clock_follow(struct plant_clock *clock, int64_t ahead_ns);
+
 bool clock_utc_is_set(void);                /* Returns true if NTP or PTP synchronises the clock, according to the kernel. */
 void clock_cond_init(pthread_cond_t *cond); /* Initialises a condition variable whose timed waits use clock_mono_ns(). */
 /* Waits for the condition variable until the given time; INT64_MAX: no limit. Returns false if that time was reached; true if the thread

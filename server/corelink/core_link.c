@@ -343,8 +343,8 @@ static void on_text(struct core_link *link)
 static void compare_clocks(struct core_link *link, int64_t core_utc_ns, int64_t late_ns)
 {
     int64_t ahead_ns = core_utc_ns - clock_utc_ns();
-    if (late_ns < QUICK_NS && llabs(core_utc_ns - clock_plant_ns()) > STEP_NS)
-        clock_follow(ahead_ns);
+    if (late_ns < QUICK_NS && llabs(core_utc_ns - clock_plant_ns(link->params.clock)) > STEP_NS)
+        clock_follow(link->params.clock, ahead_ns);
     bool differ = llabs(ahead_ns) > CLOCKS_NS;
     counter_set(link->behind, ahead_ns / 1000);
     if (differ && !link->clock_said)

@@ -19,6 +19,7 @@ struct core_link_params {
     struct counters *counters;
     const struct plant *plant;
     struct store *store;
+    struct plant_clock *clock;           /* set to the core's time */
     struct alarm_service *alarm_service; /* alarm service in mirror mode (it takes states from the core); plant, store and alarm service
                                             must outlive the link */
     const char *urls[CORE_URLS];         /* ws://HOST:PORT or wss://HOST:PORT of each core that may be the leader; tried one after the

@@ -26,7 +26,7 @@ size_t net_views(struct net *net, const struct plant_services *next, struct view
     struct snapshot *snapshot = snapshot_create(next->scene->plant->tag_count);
     struct session_context session_context = net->server.session_context;
     size_t count = 0;
-    store_snapshot(next->store, clock_mono_ns(), clock_plant_ns(), snapshot);
+    store_snapshot(next->store, clock_mono_ns(), clock_plant_ns(next->clock), snapshot);
     session_context.plant = next->scene->plant;
     session_context.services = next;
     session_context.snapshot = snapshot;

@@ -26,8 +26,9 @@ static int64_t changed_ns(const struct snapshot *snapshot, const struct reading 
 bool net_take_snapshot(struct server_context *server)
 {
     bool changed = false;
-    server->readings.next_change_ns = store_take(server->params.plant.store, clock_mono_ns(), clock_plant_ns(), server->readings.snapshot);
-    render_service_set_readings(server->params.plant.render_service, server->readings.snapshot);
+    const struct plant_services *plant = &server->params.plant;
+    server->readings.next_change_ns = store_take(plant->store, clock_mono_ns(), clock_plant_ns(plant->clock), server->readings.snapshot);
+    render_service_set_readings(plant->render_service, server->readings.snapshot);
     server->readings.data_ns = server->readings.snapshot->taken_mono_ns;
     for (size_t i = 0; i < server->readings.snapshot->count; i++) {
         const struct reading *reading = &server->readings.snapshot->readings[i];

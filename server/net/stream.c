@@ -141,7 +141,7 @@ static void travel(struct server_context *server, struct stream *stream, int64_t
 {
     struct session *session = stream->session;
     int64_t before_us = session->view.at_us, at_us;
-    if (server->history_loader && session_wants_historical_snapshot(session, now_ns, clock_plant_ns(), &at_us))
+    if (server->history_loader && session_wants_historical_snapshot(session, now_ns, clock_plant_ns(server->params.plant.clock), &at_us))
         history_loader_ask(server->history_loader, session->id, at_us);
     if (session->view.at_us != before_us)
         follow_spread(server, stream);
@@ -452,7 +452,8 @@ static void on_message(struct server_context *server, struct stream *stream)
     if (stream->in_count > (size_t)server->room.quotas->at[QUOTA_MESSAGE_BYTES])
         session_on_oversize(session, stream->in_count, now_ns);
     else
-        session_on_message(session, stream->in.at ? stream->in.at : "", stream->in.length, now_ns, clock_plant_ns());
+        session_on_message(session, stream->in.at ? stream->in.at : "", stream->in.length, now_ns,
+                           clock_plant_ns(server->params.plant.clock));
     note_login(server, stream, was_in);
     follow_resolve(server, stream);
     if (session_is_tile(session) && (!was_in || session->hidden != was_hidden))

@@ -91,7 +91,7 @@ static uint16_t flags_of(const struct stream *stream)
                       (last ? 0 : WIRE_FLAG_MORE) | (stream->sending->request.of_data ? WIRE_FLAG_DATA : 0) | seen);
 }
 
-static struct wire_frame frame_header(const struct stream *stream)
+static struct wire_frame frame_header(const struct server_context *server, const struct stream *stream)
 {
     const struct encoded_frame *encoded = stream->sending;
     const struct packet *packet = packet_now(stream);
@@ -107,7 +107,7 @@ static struct wire_frame frame_header(const struct stream *stream)
         .params_seq = encoded->request.view.params_seq,
         .oldest_age_ms = frame->oldest_age_ns == INT64_MAX ? WIRE_NO_AGE : us_of(frame->oldest_age_ns / 1000),
         .data_time_us = (uint64_t)(frame->data_utc_ns / 1000),
-        .sent_time_us = (uint64_t)(clock_plant_ns() / 1000),
+        .sent_time_us = (uint64_t)(clock_plant_ns(server->params.plant.clock) / 1000),
         .wait_us = us_of(encoded->wait_ns),
         .field_us = us_of(frame->field_ns),
         .render_us = us_of(frame->render_ns + frame->readback_ns),
@@ -182,9 +182,9 @@ static void part_sent(struct server_context *server, struct stream *stream)
 }
 
 /* Writes the header and the first bytes of the payload together: a separate write would cost a system call and a network packet. */
-static size_t put_header(struct stream *stream, uint8_t *bytes)
+static size_t put_header(const struct server_context *server, struct stream *stream, uint8_t *bytes)
 {
-    struct wire_frame head = frame_header(stream);
+    struct wire_frame head = frame_header(server, stream);
     wire_put_frame(&head, bytes);
     stream->step = SEND_PAYLOAD;
     return WIRE_FRAME_HEADER_BYTES;
@@ -196,7 +196,7 @@ static bool write_slice(struct server_context *server, struct stream *stream)
     const struct packet_part *part = &packet->parts[stream->part];
     uint8_t *out = server->out + LWS_PRE;
     enum lws_write_protocol how = stream->step == SEND_HEADER ? LWS_WRITE_BINARY : LWS_WRITE_CONTINUATION;
-    size_t head = stream->step == SEND_HEADER ? put_header(stream, out) : 0;
+    size_t head = stream->step == SEND_HEADER ? put_header(server, stream, out) : 0;
     size_t left = part->count - stream->sent, slice = left < SLICE_BYTES - head ? left : SLICE_BYTES - head;
     if (slice < left)
         how |= LWS_WRITE_NO_FIN;
@@ -321,7 +321,7 @@ bool stream_send(struct server_context *server, struct stream *stream)
     padded(&text);
     if (session_tags_due(session, now_ns))
         net_refresh_readings(server);
-    if (session_next_text(session, now_ns, clock_plant_ns(), &text)) {
+    if (session_next_text(session, now_ns, clock_plant_ns(server->params.plant.clock), &text)) {
         note_first(stream, text.length, now_ns);
         good = write_text(stream, text.at + LWS_PRE, text.length - LWS_PRE);
     } else if ((stream->sending = session_next_frame(session, now_ns, &stream->seq, &stream->depth))) {

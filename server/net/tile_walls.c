@@ -98,7 +98,7 @@ static void tell(struct server_context *server, const struct tile_wall *wall, co
    picture. */
 static void move_all(struct server_context *server, const char *wall)
 {
-    struct burn_shift shift = burn_shift_at(clock_plant_ns());
+    struct burn_shift shift = burn_shift_at(clock_plant_ns(server->params.plant.clock));
     for (struct stream *stream = server->streams.first; stream; stream = stream->next)
         if (is_of(stream, wall))
             session_tile_move(stream->session, shift, clock_mono_ns());
@@ -161,7 +161,7 @@ void tiles_pump(struct server_context *server, const struct stream *stream)
     }
     if (!tiles.leader)
         return;
-    session_tiles_present(&tiles, &wall->presented, now_ns, clock_plant_ns());
+    session_tiles_present(&tiles, &wall->presented, now_ns, clock_plant_ns(server->params.plant.clock));
     request(server, wall, &tiles, now_ns);
     for (size_t i = 0; i < tiles.count; i++)
         if (stream_has_output(streams[i], now_ns))
@@ -170,7 +170,7 @@ void tiles_pump(struct server_context *server, const struct stream *stream)
 
 void tiles_on_tick(struct server_context *server)
 {
-    int64_t now_ns = clock_mono_ns(), now_utc_ns = clock_plant_ns();
+    int64_t now_ns = clock_mono_ns(), now_utc_ns = clock_plant_ns(server->params.plant.clock);
     for (struct stream *stream = server->streams.first; stream; stream = stream->next) {
         struct session *session = stream->session;
         if (!session_is_tile(session) || !session->hello)

@@ -21,6 +21,7 @@ struct render_service_params {
     const struct gl_device *gl_device; /* GPU to use; NULL: the first hardware GPU that works */
     const struct scene *scene;
     struct store *store;
+    const struct plant_clock *clock;       /* clock of the readings */
     struct baselines *baselines;           /* store of baselines; NULL: differences to baselines cannot be shown */
     struct snapshot_cache *snapshot_cache; /* cache of readings of past instants; NULL: past instants cannot be shown */
     struct trials *trials;                 /* registry of sensors that engineers move on trial; NULL: trials cannot be shown */

@@ -479,7 +479,7 @@ static bool render_thread_init(struct render_thread *thread, struct render_servi
     thread->long_job.snapshot = snapshot_create(params->scene->plant->tag_count);
     thread->parked.snapshot = snapshot_create(params->scene->plant->tag_count);
     pending_readbacks_init(&thread->in_flight, params->scene->plant->tag_count);
-    store_snapshot(params->store, clock_mono_ns(), clock_plant_ns(), thread->snapshot);
+    store_snapshot(params->store, clock_mono_ns(), clock_plant_ns(params->clock), thread->snapshot);
     render_thread_memory_init(&thread->memory, service);
     return gl_begin(thread, params->gl, false);
 }

@@ -15,7 +15,7 @@ void render_thread_refresh(struct render_thread *thread)
         snapshot_assign(thread->snapshot, service->readings);
     pthread_mutex_unlock(&service->lock);
     if (now_ns - thread->snapshot->taken_mono_ns > SNAPSHOT_MAX_AGE_NS)
-        store_snapshot(service->params.store, now_ns, clock_plant_ns(), thread->snapshot);
+        store_snapshot(service->params.store, now_ns, clock_plant_ns(service->params.clock), thread->snapshot);
     thread->stale = false;
 }
 

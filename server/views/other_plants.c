@@ -55,6 +55,7 @@ struct other {
 
 struct other_plants {
     struct log *log;
+    const struct plant_clock *clock;
     pthread_t thread;
     bool started;
     _Atomic bool stopping;
@@ -218,7 +219,7 @@ static void on_end(void *arg, void *ended, CURLcode code)
 static void begin(struct other_plants *others, struct other *other)
 {
     other->begun_ns = clock_mono_ns();
-    other->begun_us = clock_plant_ns() / 1000;
+    other->begun_us = clock_plant_ns(others->clock) / 1000;
     other->request.error[0] = other->header[0] = 0;
     if (!other->request.handle && !make_request(other)) {
         note_failure(others, other, WHY_UNREACHABLE, "no memory");
@@ -298,7 +299,7 @@ char *other_plants_text(struct other_plants *others, const int *which, size_t co
         struct other *other = &others->at[which[i]];
         if (!other->wanted_ns) { /* notes the time of the first request after a period in which no display wanted the picture */
             other->why = WHY_WAITING;
-            other->since_us = clock_plant_ns() / 1000;
+            other->since_us = clock_plant_ns(others->clock) / 1000;
             wakes = true;
         }
         other->wanted_ns = now_ns;
@@ -325,10 +326,11 @@ char *other_plants_picture(struct other_plants *others, int which, int64_t numbe
 
 /* --- start and stop --------------------------------------------------------------------------------------------------------- */
 
-struct other_plants *other_plants_start(struct log *log, const struct plant *plant)
+struct other_plants *other_plants_start(struct log *log, const struct plant *plant, const struct plant_clock *clock)
 {
     struct other_plants *others = mem_new(sizeof(*others));
     others->log = log;
+    others->clock = clock;
     others->count = plant->screens.other_plant_count;
     others->at = mem_array(others->count, sizeof(*others->at));
     pthread_mutex_init(&others->lock, NULL);

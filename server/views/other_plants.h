@@ -4,14 +4,15 @@
  * other thread waits for it. Thread: any, for the functions below. */
 #ifndef VIEWS_OTHER_PLANTS_H
 #define VIEWS_OTHER_PLANTS_H
+#include "base/clock.h"
 #include "base/log/log.h"
 #include "plant/plant.h"
 #include "plant/walls/wall.h"
 
 struct other_plants;
-/* Starts the thread. plant: has the section `other_plants`, and must outlive the result. Returns NULL if the thread cannot be started
- * (logged). */
-struct other_plants *other_plants_start(struct log *log, const struct plant *plant);
+/* Starts the thread. plant: has the section `other_plants`. Plant and clock must outlive the result. Returns NULL if the thread cannot be
+ * started (logged). */
+struct other_plants *other_plants_start(struct log *log, const struct plant *plant, const struct plant_clock *clock);
 /* Ends the thread, aborts requests in progress and sets *others to NULL. *others may be NULL. */
 void other_plants_stop(struct other_plants **others);
 /* Returns the state of the plants whose indices `which` lists, as JSON (/api/v1/other_plants in HTTP.md), and keeps requesting their

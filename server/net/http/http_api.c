@@ -47,7 +47,7 @@ static int ask_recorded(struct server_context *server, struct http_exchange *req
     struct history_query query;
     struct message_error error = { 0 };
     struct args args;
-    int64_t now_us = clock_plant_ns() / 1000;
+    int64_t now_us = clock_plant_ns(server->params.plant.clock) / 1000;
     if (!server->history_queries)
         return request_refuse(request, HTTP_STATUS_NOT_FOUND, REFUSAL_UNRECORDED);
     if (!request_args(request->wsi, &args, &error) ||
@@ -71,13 +71,14 @@ int ask_gaps(struct server_context *server, struct http_exchange *request)
 
 int ask_drift(struct server_context *server, struct http_exchange *request)
 {
+    const struct plant_services *plant = &server->params.plant;
     struct history_query query;
     struct message_error error = { 0 };
     struct args args;
     if (!server->history_queries)
         return request_refuse(request, HTTP_STATUS_NOT_FOUND, REFUSAL_UNRECORDED);
     if (!request_args(request->wsi, &args, &error) ||
-        !history_query_parse_drift(server->params.plant.scene->plant, args.list, args.count, clock_plant_ns() / 1000, &query, &error))
+        !history_query_parse_drift(plant->scene->plant, args.list, args.count, clock_plant_ns(plant->clock) / 1000, &query, &error))
         return request_answer_error(request, &error);
     return await_history(server, request, &query);
 }
@@ -85,20 +86,22 @@ int ask_drift(struct server_context *server, struct http_exchange *request)
 static bool read_alarm_query(struct server_context *server, struct http_exchange *request, bool journal, struct alarm_query *query,
                              struct message_error *error)
 {
+    const struct plant_services *plant = &server->params.plant;
     struct args args;
     return request_args(request->wsi, &args, error) &&
-           alarm_query_parse(server->params.plant.scene->plant, journal, args.list, args.count, clock_plant_ns() / 1000, query, error);
+           alarm_query_parse(plant->scene->plant, journal, args.list, args.count, clock_plant_ns(plant->clock) / 1000, query, error);
 }
 
 int api_alarms(struct server_context *server, struct http_exchange *request)
 {
+    const struct plant_services *plant = &server->params.plant;
     struct alarm_query query;
     struct message_error error = { 0 };
-    if (!server->params.plant.alarm_service)
+    if (!plant->alarm_service)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this server has no alarms (`alarms` in the plant file)\n");
     if (!read_alarm_query(server, request, false, &query, &error))
         return request_answer_error(request, &error);
-    char *text = alarms_api_text(server->params.plant.alarm_service, server->params.plant.scene->plant, &query, clock_plant_ns());
+    char *text = alarms_api_text(plant->alarm_service, plant->scene->plant, &query, clock_plant_ns(plant->clock));
     return query.csv ? request_answer(request, HTTP_STATUS_OK, "text/csv; charset=utf-8", text, strlen(text), NULL, NULL)
                      : request_answer_json(request, text);
 }
@@ -255,7 +258,7 @@ int api_notes(struct server_context *server, struct http_exchange *request)
 {
     struct message_error error = { 0 };
     struct args args;
-    int64_t now_us = clock_plant_ns() / 1000, from_us = now_us - INT64_C(3600000000), to_us = now_us;
+    int64_t now_us = clock_plant_ns(server->params.plant.clock) / 1000, from_us = now_us - INT64_C(3600000000), to_us = now_us;
     if (!request_args(request->wsi, &args, &error))
         return request_answer_error(request, &error);
     for (size_t i = 0; i < args.count; i++) {

@@ -22,7 +22,7 @@ static struct params_context context_of(const struct server_context *server)
 {
     return (struct params_context){ .scene = server->params.plant.scene,
                                     .baselines = server->params.plant.baselines,
-                                    .now_us = clock_plant_ns() / 1000 };
+                                    .now_us = clock_plant_ns(server->params.plant.clock) / 1000 };
 }
 
 static bool is_named(const char *arg, const char *name)
