@@ -9,6 +9,8 @@
 
 #define HANDED_PROTOCOL "plantcast-handed-socket"
 
+#define READINGS_INTERVAL_NS (100 * NS_PER_MS) /* minimum time between two snapshots, however often readings change */
+
 enum hand_over_step { HAND_OVER_NONE, HAND_OVER_ENDS_POLLING, HAND_OVER_SENDS, HAND_OVER_GIVES, HAND_OVER_DONE };
 
 struct net {
@@ -17,7 +19,7 @@ struct net {
     lws_sorted_usec_list_t timer; /* wakes the event loop at the monotonic time timer_ns */
     int64_t timer_ns;
     int64_t ticked_ns;   /* monotonic time when the sessions last ran their tick */
-    int64_t readings_ns; /* monotonic time when the next snapshot of readings is due (readings.c) */
+    int64_t readings_ns; /* monotonic time when the next snapshot of readings is due (reading_updates.c) */
     struct cpu_meter cpu;
     int64_t cpu_ns; /* monotonic time when the processor load (cpu) was last read */
     _Atomic bool stopping, look, drain, readings_changed, lead_ended;
@@ -68,17 +70,20 @@ void net_limit_services(struct server_context *server);
 /* Starts the thread that signs pictures, if there is a key. Returns false if it cannot start, already logged. */
 bool net_open_signer(struct net *net);
 
-/* --- readings.c; thread: the event loop --- */
+/* --- readings.c, reading_updates.c; thread: the event loop --- */
 
 /* Updates server->readings.snapshot and next_change_ns. Returns whether readings changed since the last call. */
 bool net_take_snapshot(struct server_context *server);
 /* Updates which sources are connected and whether the clock is set. Returns whether any of that changed. */
 bool net_check_links(struct server_context *server);
+/* Takes a snapshot, checks the links, and notes in server->readings what changed. */
+void net_note_changes(struct server_context *server);
 /* Makes changes in the plant's store wake the event loop from now on, and takes a first snapshot. */
 void net_watch_readings(struct net *net);
 /* Undoes net_watch_readings(): the store may be destroyed afterwards. */
 void net_unwatch_readings(struct net *net);
-/* Takes a snapshot if one is due. Returns when the next is due; INT64_MAX: not before a reading changes or a client connects. */
+/* Takes a snapshot if one is due, and tells streams and renderers what changed since the last call. Returns when the next snapshot is due;
+   INT64_MAX: not before a reading changes or a client connects. */
 int64_t net_update_readings(struct net *net, int64_t now_ns);
 
 #endif

@@ -1,20 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The event loop's snapshot of the readings. While there are clients, it is taken when the store reports a change or a reading becomes
-   stale; without clients, only when a request reads it. */
+/* The event loop's snapshot of the readings, and the state of the connections to their sources. */
 #include "base/clock.h"
-#include "net/net.h"
 #include "net/net_impl.h"
-#include "net/renderers.h"
 #include "value/quality.h"
-
-static const int64_t MIN_INTERVAL_NS = 100 * NS_PER_MS; /* minimum time between two snapshots, however often readings change */
-/* delay of a snapshot after a change, so that one frame shows all readings of one device message */
-static const int64_t GATHER_NS = 10 * NS_PER_MS;
-
-static int64_t later(int64_t a_ns, int64_t b_ns)
-{
-    return a_ns > b_ns ? a_ns : b_ns;
-}
 
 /* Returns when a reading changed. A reading that has just become stale changed now, whenever it was received. */
 static int64_t changed_ns(const struct snapshot *snapshot, const struct reading *reading)
@@ -65,53 +53,17 @@ bool net_check_links(struct server_context *server)
     return changed;
 }
 
-static void take(struct net *net)
+void net_note_changes(struct server_context *server)
 {
-    struct server_context *server = &net->server;
-    bool data_changed = net_take_snapshot(server), links_changed = net_check_links(server);
+    bool data_changed = net_take_snapshot(server);
+    server->readings.data_changed |= data_changed;
+    server->readings.links_changed |= net_check_links(server);
     if (data_changed)
         server->session_context.changed_ns = server->readings.snapshot->taken_mono_ns;
-    if (data_changed || links_changed)
-        streams_on_readings(server, data_changed, links_changed);
-    if (data_changed || links_changed)
-        renderers_on_change(server);
-    render_service_wake(server->params.plant.render_service);
-    /* 1 ms after the reading becomes stale, because the event loop may wake a little early */
-    int64_t stale_ns = server->readings.next_change_ns < INT64_MAX ? server->readings.next_change_ns + NS_PER_MS : INT64_MAX;
-    net->readings_ns = later(stale_ns, server->readings.snapshot->taken_mono_ns + MIN_INTERVAL_NS);
-}
-
-static void on_change(void *arg)
-{
-    struct net *net = arg;
-    atomic_store(&net->readings_changed, true);
-    net_wake(net);
-}
-
-void net_watch_readings(struct net *net)
-{
-    store_watch(net->server.params.plant.store, on_change, net);
-    take(net);
-}
-
-void net_unwatch_readings(struct net *net)
-{
-    store_watch(net->server.params.plant.store, NULL, NULL);
-}
-
-int64_t net_update_readings(struct net *net, int64_t now_ns)
-{
-    if (atomic_exchange(&net->readings_changed, false))
-        net->readings_ns = later(now_ns + GATHER_NS, net->server.session_context.changed_ns + MIN_INTERVAL_NS);
-    if (net->server.streams.count == 0 && !net->server.core.renderers)
-        return INT64_MAX;
-    if (now_ns >= net->readings_ns)
-        take(net);
-    return net->readings_ns;
 }
 
 void net_refresh_readings(struct server_context *server)
 {
-    if (clock_mono_ns() - server->readings.snapshot->taken_mono_ns > MIN_INTERVAL_NS)
-        take(lws_container_of(server, struct net, server));
+    if (clock_mono_ns() - server->readings.snapshot->taken_mono_ns > READINGS_INTERVAL_NS)
+        net_note_changes(server);
 }

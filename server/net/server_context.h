@@ -62,6 +62,7 @@ struct server_context {
         /* monotonic time when the quality of a reading next changes because the reading grows old; INT64_MAX: never */
         int64_t next_change_ns;
         bool *links_up; /* connection state of each data source, by source index */
+        bool data_changed, links_changed; /* changes of which the loop has not told streams and renderers yet */
     } readings;
     struct history_queries *history_queries; /* NULL: nothing is recorded */
     struct history_loader *history_loader;   /* service that loads the readings of past instants; NULL: nothing is recorded */
@@ -167,7 +168,8 @@ bool net_write(struct server_context *server, struct lws *wsi, const void *bytes
 
 /* --- readings.c --- */
 
-/* Takes a new snapshot if the last one is older than 100 ms. Call it before ages of readings are sent, or a message is acted on. */
+/* Takes a new snapshot if the last one is older than 100 ms. The loop tells streams and renderers of changes afterwards. Call it before
+   ages of readings are sent, or a message is acted on. */
 void net_refresh_readings(struct server_context *server);
 
 /* --- stream.c, stream_table.c, stream_upgrade.c: connections to /stream --- */
