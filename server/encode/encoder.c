@@ -107,7 +107,7 @@ int encoder_receive(struct encoder *encoder, struct packet **out)
 bool encoder_works(struct log *log, const char *name, const char *library)
 {
     struct encoder *encoder = find(name) ? encoder_create(log, name, library) : NULL;
-    struct frame *frame = encoder ? frame_create(320, 192) : NULL;
+    struct frame *frame = encoder ? frame_create(NULL, 320, 192) : NULL;
     bool works = frame && encoder_send(encoder, frame, &(struct encoder_params){ .quality = 80, .key = true }) == 0;
     frame_unref(&frame);
     encoder_destroy(&encoder);

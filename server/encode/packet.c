@@ -27,6 +27,7 @@ static struct frame *without_pixels(const struct frame *frame)
     atomic_init(&copy->refs, 1);
     copy->bgrx = NULL;
     copy->whole = NULL;
+    copy->pool = NULL;
     copy->markers = copy_of(frame->markers, frame->marker_count, sizeof(*frame->markers));
     copy->record = frame_record_ref(frame->record);
     for (int half = 0; half < 2; half++)

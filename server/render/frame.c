@@ -1,102 +1,34 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Creates and releases frames, makes frames that show a part of another one, and keeps a few released pixel buffers for reuse. */
+/* Creates and releases frames, and makes frames that show a part of another one. */
 #include "render/frame.h"
 
 #include <assert.h>
-#include <pthread.h>
 #include <stdatomic.h>
 #include <stddef.h>
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/system/huge_pages.h"
 #include "render/depth_grid.h"
+#include "render/frame_pool.h"
 #include "render/frame_record.h"
 #include "value/quality.h"
 
 static const float MARK_PX = 48; /* Largest distance in pixels from a marker's position to any pixel of its drawn symbol. */
-
-/* Pool of released pixel buffers. Reusing them is faster: fresh memory from the kernel costs more time in page faults than filling a frame
-   takes. */
-enum { SPARES = 4 };
-static const size_t SPARE_BYTES = (size_t)16 << 20; /* size in bytes of the largest buffer that the pool keeps; larger frames are rare */
-static struct {
-    pthread_mutex_t lock;
-    struct {
-        uint8_t *pixels;
-        size_t bytes;
-    } at[SPARES];
-    int next;
-} spares = { .lock = PTHREAD_MUTEX_INITIALIZER };
-static _Atomic size_t all_bytes;
-
-/* Returns a buffer from the pool or a new one; its content is undefined. NULL: out of memory. */
-static uint8_t *take_pixels(size_t bytes)
-{
-    uint8_t *pixels = NULL;
-    pthread_mutex_lock(&spares.lock);
-    for (int i = 0; i < SPARES && !pixels; i++)
-        if (spares.at[i].pixels && spares.at[i].bytes == bytes) {
-            pixels = spares.at[i].pixels;
-            spares.at[i].pixels = NULL;
-        }
-    pthread_mutex_unlock(&spares.lock);
-    if (!pixels && (pixels = mem_try_array(bytes, 1))) {
-        huge_pages_advise(pixels, bytes);
-        atomic_fetch_add_explicit(&all_bytes, bytes, memory_order_relaxed);
-    }
-    return pixels;
-}
-
-/* Puts the buffer into the pool, which then frees its oldest one. Takes ownership; NULL is fine. */
-static void give_pixels(uint8_t *pixels, size_t bytes)
-{
-    if (pixels && bytes <= SPARE_BYTES) {
-        pthread_mutex_lock(&spares.lock);
-        uint8_t *oldest = spares.at[spares.next].pixels;
-        size_t oldest_bytes = spares.at[spares.next].bytes;
-        spares.at[spares.next].pixels = pixels;
-        spares.at[spares.next].bytes = bytes;
-        spares.next = (spares.next + 1) % SPARES;
-        pthread_mutex_unlock(&spares.lock);
-        pixels = oldest;
-        bytes = oldest_bytes;
-    }
-    if (pixels)
-        atomic_fetch_sub_explicit(&all_bytes, bytes, memory_order_relaxed);
-    mem_free(pixels);
-}
-
-size_t frame_bytes(void)
-{
-    return atomic_load_explicit(&all_bytes, memory_order_relaxed);
-}
-
-void frame_drop_spares(void)
-{
-    pthread_mutex_lock(&spares.lock);
-    for (int i = 0; i < SPARES; i++) {
-        if (spares.at[i].pixels)
-            atomic_fetch_sub_explicit(&all_bytes, spares.at[i].bytes, memory_order_relaxed);
-        mem_free(spares.at[i].pixels);
-        spares.at[i].pixels = NULL;
-    }
-    pthread_mutex_unlock(&spares.lock);
-}
 
 static size_t pixel_bytes(const struct frame *frame)
 {
     return (size_t)frame->height_px * (size_t)frame->stride_bytes;
 }
 
-struct frame *frame_create(int width_px, int height_px)
+struct frame *frame_create(struct frame_pool *pool, int width_px, int height_px)
 {
     struct frame *frame = mem_new(sizeof(*frame));
     atomic_init(&frame->refs, 1);
     frame->width_px = width_px;
     frame->height_px = height_px;
     frame->stride_bytes = width_px * 4;
-    frame->bgrx = take_pixels(pixel_bytes(frame));
+    frame->pool = frame_pool_ref(pool);
+    frame->bgrx = frame_pool_take(pool, pixel_bytes(frame));
     if (!frame->bgrx)
         frame_unref(&frame);
     return frame;
@@ -122,7 +54,8 @@ void frame_unref(struct frame **frame_ptr)
     if (frame->whole)
         frame_unref(&frame->whole);
     else
-        give_pixels(frame->bgrx, pixel_bytes(frame));
+        frame_pool_give(frame->pool, frame->bgrx, pixel_bytes(frame));
+    frame_pool_unref(&frame->pool);
     mem_free(frame);
 }
 
@@ -153,6 +86,7 @@ struct frame *frame_cut(struct frame *whole, const struct frame_part *part)
     memcpy((char *)frame + plain, (const char *)whole + plain, sizeof(*frame) - plain);
     atomic_init(&frame->refs, 1);
     frame->whole = frame_ref(whole);
+    frame->pool = NULL;
     frame->bgrx = whole->bgrx + (size_t)part->y_px * (size_t)whole->stride_bytes + (size_t)part->x_px * 4;
     frame->width_px = frame->view.width_px = part->width_px;
     frame->height_px = frame->view.height_px = part->height_px;

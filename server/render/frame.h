@@ -39,6 +39,7 @@ struct frame_part { /* a rectangle of a frame, in pixels from the top left. widt
 };
 
 struct depth_grid; /* render/depth_grid.h */
+struct frame_pool; /* render/frame_pool.h */
 
 struct frame {
     _Atomic int refs;
@@ -46,6 +47,7 @@ struct frame {
     int width_px, height_px, stride_bytes;
     uint8_t *bgrx;                /* 4 bytes per pixel (blue, green, red, unused), rows from the top */
     struct frame *whole;          /* reference to the frame that owns the pixels; NULL: this frame owns them */
+    struct frame_pool *pool;      /* pool of the pixels that this frame owns; NULL: none */
     struct frame_marker *markers; /* sensors of the shown group */
     size_t marker_count;
     /* visible points on isolines at which the isoline's value may be written (more points than labels fit), and the arrows of fields that
@@ -70,14 +72,12 @@ struct frame {
 /* Fills in values and qualities of the markers from the snapshot that the frame was drawn from, and removes markers behind the eye. Call
    this before other threads see the frame. baselines: for differences; NULL: there are none. */
 void frame_read_markers(struct frame *frame, const struct snapshot *snapshot, struct baselines *baselines);
-struct frame *frame_create(int width_px, int height_px); /* returns NULL when out of memory; the caller owns the frame (frame_unref) */
+/* Returns NULL when out of memory; the caller owns the frame (frame_unref). pool: pool of pixel buffers; NULL: none */
+struct frame *frame_create(struct frame_pool *pool, int width_px, int height_px);
 /* Returns a frame that shows a part of `whole` and shares its pixels. The part must lie inside `whole`. Markers and labels in the part or
    near its edge are copied. Never NULL. */
 struct frame *frame_cut(struct frame *whole, const struct frame_part *part);
 struct frame *frame_ref(struct frame *frame);
 void frame_unref(struct frame **frame);
-/* Returns the bytes of pixels of all frames and of the pool of released pixel buffers. Any thread. */
-size_t frame_bytes(void);
-void frame_drop_spares(void); /* frees the pixel buffers that frames have released into the pool */
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "render/frame_pool.h"
 #include "render/gl/gl_backend.h"
 #include "render/plan/content_hash.h"
 #include "render/plan/frame_planner.h"
@@ -24,6 +25,7 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     struct renderer *renderer = mem_new(sizeof(*renderer));
     renderer->gl = gl;
     renderer->scene = scene;
+    renderer->frames = frame_pool_create();
     renderer->planner = (struct frame_planner){ .gpu_scene = &renderer->gpu_scene, .fields = &renderer->fields, .light = &renderer->light };
     fields_init(&renderer->fields, log, field);
     isolines_init(&renderer->isolines, scene->asset_count);
@@ -52,8 +54,14 @@ void renderer_destroy(struct renderer **renderer_ptr)
     light_finish(&renderer->light);
     environments_finish(&renderer->environments);
     gpu_scene_finish(&renderer->gpu_scene);
+    frame_pool_unref(&renderer->frames);
     mem_free(renderer);
     *renderer_ptr = NULL;
+}
+
+struct frame_pool *renderer_frames(const struct renderer *renderer)
+{
+    return renderer->frames;
 }
 
 const struct frame_planner *renderer_planner(const struct renderer *renderer)
@@ -96,7 +104,7 @@ static double drawn_error_of(const struct frame_context *context)
 static struct frame *start_frame(struct renderer *renderer, const struct frame_plan *plan, const struct frame_context *context)
 {
     const struct view *view = &plan->view;
-    struct frame *frame = frame_create(view->width_px, view->height_px);
+    struct frame *frame = frame_create(renderer->frames, view->width_px, view->height_px);
     if (!frame) {
         log_err(renderer->gl->log, "frame of %dx%d: out of memory", view->width_px, view->height_px);
         return NULL;

@@ -16,6 +16,8 @@ struct frame_planner; /* render/plan/frame_planner.h */
 struct renderer *renderer_create(struct log *log, struct gl *gl, const struct scene *scene, struct field *field);
 void renderer_destroy(struct renderer **renderer);
 
+/* Returns the pool of the pixel buffers of this renderer's frames. Owned by the renderer; frames that outlive it hold references. */
+struct frame_pool *renderer_frames(const struct renderer *renderer);
 /* Returns the planner that makes this renderer's frame plans (render/plan/frame_planner.h). Owned by the renderer. */
 const struct frame_planner *renderer_planner(const struct renderer *renderer);
 

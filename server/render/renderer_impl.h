@@ -15,6 +15,7 @@ struct soft; /* render/soft/soft.h */
 struct renderer {
     struct gl *gl;
     const struct scene *scene;
+    struct frame_pool *frames; /* pixel buffers of this renderer's frames */
     struct gpu_scene gpu_scene;
     struct environments environments;
     struct light light;

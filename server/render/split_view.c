@@ -124,9 +124,9 @@ static void add_meaning(struct frame *whole, const struct frame *part, int half)
 }
 
 /* Joins the frames of two halves into one frame. Takes ownership of both frames. Returns NULL if one is NULL, or out of memory. */
-static struct frame *join(const struct view *view, struct frame *parts[2])
+static struct frame *join(const struct renderer *renderer, const struct view *view, struct frame *parts[2])
 {
-    struct frame *whole = parts[0] && parts[1] ? frame_create(view->width_px, view->height_px) : NULL;
+    struct frame *whole = parts[0] && parts[1] ? frame_create(renderer_frames(renderer), view->width_px, view->height_px) : NULL;
     for (int half = 0; half < 2 && whole; half++) {
         int x_px = half ? view_left_px(view) : 0;
         copy_pixels(whole, parts[half], x_px);
@@ -149,7 +149,7 @@ struct frame *split_view_draw(struct renderer *renderer, const struct split_plan
     struct frame *parts[2] = { NULL };
     for (int half = 0; half < plan->half_count; half++)
         parts[half] = renderer_draw(renderer, plan->halves[half]);
-    return plan->half_count == 2 ? join(&plan->view, parts) : parts[0];
+    return plan->half_count == 2 ? join(renderer, &plan->view, parts) : parts[0];
 }
 
 struct frame *split_view_draw_now(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
@@ -210,7 +210,7 @@ struct frame *split_view_end(struct renderer *renderer, struct split_view **spli
     struct frame *parts[2] = { NULL }, *frame;
     for (int half = 0; half < split->half_count; half++)
         parts[half] = renderer_end(renderer, &split->jobs[half]);
-    frame = split->half_count == 2 ? join(&split->view, parts) : parts[0];
+    frame = split->half_count == 2 ? join(renderer, &split->view, parts) : parts[0];
     split_view_abandon(renderer, split_ptr);
     return frame;
 }

@@ -4,7 +4,7 @@
 #include "base/mem.h"
 #include "base/system/memory.h"
 #include "service/render_thread_impl.h"
-#include "render/frame.h"
+#include "render/frame_pool.h"
 
 static const int64_t MEASURE_INTERVAL_NS = 1 * NS_PER_S; /* interval between measurements */
 static const int64_t IDLE_TIMEOUT_NS = 10 * NS_PER_S;    /* time without clients after which the renderer's caches are released */
@@ -68,7 +68,7 @@ static size_t bound_of(size_t all, size_t models, size_t other)
 void render_thread_bound_memory(struct render_thread *thread)
 {
     struct thread_memory *memory = &thread->memory;
-    size_t bytes[RENDER_STORES], all = thread->service->params.memory_bytes, frames = frame_bytes();
+    size_t bytes[RENDER_STORES], all = thread->service->params.memory_bytes, frames = frame_pool_bytes(renderer_frames(thread->renderer));
     size_t counted = field_bytes(thread->field) + frames;
     renderer_measure_memory(thread->renderer, bytes);
     for (int i = 0; i < RENDER_STORES; i++)
@@ -126,7 +126,7 @@ void render_thread_release_memory(struct render_thread *thread)
     field_clear_cache(thread->field);
     recent_frames_finish(&thread->recent);
     encode_queue_drop_idle(thread->service->queue);
-    frame_drop_spares();
+    frame_pool_drop_spares(renderer_frames(thread->renderer));
     memory_trim();
     thread->memory.other = 0;
     render_thread_bound_memory(thread);

@@ -111,7 +111,7 @@ static double measure(const struct view *view, double p95[WAYS])
     struct frame *truth = stand_draw(&stand, &flat);
     struct frame *drawn = stand_draw(&stand, view);
     for (int i = 0; i < WAYS; i++) {
-        struct frame *shaded = frame_create(WIDTH, HEIGHT);
+        struct frame *shaded = frame_create(NULL, WIDTH, HEIGHT);
         memcpy(shaded->bgrx, drawn->bgrx, (size_t)HEIGHT * (size_t)drawn->stride_bytes);
         if (ways[i].quality)
             (ways[i].standard ? through_standard_jpeg : through_jpeg)(shaded, &ways[i]);

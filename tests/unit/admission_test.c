@@ -91,7 +91,7 @@ static void a_second(struct admission *admission, struct address_share *share, i
 {
     static uint64_t content;
     for (int i = 0; i < moving * fps + (data_wait_ms > 0); i++) {
-        struct frame *frame = frame_create(16, 16);
+        struct frame *frame = frame_create(NULL, 16, 16);
         frame->view.tier = TIER_PREVIEW;
         frame->turn_ns = cost_ms * NS_PER_MS;
         frame->content = ++content;
@@ -156,7 +156,7 @@ static void a_second_of(struct admission *admission, struct address_share *share
     static uint64_t content = 1 << 20;
     for (int i = 0; i < count; i++)
         for (int n = 0; n < shares[i].moving * of_each; n++) {
-            struct frame *frame = frame_create(16, 16);
+            struct frame *frame = frame_create(NULL, 16, 16);
             frame->turn_ns = cost_ms * NS_PER_MS;
             frame->content = ++content;
             struct encoded_frame encoded = { .packet = packet_create(frame, WIRE_CODEC_JPEG, true, "jpeg", 4),

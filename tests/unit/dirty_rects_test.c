@@ -6,7 +6,7 @@
 
 static struct frame *grey(int width_px, int height_px)
 {
-    struct frame *frame = frame_create(width_px, height_px);
+    struct frame *frame = frame_create(NULL, width_px, height_px);
     memset(frame->bgrx, 128, (size_t)height_px * (size_t)frame->stride_bytes);
     return frame;
 }

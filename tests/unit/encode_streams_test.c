@@ -138,7 +138,7 @@ static void check_depth(const struct encode_streams_fixture *f, const struct req
 /* Shows one frame to `clients` (one bit each); afterwards all of them show it. */
 static void show(struct encode_streams_fixture *f, unsigned clients, int view_number, uint64_t content, bool alone)
 {
-    struct frame *frame = frame_create(WIDTH, HEIGHT);
+    struct frame *frame = frame_create(NULL, WIDTH, HEIGHT);
     struct request_group tickets = { 0 };
     frame->view = (struct view){ .width_px = WIDTH, .height_px = HEIGHT, .camera = { .fov_deg = 30 + view_number } };
     frame->content = content;

@@ -9,7 +9,7 @@
 
 static struct frame *gradient(int w, int h)
 {
-    struct frame *frame = frame_create(w, h);
+    struct frame *frame = frame_create(NULL, w, h);
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++) {
             uint8_t *p = frame->bgrx + (size_t)y * (size_t)frame->stride_bytes + (size_t)x * 4;
@@ -91,7 +91,7 @@ static bool is_line(int x)
 static struct frame *thin_lines(int w, int h)
 {
     static const uint8_t colors[3][3] = { { 231, 146, 89 }, { 42, 183, 216 }, { 230, 231, 232 } }; /* in the order b, g, r */
-    struct frame *frame = frame_create(w, h);
+    struct frame *frame = frame_create(NULL, w, h);
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++)
             memcpy(frame->bgrx + (size_t)y * (size_t)frame->stride_bytes + (size_t)x * 4, colors[is_line(x) ? x / 11 % 2 : 2], 3);

@@ -3,6 +3,7 @@
 #include "tests/support/test.h"
 
 #include "render/frame.h"
+#include "render/frame_pool.h"
 #include "value/quality.h"
 
 enum { TAGS = 4, WIDTH = 16, HEIGHT = 16 };
@@ -18,7 +19,7 @@ static struct snapshot *readings(const double values[TAGS], const uint32_t quali
 /* Makes a frame with each tag in both halves of a split view; the right half shows readings. */
 static struct frame *frame_of_two(enum field_show left, uint32_t baseline)
 {
-    struct frame *frame = frame_create(WIDTH, HEIGHT);
+    struct frame *frame = frame_create(NULL, WIDTH, HEIGHT);
     frame->view = (struct view){ .split = true, .field = { .show = left, .baseline = baseline } };
     frame->markers = mem_array(2 * TAGS, sizeof(*frame->markers));
     for (int i = 0; i < 2 * TAGS; i++)
@@ -83,4 +84,21 @@ TEST(test_distances_stay_what_they_are)
     }
     frame_unref(&frame);
     snapshot_destroy(&snapshot);
+}
+
+TEST(a_pool_reuses_released_pixels)
+{
+    struct frame_pool *pool = frame_pool_create();
+    struct frame *frame = frame_create(pool, WIDTH, HEIGHT), *other = frame_create(pool, 2 * WIDTH, HEIGHT);
+    const uint8_t *pixels = frame->bgrx;
+    assert_int_equal(frame_pool_bytes(pool), 3 * WIDTH * HEIGHT * 4);
+    frame_unref(&frame);
+    assert_int_equal(frame_pool_bytes(pool), 3 * WIDTH * HEIGHT * 4);
+    frame = frame_create(pool, WIDTH, HEIGHT);
+    assert_ptr_equal(frame->bgrx, pixels);
+    frame_unref(&frame);
+    frame_pool_drop_spares(pool);
+    assert_int_equal(frame_pool_bytes(pool), 2 * WIDTH * HEIGHT * 4);
+    frame_pool_unref(&pool); /* the other frame outlives its creator */
+    frame_unref(&other);
 }

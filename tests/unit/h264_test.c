@@ -47,7 +47,7 @@ TEST_FIXTURE(struct h264_fixture, begin, end)
 static struct frame *picture(int w, int h, int level)
 {
     static const uint8_t patches[4][3] = { { 40, 40, 200 }, { 60, 160, 40 }, { 200, 70, 50 }, { 40, 200, 240 } };
-    struct frame *frame = frame_create(w, h);
+    struct frame *frame = frame_create(NULL, w, h);
     frame->view.width_px = w;
     frame->view.height_px = h;
     for (int y = 0; y < h; y++)
@@ -202,7 +202,7 @@ CASE(quality_can_change_between_pictures)
 /* Grey shapes of little contrast on grey, like a building from afar; `turn`: how far the camera has moved. */
 static struct frame *building(int w, int h, int turn)
 {
-    struct frame *frame = frame_create(w, h);
+    struct frame *frame = frame_create(NULL, w, h);
     frame->view.width_px = w;
     frame->view.height_px = h;
     for (int y = 0; y < h; y++)

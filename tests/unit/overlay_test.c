@@ -20,7 +20,7 @@ static struct {
 /* Makes a white frame with the marker of one tag in its middle. */
 static struct frame *draw_view(int tag, bool occluded, const struct view *view)
 {
-    struct frame *frame = frame_create(WIDTH, HEIGHT);
+    struct frame *frame = frame_create(NULL, WIDTH, HEIGHT);
     frame->view = *view;
     memset(frame->bgrx, 255, (size_t)frame->stride_bytes * HEIGHT);
     frame->markers = mem_array(1, sizeof(*frame->markers));
@@ -85,7 +85,7 @@ TEST(any_number_of_alarms_fits)
 {
     for (size_t i = 0; i < stand.snapshot->count; i++)
         stand.snapshot->readings[i].alarm = ALARM_BAD;
-    struct frame *frame = draw(0, true, false), *small = frame_create(16, 16);
+    struct frame *frame = draw(0, true, false), *small = frame_create(NULL, 16, 16);
     assert_true(has_list(frame));
     for (int y = 0; y < HEIGHT / 2; y++) /* at most a third of the frame's height, below the clock */
         assert_true(y < 80 || frame->bgrx[y * frame->stride_bytes + 40] == 255);
@@ -123,7 +123,7 @@ TEST(cards_are_as_light_or_dark_as_the_backdrop)
 /* A frame for anonymous viewers must not depend on any reading. */
 static struct frame *draw_bare(double value, enum alarm_kind alarm)
 {
-    struct frame *frame = frame_create(WIDTH, HEIGHT);
+    struct frame *frame = frame_create(NULL, WIDTH, HEIGHT);
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &frame->view);
     memset(frame->bgrx, 255, (size_t)frame->stride_bytes * HEIGHT);
     frame->markers = mem_array(1, sizeof(*frame->markers));
@@ -233,7 +233,7 @@ static int arrow_legends_differ_px(const struct frame_label *label, const struct
     const struct frame_label *labels[2] = { label, other };
     struct frame *frames[2];
     for (int i = 0; i < 2; i++) {
-        frames[i] = frame_create(WIDTH, HEIGHT);
+        frames[i] = frame_create(NULL, WIDTH, HEIGHT);
         view_default(&stand.toy->scene, WIDTH, HEIGHT, &frames[i]->view);
         frames[i]->view.directions = DIRECTIONS_ARROWS;
         memset(frames[i]->bgrx, 255, (size_t)frames[i]->stride_bytes * HEIGHT);

@@ -16,7 +16,7 @@ static struct view view_of(int number)
 /* Adds a frame whose readings were taken at read_ns. */
 static void draw(struct recent_frames *recent, int view_number, uint64_t content, int64_t read_ns)
 {
-    struct frame *frame = frame_create(64, 36);
+    struct frame *frame = frame_create(NULL, 64, 36);
     frame->view = view_of(view_number);
     frame->content = content;
     recent_frames_add(recent, frame, read_ns, read_ns);

@@ -90,7 +90,7 @@ static void paint(struct session_case *f, const struct frame_request *request, b
 {
     struct encoded_frame *encoded = empty_picture(f, request);
     if (!same) {
-        struct frame *frame = frame_create(16, 16);
+        struct frame *frame = frame_create(NULL, 16, 16);
         frame->view = request->view;
         encoded->packet = packet_create(frame, WIRE_CODEC_JPEG, true, "jpeg", 4);
         frame_unref(&frame);
@@ -120,7 +120,7 @@ static void ack(struct session_case *f, uint32_t seq)
 static void carry(struct session_case *f, const struct frame_request *request, size_t bytes, int64_t way_ns)
 {
     struct encoded_frame *encoded = empty_picture(f, request);
-    struct frame *frame = frame_create(16, 16);
+    struct frame *frame = frame_create(NULL, 16, 16);
     uint8_t *payload = mem_array(bytes, 1);
     frame->view = request->view;
     encoded->packet = packet_create(frame, WIRE_CODEC_JPEG, true, payload, bytes);
@@ -167,7 +167,7 @@ static struct depth_grid *grid_of(int width_px)
 static enum session_depth show_depth(struct session_case *f, const struct frame_request *request, struct depth_grid *grids[2])
 {
     struct encoded_frame *encoded = empty_picture(f, request);
-    struct frame *frame = frame_create(16, 16);
+    struct frame *frame = frame_create(NULL, 16, 16);
     enum session_depth depth = SESSION_DEPTH_NONE;
     uint32_t seq = 0;
     frame->view = request->view;

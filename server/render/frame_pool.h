@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Pixel buffers of frames: counts their bytes, and keeps a few released buffers for reuse. Reusing them is faster: fresh memory from the
+   kernel costs more time in page faults than filling a frame takes. Reference-counted, because frames outlive their renderer. Thread: any.
+   NULL instead of a pool: buffers are neither counted nor reused. */
+#ifndef RENDER_FRAME_POOL_H
+#define RENDER_FRAME_POOL_H
+#include <stddef.h>
+#include <stdint.h>
+
+struct frame_pool;
+struct frame_pool *frame_pool_create(void); /* never NULL */
+struct frame_pool *frame_pool_ref(struct frame_pool *pool);
+void frame_pool_unref(struct frame_pool **pool);
+/* Returns a buffer with undefined content, which frame_pool_give() takes back; NULL: out of memory. */
+uint8_t *frame_pool_take(struct frame_pool *pool, size_t bytes);
+/* Releases a buffer of frame_pool_take(). pixels may be NULL. */
+void frame_pool_give(struct frame_pool *pool, uint8_t *pixels, size_t bytes);
+size_t frame_pool_bytes(const struct frame_pool *pool); /* returns the bytes of all buffers, in use or kept for reuse */
+void frame_pool_drop_spares(struct frame_pool *pool);   /* frees the buffers kept for reuse */
+
+#endif
