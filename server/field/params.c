@@ -193,7 +193,7 @@ static const char *sensors_wrong(const struct plant *plant, const struct field_p
     if (params->show == SHOW_DISTANCE && params->sensor < 0)
         return "sensor: expected a sensor, because show is distance";
     if (!field_params_placed(plant, params))
-        return "sensors: a listed sensor has no position in the shown group";
+        return "sensors: a listed sensor belongs to another group, or has no place on an asset";
     if (params->show == SHOW_DIFFERENCE && params->baseline == 0)
         return "baseline: expected a baseline, because show is difference";
     for (size_t i = 0; i < params->override_count; i++) {

@@ -17,7 +17,6 @@ static void print_usage(FILE *out)
           "  --key FILE          public key of the server (openssl pkey -in signing.key -pubout -out FILE)\n"
           "  --tour              accept a film of a tour, whose view changes, and print each change\n"
           "  --plant PLANT.yaml  redraw the picture from its readings, and count the pixels that agree within 1/255\n"
-          "                      within 1/255\n"
           "  --prepared FOLDER   output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml, or the service's)\n"
           "  --history FOLDER    compare the readings of the picture with the recorded readings in FOLDER\n"
           "Exit status: 0 all checks passed, 1 a check failed, 2 a check was not possible.\n",

@@ -58,8 +58,8 @@ static void print_suggestions(const struct suggest_options *options, const struc
         printf("%zu of %zu sensors proposed: more sensors would not detect more hot spots of group '%s'\n", count, options->count,
                group->id);
     if (!options->csv)
-        printf("Blindness: 0 %% if sensors are everywhere; 100 %% where the sensors miss even a hot spot %g m wide that is as hot as the "
-               "whole range of the group (%g %s).\n",
+        printf("Blindness of a place: how much hotter than its surroundings a hot spot of %g m must be there for a sensor to notice it, "
+               "in %% of the group's range (%g %s).\n",
                group->hot_spot_m, group->max - group->min, group->unit);
 }
 

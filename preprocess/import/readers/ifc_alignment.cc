@@ -139,7 +139,7 @@ std::function<gp_XY(double)> arc_of(double height, double heading, double radius
     return [=](double d) {
         double sine = std::sin(heading) + d / radius;
         if (!(std::fabs(sine) < 1))
-            throw unsupported("unsupported: a vertical arc that ends before its segment");
+            throw unsupported("unsupported: a segment that is longer than its vertical arc");
         return gp_XY(height + radius * (std::cos(heading) - std::cos(std::asin(sine))), std::tan(std::asin(sine)));
     };
 }
