@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "plant/exact.h"
 #include "plant/models/asset_size.h"
 #include "preprocess/report/report.h"
 #include "preprocess/subdivision/subdivide.h"
@@ -18,8 +19,6 @@
 #define BENT_SHARE 1e-3
 /* smallest power of inverse distance weights that is reported: from there on, the error of distances alone can exceed two colour steps */
 #define HIGH_POWER 5
-/* largest relative error of a distance along the surface that accuracy_test finds on shapes without the faults of CAD exports */
-#define DISTANCE_ERROR 0.0031
 
 const char *const report_states[] = { "left", "failed", "unchanged", "shared", "built" };
 
@@ -95,13 +94,12 @@ static void add_bend(struct concerns *concerns, const struct prepare_asset *asse
                        bend->unmeasured > 0 ? 100 : 100 * bend->unknown_share));
 }
 
-/* Reports high powers of inverse distance weights. A weight is the power -p of a distance, so errors of distances grow in it: the ratio of
- * two sensors' weights has a relative error of up to p/2 times that of a distance. */
+/* Reports high powers of inverse distance weights, which amplify errors of distances (plant/exact.h). */
 static void add_powers(struct concerns *concerns, const struct prepare *prepare, const struct prepare_asset *asset)
 {
     for (size_t g = 0; g < prepare->plant->group_count; g++) {
         const struct plant_group *group = &prepare->plant->groups[g];
-        double steps = 255 * DISTANCE_ERROR * group->power / 2;
+        double steps = 255 * PLANT_DISTANCE_ERROR * group->power / 2;
         size_t sensors = 0;
         for (size_t s = 0; s < asset->sensor_count; s++) {
             const struct plant_tag *tag = &prepare->plant->tags[asset->sensors[s].tag];
@@ -112,7 +110,7 @@ static void add_powers(struct concerns *concerns, const struct prepare *prepare,
                 concerns, asset, 1 + steps / 255,
                 mem_printf("values of group '%s' on the surface may err by up to %.0f steps of colour (1/255 of the range): power %g "
                            "amplifies distance errors of %.1f %%",
-                           group->id, steps, group->power, 100 * DISTANCE_ERROR));
+                           group->id, steps, group->power, 100 * PLANT_DISTANCE_ERROR));
     }
 }
 

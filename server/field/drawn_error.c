@@ -23,6 +23,8 @@ enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 /* for interpolation paper: largest side of triangles that need no samples, as a fraction of the distance to the nearest sensor and of
    the radius R */
 #define PAPER_ACCEPTED 0.015f
+/* smallest power of shepard whose errors of distances are measured; below it, they changed no value by a colour step in tests */
+#define AMPLIFYING_POWER 8
 #define STEP_OF_COLOR (1 / 255.0f)
 #define BORDER_SLACK 4  /* tolerated displacement of the border between data and no data, in steps of struct scalar's `lacking` */
 #define MARK_ALL 0.75   /* if at least this fraction of a level's area has interpolation errors, the whole level is marked */
@@ -48,6 +50,14 @@ struct sampler { /* state of the sampling in one thread */
     size_t tri_count;
     struct triangle_piece *queue;
     size_t queued, capacity;
+};
+
+struct amplify_job {
+    struct weights *weights;
+    const uint8_t *members_marked;
+    const uint32_t *members;
+    const double *ones;
+    float *errors; /* error of each vertex */
 };
 
 struct drawn_error_job {
@@ -224,6 +234,35 @@ static void sample_group(struct sampler *sampler, float step)
     sampler->queued = sampler->tri_count = 0;
 }
 
+/* --- errors of distances ---------------------------------------------------------------------------------------------------- */
+
+/* Returns whether errors of distances change values noticeably. */
+static bool amplifies_distances(const struct weights *weights)
+{
+    return weights->distance != DISTANCE_EUCLIDEAN && weights->interpolation == INTERPOLATION_SHEPARD && weights->power >= AMPLIFYING_POWER;
+}
+
+/* Writes the error that errors of distances cause at each vertex of some blocks. If the weights of some sensors grow by the factor 1 + e
+   and those of the others shrink by as much, the value changes by up to 2 e a (1 - a) times the spread of the readings, where `a` is the
+   former sensors' share of the weights. The nearest sensor's share `a` gives the largest change if it is at least 1/2, else a = 1/2. Errors
+   below half a colour step are left out: added to errors of interpolation just below a step, they would mark most of the surface. */
+static void amplify_some(void *arg, size_t begin, size_t end)
+{
+    const struct amplify_job *job = arg;
+    const double e = PLANT_DISTANCE_ERROR * (double)job->weights->power;
+    const struct weights_terms terms = { job->members, job->ones, job->members_marked, job->weights->member_count };
+    for (size_t block = begin; block < end; block++) {
+        double values[KERNEL_BLOCK] = { 0 }, total[KERNEL_BLOCK] = { 0 };
+        size_t at = block * KERNEL_BLOCK, left = job->weights->layout->vertex_count - at, count = left < KERNEL_BLOCK ? left : KERNEL_BLOCK;
+        weights_add(job->weights, at, count, &terms, &(struct weights_sums){ values, total, NULL });
+        for (size_t j = 0; j < count; j++) { /* the weight of the nearest sensor is 1 (kernels.h) */
+            double share = total[j] > 0 ? fmax(1 / total[j], 0.5) : 1;
+            double error = 2 * e * share * (1 - share);
+            job->errors[at + j] = error > 0.5 * (double)STEP_OF_COLOR ? (float)error : 0;
+        }
+    }
+}
+
 /* --- measuring the errors of an asset's triangles --------------------------------------------------------------------------- */
 
 /* Returns whether a triangle needs no samples: it is small compared with the distance to the nearest sensor, or, in a coarse level, smaller
@@ -316,10 +355,14 @@ static float error_of_all(const struct weights *weights, const double erring[], 
     return 0;
 }
 
-static void spread(struct weights *weights, const float *errors, const struct asset_level *level)
+static void spread(struct weights *weights, float *errors, const float *at_vertices, const struct asset_level *level)
 {
     const struct asset_view *file = &weights->layout->file->view;
     double erring[WEIGHTS_ERRING] = { 0 }, all = 0;
+    for (uint32_t p = level->first_primitive; at_vertices && p < level->first_primitive + level->primitive_count; p++)
+        for (uint32_t i = file->primitives[p].first_index; i < file->primitives[p].first_index + file->primitives[p].index_count; i += 3)
+            errors[i / 3] +=
+                fmaxf(at_vertices[file->indices[i]], fmaxf(at_vertices[file->indices[i + 1]], at_vertices[file->indices[i + 2]]));
     for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++)
         add_areas(file, file->primitives[p].first_index, file->primitives[p].index_count, errors, erring, &all);
     for (int b = 0; b < WEIGHTS_ERRING && all > 0; b++)
@@ -337,7 +380,9 @@ static void spread(struct weights *weights, const float *errors, const struct as
         }
 }
 
-static void measure_level(struct drawn_error_job *job, struct weights *weights, const struct asset_level *level, struct workers *workers)
+/* resolved: preparation left no interpolation error, so only errors of distances are measured. */
+static void measure_level(struct drawn_error_job *job, struct weights *weights, const struct asset_level *level, bool resolved,
+                          struct workers *workers)
 {
     const struct asset_view *file = &weights->layout->file->view;
     size_t members = weights->member_count;
@@ -351,12 +396,19 @@ static void measure_level(struct drawn_error_job *job, struct weights *weights, 
     job->members = numbers;
     job->ones = ones;
     job->members_marked = unmarked;
-    workers_for(workers, (level->vertex_count + KERNEL_BLOCK - 1) / KERNEL_BLOCK, 4, prepare_some, weights);
-    for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++) {
+    const size_t blocks = (level->vertex_count + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
+    struct amplify_job amplify = { weights, unmarked, numbers, ones, NULL };
+    if (amplifies_distances(weights))
+        amplify.errors = mem_try_array(blocks * KERNEL_BLOCK, sizeof(float));
+    workers_for(workers, blocks, 4, prepare_some, weights);
+    if (amplify.errors)
+        workers_for(workers, blocks, 4, amplify_some, &amplify);
+    for (uint32_t p = level->first_primitive; !resolved && p < level->first_primitive + level->primitive_count; p++) {
         job->first = file->primitives[p].first_index / 3;
         workers_for(workers, file->primitives[p].index_count / 3, GRAIN, measure_some, job);
     }
-    spread(weights, job->errors, level);
+    spread(weights, job->errors, amplify.errors, level);
+    mem_free(amplify.errors);
     mem_free(numbers);
     mem_free(unmarked);
     mem_free(ones);
@@ -397,7 +449,8 @@ void drawn_error_measure(struct weights *weights, const struct field_params *par
     if (weights->measured_levels & bit || weights->prepared || layout->assumed || weights->member_count == 0 ||
         (weights->member_count == 1 && weights->interpolation == INTERPOLATION_SHEPARD))
         return;
-    if (layout->file->resolved_levels & bit && in_range && is_as_prepared(weights, params))
+    const bool resolved = layout->file->resolved_levels & bit && in_range && is_as_prepared(weights, params);
+    if (resolved && !amplifies_distances(weights))
         return;
     weights->measured_levels |= bit;
     struct drawn_error_job job = { .weights = weights,
@@ -410,6 +463,6 @@ void drawn_error_measure(struct weights *weights, const struct field_params *par
     weights->errors = weights->errors ? weights->errors : mem_try_array(layout->vertex_count, sizeof(float));
     weights->errors_version++;
     if (job.errors && weights->errors)
-        measure_level(&job, weights, &file->levels[number], workers);
+        measure_level(&job, weights, &file->levels[number], resolved, workers);
     mem_free(job.errors);
 }

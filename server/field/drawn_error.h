@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Linear interpolation error of the drawn field: how far values interpolated from a triangle's corners may be from the field inside it.
+/* Error of the drawn field: how far values interpolated from a triangle's corners may be from the field inside it. For high powers of
+   shepard by distances along the surface, the errors of these distances count, too.
    Preparation subdivides triangles until the error is below one colour step for the plant file's parameters, but may reach its limit of
    triangles; and a view may use other parameters. So the error is measured for the parameters in use. Thread: one. */
 #ifndef FIELD_DRAWN_ERROR_H

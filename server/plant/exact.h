@@ -6,6 +6,10 @@
 #include "plant/influence.h"
 #include "plant/plant.h"
 
+/* Largest relative error, in either direction, of a distance along the surface that accuracy_test finds on shapes without the faults of CAD
+   exports. A weight of shepard is the power -p of a distance, so weights err by up to p times as much. */
+#define PLANT_DISTANCE_ERROR 0.0031
+
 /* Returns whether a field with this interpolation and kind of distance is evaluated at each pixel. */
 static inline bool plant_is_exact(enum interpolation interpolation, enum distance_mode distance)
 {

@@ -7,6 +7,8 @@
 #include "field/field.h"
 #include "field/neighbours.h"
 #include "placing/sensor_suggest.h"
+#include "plant/exact.h"
+#include "protocol/asset_distance.h"
 #include "scene/scene_create.h"
 #include "tests/support/surface_case.h"
 #include "tests/support/model_maker.h"
@@ -247,6 +249,38 @@ CASE(test_picks_of_fin_tell_their_error)
     look(&u, 0);
     assert_true(u.scalars->drawn_error > 1);
     finish(&u);
+}
+
+/* Errors of distances along the surface change values of a high power. Picks state these errors where two sensors have similar weights. */
+CASE(test_errors_of_distances_are_stated_for_high_powers)
+{
+    for (double power = 4; power <= 16; power *= 2) {
+        struct plant_in_use u;
+        size_t marked = 0;
+        char *group = test_printf(", power: %g", power);
+        begin(&u, c, "", group, 2);
+        u.snapshot->readings[1].value = 100;
+        const struct asset_view *view = &u.scene->assets[0].file->view;
+        const struct asset_primitive *finest = &view->primitives[view->levels[0].first_primitive];
+        look(&u, 0);
+        for (uint32_t i = finest->first_index; i < finest->first_index + finest->index_count; i++) {
+            const uint32_t v = view->indices[i];
+            const struct field_place place = { .corners = { v, v, v }, .parts = { 1 } };
+            struct field_point point;
+            double longer = pow(1 + PLANT_DISTANCE_ERROR, power), shorter = pow(1 - PLANT_DISTANCE_ERROR, power), weights[2];
+            assert_true(field_at(u.field, 0, &u.params, u.snapshot, &place, &point));
+            for (size_t s = 0; s < 2; s++)
+                weights[s] = pow(fmax((double)asset_distance_m(view, s, v), 1e-6), -power);
+            double most = 100 * weights[1] * longer / (weights[1] * longer + weights[0] * shorter) - point.value;
+            if (power > 4 && most > 1.1 * fmax(point.drawn_error, 100.0 / 255))
+                fail_msg("power %g, vertex %u: a value of %g may err by %g, %g stated", power, v, point.value, most, point.drawn_error);
+            assert_true(point.uncertain == (point.drawn_error > 0));
+            marked += point.uncertain;
+        }
+        print_message("power %g: %zu of %u corners are marked\n", power, marked, finest->index_count);
+        assert_true(power > 4 ? marked > 0 && marked < finest->index_count : marked == 0);
+        finish(&u);
+    }
 }
 
 /* Distances by the paper's heat method agree with ours, on a strip as wide as a sensor is far from its edge. */
