@@ -2,15 +2,17 @@
 // Compares pictures that the page draws from another camera with true pictures of that camera: similarity, pixels that differ, pixels that
 // were not yet drawn, and values read back from the colours. Uses the page's own modules; only the rasterizer is written here, in place of
 // WebGL. usage: build/release/tests/bench/reprojection_bench FOLDER; node tests/bench/reprojection.mjs FOLDER
+// [processor]. processor: draws as browsers without a GPU do, by the page's own rasterizer.
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { deflateSync, inflateRawSync } from 'node:zlib';
 
 const WEB = process.env.PLANTCAST_WEB ?? join(import.meta.dirname, '../../clients/web');
 const { readGrid, readHeader } = await import(join(WEB, 'core/depth_grid.js'));
+const { Layers, Raster } = await import(join(WEB, 'core/warp_raster.js'));
 const { FLOATS, meshOf, warpMatrix } = await import(join(WEB, 'core/warp_mesh.js'));
 
-const folder = process.argv[2];
+const folder = process.argv[2], isByProcessor = process.argv[3] === 'processor';
 const CASES = ['orbit_1', 'orbit_3', 'orbit_6', 'nearer_5', 'nearer_10', 'nearer_20'];
 const OFF = 16;          // difference of a colour channel, of 255, from which a pixel counts as different
 const NEAREST = 0.05;    // as in app/picture/warp.js
@@ -165,9 +167,24 @@ function warped({ pixels, width, height }, shown) {
     return out;
 }
 
+const swapped = (pixel) => -0x1000000 | (pixel & 255) << 16 | pixel & 0xff00 | pixel >> 16 & 255; // between BGRX and RGBA
+
+// Draws as browsers without a GPU do. shown: -1 where the picture shows nothing.
+function movedByProcessor({ pixels, width, height }, part, matrix) {
+    const source = Int32Array.from(new Int32Array(pixels.buffer, pixels.byteOffset, width * height), swapped);
+    const raster = new Raster(width, height);
+    raster.clear();
+    raster.draw(part, matrix, new Layers(source, width, [part.grid]), { left: 0, top: 0, width, height });
+    const shown = raster.pixels.map((pixel) => (pixel === 0 ? -1 : 0));
+    raster.fillUndrawn(LATTICE_PX);
+    return { shown, pixels: Buffer.from(raster.pixels.map(swapped).buffer) };
+}
+
 function movedPicture(first, second) {
     const header = readHeader(first.depth), grid = readGrid(header, inflateRawSync(header.payload)), mesh = meshOf(grid, first);
     const matrix = warpMatrix(grid, first, second, NEAREST / Math.abs(grid.base + grid.levels * grid.unit));
+    if (isByProcessor)
+        return movedByProcessor(first, { grid, mesh }, matrix);
     const shown = rasterize(mesh, matrix, grid, first.width, first.height);
     return { shown, pixels: warped(first, shown) };
 }

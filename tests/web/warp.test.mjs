@@ -9,6 +9,7 @@ import { sight } from '../../clients/web/core/camera_moves.js';
 import { decodeGrid, readHeader } from '../../clients/web/core/depth_grid.js';
 import { along } from '../../clients/web/core/vector.js';
 import { depthAt, FAR, FLOATS, isNear, meshOf, moveBy, NEAR, warpMatrix } from '../../clients/web/core/warp_mesh.js';
+import { Layers, Raster } from '../../clients/web/core/warp_raster.js';
 
 const WIDTH = 400, HEIGHT = 240, CELL = 8, SIDE = 4, LEVELS = 4095;
 const PERSPECTIVE = { eye: [6, -9, 5], target: [0, 0, 0.5], up: [0, 0, 1], fov: 45 };
@@ -169,6 +170,59 @@ for (const [name, camera] of [['perspective', PERSPECTIVE], ['orthographic', PAR
     });
 }
 
+// Colour of what a pixel shows, as 32-bit numbers with red in the lowest byte: the background, the floor and each side of the box.
+const sumOf = (name) => [...name].reduce((sum, letter) => sum + letter.charCodeAt(), 0);
+const colourOf = (at) => (at === null ? 0xfff0f0f0 : 0xff000000 + 40 * sumOf(at.name)) | 0;
+const isGrey = (pixel) => (pixel & 255) === (pixel >> 8 & 255) && (pixel & 255) === (pixel >> 16 & 255);
+
+// Draws the scene's picture from another camera by the processor, before places that the picture does not show are filled.
+async function rasterized(camera, to, size = [WIDTH, HEIGHT], box = { left: 0, top: 0, width: size[0], height: size[1] }) {
+    const { bytes, all } = encode(camera), grid = await decodeGrid(bytes), picture = Int32Array.from(all, colourOf);
+    const raster = new Raster(...size), layers = new Layers(picture, WIDTH, [grid]);
+    raster.draw({ grid, mesh: meshOf(grid, camera) }, warpMatrix(grid, camera, to, 0.1), layers, box);
+    return { raster, picture };
+}
+
+for (const [name, camera] of [['perspective', PERSPECTIVE], ['orthographic', PARALLEL]]) {
+    test(`the processor draws the picture from another camera, true to its surfaces: ${name}`, async () => {
+        const same = await rasterized(camera, camera);
+        const changed = same.raster.pixels.filter((pixel, i) => pixel !== same.picture[i] && !isGrey(pixel)).length;
+        assert.equal(changed, 0, 'from its own camera, the picture is as it was');
+        const to = { ...camera, eye: [6.5, -8.6, 5.2], target: [0.2, 0, 0.4] }, { raster } = await rasterized(camera, to);
+        const drawn = raster.pixels.slice();
+        let shown = 0, wrong = 0;
+        for (let i = 0; i < drawn.length; i++)
+            if (!isGrey(drawn[i])) {
+                shown++;
+                wrong += drawn[i] === colourOf(hit(to, i % WIDTH + 0.5, Math.floor(i / WIDTH) + 0.5)) ? 0 : 1;
+            }
+        assert.ok(shown > 0.2 * drawn.length && wrong < 0.03 * shown, `${wrong} of ${shown} coloured pixels show another surface`);
+        const bare = drawn.filter((pixel) => pixel === 0).length;
+        assert.ok(bare > 0 && bare < 0.2 * drawn.length, `${bare} pixels are not drawn`);
+        raster.fillUndrawn(14);
+        assert.ok(drawn.every((pixel, i) => (pixel === 0 ? isGrey(raster.pixels[i]) && raster.pixels[i] < 0 : pixel === raster.pixels[i])),
+            'what is not drawn becomes grey and opaque, and nothing else changes');
+        raster.leaveOut(0.5);
+        assert.equal(raster.pixels.filter((pixel) => pixel === 0).length, drawn.length / 2);
+        raster.clear();
+        assert.ok(raster.pixels.every((pixel) => pixel === 0));
+    });
+}
+
+test('the processor draws reduced pictures, and halves of split views only in their half', async () => {
+    const half = { left: 100, top: 0, width: 100, height: 120 };
+    const { raster } = await rasterized(PERSPECTIVE, { ...PERSPECTIVE, eye: [6.5, -8.6, 5.2] }, [200, 120], half);
+    const drawn = (from, to) => raster.pixels.filter((pixel, i) => i % 200 >= from && i % 200 < to && pixel !== 0).length;
+    assert.equal(drawn(0, 100), 0);
+    assert.ok(drawn(100, 200) > 0.8 * 100 * 120);
+    const near = await rasterized(PERSPECTIVE, { ...PERSPECTIVE, eye: [1.05, -1.6, 1] }); // the box reaches behind the eye
+    assert.ok(near.raster.pixels.some((pixel) => pixel !== 0));
+    const lost = await rasterized(PERSPECTIVE, { ...PERSPECTIVE, eye: [NaN, 0, 0] });
+    assert.ok(lost.raster.pixels.every((pixel) => pixel === 0), 'a camera that is nowhere sees nothing');
+    lost.raster.fillUndrawn(NaN);
+    assert.ok(lost.raster.pixels.every((pixel) => pixel === lost.raster.pixels[0] && isGrey(pixel)));
+});
+
 test('a grid that is not one is refused, whatever it says', async () => {
     const { bytes } = encode(PERSPECTIVE), changed = (f) => {
         const copy = bytes.slice();
@@ -202,8 +256,8 @@ test('a camera that jumps, or changes its projection, gets no picture from elsew
 });
 
 test('a picture drawn with fewer pixels keeps its exact shape', () => {
-    const gl = new Proxy({}, { get: () => () => {} }), canvas = { width: 1, height: 1, style: {} };
-    const warp = Object.assign(Object.create(Warp.prototype), { gl, canvas, reduced: [], intervals: [], last: 0, mostPx: 10000 });
+    const canvas = { width: 1, height: 1, style: {} }, painter = { resize: (width, height) => Object.assign(canvas, { width, height }) };
+    const warp = Object.assign(Object.create(Warp.prototype), { canvas, painter, intervals: [], last: 0, mostPx: 10000 });
     warp.fit({ fullWidth: 322, fullHeight: 178 });
     assert.deepEqual([canvas.width, canvas.height, canvas.style.aspectRatio], [134, 74, '322 / 178']);
 });

@@ -232,20 +232,20 @@ const watchWarped = (page) => page.evaluate((LEAST_RUN_PX) => {
     };
 }, LEAST_RUN_PX);
 
-// Ends the counting of watchWarped(). Then counts animation frames, WebGL drawings and timers until the server has answered two pings,
+// Ends the counting of watchWarped(). Then counts animation frames, drawings and timers until the server has answered two pings,
 // except the timer by which the connection checks that the server still answers. news: number of other messages from the server.
 const still = (page) => page.evaluate(() => new Promise((done) => {
     globalThis.rests = true;
     requestAnimationFrame(done);
 }).then(() => new Promise((done) => {
-    const { session: { connection }, viewport: { warp: { gl } } } = globalThis.plantcast;
+    const { session: { connection }, viewport: { warp: { painter } } } = globalThis.plantcast;
     const seen = { frames: 0, draws: 0, timers: [], news: 0 };
     const { requestAnimationFrame: frame, setTimeout: timer } = globalThis, { heard, clock } = connection;
     let pongs = 0;
     globalThis.requestAnimationFrame = (f) => frame(f, seen.frames++);
     globalThis.setTimeout = (f, ms) => timer(f, ms, seen.timers.push(`${ms} ms: ${f}`));
     connection.clock = { ...clock, setTimeout: (f, ms) => timer(f, ms) };
-    gl.drawArrays = gl.drawElements = () => seen.draws++;
+    painter.paint = () => seen.draws++;
     connection.heard = (data) => {
         heard.call(connection, data);
         const isPong = typeof data === 'string' && JSON.parse(data).type === 'pong';
@@ -254,8 +254,7 @@ const still = (page) => page.evaluate(() => new Promise((done) => {
         if (pongs < 2)
             return;
         Object.assign(globalThis, { requestAnimationFrame: frame, setTimeout: timer });
-        delete gl.drawArrays;
-        delete gl.drawElements;
+        delete painter.paint;
         Object.assign(connection, { heard, clock });
         done(seen);
     };
@@ -273,9 +272,35 @@ function partBeyond(runs, places) {
     return 1 - within / all;
 }
 
-test('the picture follows the hand before the server answers; nothing is coloured where nothing was drawn', options, async (t) => {
+// Hides that the browser emulates WebGL, so that the page draws by it.
+const asGpu = () => {
+    const { getParameter } = WebGL2RenderingContext.prototype;
+    WebGL2RenderingContext.prototype.getParameter = function renamed(name) {
+        return typeof getParameter.call(this, name) === 'string' ? 'GPU' : getParameter.call(this, name);
+    };
+};
+
+async function loseContext(page) {
+    await page.evaluate(() => {
+        globalThis.context = globalThis.plantcast.viewport.warp.painter.gl.getExtension('WEBGL_lose_context');
+        globalThis.context.loseContext();
+    });
+    await page.waitForFunction(() => globalThis.plantcast.viewport.warp === null);
+    await page.mouse.wheel(0, -120);
+    await settle(page);
+    await page.evaluate(() => globalThis.context.restoreContext());
+    await page.waitForFunction(() => globalThis.plantcast.viewport.warp);
+    await page.evaluate(() => { globalThis.warped = []; });
+    await page.mouse.wheel(0, 120);
+    await page.waitForFunction(() => globalThis.warped.length > 0);
+    assert.ok(await page.evaluate(() => globalThis.warped.every(({ runs }) => runs.length > 50)), 'the box is seen again');
+    await settle(page);
+}
+
+const followsHand = (painter, ...script) => async (t) => {
     const slow = await Relay.open(plant.port, { bytesPerS: 4e6, delayMs: 300 });
-    const { page, errors, close } = await openPage(`http://127.0.0.1:${slow.port}/?codec=jpeg`, { viewport: { width: 1100, height: 700 } });
+    const { page, errors, close } = await openPage(`http://127.0.0.1:${slow.port}/?codec=jpeg`, { viewport: { width: 1100, height: 700 } },
+        ...script);
     try {
         await look(page);
         if (!await page.evaluate(() => globalThis.plantcast.session.reprojects)) {
@@ -287,6 +312,7 @@ test('the picture follows the hand before the server answers; nothing is coloure
         await page.mouse.down();
         await page.mouse.move(x + 8, y);
         await page.waitForFunction(() => globalThis.plantcast.viewport.warp);
+        assert.equal(await page.evaluate(() => globalThis.plantcast.viewport.warp.painter.constructor.name), painter);
         await settle(page);
         await page.waitForFunction(() => globalThis.plantcast.viewport.warp.grids.at(-1)?.parts);
         await watchWarped(page);
@@ -324,23 +350,15 @@ test('the picture follows the hand before the server answers; nothing is coloure
             rest = await still(page);
         while (rest.news > 0); // for example a reading that a busy machine read late
         assert.deepEqual(rest, { frames: 0, draws: 0, timers: [], news: 0 }, 'a still view costs nothing');
-        await page.evaluate(() => {
-            globalThis.context = globalThis.plantcast.viewport.warp.gl.getExtension('WEBGL_lose_context');
-            globalThis.context.loseContext();
-        });
-        await page.waitForFunction(() => globalThis.plantcast.viewport.warp === null);
-        await page.mouse.wheel(0, -120);
-        await settle(page);
-        await page.evaluate(() => globalThis.context.restoreContext());
-        await page.waitForFunction(() => globalThis.plantcast.viewport.warp);
-        await page.evaluate(() => { globalThis.warped = []; });
-        await page.mouse.wheel(0, 120);
-        await page.waitForFunction(() => globalThis.warped.length > 0);
-        assert.ok(await page.evaluate(() => globalThis.warped.every(({ runs }) => runs.length > 50)), 'the box is seen again');
-        await settle(page);
+        if (painter === 'GlPainter')
+            await loseContext(page);
         assert.deepEqual(errors, []);
     } finally {
         await close();
         slow.close();
     }
-});
+};
+
+const name = 'the picture follows the hand before the server answers; nothing is coloured where nothing was drawn';
+test(`${name}, by WebGL`, options, followsHand('GlPainter', asGpu));
+test(`${name}, by the processor`, options, followsHand('CpuPainter'));

@@ -3,7 +3,7 @@
 import { clipOf, eyeMatrix } from '../../core/headset_views.js';
 import { subtract, add, scale } from '../../core/vector.js';
 import { FLOATS } from '../../core/warp_mesh.js';
-import { MESH, PICTURE, programOf } from '../picture/warp.js';
+import { MESH, PICTURE, programOf } from '../picture/painters/gl_painter.js';
 
 const NEAREST_M = 0.05; // nothing nearer is drawn
 // grey of directions that no picture shows; its lattice tells it from equipment without a sensor, which is also grey

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Draws warped pictures by WebGL 2, for warp.js.
+import { FLOATS } from '../../../core/warp_mesh.js';
+
+export const MESH = `#version 300 es
+in vec4 vertex;
+uniform mat4 warp;
+out vec2 at;
+flat out float kind;
+void main() {
+    at = vertex.xy;
+    kind = vertex.w;
+    gl_Position = warp * vec4(vertex.xyz, 1.0);
+}`;
+// Pixels behind a step in depth that contain a part of the colour before the step become grey.
+export const PICTURE = `#version 300 es
+precision highp float;
+in vec2 at;
+flat in float kind;
+uniform sampler2D picture, masks;
+uniform vec2 origin, size;
+uniform float bit;
+out vec4 colour;
+bool isNear(float x, float y) {
+    return texelFetch(masks, ivec2(vec2(x, y) / bit), 0).r > 0.5;
+}
+void main() {
+    if (kind > 0.5 && isNear(at.x, at.y) != (kind < 1.5))
+        discard;
+    colour = vec4(texture(picture, (origin + at) / size).rgb, 1.0);
+    if (kind > 1.5 && (isNear(at.x - bit, at.y) || isNear(at.x + bit, at.y) || isNear(at.x, at.y - bit) || isNear(at.x, at.y + bit)))
+        colour.rgb = vec3(dot(colour.rgb, vec3(0.299, 0.587, 0.114)));
+}`;
+const BEHIND = `#version 300 es
+void main() {
+    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 1.0, 1.0);
+}`;
+// Computes from a reduced picture the greys around places that are not drawn, and how wide these places are. A reduced picture keeps this
+// cheap on machines without a GPU.
+const AROUND = `#version 300 es
+precision highp float;
+uniform sampler2D drawn;
+uniform vec2 size;
+out vec4 colour;
+void main() {
+    vec2 at = gl_FragCoord.xy / size;
+    vec4 sum = vec4(0.0);
+    for (int level = 0; level < 12 && sum.a < 0.98; level++)
+        sum += (1.0 - sum.a) * textureLod(drawn, at, float(level));
+    float grey = sum.a > 0.0 ? dot(sum.rgb, vec3(0.299, 0.587, 0.114)) / sum.a : 0.5;
+    colour = vec4(vec3(grey), smoothstep(0.35, 0.65, 1.0 - textureLod(drawn, at, 3.0).a));
+}`;
+const UNDRAWN = `#version 300 es
+precision highp float;
+uniform sampler2D around;
+uniform vec2 size;
+uniform float period;
+out vec4 colour;
+void main() {
+    vec4 near = texture(around, gl_FragCoord.xy / size);
+    vec2 line = mod(vec2(gl_FragCoord.x + gl_FragCoord.y, gl_FragCoord.x - gl_FragCoord.y), period);
+    float mark = min(line.x, line.y) < 0.1 * period ? 0.08 * near.a : 0.0;
+    colour = vec4(vec3(near.r > 0.4 ? near.r - mark : near.r + mark), 1.0);
+}`;
+// Fades out the warped picture by discarding its pixels one after the other, in a dither pattern, so that the server's picture below shows.
+// A mixture of both colours would be read as the value between them.
+const GONE = `#version 300 es
+precision highp float;
+uniform float gone;
+out vec4 colour;
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy) & 3;
+    int odd = at.x ^ at.y;
+    if (float(4 * (2 * (odd & 1) + (at.y & 1)) + (odd & 2) + (at.y >> 1)) > gone * 16.0 - 0.5)
+        discard;
+    colour = vec4(0.0);
+}`;
+// REDUCED: REDUCED x REDUCED pixels become one pixel of the reduced picture, from which the greys are computed
+const REDUCED = 4;
+
+// Returns { program, at(name) }; at() returns the location of a uniform.
+export function programOf(gl, ...sources) {
+    const program = gl.createProgram();
+    [gl.VERTEX_SHADER, gl.FRAGMENT_SHADER].forEach((type, i) => {
+        const shader = gl.createShader(type);
+        gl.shaderSource(shader, sources[i]);
+        gl.compileShader(shader);
+        gl.attachShader(program, shader);
+    });
+    gl.bindAttribLocation(program, 0, 'vertex');
+    gl.linkProgram(program);
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS))
+        throw new Error(gl.getProgramInfoLog(program));
+    return { program, at: (name) => gl.getUniformLocation(program, name) };
+}
+
+export class GlPainter {
+    // Throws if a program does not compile.
+    constructor(gl) {
+        this.gl = gl;
+        this.loaded = null; // parts whose meshes and masks are uploaded
+        this.uploaded = []; // { buffers, masks } for each loaded part
+        this.mesh = programOf(gl, MESH, PICTURE);
+        this.around = programOf(gl, BEHIND, AROUND);
+        this.undrawn = programOf(gl, BEHIND, UNDRAWN);
+        this.gone = programOf(gl, BEHIND, GONE);
+        gl.enable(gl.DEPTH_TEST);
+        gl.enable(gl.CULL_FACE);
+        gl.depthFunc(gl.LEQUAL);
+        gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+        gl.enableVertexAttribArray(0);
+        this.texture = this.newTexture();
+        // two reduced textures: the picture, and the greys for places that the picture does not show
+        this.reduced = [gl.LINEAR_MIPMAP_NEAREST, gl.LINEAR].map((filter) => {
+            const one = { texture: this.newTexture(), framebuffer: gl.createFramebuffer() };
+            gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+            gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, filter);
+            return one;
+        });
+    }
+
+    newTexture() {
+        const { gl } = this, texture = gl.createTexture();
+        gl.bindTexture(gl.TEXTURE_2D, texture);
+        // NEAREST, because users would read a mixture of two colours as the value between them
+        for (const [name, value] of [[gl.TEXTURE_MIN_FILTER, gl.NEAREST], [gl.TEXTURE_MAG_FILTER, gl.NEAREST],
+            [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]])
+            gl.texParameteri(gl.TEXTURE_2D, name, value);
+        return texture;
+    }
+
+    // Sets the size of the drawing.
+    resize(width, height) {
+        const { gl, reduced } = this;
+        Object.assign(gl.canvas, { width, height });
+        reduced.size = [width, height].map((px) => Math.ceil(px / REDUCED));
+        for (const { texture, framebuffer } of reduced) {
+            gl.bindTexture(gl.TEXTURE_2D, texture);
+            gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, ...reduced.size, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);
+            gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, framebuffer);
+            gl.framebufferTexture2D(gl.DRAW_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+        }
+        gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+    }
+
+    // Hands a picture and the meshes of its parts to WebGL.
+    load(pixels, parts) {
+        const { gl } = this;
+        gl.bindTexture(gl.TEXTURE_2D, this.texture);
+        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+        // uses the visible size, because the coded picture may be a pixel wider and higher than the frame
+        this.size = [pixels.displayWidth ?? pixels.width, pixels.displayHeight ?? pixels.height];
+        if (parts === this.loaded)
+            return; // an earlier picture that shares the depth grids has uploaded them
+        for (const { buffers, masks } of this.uploaded) {
+            buffers.forEach((buffer) => gl.deleteBuffer(buffer));
+            gl.deleteTexture(masks);
+        }
+        this.uploaded = parts.map((part) => this.loadPart(part));
+        this.loaded = parts;
+    }
+
+    loadPart({ grid: { masks, maskSide, columns, rows }, mesh }) {
+        const { gl } = this, texture = this.newTexture();
+        gl.texImage2D(gl.TEXTURE_2D, 0, gl.R8, columns * maskSide, rows * maskSide, 0, gl.RED, gl.UNSIGNED_BYTE, masks);
+        const buffers = [[gl.ARRAY_BUFFER, mesh.vertices], [gl.ELEMENT_ARRAY_BUFFER, mesh.indices]].map(([target, data]) => {
+            const buffer = gl.createBuffer();
+            gl.bindBuffer(target, buffer);
+            gl.bufferData(target, data, gl.STATIC_DRAW);
+            return buffer;
+        });
+        return { buffers, masks: texture };
+    }
+
+    // Draws the loaded picture. matrices, boxes: for each part, from warpMatrix(), and { left, top, width, height } in drawn pixels.
+    // period: of the lattice, in drawn pixels. gone: part (0 to 1) of the pixels that are left out, at which the canvas below shows.
+    paint(matrices, boxes, period, gone) {
+        const { gl, mesh } = this;
+        gl.viewport(0, 0, gl.canvas.width, gl.canvas.height);
+        gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+        gl.useProgram(mesh.program);
+        gl.bindTexture(gl.TEXTURE_2D, this.texture);
+        gl.activeTexture(gl.TEXTURE1);
+        gl.uniform1i(mesh.at('masks'), 1);
+        gl.uniform2fv(mesh.at('size'), this.size);
+        this.loaded.forEach((part, i) => this.paintPart(part, this.uploaded[i], matrices[i], boxes[i]));
+        gl.activeTexture(gl.TEXTURE0);
+        this.paintUndrawn(period);
+        if (gone > 0)
+            this.leaveOut(gone);
+    }
+
+    paintPart({ grid, mesh: { indices } }, { buffers, masks }, matrix, { left, top, width, height }) {
+        const { gl, mesh } = this;
+        gl.viewport(left, gl.canvas.height - top - height, width, height);
+        gl.uniformMatrix4fv(mesh.at('warp'), false, matrix);
+        gl.uniform2f(mesh.at('origin'), grid.x, grid.y);
+        gl.uniform1f(mesh.at('bit'), grid.cellPx / grid.maskSide);
+        gl.bindTexture(gl.TEXTURE_2D, masks);
+        gl.bindBuffer(gl.ARRAY_BUFFER, buffers[0]);
+        gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffers[1]);
+        gl.vertexAttribPointer(0, FLOATS, gl.FLOAT, false, 0, 0);
+        gl.drawElements(gl.TRIANGLES, indices.length, gl.UNSIGNED_INT, 0);
+    }
+
+    // Fills the places that the picture does not show with the greys around them.
+    paintUndrawn(period) {
+        const { gl, gl: { canvas: { width, height } }, reduced, undrawn, around } = this, [drawn, greys] = reduced;
+        gl.bindTexture(gl.TEXTURE_2D, drawn.texture);
+        gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, drawn.framebuffer);
+        gl.blitFramebuffer(0, 0, width, height, 0, 0, ...reduced.size, gl.COLOR_BUFFER_BIT, gl.LINEAR);
+        gl.generateMipmap(gl.TEXTURE_2D);
+        gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, greys.framebuffer);
+        gl.viewport(0, 0, ...reduced.size);
+        gl.useProgram(around.program);
+        gl.uniform2fv(around.at('size'), reduced.size);
+        gl.drawArrays(gl.TRIANGLES, 0, 3);
+        gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+        gl.viewport(0, 0, width, height);
+        gl.bindTexture(gl.TEXTURE_2D, greys.texture);
+        gl.useProgram(undrawn.program);
+        gl.uniform2f(undrawn.at('size'), width, height);
+        gl.uniform1f(undrawn.at('period'), period);
+        gl.drawArrays(gl.TRIANGLES, 0, 3);
+    }
+
+    leaveOut(gone) {
+        const { gl } = this;
+        gl.disable(gl.DEPTH_TEST);
+        gl.useProgram(this.gone.program);
+        gl.uniform1f(this.gone.at('gone'), gone);
+        gl.drawArrays(gl.TRIANGLES, 0, 3);
+        gl.enable(gl.DEPTH_TEST);
+    }
+}
