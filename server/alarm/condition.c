@@ -7,7 +7,7 @@ enum condition_side condition_side(enum alarm_kind kind, double limit, double de
     bool high = kind == ALARM_H || kind == ALARM_HH;
     if (alarm_reaches(value, limit, high))
         return CONDITION_BEYOND;
-    return (high ? value < limit - deadband : value > limit + deadband) ? CONDITION_CLEAR : CONDITION_BETWEEN;
+    return alarm_reaches(value, high ? limit - deadband : limit + deadband, high) ? CONDITION_BETWEEN : CONDITION_CLEAR;
 }
 
 static bool turn(struct condition *condition)

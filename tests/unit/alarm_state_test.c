@@ -151,6 +151,9 @@ TEST(a_deadband_lies_inside_its_limit)
     assert_int_equal(condition_side(ALARM_H, 0.7, 0, (double)0.7F), CONDITION_BEYOND);
     assert_int_equal(condition_side(ALARM_L, 55.5, 0, 0.555 * 100), CONDITION_BEYOND);
     assert_int_equal(condition_side(ALARM_H, 0.7, 0, 0.699999), CONDITION_CLEAR);
+    /* a limit of 60 °F with a deadband of 10 °F, and a value of 50 °F, all converted to °C */
+    const double factor = 5 / 9.0, offset = 459.67 * 5 / 9 - 273.15;
+    assert_int_equal(condition_side(ALARM_H, 60 * factor + offset, 10 * factor, 50 * factor + offset), CONDITION_BETWEEN);
 }
 
 TEST(delays_run_whole)
