@@ -16,7 +16,7 @@
  * and LARGE at the midpoints of its edges */
 #define LARGE 16.0
 
-#define GRAIN 1024 /* probes per unit of work of a thread */
+#define GRAIN 1024 /* measured points per unit of work of a thread */
 
 /* Returns a hash of the three vertex indices that does not depend on their order and is never 0. */
 static uint64_t triangle_hash(const uint32_t v[3])

@@ -22,8 +22,8 @@
 #include "preprocess/pipeline/sensor_distances.h"
 #include "preprocess/pipeline/build_report_json.h"
 
-#define FAR_M 0.25 /* distance in metres between a sensor and the surface, above which a warning is printed */
-/* distance above which a warning is printed, as a share of the asset's size; the smaller one of both limits applies */
+/* A warning is printed if a sensor is farther from the surface than FAR_M metres, or farther than this share of the asset's size. */
+#define FAR_M 0.25
 #define FAR_OF_SIZE 0.05
 
 /* number of triangles in a batch: models are parsed until their assets have this many triangles, then these assets are built */

@@ -148,8 +148,8 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
 const float *weights_column(const struct weights *weights, size_t begin, uint32_t member);
 /* Returns true if the weights of all sensors in a block are cached. */
 bool weights_has_columns(const struct weights *weights, size_t begin);
-/* Returns true if all arrays and columns of a block are filled, so that summing only reads them (except for Algorithm 1 with Uncertain
-   sensors, whose weights are computed for each sum). */
+/* Returns true if all arrays and columns of a block are filled, so that weights_add() only reads them. (With the interpolation `paper`, the
+   weights of Uncertain sensors are never cached.) */
 bool weights_is_complete(const struct weights *weights, size_t begin);
 
 #endif

@@ -186,8 +186,8 @@ static void tick(struct net *net, int64_t now_ns)
     net->ticked_ns = now_ns;
 }
 
-/* libwebsockets runs due timers before it waits. A timer that became due meanwhile would not end that wait, so this handler wakes
-   libwebsockets immediately. */
+/* libwebsockets runs due timers before it waits. A timer that becomes due between these two steps would not end the wait, so this handler
+   wakes libwebsockets immediately. */
 static void on_timer(lws_sorted_usec_list_t *sul)
 {
     struct net *net = lws_container_of(sul, struct net, timer);

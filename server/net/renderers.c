@@ -53,7 +53,7 @@ struct renderer_peer {
     bool samples_sent;
     bool reloads; /* true: the message that this core loads the plant must still be sent to the peer */
     bool asks;    /* true: the question for the peer's promise not to take the lead must still be sent (corelink/lease.h) */
-    /* standby: number of the question that was sent after all other messages while this core ends; 0: not sent yet */
+    /* standby: when this core ends, it asks once more for the promise, after all other messages; number of this question, 0: not sent */
     uint64_t last_question;
     bool is_complete;             /* standby: true: the standby has answered last_question, and so has received everything */
     struct core_samples *samples; /* samples for the peer's history, to be sent; NULL: none */
@@ -116,7 +116,7 @@ static bool is_standby(const struct renderer_peer *renderer)
     return renderer->stands_by && renderer->state == RENDERER_TAKEN;
 }
 
-/* Tells the lease keeper the core whose promises not to take the lead count. There is at most one such core. */
+/* Tells the lease keeper which core is the standby, because only its promise not to take the lead is a vote. */
 static void name_standby(struct server_context *server)
 {
     const struct renderer_peer *witness = NULL;

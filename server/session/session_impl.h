@@ -69,8 +69,8 @@ void session_scope_end(struct session *session);
 /* Sets the view to the named view with this id, at its present size. Returns false with *error if the token does not allow
    that view, or it cannot be shown. */
 bool session_look(struct session *session, const char *id, struct view *view, struct message_error *error);
-/* Works like session_look(), for a token narrowed to views; id "": shows the first view that the token allows. Closes the session if the
-   view cannot be set. */
+/* Sets the view of this id, for a token that permits only some views; id "": shows the first view that the token allows. Closes the
+   session if the view cannot be set. */
 bool session_scope_view(struct session *session, const char *id, struct view *view, struct message_error *error);
 /* Shrinks the view of a paired display that shows no picture of the plant. */
 void session_scope_fit(const struct session *session, struct view *view);

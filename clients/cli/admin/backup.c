@@ -523,8 +523,7 @@ static int back_up_plant(struct backup_job *job, const char *plant_path, const c
 static int run_command(int argc, char **argv, int (*command)(int argc, char **argv, struct backup_job *job))
 {
     struct backup_job job = { .log = log_create(LOG_WARN), .files = json_array(), .added = json_array() };
-    /* reference to the whole manifest's array, which is released at the end: restore and verify replace job.files by an array inside the
-       manifest */
+    /* kept, to be released at the end: restore and verify replace job.files by a list that belongs to the manifest they read */
     json_t *files = job.files;
     int code = command(argc, argv, &job);
     json_decref(files);
