@@ -339,7 +339,7 @@ int film_verify(const struct signing_key *key, const char *path, const struct re
     }
     good = good && !*reader->why;
     if (good && check.count != json_array_size(reader->statements))
-        good = FAIL("the film has %zu pictures but signed statements of %zu", check.count, json_array_size(reader->statements));
+        good = FAIL("the film has %zu pictures but signed statements of %zu pictures", check.count, json_array_size(reader->statements));
     good = good && (check.count > 0 || FAIL("the film has no picture"));
     if (good)
         print_film(&check, path);

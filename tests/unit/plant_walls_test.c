@@ -106,7 +106,7 @@ CASE(wrong_other_plants_are_said_at_their_place)
     load(c, "other_plants:\n- { id: a, url: \"ftp://h/\" }\n- { id: b, url: \"http://h/\", token_file: t }\n"
             "- { id: b, url: \"https://u:p@h/\" }\n- { id: c, url: \"https://h/?x\", every_s: 1, width: 100 }\n"
             "- { id: c d, url: \"https://h/\", view: a&b }\n- { url: \"https://h/\" }");
-    FOUND(c, { "plant.yaml", 7, 17, "url: the address begins with another scheme" }, { "plant.yaml", 8, 42, "cannot be read" },
+    FOUND(c, { "plant.yaml", 7, 17, "url: the address begins with a wrong scheme" }, { "plant.yaml", 8, 42, "cannot be read" },
           { "plant.yaml", 8, 42, "token_file: a token is sent only over https" },
           { "plant.yaml", 9, 17, "do not write a password in the plant file" }, { "plant.yaml", 9, 9, "'b'" },
           { "plant.yaml", 10, 17, "without '?' and '#'" }, { "plant.yaml", 10, 42, "every_s" }, { "plant.yaml", 10, 52, "width" },

@@ -109,7 +109,7 @@ static void count_refused(struct server_context *server, const struct openid_ans
     counter_inc(server->counters.logins_wrong, 1);
     if (login_throttle_fail(server->logins.throttle, answer->address, clock_mono_ns()) == LOGIN_WRONG_SLOWS)
         log_warn(server->params.log,
-                 "login by OpenID Connect: an address was limited to one answer in %d s until a minute passes without a wrong answer",
+                 "login by OpenID Connect: an address fails to sign in; it is limited to one attempt in %d s until a minute passes without a failure",
                  LOGIN_WAIT_S);
 }
 

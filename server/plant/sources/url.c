@@ -26,7 +26,7 @@ static const char *wrong_with(const char *url, const char *plain, const char *se
 {
     size_t plain_length = strlen(plain), secure_length = strlen(secure);
     if (strncmp(url, secure, secure_length) != 0 && strncmp(url, plain, plain_length) != 0)
-        return "the address begins with another scheme";
+        return "the address begins with a wrong scheme";
     const char *host = host_of(url);
     size_t host_length = strcspn(host, "/?#");
     if (host_length == 0)
