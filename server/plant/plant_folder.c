@@ -319,8 +319,8 @@ bool plant_folder_settle(const struct plant_folder_params *params, char **why)
         return true;
     }
     if (lock >= 0 && plant_folder_unsettled(params->folder)) {
-        *why = mem_strdup(
-            "an import in this folder was killed or still runs, and the folder cannot be locked: when it has ended, run plantcast import or match again");
+        *why = mem_strdup("an import in this folder was killed or still runs, and the folder cannot be locked: when it has ended, run "
+                          "plantcast import or match again");
         return false;
     }
     return lock >= 0;

@@ -157,7 +157,8 @@ bool surface_field_init(struct surface_field *field, const struct surface *surfa
         field->source_tris[s] = field->sources[s].tri;
     solve.hits = field->sources;
     if (!field->distances_m)
-        log_err(surface->log, "out of memory for the distances from %zu places to %zu points of a surface", point_count, surface->mesh.point_count);
+        log_err(surface->log, "out of memory for the distances from %zu places to %zu points of a surface", point_count,
+                surface->mesh.point_count);
     if (field->distances_m && solve_all(&solve))
         return true;
     surface_field_finish(field);

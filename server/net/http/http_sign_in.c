@@ -109,7 +109,8 @@ static void count_refused(struct server_context *server, const struct openid_ans
     counter_inc(server->counters.logins_wrong, 1);
     if (login_throttle_fail(server->logins.throttle, answer->address, clock_mono_ns()) == LOGIN_WRONG_SLOWS)
         log_warn(server->params.log,
-                 "login by OpenID Connect: an address fails to sign in; it is limited to one attempt in %d s until a minute passes without a failure",
+                 "login by OpenID Connect: an address fails to sign in; it is limited to one attempt in %d s until a minute passes without "
+                 "a failure",
                  LOGIN_WAIT_S);
 }
 
@@ -168,9 +169,9 @@ int api_me(struct server_context *server, struct http_exchange *request)
     bool has_end = holder->role != ROLE_NOBODY && holder->until_utc_ns < INT64_MAX;
     if (has_end)
         timestamp_print(holder->until_utc_ns / 1000, until);
-    json_t *said = json_pack("{s:s?,s:s,s:b,s:s?,s:s?,s:s?}", "name", holder->name[0] ? holder->name : NULL, "role",
-                             name_of(names_role, (int)connection->role), "signed_in", holder->signed_in, "until", has_end ? until : NULL,
-                             "sign_in", server->logins.openid ? openid_config_of(server->logins.openid)->label : NULL, "notice",
-                              server->logins.notice);
+    json_t *said =
+        json_pack("{s:s?,s:s,s:b,s:s?,s:s?,s:s?}", "name", holder->name[0] ? holder->name : NULL, "role",
+                  name_of(names_role, (int)connection->role), "signed_in", holder->signed_in, "until", has_end ? until : NULL, "sign_in",
+                  server->logins.openid ? openid_config_of(server->logins.openid)->label : NULL, "notice", server->logins.notice);
     return request_answer_json(request, json_text(said, 0));
 }

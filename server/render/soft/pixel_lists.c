@@ -469,7 +469,8 @@ static int level_apart(const struct pixel_cell *a, const struct pixel_cell *b)
     return level;
 }
 
-/* Returns the spread of the readings, and sets building->middle and ->away. */
+/* Returns the difference between the highest and the lowest reading (for `paper`, the largest absolute reading), times the field's scale.
+   Sets building->middle to the value halfway between them, and building->away to the reciprocal of their difference. */
 static float find_spread(struct building *building)
 {
     const struct pixel_field *field = building->field;
