@@ -102,7 +102,7 @@ to: Bis
 count(one): {count} Änderung
 count(other): {count} Änderungen
 cut: {count} der neuesten {all} Änderungen, zurück bis {time}
-older: Ältere lesen
+older: Ältere laden
 
 [change]
 raise: Gekommen

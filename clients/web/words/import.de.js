@@ -45,7 +45,7 @@ units.mm: Millimeter
 units.cm: Zentimeter
 units.in: Zoll
 units.ft: Fuß
-up: Oben im Modell
+up: Achse nach oben
 up.said: wie in der Datei
 up.y: Y
 up.z: Z

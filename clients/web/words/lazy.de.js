@@ -226,7 +226,7 @@ ended: entfernt von {who}, {time}
 cut: Liste gekürzt: es gab mehr Alarme
 gives: Übergeben von
 takes: Übernommen von
-denied: Die Übergabe ist für Operatoren: anmelden oder Token eingeben, dann aus der Seite öffnen
+denied: Nur Operatoren dürfen die Übergabe öffnen: anmelden oder Token eingeben, dann auf der Seite öffnen
 
 [named]
 legend: Gespeicherte Ansichten
@@ -402,7 +402,7 @@ uncharted: dieser Server wurde ohne Diagramme gebaut (npm fehlte)
 
 [compare]
 title: Zwei Zeiten vergleichen
-why: Eine zweite Hälfte zu einer anderen Zeit zeigen, mit derselben Kamera
+why: Ansicht teilen: die zweite Hälfte zeigt eine andere Zeit mit derselben Kamera
 right: Diese Hälfte zeigt
 ago: Zeit dieser Hälfte
 at: In dieser Hälfte zu einer Zeit gehen
@@ -522,7 +522,7 @@ mark.good: guter Messwert
 mark.uncertain: unsicherer Messwert
 mark.bad: gestört: kein Wert
 mark.behind: verdeckt
-mark.alarm: Alarm; die Farbe ist die Priorität
+mark.alarm: Alarm; die Farbe zeigt die Priorität
 mark.acknowledged: quittierter Alarm
 mark.returned: gegangen oder gehalten
 crowd: Gedrängte Markierungen werden ausgedünnt; näher heranzoomen zeigt alle. Alarme fehlen nie.
@@ -552,7 +552,7 @@ view.why: Öffnet diese Ansicht: Kamera, Größe, Farben, Zeitpunkt.
 tag: Messstelle
 tag.why: Öffnet sich an der Messstelle. Ausdrucken und am Apparat anbringen.
 asset: Apparat
-asset.why: Öffnet sich am Apparat. Ausdrucken und dort anbringen.
+asset.why: Der Code öffnet diese Ansicht. Ausdrucken und am Apparat anbringen.
 follow: Mir folgen
 follow.why: Wer ihn öffnet, sieht mit, solange diese Seite offen ist.
 link: Link
@@ -600,12 +600,12 @@ find: Messstelle suchen
 nowhere: nicht platziert
 on: an {asset}
 choose: Eine Messstelle wählen, dann auf die Oberfläche klicken; oder ihr Zeichen ziehen.
-click: {tag}: auf die Oberfläche klicken oder das Zeichen ziehen.
+click: {tag}: auf die Oberfläche klicken oder die Marke ziehen.
 missed: Hier ist keine Oberfläche.
 moves: Entwurf (nur für Sie sichtbar)
 nomoves: Nichts versetzt. Bis zum Speichern sehen nur Sie Ihre Änderungen.
 off: {metres} m neben der Oberfläche
-left: nicht an {asset} wie in der Liste
+left: nicht an {asset}, anders als in der Liste
 waiting: gerade Abstände; Abstände entlang der Oberfläche folgen
 straight: nur gerade Abstände
 ready: entlang der Oberfläche
@@ -636,7 +636,7 @@ proven: {done} von {count} bestanden
 expected: Erwartet
 tolerance: Toleranz ±
 watch: Beobachten
-watching: Jetzt den Messumformer auf einen Wert zwingen.
+watching: Jetzt am Messumformer einen festen Wert vorgeben.
 still: Noch hat sich kein Messwert geändert.
 moved: {tag} hat sich am meisten geändert: um {by}.
 swapped: {tag} hat sich geändert, nicht {wanted}: sind sie vertauscht?

@@ -85,10 +85,10 @@ foreign: die Anfrage kommt von einer Seite einer anderen Website
 connections: diese Adresse hat ihre Höchstzahl an Verbindungen erreicht; später erneut versuchen
 locked: seit {minutes} min keine Eingabe auf dieser Seite
 pixels: alle Ansichten zusammen haben die Pixelgrenze dieses Servers erreicht; später oder mit kleinerem Bild versuchen
-pixels_address: die Ansichten dieser Adresse haben ihre Pixelgrenze erreicht; mit kleinerem Bild versuchen
+pixels_address: diese Adresse hat die Höchstzahl an Pixeln erreicht; mit kleinerem Bild noch einmal versuchen
 pixels_view: dieser Server zeichnet höchstens {count} Pixel für eine Ansicht
 movers: eine weitere bewegte Ansicht würde alle zu langsam machen; später versuchen
-late: Messwerte werden schon verspätet gezeichnet; später versuchen
+late: Bilder kommen schon verspätet; später noch einmal versuchen
 tile_token: dafür ist das Token von Bildschirm {display} der Wand {wall} oder die Rolle Engineer nötig
 tileless: Bildschirm {display} der Wand {wall} ist keine ihrer Kacheln
 display_token: ein Bildschirm einer Wand braucht ein Token
@@ -124,7 +124,7 @@ upload_cut: der Upload endete, bevor die Datei vollständig war
 
 [class]
 too_fast: zu viele Anfragen: Ihre wird verzögert
-limit: das Bild ist größer, als dieser Server zeichnet
+limit: das Bild ist zu groß für diesen Server
 not_allowed: hier nicht erlaubt
 core_lost: der Kern ist nicht erreichbar: vielleicht wurde nichts ausgeführt; prüfen Sie es, sobald er zurück ist
 
@@ -132,7 +132,7 @@ core_lost: der Kern ist nicht erreichbar: vielleicht wurde nichts ausgeführt; p
 refused: Der Server hat abgelehnt: {text}
 other: auf Englisch: „{text}“
 blocked: Der Server antwortet über HTTP, aber {proxy} leitet den WebSocket nicht weiter. {needs}
-blocked_proxy: ein Proxy dazwischen
+blocked_proxy: ein Proxy zwischen Browser und Server
 blocked_lines: Nötig ist {lines} in seinem location-Block
 blocked_page: Was er braucht, steht in PROXY.md, „WebSocket“
 link: Dieser Link passt nicht: {why}. Er kann zu einer anderen Anlage gehören oder älter sein als eine Änderung der Anlage.
