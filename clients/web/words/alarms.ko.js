@@ -12,7 +12,7 @@ edge: 끌어서 너비 조절
 held: 계측 불량: 마지막 상태 유지
 heldfrom: 계측 불량: {time}부터 상태 유지
 fly: {tag}(으)로 이동
-stale: 현재가 아님: 연결이 끊긴 {time} 기준입니다.
+stale: 현재 값 아님: 연결이 끊긴 {time} 기준입니다.
 which: 알람 종류
 search: 필터
 unfilter: 필터 해제: {all}건 중 {count}건, {what}

@@ -8,7 +8,7 @@ sun: {wind}쪽, 고도 {height}°
 [distance]
 metres: {metres} m
 geodesic: 측지 거리
-geodesic.why: 표면을 따르는 거리: 열은 틈을 건너뛰지 않습니다
+geodesic.why: 표면을 따라 잰 거리: 열은 틈을 건너가지 않습니다
 euclidean: 직선 거리
 euclidean.why: 공간을 가로지르는 직선 거리
 heat: 열 방법
@@ -545,10 +545,10 @@ what: 링크로 열 대상
 view: 이 화면
 view.why: 이 화면을 엽니다: 카메라, 물리량, 색, 시각.
 tag: 이 태그
-tag.why: 태그 위치에서 열립니다. 인쇄하여 설비에 붙이세요.
+tag.why: 이 코드는 태그 위치를 엽니다. 인쇄하여 설비에 붙이세요.
 asset: 이 설비
 asset.why: 설비 위치에서 열립니다. 인쇄하여 그곳에 붙이세요.
-follow: 나를 따라 보기
+follow: 내 화면 함께 보기
 follow.why: 링크를 연 사람은 이 페이지가 열려 있는 동안 같은 화면을 봅니다.
 link: 링크
 copy: 복사
@@ -619,7 +619,7 @@ diff.line: {n}행
 diff.note: 지금의 목록은 백업으로 보관됩니다. 새 목록은 몇 초 안에 모두에게 적용됩니다.
 diff.conflict: {file}을(를) 다른 사람이 바꾸었고 아직 불러오지 않았습니다.
     저장하지 않았습니다. 바뀐 내용:
-diff.left: {tag}은(는) {left} 위에 있었고 이제 {asset} 위에 있습니다. 맞습니까?
+diff.left: {tag}의 위치가 {left}에서 {asset}(으)로 바뀌었습니다. 맞습니까?
 diff.more: … 그 밖에 {count}행
 cancel: 취소
 confirm: 저장하고 적용

@@ -8,7 +8,7 @@ no_asset: 이 플랜트에는 “{name}” 설비 항목이 없습니다
 no_tag: 이 플랜트에는 “{name}” 태그 항목이 없습니다
 no_device: 이 플랜트에는 “{name}” 장치 항목이 없습니다
 no_view: 이 플랜트에는 “{name}” 뷰 항목이 없습니다
-unknown: “{name}”은(는) 여기서 알 수 없습니다
+unknown: 여기에는 “{name}”이(가) 없습니다
 uncut: {group}의 센서가 하나뿐인 설비({all}개 중 {count}개, 첫째 {asset})에서는
   논문식을 정확히 그릴 수 없습니다.
   플랜트 파일의 그 그룹에 “singles: cut”을 쓰면 됩니다.
@@ -29,7 +29,7 @@ disk_full: 저장되지 않음: 서버 디스크가 가득 찼습니다
 disk_locked: 저장되지 않음: 서버 디스크가 읽기 전용입니다
 disk_slow: 저장되지 않음: 서버 디스크가 응답하지 않습니다
 kept_unread: 저장되지 않음: 서버가 이전 항목의 파일을 읽을 수 없습니다. 이유는 서버 로그에 있습니다
-not_utf8: 저장되지 않음: 글이 UTF-8이 아닙니다
+not_utf8: 저장되지 않음: 텍스트가 UTF-8이 아닙니다
 fixed: 이 뷰는 플랜트 파일에 있습니다. 거기서 바꾸십시오
 viewless: 다른 사람이 이 뷰를 삭제했습니다
 digits: 이 코드를 표시하는 디스플레이가 없습니다
@@ -61,7 +61,7 @@ numbers: 최대 {count}개의 숫자를 작은 것부터 적으세요
 log: 로그 눈금에는 0보다 큰 범위가 필요합니다
 range: 범위의 시작은 끝보다 작아야 합니다
 between: {low}에서 {high}까지의 수가 필요합니다
-placeless: 이 센서는 이 물리량에 위치가 없습니다
+placeless: 이 물리량에는 이 센서의 위치가 없습니다
 narrow: 그림이 좁아 둘로 나눌 수 없습니다
 memory: 서버 메모리가 부족하여 마지막 그림이 유지됩니다
 gone: 이 사용자는 더 이상 연결되어 있지 않습니다
@@ -88,7 +88,7 @@ pixels: 모든 뷰의 픽셀 합이 서버 한도에 도달했습니다. 나중�
 pixels_address: 이 주소의 뷰가 픽셀 한도에 도달했습니다. 더 작은 그림으로 시도하세요
 pixels_view: 이 서버는 뷰 하나에 최대 {count}픽셀을 그립니다
 movers: 움직이는 뷰가 하나 더 있으면 모두 너무 느려집니다. 나중에 시도하세요
-late: 측정값이 이미 늦게 그려지고 있습니다. 나중에 시도하세요
+late: 화면이 이미 지연되고 있습니다. 나중에 다시 시도하세요
 tile_token: 월 {wall}의 디스플레이 {display} 토큰 또는 엔지니어 권한이 필요합니다
 tileless: 월 {wall}에 디스플레이 {display} 타일이 없습니다
 display_token: 월 디스플레이에는 토큰이 필요합니다
@@ -103,7 +103,7 @@ unsigned_long: 뷰의 인수가 너무 많습니다
 overrides: 센서는 한 번에 최대 {count}개까지 바꿀 수 있습니다
 breakless: 플랜트 파일에 {group}의 “{key}”이(가) 없습니다
 name_expected: 제어 문자가 없는 1~{bytes}바이트의 이름이 필요합니다(“now” 제외)
-text_expected: 제어 문자가 없는 {least}~{bytes}바이트의 글이 필요합니다
+text_expected: 제어 문자가 없는 {least}~{bytes}바이트의 텍스트가 필요합니다
 pattern: *는 최대 네 개까지이며 [는 쓸 수 없습니다
 instants: 첫 시각은 둘째 시각보다 앞서야 합니다
 importing: 다른 가져오기가 실행 중입니다. 끝나기를 기다리거나 취소하세요
@@ -121,13 +121,13 @@ files: 파일은 최대 64개까지 올릴 수 있습니다. 일부를 제거하
 files_large: 모든 파일의 합이 8 GB를 넘게 됩니다
 uploads: 올리기 네 개가 진행 중입니다. 하나가 끝날 때까지 기다리세요
 upload_slow: 올리기가 너무 느립니다(10 kB/s 미만)
-upload_cut: 파일이 다 오기 전에 올리기가 끝났습니다
+upload_cut: 파일이 모두 전송되기 전에 업로드가 중단되었습니다
 
 [class]
 too_fast: 요청이 너무 많아 처리가 지연됩니다
 limit: 이 서버가 그릴 수 있는 크기보다 그림이 큽니다
 not_allowed: 여기서는 허용되지 않습니다
-core_lost: 코어에 연결할 수 없습니다. 실행되지 않았을 수 있으니 복구 후 확인하십시오
+core_lost: 코어에 연결할 수 없습니다. 요청이 처리되지 않았을 수 있으니 연결이 복구된 뒤 확인하십시오
 
 [page]
 refused: 서버가 거부했습니다: {text}
