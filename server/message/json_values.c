@@ -3,8 +3,6 @@
 
 #include <math.h>
 
-#include "base/math/round_reading.h"
-
 json_t *number(double value)
 {
     return isfinite(value) ? json_real(value + 0.0) : json_null(); /* adding 0.0 turns -0.0 into 0.0, so that no minus sign is sent */

@@ -4,10 +4,12 @@
 #define MESSAGE_JSON_VALUES_H
 #include <jansson.h>
 
+#include "base/math/round_reading.h"
+
 /* Returns a number, never -0.0; null if the value is not finite. */
 json_t *number(double value);
-enum { READING_DIGITS = 15 }; /* digits with which json_text() must print the numbers of reading_number() */
-/* Returns a reading rounded by round_reading(); like number() if the value is not finite. */
+/* Returns a reading rounded by round_reading(), which json_text() must print with READING_DIGITS; like number() if the value is not
+   finite. */
 json_t *reading_number(double value);
 /* Returns a string; null for NULL; "(not UTF-8)" for a text that is not UTF-8. */
 json_t *string(const char *text);

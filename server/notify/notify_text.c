@@ -123,9 +123,9 @@ static void add_line(struct text *out, const struct plant *plant, const struct o
     text_add(out, "  ");
     add_name(out, plant, item);
     if (isfinite(item->value) && item->kind != ALARM_ON && item->kind != ALARM_BAD)
-        text_add(out, ": raised at %.15g%s%s", round_reading(item->value), space, unit);
+        text_add(out, ": raised at %.*g%s%s", READING_DIGITS, round_reading(item->value), space, unit);
     if (isfinite(item->limit))
-        text_add(out, " (limit %.15g%s%s)", round_reading(item->limit), space, unit);
+        text_add(out, " (limit %.*g%s%s)", READING_DIGITS, round_reading(item->limit), space, unit);
     if (asset)
         text_add(out, "; %s%s%s", asset->tag, *asset->area ? ", " : "", asset->area);
     if (*escalated_for(item))
@@ -240,7 +240,7 @@ char *notify_webhook_text(const struct plant *plant, const struct notify_recipie
     if (message->left_out > 0)
         json_object_set_new(body, "left_out", json_integer((json_int_t)message->left_out));
     json_object_set_new(body, "alarms", alarms);
-    return json_text(body, 15);
+    return json_text(body, READING_DIGITS);
 }
 
 static const char *severity_of(int priority)
@@ -263,7 +263,7 @@ static json_t *alert(const struct plant *plant, const struct outbox_item *item, 
     json_t *annotations = json_pack("{s:s,s:s}", "summary", summary.at, "state", alarm_status_name(item->status));
     set_text(annotations, "description", tag ? tag->description : NULL);
     if (isfinite(item->value)) {
-        char *value = mem_printf("%.15g", round_reading(item->value));
+        char *value = mem_printf("%.*g", READING_DIGITS, round_reading(item->value));
         set_text(annotations, "value", value);
         set_text(annotations, "unit", unit_of(plant, item));
         mem_free(value);

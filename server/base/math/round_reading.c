@@ -3,16 +3,12 @@
 #include "base/math/round_reading.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 double round_reading(double value)
 {
-    char text[32];
-    if (!(fabs(value) < 1e12))
-        return value;
-    if (fabs(value) >= 1e4)
-        return round(value * 1000) / 1000;
-    snprintf(text, sizeof(text), "%.7g", value);
-    return strtod(text, NULL) + 0.0; /* adding 0.0 turns -0.0 into 0.0, so that no minus sign is sent */
+    double size = fabs(value);
+    if (!(size >= 1e-300 && size < 1e12)) /* below, the scale would overflow */
+        return value + 0.0; /* adding 0.0 turns -0.0 into 0.0, so that no minus sign is sent */
+    double scale = size >= 1e4 ? 1000 : pow(10, 6 - floor(log10(size)));
+    return rint(value * scale) / scale;
 }
