@@ -98,9 +98,8 @@ bool role_may_send(enum role role, const struct message *message, struct message
 /* Returns whether an argument NAME=VALUE, or one of several separated by `;`, has the name of a parameter for engineers. */
 static bool is_for_engineers(const char *arg)
 {
-    size_t length = strcspn(arg, "=");
     for (size_t i = 0; i < sizeof(ENGINEERS_NAMES) / sizeof(ENGINEERS_NAMES[0]); i++)
-        if (strlen(ENGINEERS_NAMES[i]) == length && !strncmp(arg, ENGINEERS_NAMES[i], length))
+        if (view_address_is_named(arg, ENGINEERS_NAMES[i]))
             return true;
     const char *next = strchr(arg, ';');
     return next && is_for_engineers(next + 1);

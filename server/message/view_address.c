@@ -185,7 +185,7 @@ bool view_address_read(struct view_address *out, const char *address, struct mes
     return each_field(address, take, &(struct address_reading){ out, error });
 }
 
-static bool has_name(const char *arg, const char *name)
+bool view_address_is_named(const char *arg, const char *name)
 {
     size_t length = strcspn(arg, "=");
     return strlen(name) == length && !strncmp(arg, name, length);
@@ -206,7 +206,7 @@ bool view_address_replaces(const char *given, const char *name)
     size_t length = strcspn(given, "=");
     bool replaced = length == strcspn(name, "=") && !strncmp(given, name, length);
     for (size_t i = 0; i < sizeof(together) / sizeof(together[0]); i++)
-        replaced = replaced || (has_name(given, together[i].given) && has_name(name, together[i].replaces));
+        replaced = replaced || (view_address_is_named(given, together[i].given) && view_address_is_named(name, together[i].replaces));
     return replaced;
 }
 

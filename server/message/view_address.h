@@ -19,6 +19,8 @@ struct view_address {
 bool view_address_read(struct view_address *out, const char *address, struct message_error *error);
 /* Adds an argument. Returns false if there is no room for more. */
 bool view_address_add(struct view_address *address, const char *name, const char *value);
+/* Returns whether an argument NAME=VALUE has this name. */
+bool view_address_is_named(const char *arg, const char *name);
 /* Returns whether the argument `given` of a query replaces the argument `name` of a view. Both may be followed by `=` and a value. */
 bool view_address_replaces(const char *given, const char *name);
 /* Adds an argument NAME=VALUE in place of those that it replaces. Returns false if there is no room for more. */

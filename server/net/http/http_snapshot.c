@@ -25,18 +25,12 @@ static struct params_context context_of(const struct server_context *server)
                                     .now_us = clock_plant_ns(server->params.plant.clock) / 1000 };
 }
 
-static bool is_named(const char *arg, const char *name)
-{
-    size_t length = strlen(name);
-    return !strncmp(arg, name, length) && arg[length] == '=';
-}
-
 /* Adds an argument of the query to those of a view. Returns false with *error if the user may not use it, or there is no room. */
 static bool add_own(struct view_address *out, const struct connection *connection, const char *arg, struct message_error *error)
 {
     char name[48];
-    bool of_size = is_named(arg, "width") || is_named(arg, "height") || is_named(arg, "language");
-    if (is_named(arg, "view"))
+    bool of_size = view_address_is_named(arg, "width") || view_address_is_named(arg, "height") || view_address_is_named(arg, "language");
+    if (view_address_is_named(arg, "view"))
         return true;
     if ((connection->holder.views[0] || connection->role < ROLE_VIEWER) && !of_size) {
         message_fail(error, "bad_field", "argument '%s' is not allowed together with view; allowed are width, height and language",
