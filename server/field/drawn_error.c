@@ -342,11 +342,11 @@ static void add_areas(const struct asset_view *file, uint32_t first_index, uint3
     }
 }
 
-/* Returns the error with which all vertices of a level are marked if too much of the level is wrong; 0: it is not. Of the thresholds 1,
-   1/2, 1/4, ... it takes the largest one that the errors of at least the part MARK_ALL of the level's area reach, and returns twice this
-   threshold, but not more than the level's largest error. Reason: distances along the surface are measured on the same triangles. If most
-   triangles are too long for the field, the distances are wrong, too, so triangles without an error of interpolation cannot be trusted
-   either (tests/bench/notes/windows.md). */
+/* Returns the error with which all vertices of a level are marked if too much of the level is wrong; 0: it is not. Distances along the
+   surface are measured on the same triangles. If most triangles are too long for the field, the distances are wrong, too, so triangles
+   without an error of interpolation cannot be trusted either (tests/bench/notes/windows.md). The thresholds 1, 1/2, 1/4, ... are tried in
+   this order. If errors reach a threshold on the share MARK_ALL of the level's area, the result is twice this threshold, but not more than
+   the level's largest error. */
 static float error_of_all(const struct weights *weights, const double erring[], double all, float largest)
 {
     for (int b = 0; b < WEIGHTS_ERRING && weights->distance != DISTANCE_EUCLIDEAN; b++)

@@ -5,9 +5,8 @@
 #include "message/message.h"
 #include "plant/walls/wall.h"
 
-/* Builds *view from an address with all rights of an engineer, because only engineers may save parameters
-   for engineers (role_may_save()). Returns false with *error
-   saying what is wrong with the address. */
+/* Builds *view from an address with all rights of an engineer, because only engineers may save parameters for engineers (role_may_save()).
+   Returns false with *error saying what is wrong with the address. */
 bool view_named_read(const struct params_context *context, const char *address, int width_px, int height_px, struct view *view,
                      struct message_error *error);
 /* Checks that the plant has everything that an address names, except baselines, which are temporary. Returns false with *error saying

@@ -8,7 +8,7 @@ import { boxAt, CLEARANCE, hasArea, meets, SLOTS } from './labels.js';
 const CLOSE = 26, STILL_CLOSE = 34;
 // MOST_GROUPS: maximum number of labels; the distances grow by the factor FARTHER until the number is met
 const MOST_GROUPS = 24, FARTHER = 1.25; // more rings than MOST_GROUPS are a flood
-const MOST_LEADS = 4; // maximum number of leader lines of a call-out; if more rings are as near, only the nearest has one
+const MOST_LEADS = 4; // maximum number of leader lines of a call-out; if more rings are within FARTHEST, only the nearest has one
 const STEP_X = 24, STEP_Y = 15, STEPS = 60; // units: spacing of the grid of candidate positions around the centre of the rings
 // units: largest distance of a label from the bounding box of its rings, unless it is the only label that remains; also the largest
 // distance from a call-out to the centre of a ring with a leader line

@@ -550,9 +550,9 @@ what: Was der Link öffnet
 view: Ansicht
 view.why: Öffnet diese Ansicht: Kamera, Größe, Farben, Zeitpunkt.
 tag: Messstelle
-tag.why: Öffnet sich an der Messstelle. Ausdrucken und am Apparat anbringen.
+tag.why: Der Code öffnet die Seite an der Messstelle. Ausdrucken und am Apparat anbringen.
 asset: Apparat
-asset.why: Der Code öffnet diese Ansicht. Ausdrucken und am Apparat anbringen.
+asset.why: Der Code öffnet die Seite am Apparat. Ausdrucken und dort anbringen.
 follow: Mir folgen
 follow.why: Wer ihn öffnet, sieht mit, solange diese Seite offen ist.
 link: Link
@@ -599,7 +599,7 @@ what: Aufgabe
 find: Messstelle suchen
 nowhere: nicht platziert
 on: an {asset}
-choose: Eine Messstelle wählen, dann auf die Oberfläche klicken; oder ihr Zeichen ziehen.
+choose: Eine Messstelle wählen, dann auf die Oberfläche klicken; oder ihre Marke ziehen.
 click: {tag}: auf die Oberfläche klicken oder die Marke ziehen.
 missed: Hier ist keine Oberfläche.
 moves: Entwurf (nur für Sie sichtbar)

@@ -88,7 +88,7 @@ pixels: alle Ansichten zusammen haben die Pixelgrenze dieses Servers erreicht; s
 pixels_address: diese Adresse hat die Höchstzahl an Pixeln erreicht; mit kleinerem Bild noch einmal versuchen
 pixels_view: dieser Server zeichnet höchstens {count} Pixel für eine Ansicht
 movers: eine weitere bewegte Ansicht würde alle zu langsam machen; später versuchen
-late: Bilder kommen schon verspätet; später noch einmal versuchen
+late: Messwerte erscheinen schon verspätet; später noch einmal versuchen
 tile_token: dafür ist das Token von Bildschirm {display} der Wand {wall} oder die Rolle Engineer nötig
 tileless: Bildschirm {display} der Wand {wall} ist keine ihrer Kacheln
 display_token: ein Bildschirm einer Wand braucht ein Token

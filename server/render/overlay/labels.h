@@ -10,7 +10,7 @@ struct label_box {
 };
 
 enum { LABEL_NONE = -1, LABEL_SLOTS = 16, LABEL_FIRST_FAR = 8, LABEL_MOST_BAD = 12 };
-enum { LABEL_MOST_LEADS = 4 }; /* leader lines of a call-out; if more rings are as near, only the nearest has one */
+enum { LABEL_MOST_LEADS = 4 }; /* leader lines of a call-out; if more rings are within LABEL_FARTHEST, only the nearest has one */
 enum { LABEL_FARTHEST = 60 }; /* u: largest distance of a label from the box around its rings, if other labels
                                   remain; longest leader line of a call-out, if it has a ring as near */
 enum label_rank { LABEL_NOT_WANTED = -1, LABEL_PLAIN, LABEL_DOUBTFUL, LABEL_BAD, LABEL_BEYOND };
