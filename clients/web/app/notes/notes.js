@@ -15,8 +15,6 @@ import { byId, make, setText, setVariable } from '../common/dom.js';
 const UNTIL = ['shift', 'day', 'week', 'ever'], HOURS = { shift: 8, day: 24, week: 168 };
 const MAY = ['operator', 'engineer'], POINTS_MS = 4000, TICK_MS = 500, LONGEST = 130;
 const RING = 13, MARK = 6; // units: radius of an alarm ring with its rims, and of other markers
-// elements over the picture that stay where they are, so that pins keep off them
-const FIXED = '.legend, .banner, .simulated-note, .chip, .split-bar, #plant-notes, .moment';
 
 export class Notes {
     constructor({ session, selection, viewport, overlay, modules, hangs, tell, flyToTag, selectAsset }) {
@@ -239,7 +237,7 @@ export class Notes {
         const unit = this.scale, wide = width / unit, high = height / unit;
         const pins = [...(this.pointer ? [this.pointer] : []), ...[...this.pins.values()].reverse()];
         const area = half && { left: 0, top: 0, right: ((half.left + half.width) * wide) / picture.shownWidth, bottom: high };
-        const [fixed, rings, marks] = pins.length > 0 && half ? [this.fixed(unit), ...this.markers()] : [[]];
+        const [fixed, rings, marks] = pins.length > 0 && half ? [this.overlay.boxesOver('', unit), ...this.markers()] : [[]];
         for (const pin of pins) {
             const { element, position } = pin, at = project?.(position);
             const x = at && ((half.left + at[0]) * wide) / picture.shownWidth, y = at && (at[1] * high) / picture.fullHeight;
@@ -265,14 +263,6 @@ export class Notes {
                 setVariable(element, `--${name}`, `${value}px`);
             setVariable(element, '--turn', `${Math.atan2(fromX - x, y - fromY)}rad`);
         }
-    }
-
-    // Returns the boxes, in units, of the elements over the picture that pins keep off.
-    fixed(unit) {
-        const { element } = this.viewport, origin = element.getBoundingClientRect();
-        return [...element.querySelectorAll(FIXED)].map((one) => one.getBoundingClientRect()).filter((box) => box.width > 0)
-            .map(({ left, right, top, bottom }) => ({ left: (left - origin.left) / unit, right: (right - origin.left) / unit,
-                top: (top - origin.top) / unit, bottom: (bottom - origin.top) / unit }));
     }
 
     // Returns the boxes, in units, of the alarm rings and of the other markers in the left half.

@@ -158,17 +158,19 @@ export class Overlay {
         this.isolines?.draw([...this.blocked(), ...boxes, ...marks]);
     }
 
-    // Returns the boxes of the HTML elements that lie over the picture.
+    // Returns the boxes, in units, of the HTML elements over the picture that stay where they are, and of those that `more` selects.
+    boxesOver(more, unit) {
+        const { element } = this.viewport, origin = element.getBoundingClientRect();
+        return [...element.querySelectorAll(`.legend, .banner, .simulated-note, .chip, #plant-notes, .moment, .split-bar${more}`)]
+            .map((e) => e.getBoundingClientRect()).filter((box) => box.width > 0).map((box) => ({
+                left: (box.left - origin.left) / unit, right: (box.right - origin.left) / unit,
+                top: (box.top - origin.top) / unit, bottom: (box.bottom - origin.top) / unit,
+            }));
+    }
+
+    // Returns the boxes of everything that labels must not cover.
     blocked() {
-        const origin = this.viewport.element.getBoundingClientRect();
-        const over = '.legend, .banner, .card, .simulated-note, .chip, .note-pin, #plant-notes, .moment, .split-bar';
-        const boxes = [...this.viewport.element.querySelectorAll(over)]
-            .map((e) => e.getBoundingClientRect());
-        const { unit } = this;
-        const own = boxes.filter((box) => box.width > 0).map((box) => ({
-            left: (box.left - origin.left) / unit, right: (box.right - origin.left) / unit,
-            top: (box.top - origin.top) / unit, bottom: (box.bottom - origin.top) / unit,
-        }));
+        const own = this.boxesOver(', .card, .note-pin', this.unit);
         const middle = this.wide / 2; // also blocks the line between the halves, so that no label crosses it
         return this.session.shown.split ? [...own, { left: middle - 1, right: middle + 1, top: 0, bottom: this.high }] : own;
     }
