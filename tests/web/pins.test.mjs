@@ -36,6 +36,22 @@ test('pins cover rings only if the picture has no other room', () => {
     assert.ok(!meets(placePin(pin(200, 300), AREA, fixed, all), fixed[0]), 'even then not another pin');
 });
 
+test('a pin leaves room between itself and the alarm ring of its own point, so that its stem is seen', () => {
+    const ring = { left: 187, top: 187, right: 213, bottom: 213 }, box = placePin(pin(200, 200), AREA, [], [ring]);
+    assert.ok(box.left > ring.right + STEM - 1 || box.bottom < ring.top - STEM + 1, JSON.stringify(box));
+    assert.ok(Math.hypot(box.left - 200, box.bottom - 200) < 60, 'and it is near');
+});
+
+test('a pin without free room covers as few markers as it can', () => {
+    const half = { left: 0, top: 0, right: 150, bottom: 200 }, marks = [];
+    for (let y = 0; y < 200; y += 18)
+        for (let x = 0; x < 150; x += y > 100 && y < 140 ? 100 : 30) // two rows have fewer markers, but none leaves room for a pin
+            marks.push({ left: x, right: x + 12, top: y, bottom: y + 12 });
+    const covered = (box) => marks.filter((mark) => meets(box, mark)).length;
+    const box = placePin(pin(60, 60), half, [], [], marks);
+    assert.equal(covered(box), 1, JSON.stringify(box));
+});
+
 test('random pins are whole and cover neither each other nor the legend', () => {
     for (let round = 0; round < 200; round++) {
         const legend = { left: 480, top: 10, right: 590, bottom: 300 }, fixed = [legend];

@@ -4,8 +4,10 @@ import { meets } from './labels.js';
 
 export const STEM = 9;  // units: length of a pin's stem if the pin is at its usual position, above and to the right of its point
 const GAP = 2; // units: space between two pins
-const ROWS = 40; // number of heights at which a pin is tried that must cover rings
-const FAR = 150; // units: a pin is not moved farther to keep off markers without alarms
+const ROWS = 40; // number of heights at which a pin is tried that must cover rings or markers
+const FAR = 150; // units: a pin is not moved farther to keep off one marker without an alarm
+
+const enlarge = ({ left, right, top, bottom }, by) => ({ left: left - by, right: right + by, top: top - by, bottom: bottom + by });
 
 // Moves a box up or down (step -1 or 1) until it meets none of the boxes. Returns null if it would leave the area.
 function slide(box, boxes, step, { top, bottom }) {
@@ -22,24 +24,27 @@ function slide(box, boxes, step, { top, bottom }) {
 }
 
 // Returns the box of a pin in the area, as near as possible to its usual position. x, y: its point; wide, high: its size. fixed: boxes of
-// legends and of pins. rings: boxes of alarm rings, of which the pin covers as few as possible. marks: boxes of other markers, which the
-// pin covers if the only other room is far.
+// legends and of pins, which the pin never covers. rings: boxes of alarm rings, of which the pin covers as few as possible. marks: boxes of
+// other markers, which the pin covers if the only other room is far.
 export function placePin({ x, y, wide, high }, area, fixed, rings, marks = []) {
     const left = Math.max(area.left, Math.min(area.right - wide, x));
     const top = Math.max(area.top, Math.min(area.bottom - high, y - STEM - high));
     const boxAt = (at, down = top) => ({ left: at, right: at + wide, top: down, bottom: down + high });
-    const sides = [area.left, area.right - wide, ...fixed.flatMap((box) => [box.left - GAP - wide, box.right + GAP])]
+    const sides = [x - wide, area.left, area.right - wide, ...fixed.flatMap((box) => [box.left - GAP - wide, box.right + GAP])]
         .filter((at) => at >= area.left && at + wide <= area.right), lefts = [left, ...sides];
     const far = (box) => Math.hypot(box.left - left, box.top - top);
-    const least = (boxes, cost) => boxes.reduce((best, box) => (cost(box) < cost(best) ? box : best));
-    for (const [taken, most] of [[[...fixed, ...rings, ...marks], FAR], [[...fixed, ...rings], Infinity]]) {
-        const free = lefts.flatMap((at) => [-1, 1].map((step) => slide(boxAt(at), taken, step, area)))
-            .filter((box) => box && far(box) <= most);
-        if (free.length > 0)
-            return least(free, far);
-    }
+    const least = (boxes, cost) => boxes.map((box) => [cost(box), box]).reduce((best, one) => (one[0] < best[0] ? one : best))[1];
+    // room around the ring of the pin's own point, in which the stem is seen
+    const room = rings.filter((ring) => meets(ring, { left: x, right: x, top: y, bottom: y })).map((ring) => enlarge(ring, STEM));
+    const avoided = [...marks, ...room];
+    const slid = (boxes) => lefts.flatMap((at) => [-1, 1].map((step) => slide(boxAt(at), boxes, step, area))).filter(Boolean);
+    const free = slid([...fixed, ...rings, ...avoided]).filter((box) => far(box) <= FAR);
+    if (free.length > 0)
+        return least(free, far);
     const rows = Array.from({ length: ROWS }, (_, i) => area.top + (i / (ROWS - 1)) * (area.bottom - area.top - high));
-    const covered = new Map(lefts.flatMap((at) => [top, ...rows].map((row) => boxAt(at, row)))
-        .filter((box) => !fixed.some((other) => meets(box, other))).map((box) => [box, rings.filter((ring) => meets(box, ring)).length]));
-    return covered.size > 0 ? least([...covered.keys()], (box) => 1e6 * covered.get(box) + far(box)) : boxAt(left);
+    const others = [...slid([...fixed, ...rings]), ...lefts.flatMap((at) => [top, ...rows].map((row) => boxAt(at, row)))]
+        .filter((box) => !fixed.some((other) => meets(box, other)));
+    const covered = (box, boxes) => boxes.filter((other) => meets(box, other)).length;
+    const cost = (box) => 1e6 * covered(box, rings) + FAR * covered(box, avoided) + far(box);
+    return others.length > 0 ? least(others, cost) : boxAt(left);
 }
