@@ -14,7 +14,7 @@ const DELTA = { codec: 'h264', key: false, payload: Uint8Array.of(0, 0, 0, 1, 0x
 const JPEG = { codec: 'jpeg', key: true, payload: Uint8Array.of(0xff, 0xd8) };
 
 // A fake VideoDecoder that answers at once, unless told otherwise.
-function fakeApi({ breaks = () => false, keepsBack = () => false } = {}) {
+function fakeApi({ breaks = () => false, keepsBack = () => false, formats = ['RGBA'] } = {}) {
     const made = [];
     class VideoDecoder {
         constructor({ output, error }) {
@@ -34,7 +34,12 @@ function fakeApi({ breaks = () => false, keepsBack = () => false } = {}) {
                     this.state = 'closed';
                     this.error(new Error('broken'));
                 } else if (!keepsBack(this, chunk)) {
-                    this.output({ of: chunk, close() {} });
+                    this.output({
+                        of: chunk, closed: 0, visibleRect: { width: 3, height: 2 },
+                        allocationSize: ({ format }) => (formats.includes(format) ? 24 : 9),
+                        copyTo: async (pixels) => pixels.fill(chunk.timestamp),
+                        close() { this.closed++; },
+                    });
                 }
             });
         }
@@ -121,6 +126,35 @@ test('one in, one out; a new parameter set makes a new decoder', async () => {
     await decoder.decode(LARGER);
     assert.equal(api.made.length, 2);
     assert.deepEqual([api.made[0].state, api.made[1].config.codec], ['closed', 'avc1.42c028']);
+});
+
+test('without a GPU, the pixels of a video frame are copied, unless the browser cannot copy them', async () => {
+    const apiOf = (renderer, formats) => ({
+        ...fakeApi({ formats }),
+        OffscreenCanvas: class {
+            getContext = () => renderer && { getParameter: () => renderer, getExtension: () => null };
+        },
+        ImageData: class {
+            constructor(pixels, width, height) {
+                assert.equal(pixels.length, 4 * width * height);
+                Object.assign(this, { pixels: [...pixels], width, height });
+            }
+        },
+        createImageBitmap: async (image) => ({ image }),
+    });
+    const decodedBy = async (api) => {
+        const { decoding } = bench({ api });
+        await decoding.probe();
+        return [await decoding.decode(KEY), await decoding.decode(DELTA)];
+    };
+    for (const renderer of [null, 'ANGLE (Google, Vulkan (SwiftShader Device), SwiftShader driver)']) {
+        const copies = (await decodedBy(apiOf(renderer))).map(({ image }) => ({ ...image }));
+        assert.deepEqual(copies, [0, 1].map((n) => ({ pixels: Array(24).fill(n), width: 3, height: 2 })));
+    }
+    for (const api of [apiOf('NVIDIA GeForce'), apiOf(null, []), fakeApi()]) {
+        const frames = await decodedBy(api);
+        assert.deepEqual(frames.map(({ of, closed }) => [of.type, closed]), [['key', 0], ['delta', 0]]);
+    }
 });
 
 test('a decoder that keeps pictures back is no decoder', async () => {

@@ -12,9 +12,9 @@ const PATIENCE_MS = 120000; // all cases take seconds: a longer run is an endles
 const MB = 512;
 // Modules without a function that takes numbers, and those whose bad input warp.test.mjs and headset.test.mjs have.
 const TEXTS = ['depth_grid', 'headset_views', 'warp_mesh', 'warp_raster', 'alarm_actions', 'alarm_call', 'alarm_table', 'alarms',
-    'asset_tree', 'blocked', 'connection', 'decode_queue', 'decoder_fallback', 'decoding', 'h264', 'handover', 'health', 'keys', 'links',
-    'loop_check', 'matches', 'model', 'named_views', 'notes', 'people', 'quality', 'phrases', 'references', 'refusals', 'requests',
-    'search', 'session', 'wake', 'words'];
+    'asset_tree', 'blocked', 'connection', 'decode_queue', 'decoder_fallback', 'decoding', 'gpu', 'h264', 'handover', 'health', 'keys',
+    'links', 'loop_check', 'matches', 'model', 'named_views', 'notes', 'people', 'quality', 'phrases', 'references', 'refusals',
+    'requests', 'search', 'session', 'wake', 'words'];
 
 // Runs the cases from `first` on until one does not return; adds failures to `wrong`. Returns the index of the next case.
 function runFrom(first, seed, wrong) {

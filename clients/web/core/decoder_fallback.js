@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Chooses hardware or software decoding of H.264: tests once and stores the result; falls back after failures. The page loads this file
 // only after a number of JPEG pictures (app/main.js), since H.264, which encodes only differences, saves data only with many pictures.
+import { hasGpu } from './gpu.js';
 import { H264Decoder, whatIsWrong } from './h264.js';
 
 const ACCELERATIONS = ['no-preference', 'prefer-software']; // hardware first
@@ -24,24 +25,31 @@ function remember({ store, agent }, way) {
     }
 }
 
+// Returns a decoder. Without a GPU, Chromium keeps up to 512 MB of pixels of VideoFrames that a canvas has drawn, also if they are drawn as
+// ImageBitmaps. It keeps none if the page copies the pixels.
+function decoderOf({ api }, acceleration) {
+    const copies = Boolean(api.OffscreenCanvas) && !hasGpu(new api.OffscreenCanvas(1, 1));
+    return new H264Decoder({ acceleration, copies, api });
+}
+
 // Tests the H.264 decoders and sets the first one that works. decoding: a Decoding (decoding.js).
 export async function probe(decoding) {
     const { env } = decoding, known = remembered(env);
     if (known === 'none')
         return;
     for (const acceleration of ACCELERATIONS.slice(Math.max(0, ACCELERATIONS.indexOf(known)))) {
-        if (await (env.tryOut ?? whatIsWrong)(new H264Decoder({ acceleration, api: env.api })) === null) {
-            use(decoding, acceleration);
+        const decoder = decoderOf(env, acceleration);
+        if (await (env.tryOut ?? whatIsWrong)(decoder) === null) {
+            use(decoding, decoder);
             return;
         }
     }
     remember(env, 'none');
 }
 
-function use(decoding, acceleration) {
-    const { env } = decoding;
-    const h264 = new H264Decoder({ acceleration, api: env.api });
-    Object.assign(decoding, { acceleration, h264, codecs: ['auto', 'h264', ...decoding.plain] });
+function use(decoding, decoder) {
+    const { env } = decoding, { acceleration } = decoder;
+    Object.assign(decoding, { acceleration, h264: decoder, codecs: ['auto', 'h264', ...decoding.plain] });
     remember(env, acceleration);
 }
 
@@ -50,7 +58,7 @@ export function demote(decoding) {
     const next = ACCELERATIONS[ACCELERATIONS.indexOf(decoding.acceleration) + 1];
     decoding.h264.close();
     if (next) {
-        use(decoding, next);
+        use(decoding, decoderOf(decoding.env, next));
         decoding.onLost();
         return;
     }

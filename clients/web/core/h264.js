@@ -29,22 +29,25 @@ const hex = (bytes) => [...bytes].map((byte) => byte.toString(16).padStart(2, '0
 export const codecName = (sps) => `avc1.${hex(sps.subarray(1, 4))}`;
 
 export class H264Decoder {
-    // acceleration: a VideoDecoder's hardwareAcceleration. api: { VideoDecoder, EncodedVideoChunk }.
-    constructor({ acceleration = 'no-preference', api = globalThis, clock = globalThis }) {
-        Object.assign(this, { acceleration, api, clock });
+    // acceleration: a VideoDecoder's hardwareAcceleration. copies: decode() returns ImageBitmaps instead of VideoFrames. api: {
+    // VideoDecoder, EncodedVideoChunk, ImageData, createImageBitmap }.
+    constructor({ acceleration = 'no-preference', copies = false, api = globalThis, clock = globalThis }) {
+        Object.assign(this, { acceleration, copies, api, clock });
+        this.pixels = new Uint8ClampedArray(0); // of the last copied picture
         this.waiting = null; // { resolve, reject } of the picture being decoded
         this.sps = '';
         this.count = 0;
     }
 
-    // Decodes frame { key, payload }. Returns a promise of a VideoFrame. After a failure only a key frame can be decoded.
+    // Decodes frame { key, payload }. Returns a promise of a VideoFrame or ImageBitmap. After a failure only a key frame can be decoded.
     async decode({ key, payload }) {
         if (key)
             this.open(payload);
         else if (!this.decoder)
             throw new Error('H.264 without a key frame');
         try {
-            return await this.next(key, payload);
+            const picture = await this.next(key, payload);
+            return this.copies ? await this.copyOf(picture) : picture;
         } catch (error) {
             this.close();
             throw error;
@@ -73,6 +76,23 @@ export class H264Decoder {
             const { EncodedVideoChunk } = this.api;
             this.decoder.decode(new EncodedVideoChunk({ type: key ? 'key' : 'delta', timestamp: this.count++, data }));
         });
+    }
+
+    // Returns a promise of an ImageBitmap with the pixels of a VideoFrame, or of the VideoFrame if the browser cannot copy them as RGBA.
+    async copyOf(picture) {
+        const { width, height } = picture.visibleRect, options = { format: 'RGBA' };
+        try {
+            const bytes = picture.allocationSize(options);
+            if (this.pixels.length !== bytes)
+                this.pixels = new Uint8ClampedArray(bytes);
+            await picture.copyTo(this.pixels, options);
+            const copy = await this.api.createImageBitmap(new this.api.ImageData(this.pixels, width, height));
+            picture.close();
+            return copy;
+        } catch {
+            this.copies = false;
+            return picture;
+        }
     }
 
     settle() {

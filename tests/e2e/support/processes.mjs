@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Processor time and descendants of a process.
+// Processor time, shared memory and descendants of a process.
 import { readdirSync, readFileSync } from 'node:fs';
 
 // Returns the processor time of all threads in milliseconds, in steps of ten.
@@ -23,3 +23,12 @@ export function family(pid) {
         out.push(...(children.get(out[i]) ?? []));
     return out;
 }
+
+// Returns the resident shared memory of processes in MB; memory that several of them have mapped counts several times.
+export const sharedMb = (pids) => pids.reduce((sum, pid) => {
+    try {
+        return sum + Number(readFileSync(`/proc/${pid}/status`, 'utf8').match(/^RssShmem:\s+(\d+)/m)[1]) / 1024;
+    } catch {
+        return sum; // the process has ended
+    }
+}, 0);

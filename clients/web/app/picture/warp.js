@@ -3,6 +3,7 @@
 // over its depth grid, once per animation frame in which the camera has moved. Places that the picture does not show become grey, as
 // light as their surroundings, never coloured; a lattice is drawn over wide grey places. Loaded together with the camera controller.
 import { same } from '../../core/camera.js';
+import { hasGpu } from '../../core/gpu.js';
 import { depthAt, isNear, moveBy, warpMatrix } from '../../core/warp_mesh.js';
 import { isWhole } from '../../core/wire.js';
 import { make } from '../common/dom.js';
@@ -25,14 +26,6 @@ export const hasViewportShape = ({ shownWidth, fullWidth, fullHeight }) =>
     Math.abs(shownWidth - fullWidth) <= 2 + 2 * fullWidth / fullHeight;
 
 const GL = { antialias: false, powerPreference: 'high-performance' };
-
-// Returns false if the browser has no WebGL 2, or emulates it on the processor, where CpuPainter is several times as fast.
-function hasGpu() {
-    const gl = make('canvas').getContext('webgl2', GL), info = gl?.getExtension('WEBGL_debug_renderer_info');
-    const name = gl?.getParameter(info?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER);
-    gl?.getExtension('WEBGL_lose_context')?.loseContext();
-    return gl !== null && !/swiftshader|llvmpipe|softpipe|basic render|software/i.test(name);
-}
 
 export class Warp {
     constructor({ session, viewport, modules }) {
@@ -63,7 +56,7 @@ export class Warp {
     open() {
         const { canvas } = this;
         try {
-            this.usesGl ??= hasGpu();
+            this.usesGl ??= hasGpu(make('canvas')); // without a GPU, CpuPainter is several times as fast
             this.painter = this.usesGl ? new GlPainter(canvas.getContext('webgl2', GL)) : new CpuPainter(canvas);
         } catch (error) {
             console.warn(`pictures are not warped: ${error.message}`);
