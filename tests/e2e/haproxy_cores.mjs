@@ -13,7 +13,7 @@ import { kill, missingTwoCores, TAKE_OVER_MS, TwoCores, until } from './support/
 const skip = missingTwoCores() || (missingHaproxy() ?? false), options = { skip, timeout: 240000 };
 const CHECKS_MS = 1500; // the proxy checks once a second
 const HOST = ['--behind-proxy', '--host', 'plant.example', '--host', '127.0.0.1'];
-let server, two, renderer, proxy;
+let server, two, renderer, proxy, plain; // plain: the proxy in front of the cores alone
 
 before(async () => {
     if (skip)
@@ -27,10 +27,12 @@ before(async () => {
     const agentPort = await freePort();
     renderer = await two.renderer('r1', '--agent-port', String(agentPort), ...HOST);
     proxy = await Haproxy.start([Object.assign(renderer, { agentPort })], two.cores.one, two.cores.two);
+    plain = await Haproxy.startCores([two.cores.one, two.cores.two]);
     await until('the proxy and the renderer', async () => /^UP/.test((await proxy.servers().catch(() => null))?.r1.status));
 });
 after(async () => {
     await proxy?.destroy();
+    await plain?.destroy();
     await two?.destroy();
     await server?.destroy();
 });
@@ -41,6 +43,9 @@ const chosen = async () => {
     const { core, standby } = await proxy.servers('core');
     return [[core, 'one'], [standby, 'two']].filter(([{ status }]) => /^UP/.test(status)).map(([, name]) => name).join();
 };
+// Returns the status of the answer to a request through the proxy without renderers.
+const plainStatus = async () =>
+    (await get(plain.port, '/api/v1/history?tags=TI-1', 'GET', `Authorization: Bearer ${two.nodes.tokens.viewer}\r\n`)).status;
 const journal = async () => JSON.parse((await ask('/api/v1/alarms/journal?tag=TI-1')).body).rows;
 
 async function operator() {
@@ -55,6 +60,8 @@ test('of two cores the proxy asks the one that leads', options, async () => {
     await until('the proxy\'s choice', async () => await chosen() === core.name);
     assert.equal((await ask('/api/v1/history?tags=TI-1')).status, 200);
     assert.equal((await ask('/api/v1/history?tags=TI-1', 'wrong')).status, 401);
+    await until('the proxy without renderers', async () => await plainStatus() === 200);
+    assert.match((await plain.servers('cores'))[core.name === 'one' ? 'c2' : 'c1'].status, /^DOWN/);
 });
 
 for (const [signal, how] of [['SIGKILL', 'kill -9'], ['SIGTERM', 'an end in good order']])
@@ -70,6 +77,7 @@ for (const [signal, how] of [['SIGKILL', 'kill -9'], ['SIGTERM', 'an end in good
         t.diagnostic(`answers again after ${(took_ms / 1000).toFixed(1)} s`);
         promise(t, 'until an answer', took_ms, TAKE_OVER_MS + CHECKS_MS);
         await until('the proxy\'s choice of the new leader', async () => await chosen() === other.name);
+        await until('an answer through the proxy without renderers', async () => await plainStatus() === 200);
         await until('readings at the renderer', async () =>
             (await renderer.tags(two.nodes.tokens.viewer))['TI-1'].quality_name === 'Good');
         anna.say({ type: 'alarm', seq: 1, action: 'acknowledge', alarms: [['TI-1', 'H']] });

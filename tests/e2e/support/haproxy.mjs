@@ -7,20 +7,17 @@ import { join } from 'node:path';
 import { connect } from 'node:net';
 import { freePort } from './ports.mjs';
 
-const PROGRAM = '/usr/sbin/haproxy', SHIPPED = new URL('../../../deploy/proxy/haproxy.cfg', import.meta.url);
+const PROGRAM = '/usr/sbin/haproxy';
+const shipped = (name) => readFileSync(new URL(`../../../deploy/proxy/${name}`, import.meta.url), 'utf8');
 export const missingHaproxy = () => (existsSync(PROGRAM) ? null : 'haproxy is not installed');
 
 export class Haproxy {
     // renderers: [{ port, agentPort }]; core and standby: { port }. host: address of all daemons. ca and coreCa: files with certificates of
     // renderers and cores; null: without TLS. port: port of the balancer; default: a free one
     static async start(renderers, core, standby = null, { host = '127.0.0.1', ca = null, coreCa = ca, port: own = null } = {}) {
-        const proxy = new Haproxy();
-        proxy.folder = mkdtempSync(join(tmpdir(), 'plantcast-haproxy-'));
-        proxy.port = own ?? await freePort();
         const authorities = [ca, ca, coreCa]; // in the order of the shipped file
         const tls = (authority) => (authority ? ` ssl verify required ca-file ${authority}` : '');
-        let text = readFileSync(SHIPPED, 'utf8').replaceAll(/ ssl verify required ca-file \S+/g, () => tls(authorities.shift()))
-            .replace(/bind :443 .*/, `bind 127.0.0.1:${proxy.port}`).replace('/run/haproxy', proxy.folder)
+        let text = shipped('haproxy.cfg').replaceAll(/ ssl verify required ca-file \S+/g, () => tls(authorities.shift()))
             .replace('server core 10.0.0.10:8443', `server core ${host}:${core.port}`);
         if (standby)
             text = text.replace('# server standby 10.0.0.20:8443', `server standby ${host}:${standby.port}`);
@@ -28,8 +25,24 @@ export class Haproxy {
             text = text.replaceAll(`10.0.0.1${i + 1}:8443`, `${host}:${port}`)
                 .replace(`cookie r${i + 1} agent-port 8404`, `cookie r${i + 1} agent-port ${agentPort}`);
         });
+        return Haproxy.run(text, own ?? await freePort());
+    }
+
+    // In front of two cores without renderers and without TLS. cores: [{ port }, { port }]
+    static async startCores(cores) {
+        let text = shipped('haproxy-cores.cfg').replace(/ ssl verify required ca-file \S+/, '').replaceAll(/ verifyhost \S+/g, '');
+        cores.forEach(({ port }, i) => {
+            text = text.replace(`10.0.0.${i + 1}0:8443`, `127.0.0.1:${port}`);
+        });
+        return Haproxy.run(text, await freePort());
+    }
+
+    static async run(text, port) {
+        const proxy = new Haproxy();
+        proxy.folder = mkdtempSync(join(tmpdir(), 'plantcast-haproxy-'));
+        proxy.port = port;
         const file = join(proxy.folder, 'haproxy.cfg');
-        writeFileSync(file, text);
+        writeFileSync(file, text.replace(/bind :443 .*/, `bind 127.0.0.1:${port}`).replace('/run/haproxy', proxy.folder));
         const checked = spawnSync(PROGRAM, ['-c', '-f', file], { encoding: 'utf8' });
         if (checked.status !== 0) {
             await proxy.destroy();
