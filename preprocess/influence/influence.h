@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Computes the influence of sensors on a surface: the weight of each sensor of a group at each vertex while all sensors are good, and the
- * matrix that predicts the value of a lost sensor. PLANT.md explains the methods for users. Conduction (harmonic, fin): the temperature T
+ * matrix that predicts the value of a lost sensor. INTERPOLATIONS.md explains the methods. Conduction (harmonic, fin): the temperature T
  * of a thin wall obeys -div(k t grad T) + h (T - T_ref) = 0. With u = T - T_ref and the decay length d = sqrt(k t / h) this is -lap u + u /
  * d^2 = 0; harmonic means d = infinity. Each sensor is a disc at the temperature of its reading, tied to the points it covers by a contact
  * that conducts CONTACT times as well as the surface, so that two sensors at one position share it. The solution minimises E = u' (L + M /

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Selects, among the sensors with an assumed position (PLANT.md, "Assumed places"), those that an engineer accepts in one operation.
+/* Selects, among the sensors with an assumed position (TAGS.md, "Assumed places"), those that an engineer accepts in one operation.
  * Thread: the loop. */
 #ifndef PLACING_ASSUMED_PLACES_H
 #define PLACING_ASSUMED_PLACES_H

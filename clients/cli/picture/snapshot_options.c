@@ -61,7 +61,7 @@ static const char view_usage[] =
     "                          euclidean (straight), or heat (approximate, along the surface)\n"
     "                          heat needs distances that plantcast-prep computed with the heat method\n"
     "  --interpolation METHOD  how values between sensors are computed: shepard, paper, harmonic, fin or gp\n"
-    "                          harmonic, fin and gp need weights that plantcast-prep computed (PLANT.md)\n"
+    "                          harmonic, fin and gp need weights that plantcast-prep computed\n"
     "  --fill none|neighbours  how the area around a sensor with a bad reading is drawn: without data, or\n"
     "                          with colours computed from the neighbouring sensors\n"
     "  --strength F            factor by which the weight (strength) of every sensor is multiplied\n"

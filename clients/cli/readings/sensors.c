@@ -28,7 +28,7 @@ static void print_usage(FILE *out)
           "\n"
           "suggest proposes positions for N more sensors that detect as many missed hot spots as possible.\n"
           "A hot spot is missed if it raises the reading of no sensor by 5 % of the group's range.\n"
-          "The size of a hot spot is hot_spot_m of the sensor group (PLANT.md, show: blind).\n"
+          "The size of a hot spot is hot_spot_m of the sensor group (INTERPOLATIONS.md, show: blind).\n"
           "\n"
           "  --add N            number of sensors to propose\n"
           "  --group ID         sensor group of the new sensors (default: first group of the plant file)\n"

@@ -22,7 +22,7 @@ static void print_usage(FILE *out)
           "\n"
           "Prints how far the readings of each sensor have drifted within one week.\n"
           "Hourly means of the readings are compared with the values that the other sensors of the group\n"
-          "on the same asset predict (PLANT.md, Sensors that drift).\n"
+          "on the same asset predict (DRIFT.md).\n"
           "An asset needs at least three sensors of the group, and half a week of recorded readings.\n"
           "\n"
           "  --to INSTANT       end of the week, such as 2026-11-20T10:00:00Z or -1d for a day ago (default: now)\n"

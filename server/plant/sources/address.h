@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses Modbus addresses, data types and byte orders as tag lists write them (PLANT.md). Thread: any. */
+/* Parses Modbus addresses, data types and byte orders as tag lists write them (TAGS.md). Thread: any. */
 #ifndef PLANT_SOURCES_ADDRESS_H
 #define PLANT_SOURCES_ADDRESS_H
 #include <stdbool.h>

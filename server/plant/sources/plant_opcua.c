@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks the keys of a source of type opcua against each other. PLANT.md describes the keys. */
+/* Checks the keys of a source of type opcua against each other. SOURCES.md describes the keys. */
 #include <string.h>
 
 #include "base/mem.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the tag list: turns rows into tags and checks each row. PLANT.md describes the form. */
+/* Reads the tag list: turns rows into tags and checks each row. TAGS.md describes the form. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
