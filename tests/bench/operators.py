@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """So many operators on one core and some renderers, each in a network of its own (needs root): what each node takes of a processor, and the
-bytes of its network, by operators of the kinds of deploy/SCALING.md: of ten, one moves the camera, three follow, six stand still.
+bytes of its network, by operators of the kinds of deploy/pages/CAPACITY.md: of ten, one moves the camera, three follow, six stand still.
 
     tests/bench/operators.py build OPERATORS RENDERERS [SECONDS]
 

@@ -9,7 +9,7 @@ export const EAGER_WAIT_MS = 1500, EAGER_MS = 15000;
 // interval of pings, which an idle server answers, too
 export const PING_MS = 2000;
 export const QUIET_MS = 5000;
-// silence of the server after which the page reconnects; deploy/SCALING.md explains how this adds to the duration of a failover
+// silence of the server after which the page reconnects; deploy/pages/CAPACITY.md explains how this adds to the duration of a failover
 export const DEAD_MS = 7000, CHECK_MS = 500;
 // timeout for opening the WebSocket, and for the server's first message, which may have long lists
 export const OPENING_MS = 10000;
