@@ -218,7 +218,7 @@ export class Notes {
         this.pointer.position = mine.position;
         this.pointer.until = performance.now() + POINTS_MS;
         setText(this.pointer.element.firstChild, mine.by);
-        this.pointer.right = null; // its width may have changed
+        this.pointer.room = null; // its width may have changed
         this.show();
     }
 
@@ -244,9 +244,9 @@ export class Notes {
             element.hidden = !at || x < 0 || y < 0 || x > wide || y > high || at[0] > half.width;
             if (element.hidden)
                 continue;
-            if (pin.right !== area.right) { // measures the pin only if the space for it has changed
+            if (pin.room !== `${area.right}/${high}`) { // measures the pin only if the space for it has changed
                 setVariable(element, '--most', `${area.right - 4}px`);
-                Object.assign(pin, { right: area.right, wide: element.offsetWidth, high: element.offsetHeight });
+                Object.assign(pin, { room: `${area.right}/${high}`, wide: element.offsetWidth, high: element.offsetHeight });
             }
             const [left, top] = picture.still || !pin.offset ? [-1, -1] : [x + pin.offset[0], y + pin.offset[1]];
             const kept = { left, top, right: left + pin.wide, bottom: top + pin.high };
@@ -254,7 +254,7 @@ export class Notes {
                 ![...fixed, ...rings].some((other) => meets(kept, other));
             const box = isFree ? kept : placePin({ ...pin, x, y }, area, fixed, rings, marks);
             pin.offset = [box.left - x, box.top - y];
-            element.classList.toggle('over', rings.some((ring) => meets(ring, box)));
+            element.classList.toggle('over', [...rings, ...marks].some((mark) => meets(mark, box)));
             fixed.push(box);
             const fromX = Math.max(box.left, Math.min(box.right, x)), fromY = Math.max(box.top, Math.min(box.bottom, y));
             const px = { left: box.left, top: box.top, 'from-x': fromX - box.left - 1, 'from-y': fromY - box.top - 1,
