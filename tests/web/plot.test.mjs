@@ -33,7 +33,7 @@ function plotOf(unit) {
         plot.show(Chart, answered.map((tag) => ({ tag, series: series(tag.name), alarms: [] })), SPAN, SPAN);
         return plot.chart;
     };
-    return { show };
+    return { show, plot };
 }
 
 test('a chart without an answer has axes, and no curve', () => {
@@ -45,4 +45,15 @@ test('a curve gets the colour of its row again when a row above it is removed', 
     const { show } = plotOf('bar'), [a, b] = [{ name: 'A' }, { name: 'B' }];
     assert.equal(show([a, b], [b]).options.series[1].stroke, 'green');
     assert.equal(show([b], [b]).options.series[1].stroke, 'red');
+});
+
+test('names of limits that are close together are side by side within the chart, or left out', () => {
+    const { plot } = plotOf('bar'), written = [];
+    const ctx = { save() {}, restore() {}, fillRect() {}, measureText: ({ length }) => ({ width: 10 * length }),
+        fillText: (text, x) => written.push([text, x]) };
+    globalThis.devicePixelRatio = 1;
+    plot.limitsOf = () => ['HH 99', 'H 98', 'L 97', 'LL 20'].map((words, i) => ({ words, colour: 'red', y: i === 3 ? 90 : 10 + i }));
+    plot.nameLimits({ ctx, bbox: { left: 40, top: 0, width: 150, height: 100 } });
+    assert.deepEqual(written.map(([text]) => text), ['HH 99', 'H 98', 'LL 20']);
+    assert.ok(written.every(([text, x]) => x >= 40 && x + 10 * text.length <= 190) && written[1][1] > written[0][1] + 50);
 });

@@ -261,7 +261,8 @@ export class Plot {
         ctx.restore();
     }
 
-    // Writes the name of each limit at its line, over everything else. If lines are close together, a name goes next to the previous one.
+    // Writes the name of each limit at its line, over everything else. If lines are close together, a name goes next to the previous one,
+    // or is left out if there is no room.
     nameLimits(chart) {
         const { ctx, bbox } = chart, px = devicePixelRatio, height = LABEL_PX * px, placed = [];
         ctx.save();
@@ -272,6 +273,8 @@ export class Plot {
             const near = placed.filter((other) => Math.abs(other.y - y) < height);
             const left = Math.max(bbox.left, ...near.map((other) => other.right)) + 5 * px;
             const right = left + ctx.measureText(words).width + 6 * px;
+            if (right > bbox.left + bbox.width)
+                continue;
             const middle = Math.max(bbox.top + height / 2, y);
             placed.push({ y, right });
             ctx.fillStyle = this.view.look.ground;
