@@ -53,7 +53,8 @@ function valueOf(model, tag, { value, limit }) {
 function tableOf(titles, rows) {
     if (rows.length === 0)
         return make('p', { class: 'none' }, say('none'));
-    const body = rows.slice(0, MOST).map((cells) => make('tr', {}, ...cells.map((text) => make('td', {}, text))));
+    const body = rows.slice(0, MOST).map((cells) => make('tr', {}, ...cells.map((text, i) =>
+        make('td', { 'data-title': say(`handover.${titles[i]}`) }, text))));
     const table = make('table', {}, make('thead', {}, make('tr', {}, ...titles.map((name) => make('th', {}, say(`handover.${name}`))))),
         make('tbody', {}, ...body));
     return rows.length > MOST ? make('div', {}, table, make('p', { class: 'none' }, say('walls.more',
