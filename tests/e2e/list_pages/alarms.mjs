@@ -257,13 +257,13 @@ test('a new alarm is announced once, with tag, state and value', options, async 
 test('in forced colours active and returned alarms still look different', options, async () => {
     await page.emulateMedia({ forcedColors: 'active' });
     await page.waitForFunction(() => [...document.styleSheets].some(({ href }) => href?.endsWith('common/contrast.css')));
-    const looks = await page.evaluate(() => ['priority p2', 'priority p2 hollow'].map((name) => {
+    const looks = await page.evaluate(() => [1, 2, 3, 4].flatMap((p) => [`priority p${p}`, `priority p${p} hollow`]).map((name) => {
         const element = document.createElement('span');
         element.className = name;
         document.body.append(element);
-        const { backgroundColor, borderStyle } = getComputedStyle(element);
+        const { backgroundColor, color, borderStyle, clipPath, boxShadow } = getComputedStyle(element);
         element.remove();
-        return [backgroundColor, borderStyle];
+        return [backgroundColor, color, borderStyle, clipPath, boxShadow].join();
     }));
     const frames = await page.evaluate(() => ['timeline past', 'moment'].map((name) => {
         const element = document.createElement('section');
@@ -280,8 +280,8 @@ test('in forced colours active and returned alarms still look different', option
     await page.emulateMedia({ forcedColors: 'none' });
     assert.ok(grounds.every(([isChecked, ground]) => isChecked === (ground === chosen)), `the chosen quantity: ${grounds}`);
     assert.deepEqual(frames, [true, true], 'frames around the past');
-    assert.notEqual(looks[0][0], looks[1][0], looks.join(' | '));
-    assert.deepEqual(looks.map(([, border]) => border), ['none', 'dashed']);
+    const [ink, ground] = ['rgb(0, 0, 0)', 'rgb(255, 255, 255)'];
+    assert.deepEqual(looks, [1, 2, 3, 4].flatMap(() => [`${ink},${ground},none,none,none`, `${ground},${ink},dashed,none,none`]));
 });
 
 // The rows of the list that are whole within its panel.
