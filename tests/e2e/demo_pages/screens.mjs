@@ -373,6 +373,15 @@ test('phones: name and state are read, nothing is cut off, all is as large as a 
         const words = await page.evaluate(() => ['plant-name', 'health'].map((id) => document.getElementById(id))
             .filter((e) => e.clientWidth < 30 || e.scrollWidth > e.clientWidth + 1).map((e) => e.id));
         assert.deepEqual(words, [], name);
+        const isOver = await page.evaluate(() => { // a long state of the plant does not lie over the words of the alarm strip
+            const state = document.querySelector('#health .words'), { textContent } = state;
+            state.textContent = 'Keine Verbindung zum Server';
+            const strip = document.getElementById('alarm-strip'), [a, b] = [strip, document.querySelector('.identity')]
+                .map((e) => e.getBoundingClientRect());
+            state.textContent = textContent;
+            return b.top < a.bottom && a.top < b.bottom && b.left < a.right - parseFloat(getComputedStyle(strip).paddingRight);
+        });
+        assert.equal(isOver, false, name);
         assert.deepEqual(await tooSmall(page), [], name);
         assert.deepEqual(await sticksOut(page), [], name);
         await shoot(page, `phone-${name}`);
