@@ -11,7 +11,7 @@ import { make, setText, setVariable } from '../app/common/dom.js';
 import { badge, limitText } from '../app/alarms/alarm_bar.js';
 import { SnapshotPane } from './snapshot_pane.js';
 
-const LEAST_PART = 0.4;
+const LEAST_PART = 0.4, LATEST_MS = 30000; // LATEST_MS: time after which a picture is shown even if it does not contain the alarm's tag
 const KINDS = { views: ViewsPane, trend: TrendPane, alarms: AlarmsPane, tiles: TilesPane, clock: ClockPane, text: TextPane,
     snapshot: SnapshotPane };
 
@@ -110,10 +110,10 @@ function ViewsPane(pane, context) {
             ...(order ? [' ', byWhom(order)] : []));
     }
 
-    // Returns true if the picture still shows another group than the alarm's.
-    function ofOther({ model, shown: params }, alarm) {
-        const group = model.tag(alarm.tag.name)?.group;
-        return Boolean(group) && params.group !== group;
+    // Returns true if the picture does not show the alarm yet: it has another group, or the tag is outside.
+    function isComing({ session: { model, shown: params }, overlay }, alarm, now) {
+        const tag = model.tag(alarm.tag.name), isOther = Boolean(tag?.group) && params.group !== tag.group;
+        return isOther || (now - changedAt < LATEST_MS && !overlay.marker(tag));
     }
 
     // Shows the alarm's state, its tag's other alarms that are unacknowledged, and the value now. All may change while the alarm's
@@ -159,14 +159,15 @@ function ViewsPane(pane, context) {
         const unshown = alarm || order?.view || !wrong ? null : { wrong, refusal };
         element.classList.toggle('unshown', Boolean(unshown));
         element.classList.toggle('called', Boolean(alarm));
-        element.classList.toggle('coming', Boolean(alarm) && ofOther(page.session, alarm)); // hides the legend of the previous quantity
-        if (wanted === shown && page === shownIn) {
+        const isNew = wanted !== shown || page !== shownIn;
+        if (isNew)
+            [shown, shownIn, changedAt] = [wanted, page, now];
+        element.classList.toggle('coming', Boolean(alarm) && isComing(page, alarm, now)); // hides the picture and its legend
+        if (!isNew) {
             if (alarm)
                 sayNow(alarm);
             return;
         }
-        [shown, shownIn] = [wanted, page];
-        changedAt = now;
         if (alarm)
             showAlarm(page, alarm);
         else
