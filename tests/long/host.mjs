@@ -71,7 +71,7 @@ async function oneFault(site, fault, random, ends) {
     row.notKept = cycles.notKept - before.notKept;
     Object.assign(row, { lost: 0, twice: 0 });
     for (const core of Object.values(site.two.cores)) {
-        const { lost, twice } = await cycles.compare(core).catch(({ message }) => {
+        const { lost, twice } = await cycles.compare(core, fault.off_s).catch(({ message }) => {
             row.failures.push(`journal of ${core.name}: ${message}`);
             return { lost: 0, twice: 0 };
         });

@@ -5,13 +5,13 @@ import { setTimeout as sleep } from 'node:timers/promises';
 import { until } from '../../e2e/support/until.mjs';
 
 const KIND = 'H', HIGH = 95, NORMAL = 50, SHOWN_MS = 60000, STEP_MS = 100, JOURNAL_MS = 30000, ROWS = 1000;
-const PAUSE_MS = 4 * SHOWN_MS, AGAIN_MS = 5000;
+const PAUSE_MS = 4 * SHOWN_MS, AGAIN_MS = 5000, EARLIER_MS = 60000;
 const EVENTS = ['raise', 'acknowledge', 'clear'];
 
 export class AlarmCycles {
     // plant: passes commands to the simulator; operators: acknowledge in turn; tags: each has its own alarms, all at the same time.
     constructor(plant, operators, tags) {
-        Object.assign(this, { plant, operators, tags, failures: [], total: 0, notKept: 0, idle: new Set() });
+        Object.assign(this, { began: Date.now(), plant, operators, tags, failures: [], total: 0, notKept: 0, idle: new Set() });
         this.isPaused = this.isOver = false;
         this.counts = new Map(tags.map((tag) => [tag, 0]));
         this.newest = new Map();
@@ -79,11 +79,11 @@ export class AlarmCycles {
     }
 
     // While paused: compares the cycles since the last comparison with a core's journal, and waits until a standby has received its rows.
-    // Returns { lost, twice }: rows that the journal lacks, and that it has too often.
-    async compare(core) {
-        const since = this.newest.get(core.name) ?? 0;
+    // Returns { lost, twice }: rows that the journal lacks, and that it has too often. off_s: the most that a core's clock was slow.
+    async compare(core, off_s = 0) {
+        const since = this.newest.get(core.name) ?? 0, from = new Date(this.began - off_s * 1000 - EARLIER_MS).toISOString();
         for (const end = performance.now() + JOURNAL_MS; ; await sleep(500)) {
-            const rows = await journal(core, since), found = this.difference(rows);
+            const rows = await journal(core, from, since), found = this.difference(rows);
             if (found.lost > 0 && performance.now() < end)
                 continue;
             this.newest.set(core.name, Math.max(since, ...rows.map(({ id }) => id)));
@@ -101,19 +101,21 @@ export class AlarmCycles {
         return { lost, twice };
     }
     begin() {
+        this.began = Date.now();
         for (const tag of this.tags)
             this.counts.set(tag, 0);
     }
 }
 
-// Returns the rows with an id above `since`, newest first.
-async function journal(core, since) {
+// Returns the rows since the time `from` with an id above `since`. The journal has the newest time first, so that rows of a slow clock
+// come after older ones.
+async function journal(core, from, since) {
     const rows = [];
     for (let before = ''; ;) {
-        const answer = await core.node.fetch(`/api/v1/alarms/journal?limit=${ROWS}${before}`);
+        const answer = await core.node.fetch(`/api/v1/alarms/journal?limit=${ROWS}&from=${from}${before}`);
         const { rows: more, next_before: next } = await answer.json();
         rows.push(...more.filter(({ id }) => id > since));
-        if (more.length === 0 || more.at(-1).id <= since || !next)
+        if (!next)
             return rows;
         before = `&before=${next}`;
     }

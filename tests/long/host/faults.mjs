@@ -4,7 +4,7 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { sleep, until } from './site.mjs';
 
 const RESTART_MS = 8000, CUT_MS = 8000, FROZEN_MS = 15000, FULL_MS = 10000, CLOCK_MS = 15000, CLOCK_S = 3600, DRAINED_S = 20;
-const ENDED_MS = 30000;
+const ENDED_MS = 30000, NOTICED_S = 60;
 
 const ended = ({ program }) => program.child.exitCode !== null || program.child.signalCode !== null;
 const isCore = (node) => Boolean(node.disk);
@@ -89,8 +89,10 @@ export const FAULTS = [
         await sleep(FROZEN_MS);
         site.server.thaw();
     } },
-    { name: 'leader\'s clock wrong', alerts: ['PlantcastClocksDiffer'], act: ({ leader, random }) => wrongClock(leader, random) },
-    { name: 'standby\'s clock wrong', alerts: ['PlantcastClocksDiffer'], act: ({ standby, random }) => wrongClock(standby, random) },
+    { name: 'leader\'s clock wrong', alerts: ['PlantcastClocksDiffer'], off_s: CLOCK_S,
+        act: ({ leader, random }) => wrongClock(leader, random) },
+    { name: 'standby\'s clock wrong', alerts: ['PlantcastClocksDiffer'], off_s: CLOCK_S,
+        act: ({ standby, random }) => wrongClock(standby, random) },
     { name: 'certificates replaced', alerts: [], act: certificates },
     { name: 'plant file reloaded', alerts: [], act: reload },
     { name: 'nodes upgraded', alerts: [], act: upgrade },
@@ -101,10 +103,17 @@ export const FAULTS = [
     } },
 ];
 
+// Fills the disk for FULL_MS after the first write that fails: until then, SQLite writes over space that its log already has.
 async function fullDisk(site, core) {
     site.fillDisk(core);
-    await sleep(FULL_MS);
-    site.freeDisk(core);
+    const notGood = /^plantcast_(history|alarm_journal)_good(\{.*\})? 0$/m;
+    const cannotWrite = async () => notGood.test(await (await core.node.fetch('/metrics')).text());
+    try {
+        await until('a write that fails', cannotWrite, NOTICED_S);
+        await sleep(FULL_MS);
+    } finally {
+        site.freeDisk(core);
+    }
 }
 async function wrongClock(core, random) {
     core.clock.set(random() < 0.5 ? CLOCK_S : -CLOCK_S);

@@ -199,8 +199,8 @@ export class Site {
     // Fills a core's disk to the last block, until freeDisk().
     fillDisk(core) {
         const { bavail, bsize } = statfsSync(core.disk);
-        writeFileSync(join(core.disk, 'filler'), Buffer.alloc(bavail * bsize));
         try {
+            writeFileSync(join(core.disk, 'filler'), Buffer.alloc(bavail * bsize));
             appendFileSync(join(core.disk, 'filler'), Buffer.alloc(4096));
         } catch { /* full */ }
     }
