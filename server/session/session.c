@@ -20,61 +20,6 @@
 #include "message/fit_message.h"
 #include "session/reply/reply.h"
 
-struct session *session_create(const struct session_context *context, uint64_t id, int64_t now_ns)
-{
-    struct session *session = mem_new(sizeof(*session));
-    *session = (struct session){ .id = id, .context = context, .identity = { .number = id, .role = ROLE_ENGINEER }, .opened_ns = now_ns };
-    session->rate.begin_ns = now_ns;
-    pacer_init(&session->delivery.pacer);
-    session->delivery.common_step = -1;
-    session->owed.tag_changes = mem_array(context->plant->tag_count, sizeof(*session->owed.tag_changes));
-    return session;
-}
-
-void session_keep_token(struct session *session, const char *token)
-{
-    if (session->context->hand_on)
-        snprintf(session->identity.token, sizeof(session->identity.token), "%s", token ? token : "");
-}
-
-void session_introduce(struct session *session, const struct session_client *client)
-{
-    session->identity.number = client->number;
-    memcpy(session->identity.address, client->address, sizeof(session->identity.address));
-    if (client->from)
-        snprintf(session->identity.from, sizeof(session->identity.from), "%s", client->from);
-    session->identity.role = client->role;
-    session->identity.holder = *client->holder;
-    session_keep_token(session, client->token);
-    session->room.share = client->share;
-    session->demand.starting = true;
-}
-
-void session_let_go(struct session *session)
-{
-    session_drop_ready(session);
-    session_forget_depth(session);
-    session_time_end(session);
-    session_place_leave(session);
-    session_scope_end(session);
-}
-
-void session_destroy(struct session **session_ptr)
-{
-    struct session *session = *session_ptr;
-    if (!session)
-        return;
-    session_let_go(session);
-    session_kept_drop(session);
-    for (int i = 0; i < session->owed.reply_count; i++)
-        mem_free(session->owed.replies[i]);
-    mem_free(session->owed.tag_changes);
-    mem_free(session->following.followers_text);
-    mem_free(session->tile.told);
-    mem_free(session);
-    *session_ptr = NULL;
-}
-
 void session_leave(struct session *session, bool keep, int64_t now_ns)
 {
     session_release_pixels(session);
@@ -101,16 +46,6 @@ static void on_ping(struct session *session, const struct message *message, int6
     session->identity.active_ns = now_ns;
     if (session->context->openid && session->identity.holder.signed_in)
         openid_touch(session->context->openid, &session->identity.holder, now_ns);
-}
-
-bool session_left_alone(const struct session *session, int64_t now_ns, struct message_error *error)
-{
-    const struct session_identity *identity = &session->identity;
-    int64_t lock_ns = session->context->lock_ns, since_ns = identity->active_ns ? identity->active_ns : session->opened_ns;
-    if (!lock_ns || identity->holder.signed_in || identity->holder.unattended || now_ns - since_ns <= lock_ns)
-        return false;
-    message_refuse_with(error, "locked", NULL, REFUSAL_LOCKED, "minutes=%.3g", (double)lock_ns / 60e9);
-    return true;
 }
 
 void session_check_token(struct session *session, int64_t now_ns, int64_t now_utc_ns)
@@ -305,16 +240,6 @@ static void on_send_to_wall(struct session *session, const struct message *messa
     const struct kept_action action = session_kept_begin(session);
     char *answer = send_to_wall_do(session->context->services->wall_remote, message, session_who(session), now_utc_ns / 1000);
     session_kept_reply(session, &action, "wall", session_wall_what(message), answer);
-}
-
-bool session_may_be(struct session *session, const struct wall_place *place, struct message_error *error)
-{
-    const struct token_holder *holder = &session->identity.holder;
-    if (!holder->display || (holder->display == place->display && !strcmp(holder->wall, place->wall)))
-        return true;
-    message_refuse_with(error, "not_allowed", NULL, REFUSAL_TOKEN_DISPLAY, "display=%d\nwall=%s", holder->display, holder->wall);
-    session_close(session, 1008, "this token belongs to another display");
-    return false;
 }
 
 /* Makes the session a wall display. From now on it is also sent the mouse pointers that users at desks show on the wall. Returns false with

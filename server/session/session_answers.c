@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Functions that queue a session's answers, record user input and close the session. */
+/* Functions that queue a session's answers, drop its frames, record user input and close the session. */
 #include <string.h>
 
 #include "base/mem.h"
@@ -29,6 +29,17 @@ void session_reply_error(struct session *session, const struct message_error *er
 {
     session->stats.errors++;
     session_reply(session, reply_error_text(error));
+}
+
+void session_drop_ready(struct session *session)
+{
+    for (struct encoded_frame *encoded = session->delivery.ready, *next; encoded; encoded = next) {
+        next = encoded->next;
+        session->stats.dropped++;
+        pacer_dropped(&session->delivery.pacer);
+        encoded_frame_destroy(&encoded);
+    }
+    session->delivery.ready = NULL;
 }
 
 void session_on_input(struct session *session, int64_t now_ns)

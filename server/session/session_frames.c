@@ -106,17 +106,6 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded)
     *last = encoded;
 }
 
-void session_drop_ready(struct session *session)
-{
-    for (struct encoded_frame *encoded = session->delivery.ready, *next; encoded; encoded = next) {
-        next = encoded->next;
-        session->stats.dropped++;
-        pacer_dropped(&session->delivery.pacer);
-        encoded_frame_destroy(&encoded);
-    }
-    session->delivery.ready = NULL;
-}
-
 void session_on_data(struct session *session, int64_t data_ns)
 {
     if (!session->demand.data)
@@ -383,12 +372,6 @@ bool session_has_frame(const struct session *session)
 bool session_gets_depth(const struct session *session)
 {
     return session->asks_depth && !session->context->plant->display.no_reprojection && !session_is_tile(session);
-}
-
-void session_forget_depth(struct session *session)
-{
-    depth_grid_unref(&session->delivery.depth[0]);
-    depth_grid_unref(&session->delivery.depth[1]);
 }
 
 /* Notes that the client will have the depth grids of this frame. Returns false if the client has them already. */

@@ -16,6 +16,26 @@ static bool refuse_full(struct session *session, enum refusal_code why, int retr
     return false;
 }
 
+bool session_left_alone(const struct session *session, int64_t now_ns, struct message_error *error)
+{
+    const struct session_identity *identity = &session->identity;
+    int64_t lock_ns = session->context->lock_ns, since_ns = identity->active_ns ? identity->active_ns : session->opened_ns;
+    if (!lock_ns || identity->holder.signed_in || identity->holder.unattended || now_ns - since_ns <= lock_ns)
+        return false;
+    message_refuse_with(error, "locked", NULL, REFUSAL_LOCKED, "minutes=%.3g", (double)lock_ns / 60e9);
+    return true;
+}
+
+bool session_may_be(struct session *session, const struct wall_place *place, struct message_error *error)
+{
+    const struct token_holder *holder = &session->identity.holder;
+    if (!holder->display || (holder->display == place->display && !strcmp(holder->wall, place->wall)))
+        return true;
+    message_refuse_with(error, "not_allowed", NULL, REFUSAL_TOKEN_DISPLAY, "display=%d\nwall=%s", holder->display, holder->wall);
+    session_close(session, 1008, "this token belongs to another display");
+    return false;
+}
+
 static bool judge_token(struct session *session, const char *token, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
 {
     const struct session_context *context = session->context;
@@ -123,21 +143,6 @@ static bool begin_view(struct session *session, const struct message *message, c
     if (message->hello.has_params)
         view->params_seq = message->params.seq;
     return !message->hello.has_params || session_apply_params(session, message, view, error);
-}
-
-bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error)
-{
-    const struct session_context *context = session->context;
-    const struct params_context params = { .scene = context->services->scene,
-                                           .baselines = context->services->baselines,
-                                           .snapshot = session_snapshot(session) };
-    struct view changed = *view;
-    if (!params_apply(&params, &message->params, &changed, error) || !split_apply(&params, &message->split, &changed, error))
-        return false;
-    view_set_instant(&changed, view->at_us, view->field.slot);
-    view_set_trial(&changed, view->field.trial);
-    *view = changed;
-    return true;
 }
 
 static void take_over(struct session *session, const struct resumed *resumed, const char *secret)

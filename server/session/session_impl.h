@@ -11,6 +11,8 @@
 void session_reply(struct session *session, char *text);
 /* Counts an error and queues its text for the client. */
 void session_reply_error(struct session *session, const struct message_error *error);
+/* Drops the frames that are encoded and not sent yet. */
+void session_drop_ready(struct session *session);
 /* Notes that an input changed the view: a preview is due, and later a refined frame. */
 void session_on_input(struct session *session, int64_t now_ns);
 /* Returns the user's name for journals and lists; "local" without a token. */
@@ -47,6 +49,8 @@ struct kept_action session_kept_begin(const struct session *session);
    be written, or are not written within a second, the answer says so: `not_kept` for an action on alarms, otherwise `kept` false, and
    `unaudited`. Takes ownership of `answer` and `what`. event: as in session_record_action(); static. */
 void session_kept_reply(struct session *session, const struct kept_action *action, const char *event, char *what, char *answer);
+/* Returns whether it is not known yet whether an action is on disk. */
+bool session_kept_waits(const struct session *session);
 /* Frees answers that still wait for the disk. */
 void session_kept_drop(struct session *session);
 
@@ -55,8 +59,9 @@ void session_kept_drop(struct session *session);
 /* Acts on `hello`: checks the token, admits the session and sets its first view. If the session is refused, returns false with *error, and
    sets session->close unless the client may send another hello. */
 bool session_hello(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error);
-/* Applies the parameters of a message to a view. Returns false with *error if a parameter is wrong; then the view is unchanged. */
-bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error);
+/* Returns whether the session may act as display `place`; a paired device may act only as the display with which it was paired. If not,
+   sets *error and closes the session. */
+bool session_may_be(struct session *session, const struct wall_place *place, struct message_error *error);
 
 /* --- session_scope.c: tokens limited to views of the plant file, or to a display of a wall --- */
 
@@ -77,17 +82,14 @@ void session_scope_fit(const struct session *session, struct view *view);
 /* Takes ownership of a text to be sent (mem_free), and returns the part that the client may read. */
 char *session_scope_text(const struct session *session, char *text);
 
-/* --- session.c --------------------------------------------------------------------------------------------------------- */
+/* --- session_life.c ---------------------------------------------------------------------------------------------------- */
 
 /* Frees everything that the session holds of the plant. Afterwards only the session's answers and identity may be used. */
 void session_let_go(struct session *session);
-
 /* Stores the client's token if this daemon is a renderer, which forwards actions to a core: the core verifies the token itself. */
 void session_keep_token(struct session *session, const char *token);
-
-/* Returns whether the session may act as display `place`; a paired device may act only as the display with which it was paired. If not,
-   sets *error and closes the session. */
-bool session_may_be(struct session *session, const struct wall_place *place, struct message_error *error);
+/* Forgets which depth grids the client has, so that the grids of the next frame are sent in any case. */
+void session_forget_depth(struct session *session);
 
 /* --- session_frames.c ------------------------------------------------------------------------------------------------- */
 
@@ -95,10 +97,6 @@ bool session_may_be(struct session *session, const struct wall_place *place, str
 bool session_begun(const struct session *session, int64_t now_ns);
 /* Returns whether a frame is wanted now, with the request in *request. Ignores how many frames are in flight. */
 bool session_wants(const struct session *session, int64_t now_ns, struct frame_request *request);
-/* Forgets which depth grids the client has, so that the grids of the next frame are sent in any case. */
-void session_forget_depth(struct session *session);
-/* Drops the frames that are encoded and not sent yet. */
-void session_drop_ready(struct session *session);
 /* Drops the frames that are encoded and not sent yet, because the client acknowledges nothing; they are requested again once it does. */
 void session_pause(struct session *session);
 /* Notes that the frame delivery.pacer.acked is on the client's screen. */

@@ -135,40 +135,12 @@ bool session_settle(struct session *session)
     return answered;
 }
 
-static bool waits_for_disk(const struct session *session)
+bool session_kept_waits(const struct session *session)
 {
     struct kept_answer *kept = session->kept;
     while (kept && disk_state(session, kept) != -EINPROGRESS)
         kept = kept->next;
     return kept != NULL;
-}
-
-void session_retire(struct session **session_ptr)
-{
-    struct session *session = *session_ptr;
-    struct kept_answers *answers = session->context->kept_answers;
-    session_settle(session);
-    if (!answers || !waits_for_disk(session)) {
-        session_destroy(session_ptr);
-        return;
-    }
-    session_let_go(session);
-    session->next_gone = answers->gone;
-    answers->gone = session;
-    *session_ptr = NULL;
-}
-
-void session_settle_gone(struct kept_answers *answers)
-{
-    for (struct session **at = &answers->gone, *session; (session = *at);) {
-        session_settle(session);
-        if (waits_for_disk(session)) {
-            at = &session->next_gone;
-            continue;
-        }
-        *at = session->next_gone;
-        session_destroy(&session);
-    }
 }
 
 void session_kept_drop(struct session *session)

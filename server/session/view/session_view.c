@@ -21,3 +21,18 @@ const struct snapshot *session_snapshot(const struct session *session)
     const struct session *seen = session->following.leader ? session->following.leader : session;
     return seen->travel.historical ? &seen->travel.historical->snapshot : session->context->snapshot;
 }
+
+bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error)
+{
+    const struct session_context *context = session->context;
+    const struct params_context params = { .scene = context->services->scene,
+                                           .baselines = context->services->baselines,
+                                           .snapshot = session_snapshot(session) };
+    struct view changed = *view;
+    if (!params_apply(&params, &message->params, &changed, error) || !split_apply(&params, &message->split, &changed, error))
+        return false;
+    view_set_instant(&changed, view->at_us, view->field.slot);
+    view_set_trial(&changed, view->field.trial);
+    *view = changed;
+    return true;
+}

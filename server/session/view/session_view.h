@@ -10,5 +10,7 @@ const struct view *session_view(const struct session *session);
 struct view session_shown(const struct session *session);
 /* Returns the readings that the session is shown: of the present, or of an instant. */
 const struct snapshot *session_snapshot(const struct session *session);
+/* Applies the parameters of a message to a view. Returns false with *error if a parameter is wrong; then the view is unchanged. */
+bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error);
 
 #endif
