@@ -58,8 +58,6 @@ static void print_usage(FILE *out)
           "                   CPU) (default: auto, the first context that works)\n"
           "  --gl-device GPU  GPU that draws: its number in --list-gl-devices, or its PCI address such as\n"
           "                   0000:65:00.0\n"
-          "  --threads N      number of threads that compute fields and encode pictures (default: one per CPU\n"
-          "                   core)\n"
           "  --memory MB      memory limit of all caches together (default: a quarter of the machine's memory,\n"
           "                   at most 2048). The model and the picture being drawn are not included. /metrics\n"
           "                   shows how much each cache uses\n"
@@ -204,7 +202,6 @@ enum {
     OPTION_LEVEL,
     OPTION_FORMAT,
     OPTION_MEMORY,
-    OPTION_THREADS,
     OPTION_OPEN,
     OPTION_TLS_CERT,
     OPTION_TLS_KEY,
@@ -252,7 +249,6 @@ static const struct option options[] = {
     { "log-level", required_argument, NULL, OPTION_LEVEL },
     { "log-format", required_argument, NULL, OPTION_FORMAT },
     { "memory", required_argument, NULL, OPTION_MEMORY },
-    { "threads", required_argument, NULL, OPTION_THREADS },
     { "open-viewers", no_argument, NULL, OPTION_OPEN },
     { "tls-cert", required_argument, NULL, OPTION_TLS_CERT },
     { "tls-key", required_argument, NULL, OPTION_TLS_KEY },
@@ -433,8 +429,6 @@ static int take_option(int option, struct server_params *params, int (**task)(co
             return usage_error("--memory: expected megabytes from 128 on, found", optarg);
         params->memory_bytes = (size_t)megabytes << 20;
         return -1;
-    case OPTION_THREADS:
-        return parse_int(optarg, 0, 1024, &params->threads) ? -1 : usage_error("--threads: expected a number of threads, found", optarg);
     case OPTION_IMPORT:
         params->imports = true;
         params->imports_now = optarg && !strcmp(optarg, "now");

@@ -469,7 +469,7 @@ static bool server_start(struct server *server)
         return false;
     if (!net_access_good(server->log, &server->params.access) || !load_signing_key(server))
         return false;
-    server->context.workers = server->workers = workers_create(server->params.threads);
+    server->context.workers = server->workers = workers_create(0);
     if (!(server->context.file_writer = server->file_writer = file_writer_start(server->log, on_pictures, server)))
         return false;
     server->web = find_web(server->params.web);

@@ -30,7 +30,6 @@ struct server_params {
     enum log_format log_format;
     const char *h264;    /* name of a libavcodec encoder for H.264, or "off"; NULL: the default one */
     size_t memory_bytes; /* limit in bytes for all caches together; 0: chosen to suit the machine */
-    int threads;         /* number of worker threads; 0: one for each core of the processor */
     struct access_params access;
     const char *signing_key;   /* PEM file of the key that signs pictures; NULL: pictures are not signed */
     struct audit_params audit; /* settings of the audit trail; its path NULL: nothing is recorded */

@@ -14,8 +14,8 @@ int cmd_probe(const struct daemon_access *access, int argc, char **argv);
 /* Prints the tags of a daemon with their values, qualities and ages. */
 int cmd_tags(const struct daemon_access *access, int argc, char **argv);
 /* Reads one address of a field device and prints its value in every type and byte order. address_base: number of the first register, 0
-   or 1; -1: not given. rtu: use RTU frames over the connection. Returns the exit code. */
-int tags_probe(const char *device, const char *address, int address_base, bool rtu);
+   or 1; -1: not given. Returns the exit code. */
+int tags_probe(const char *device, const char *address, int address_base);
 /* Prints the variables of an OPC UA server as a tag list. argv[0] is --browse. Returns the exit code. */
 int tags_browse(int argc, char **argv);
 /* Imports recorded series into a plant's history, or exports them as CSV. */

@@ -12,7 +12,7 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcast tags URL [--json]\n"
           "       plantcast tags --browse opc.tcp://HOST[:PORT][/PATH] [OPTION ...]\n"
-          "       plantcast tags --probe DEVICE [--address-base 0|1] [--rtu] ADDRESS\n"
+          "       plantcast tags --probe DEVICE [--address-base 0|1] ADDRESS\n"
           "\n"
           "Prints the tags that the daemon at URL serves, with value, quality and age.\n"
           "URL is http://HOST:PORT/, or https://HOST:PORT/ with --token-file FILE.\n"
@@ -21,8 +21,7 @@ static void print_usage(FILE *out)
           "             (see plantcast tags --browse --help)\n"
           "  --probe    read one address of a Modbus device, and print the value in every type and byte order\n"
           "             DEVICE is HOST, HOST:PORT or a serial line /dev/LINE (19200 baud, even parity).\n"
-          "             ADDRESS is such as hr:0, or 2!400001 for unit 2. The device is never written to\n"
-          "  --rtu      use RTU framing over TCP, for devices behind a serial gateway that expects RTU frames\n",
+          "             ADDRESS is such as hr:0, or 2!400001 for unit 2. The device is never written to\n",
           out);
 }
 
@@ -129,21 +128,20 @@ static json_t *fetch_all(const struct daemon_url *url, const char *name)
 
 int cmd_tags(const struct daemon_access *access, int argc, char **argv)
 {
-    static const struct option options[] = { { "json", no_argument, NULL, 'j' },          { "help", no_argument, NULL, 'h' },
-                                             { "probe", required_argument, NULL, 'p' },   { "rtu", no_argument, NULL, 'r' },
-                                             { "address-base", required_argument, NULL, 'b' }, { NULL, 0, NULL, 0 } };
+    static const struct option options[] = { { "json", no_argument, NULL, 'j' },
+                                             { "help", no_argument, NULL, 'h' },
+                                             { "probe", required_argument, NULL, 'p' },
+                                             { "address-base", required_argument, NULL, 'b' },
+                                             { NULL, 0, NULL, 0 } };
     if (argc > 1 && !strcmp(argv[1], "--browse"))
         return tags_browse(argc - 1, argv + 1);
     const char *device = NULL;
     int address_base = -1;
-    bool rtu = false;
     struct daemon_url url;
     bool as_json = false;
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         if (option == 'p')
             device = optarg;
-        else if (option == 'r')
-            rtu = true;
         else if (option == 'b' && (!strcmp(optarg, "0") || !strcmp(optarg, "1")))
             address_base = *optarg - '0';
         else if (option != 'j') {
@@ -157,7 +155,7 @@ int cmd_tags(const struct daemon_access *access, int argc, char **argv)
         return 2;
     }
     if (device)
-        return tags_probe(device, argv[optind], address_base, rtu);
+        return tags_probe(device, argv[optind], address_base);
     if (!daemon_url_parse(argv[optind], access, &url))
         return 2;
     json_t *all = fetch_all(&url, argv[optind]);

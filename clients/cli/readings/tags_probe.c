@@ -22,13 +22,13 @@ static const enum byte_order orders[] = { BYTE_ORDER_ABCD, BYTE_ORDER_CDAB, BYTE
 static const char *const prefixes[] = { [TABLE_COIL] = "co", [TABLE_DISCRETE] = "di", [TABLE_INPUT] = "ir", [TABLE_HOLDING] = "hr" };
 
 /* Parses HOST, HOST:PORT, [ADDRESS]:PORT or /dev/LINE. host: receives the host name. Returns false for other text. */
-static bool read_device(const char *text, bool rtu, struct plant_source *source, char host[256])
+static bool read_device(const char *text, struct plant_source *source, char host[256])
 {
     const char *colon = strrchr(text, ':'), *end = colon && strchr(text, ':') == colon ? colon : text + strlen(text);
     *source = (struct plant_source){
         .id = "probe", .port = 502, .unit = 1, .timeout_ms = 2000, .baud = 19200, .parity = 'E', .stop_bits = 1
     };
-    source->transport = *text == '/' ? TRANSPORT_RTU : rtu ? TRANSPORT_RTU_TCP : TRANSPORT_TCP;
+    source->transport = *text == '/' ? TRANSPORT_RTU : TRANSPORT_TCP;
     source->device = (char *)text;
     if (*text == '[' && colon && colon > text + 1 && colon[-1] == ']') {
         text++;
@@ -114,12 +114,12 @@ static int probe(struct log *log, const struct plant_source *source, const struc
     return count > 0 ? 0 : 1;
 }
 
-int tags_probe(const char *device, const char *address, int address_base, bool rtu)
+int tags_probe(const char *device, const char *address, int address_base)
 {
     struct plant_source source;
     struct modbus_address at;
     char host[256], why[200];
-    if (!read_device(device, rtu, &source, host)) {
+    if (!read_device(device, &source, host)) {
         fprintf(stderr, "plantcast: %s: expected HOST, HOST:PORT or the path of a serial line\n", device);
         return 2;
     }

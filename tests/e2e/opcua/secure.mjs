@@ -6,6 +6,7 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 import { shareOpcua } from './server.mjs';
 import { makeCertificate, opcuaOptions } from '../support/opcua.mjs';
+import { runProgram } from '../support/tiny_plant.mjs';
 
 const options = opcuaOptions(400000);
 const ROWS = ['TI-1,nsu=urn:test:plant%3B1;s=TI-1,,°C,temperature,E-101,0.5,0,0,,,,,,'];
@@ -16,6 +17,9 @@ shareOpcua(options, (...made) => { [server, plant] = made; });
 const until = (...args) => plant.until(...args);
 const said = (...args) => plant.said(...args);
 const start = (keys, rows = ROWS) => plant.start(keys, rows);
+const at = (file) => join(server.folder, file);
+const browse = (...more) => runProgram('plantcast', ['tags', '--browse', `opc.tcp://127.0.0.1:${server.port}`,
+    '--certificate', at('client.crt'), '--key', at('client.key'), '--trusted', at('trusted'), ...more], 60000);
 
 test('users: by password, by certificate, and refused by name', options, async () => {
     await server.restart({ anonymous: false });
@@ -23,13 +27,14 @@ test('users: by password, by certificate, and refused by name', options, async (
     writeFileSync(login, 'reader\nsaid & done\n');
     await plant.run(`${server.security(', policy: Basic256Sha256')}, login: ${login}`, ROWS);
     await until('TI-1', good);
+    assert.match(browse('--login', login).out, /^Plant\.TI-1,/m);
+    assert.match(browse().err, /does not accept anonymous users/);
     writeFileSync(login, 'reader\nwrong\n');
     await plant.daemon.stop();
     await start(`${server.security()}, login: ${login}`);
     await said(/no readings \(Bad(IdentityTokenRejected|UserAccessDenied)/);
     await plant.daemon.stop();
     makeCertificate(server.folder, 'user', { ownKey: true });
-    const at = (file) => join(server.folder, file);
     await plant.run(server.security(`, user_certificate: ${at('user.crt')}, user_key: ${at('user.key')}`), ROWS);
     await until('TI-1', good);
     await plant.daemon.stop();
@@ -58,6 +63,8 @@ test('certificates that are wrong are refused by name, ours and theirs', options
     }
     await plant.run(server.security(', server_name: other.example'), ROWS);
     await plant.daemon.stop();
+    assert.equal(browse().code, 1);
+    assert.match(browse('--server-name', 'other.example').out, /^Plant\.TI-1,/m);
     server.trust('server');
     await server.restart({ trustsAll: false });
     await start(server.security('', 'stranger'));
