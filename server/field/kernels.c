@@ -4,7 +4,6 @@
 #include "field/kernels.h"
 
 #include <assert.h>
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -18,68 +17,14 @@
 /* floating-point exceptions do not matter, so the compiler may evaluate both sides of a choice, as SIMD code must */
 #pragma GCC optimize("no-trapping-math")
 #endif
+#include "field/weight_formula.h" /* after the pragma, which must hold for these functions, too */
 
-#define TINY 1e-37f
-
-/* log2 of x, or of TINY if x is less; to 1e-7, exactly 0 at 1. Minimax polynomial of log2(1 + x)/x over [sqrt(1/2) - 1, sqrt(2) - 1].
-   Limits are applied to integers: a limit on floats would split the loop into paths, which prevents SIMD. */
-static inline float log2_from_tiny(float x)
-{
-    int32_t bits, tiny = 0x02081cea; /* bits of TINY */
-    memcpy(&bits, &x, sizeof(bits));
-    bits = bits > tiny ? bits : tiny;
-    int32_t exponent = (bits - 0x3f3504f3) >> 23;
-    bits -= exponent * (1 << 23);
-    memcpy(&x, &bits, sizeof(x));
-    x -= 1.0f;
-    float p = -0.1457575112581253f;
-    p = p * x + 0.23688247799873352f;
-    p = p * x - 0.25006118416786194f;
-    p = p * x + 0.2867085337638855f;
-    p = p * x - 0.3600881099700928f;
-    p = p * x + 0.4809393882751465f;
-    p = p * x - 0.7213571071624756f;
-    p = p * x + 1.4426947832107544f;
-    return (float)exponent + x * p;
-}
-
-/* Returns 2^x for -2e6 <= x <= 0, with relative error 2e-7; exactly 1 at 0, exactly 0 below -126.5. For x from 0 to 2e6, some finite
-   number. Minimax polynomial of (2^f - 1)/f over [-1/2, 1/2]. */
-static inline float exp2_down(float x)
-{
-    int32_t whole = (int32_t)(x - 0.5f);
-    whole = whole > -127 ? whole : -127;
-    whole = whole < 0 ? whole : 0;
-    float f = x - (float)whole;
-    float p = 0.0013407237129285932f;
-    p = p * f + 0.009671861305832863f;
-    p = p * f + 0.055503085255622864f;
-    p = p * f + 0.24022234976291656f;
-    p = p * f + 0.6931472420692444f;
-    p = p * f + 1.0f;
-    int32_t bits = (whole + 127) * (1 << 23);
-    float power;
-    memcpy(&power, &bits, sizeof(power));
-    return p * power;
-}
-
-static inline bool takes_part(float distance_m, float near_m, float reach_m)
-{
-    bool within = distance_m < reach_m, nearest = distance_m <= near_m, finite = distance_m <= FLT_MAX;
-    return (within | nearest) & finite;
-}
-
-/* Multiplies weights by the squared remaining distance to the reach, relative to the nearest sensor's: ((reach - distance) / (reach -
-   near))^2. */
 static inline void fade(const struct kernel_column *column, float *restrict weight)
 {
     const float *distance_m = column->distance_m, *near_m = column->near_m;
     const float reach_m = column->reach_m;
-    for (size_t j = 0; j < column->count; j++) {
-        float left = (reach_m - distance_m[j]) / (reach_m - near_m[j]);
-        left = distance_m[j] <= near_m[j] ? 1.0f : left;
-        weight[j] = takes_part(distance_m[j], near_m[j], reach_m) ? weight[j] * left * left : 0.0f;
-    }
+    for (size_t j = 0; j < column->count; j++)
+        weight[j] = weight_faded(weight[j], distance_m[j], near_m[j], reach_m);
 }
 
 KERNEL void kernel_euclidean(const float (*positions_m)[3], size_t count, const float point_m[3], float *restrict out_m)
@@ -128,22 +73,13 @@ KERNEL void kernel_top_shepard(const float *restrict distance_m, const float *re
     }
 }
 
-/* Returns log2(e) d strength, with d = max(0, (R - D) / R), D the distance and R the radius. d, which *d receives, is exactly 0 at D =
-   R: exactness matters because a small decay exponent amplifies small values. */
-static inline float exponent_of(float distance_m, float radius_m, float per_radius, float strength, float *d)
-{
-    float near_one = (radius_m - distance_m) * per_radius;
-    *d = near_one > 0.0f ? near_one : 0.0f;
-    return *d * (strength * 1.44269504f);
-}
-
 KERNEL void kernel_top_paper(const float *restrict distance_m, const float *restrict near_m, size_t count, float reach_m, float radius_m,
                              float strength, float *restrict top)
 {
     const float per_radius = 1.0f / radius_m;
     for (size_t j = 0; j < count; j++) {
-        float d, mine = exponent_of(distance_m[j], radius_m, per_radius, strength, &d);
-        mine = takes_part(distance_m[j], near_m[j], reach_m) ? mine : 0.0f;
+        float d, mine = weight_exponent(distance_m[j], radius_m, per_radius, strength, &d);
+        mine = weight_takes_part(distance_m[j], near_m[j], reach_m) ? mine : 0.0f;
         top[j] = mine > top[j] ? mine : top[j];
     }
 }
@@ -151,46 +87,24 @@ KERNEL void kernel_top_paper(const float *restrict distance_m, const float *rest
 KERNEL void kernel_log2(const float *restrict x, size_t count, float *restrict out)
 {
     for (size_t j = 0; j < count; j++)
-        out[j] = log2_from_tiny(x[j]);
-}
-
-/* Multiplies weights by (near / distance)^power, with near the distance of the nearest sensor. Divisions dominate the cost, so this is
-   computed as 2^(power (log2 near - log2 distance)). */
-static inline void part_of_nearest(const struct kernel_column *column, float *restrict weight)
-{
-    const float *distance_m = column->distance_m, *near_m = column->near_m, *near_log2 = column->near_log2;
-    const float power = column->power;
-    for (size_t j = 0; j < column->count; j++) {
-        float part = exp2_down(power * (near_log2[j] - log2_from_tiny(distance_m[j])));
-        part = near_m[j] > TINY ? part : 0.0f;
-        weight[j] = distance_m[j] <= near_m[j] ? 1.0f : part;
-    }
-}
-
-static inline void part_of_nearest_squared(const struct kernel_column *column, float *restrict weight)
-{
-    const float *distance_m = column->distance_m, *near_m = column->near_m;
-    for (size_t j = 0; j < column->count; j++) {
-        float below_one = near_m[j] / distance_m[j];
-        float ratio = distance_m[j] <= near_m[j] ? 1.0f : below_one;
-        weight[j] = ratio * ratio;
-    }
+        out[j] = weight_log2(x[j]);
 }
 
 KERNEL void kernel_shepard(const struct kernel_column *column, float *restrict weight)
 {
     const float *distance_m = column->distance_m, *near_m = column->near_m, *top = column->top;
     const float reach_m = column->reach_m, strength = column->strength;
-    if (column->power == 2.0f)
-        part_of_nearest_squared(column, weight);
-    else
-        part_of_nearest(column, weight);
+    const float *near_log2 = column->near_log2, power = column->power;
+    for (size_t j = 0; power == 2.0f && j < column->count; j++)
+        weight[j] = weight_part_squared(distance_m[j], near_m[j]);
+    for (size_t j = 0; power != 2.0f && j < column->count; j++)
+        weight[j] = weight_part(distance_m[j], near_m[j], near_log2[j], power);
     for (size_t j = 0; !column->alike && j < column->count; j++)
         weight[j] = weight[j] * strength / top[j];
     if (reach_m < INFINITY)
         fade(column, weight);
     for (size_t j = 0; !(reach_m < INFINITY) && j < column->count; j++)
-        weight[j] = takes_part(distance_m[j], near_m[j], reach_m) ? weight[j] : 0.0f;
+        weight[j] = weight_takes_part(distance_m[j], near_m[j], reach_m) ? weight[j] : 0.0f;
 }
 
 KERNEL void kernel_paper(const struct kernel_column *column, float *restrict weight, float *restrict term)
@@ -200,13 +114,13 @@ KERNEL void kernel_paper(const struct kernel_column *column, float *restrict wei
     const float radius_m = column->radius_m, per_radius = 1.0f / radius_m;
     float d[KERNEL_BLOCK], exponent[KERNEL_BLOCK];
     for (size_t j = 0; j < column->count; j++) {
-        float above = exponent_of(distance_m[j], radius_m, per_radius, strength, &d[j]) - top[j];
-        exponent[j] = takes_part(distance_m[j], near_m[j], reach_m) ? above : -1e6f;
+        float above = weight_exponent(distance_m[j], radius_m, per_radius, strength, &d[j]) - top[j];
+        exponent[j] = weight_takes_part(distance_m[j], near_m[j], reach_m) ? above : -1e6f;
     }
     if (weight || decay == 1.0f || decay == 0.0f) {
         float *at = weight ? weight : term;
         for (size_t j = 0; j < column->count; j++)
-            at[j] = exp2_down(exponent[j]);
+            at[j] = weight_exp2(exponent[j]);
     }
     const float *from = weight ? weight : term;
     if (decay == 1.0f)
@@ -215,10 +129,8 @@ KERNEL void kernel_paper(const struct kernel_column *column, float *restrict wei
     else if (decay == 0.0f && weight) /* 0^0 is 1 */
         memcpy(term, weight, column->count * sizeof(*term));
     else if (decay != 0.0f)
-        for (size_t j = 0; j < column->count; j++) {
-            float raised = exp2_down(exponent[j] + decay * log2_from_tiny(d[j]));
-            term[j] = d[j] > TINY ? raised : 0.0f;
-        }
+        for (size_t j = 0; j < column->count; j++)
+            term[j] = weight_raised(exponent[j], d[j], decay);
     if (reach_m < INFINITY)
         fade(column, term);
     if (reach_m < INFINITY && weight)

@@ -10,6 +10,7 @@
 #include <xxhash.h>
 
 #include "base/mem.h"
+#include "field/weight_formula.h"
 
 struct nearest { /* metres; INFINITY: there is none */
     float used, lost, no_limits;
@@ -34,45 +35,47 @@ static struct nearest nearest_of(const struct pixel_field *field, const float po
     return nearest;
 }
 
-static float nearness(const struct pixel_field *field, float distance_m)
+/* Returns a sensor's weight; *term receives the weight of its value. near_log2: log2 of near_m. top: for interpolation paper, the largest
+   exponent of all sensors at this point, which prevents overflow. */
+static float weight_of(const struct pixel_field *field, const struct pixel_sensor *sensor, float distance_m, float near_m, float near_log2,
+                       float top, float *term)
 {
-    return fmaxf(0, (field->radius_m - distance_m) / field->radius_m);
-}
-
-/* Returns a sensor's weight. top: for interpolation paper, the largest exponent of all sensors at this point, which keeps expf() from
-   overflowing. */
-static float weight_of(const struct pixel_field *field, float strength, float distance_m, float near_m, float top)
-{
-    float left = 1, part = 1;
-    if (!(distance_m < field->reach_m || distance_m <= near_m))
-        return 0;
-    if (field->reach_m < INFINITY && distance_m > near_m)
-        left = (field->reach_m - distance_m) / (field->reach_m - near_m);
-    if (field->paper)
-        return left * left * expf(nearness(field, distance_m) * strength - top);
-    if (distance_m > near_m)
-        part = field->power == 2 ? near_m / distance_m * (near_m / distance_m) : powf(near_m / distance_m, field->power);
-    return left * left * part * strength;
+    float weight, d;
+    if (field->paper) {
+        float exponent = weight_exponent(distance_m, field->radius_m, 1 / field->radius_m, sensor->strength, &d) - top;
+        weight = weight_exp2(exponent);
+        *term = sensor->decay == 0 ? weight : weight_raised(exponent, d, sensor->decay);
+    } else {
+        weight = sensor->strength * (field->power == 2 ? weight_part_squared(distance_m, near_m)
+                                                       : weight_part(distance_m, near_m, near_log2, field->power));
+        *term = weight;
+    }
+    if (field->reach_m < INFINITY) {
+        weight = weight_faded(weight, distance_m, near_m, field->reach_m);
+        *term = weight_faded(*term, distance_m, near_m, field->reach_m);
+    }
+    return weight;
 }
 
 static void sum(const struct pixel_field *field, const float point_m[3], float near_m, struct pixel_value *out)
 {
-    float top = 0;
+    float top = 0, near_log2 = weight_log2(near_m), d;
     double values = 0, total = 0, marked = 0;
     for (int i = 0; i < field->count && field->paper; i++) {
-        float distance_m = distance_of(&field->sensors[i], point_m);
-        if (field->sensors[i].state & PIXEL_USABLE && (distance_m < field->reach_m || distance_m <= near_m))
-            top = fmaxf(top, nearness(field, distance_m) * field->sensors[i].strength);
+        const struct pixel_sensor *sensor = &field->sensors[i];
+        float distance_m = distance_of(sensor, point_m);
+        if (sensor->state & PIXEL_USABLE && weight_takes_part(distance_m, near_m, field->reach_m))
+            top = fmaxf(top, weight_exponent(distance_m, field->radius_m, 1 / field->radius_m, sensor->strength, &d));
     }
     for (int i = 0; i < field->count; i++) {
         const struct pixel_sensor *sensor = &field->sensors[i];
+        float term;
         if (!(sensor->state & PIXEL_USABLE))
             continue;
-        float distance_m = distance_of(sensor, point_m), near = nearness(field, distance_m);
-        double weight = (double)weight_of(field, sensor->strength, distance_m, near_m, top);
+        double weight = (double)weight_of(field, sensor, distance_of(sensor, point_m), near_m, near_log2, top, &term);
         total += weight;
         marked += sensor->state & PIXEL_UNCERTAIN ? weight : 0;
-        values += weight * (double)sensor->value * (field->paper ? pow((double)near, (double)sensor->decay) : 1);
+        values += (double)term * (double)sensor->value;
     }
     out->uncertain = marked > 0 && 2 * marked >= total;
     out->value = total > 0 ? fminf(fmaxf((float)(values / total) * field->scale + field->offset, field->low), field->high) : field->empty;

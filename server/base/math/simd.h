@@ -45,4 +45,31 @@ static inline bool simd_has_avx2(void)
 #define SIMD_CLONES(...)
 #endif
 
+/* Polynomials of 2^x and log2(x), for floats and for vectors of floats. Each macro assigns the polynomial at x to p. */
+#define LOG2_SPLIT_BITS 0x3f3504f3 /* bits of sqrt(1/2): from there to sqrt(2) the polynomial of log2 is valid */
+
+/* Minimax polynomial of log2(1 + x)/x over [sqrt(1/2) - 1, sqrt(2) - 1]. */
+#define LOG2_POLYNOMIAL(p, x) \
+    do { \
+        (p) = (x) * -0.1457575112581253f; \
+        (p) += 0.23688247799873352f; \
+        (p) = (p) * (x) - 0.25006118416786194f; \
+        (p) = (p) * (x) + 0.2867085337638855f; \
+        (p) = (p) * (x) - 0.3600881099700928f; \
+        (p) = (p) * (x) + 0.4809393882751465f; \
+        (p) = (p) * (x) - 0.7213571071624756f; \
+        (p) = (p) * (x) + 1.4426947832107544f; \
+    } while (0)
+
+/* Minimax polynomial of 2^x over [-1/2, 1/2]. */
+#define EXP2_POLYNOMIAL(p, x) \
+    do { \
+        (p) = (x) * 0.0013407237129285932f; \
+        (p) += 0.009671861305832863f; \
+        (p) = (p) * (x) + 0.055503085255622864f; \
+        (p) = (p) * (x) + 0.24022234976291656f; \
+        (p) = (p) * (x) + 0.6931472420692444f; \
+        (p) = (p) * (x) + 1.0f; \
+    } while (0)
+
 #endif

@@ -107,33 +107,23 @@ SOFT_INLINE lanes_int lanes_whole(lanes x)
     return __builtin_convertvector(x, lanes_int);
 }
 
-/* Returns log2(x) with an error of at most 1e-7; x below 1e-30 counts as 1e-30. Uses the same polynomial as field/kernels.c. */
+/* Returns log2(x) with an error of at most 1e-7; x below 1e-30 counts as 1e-30. */
 SOFT_INLINE lanes lanes_log2(lanes x)
 {
     lanes tiny = (lanes){ 0 } + 1e-30f;
-    lanes_int bits = (lanes_int)lanes_choose(x > tiny, x, tiny), exponent = (bits - 0x3f3504f3) >> 23;
-    lanes r = (lanes)(bits - exponent * (1 << 23)) - 1.0f;
-    lanes p = r * -0.1457575112581253f + 0.23688247799873352f;
-    p = p * r - 0.25006118416786194f;
-    p = p * r + 0.2867085337638855f;
-    p = p * r - 0.3600881099700928f;
-    p = p * r + 0.4809393882751465f;
-    p = p * r - 0.7213571071624756f;
-    p = p * r + 1.4426947832107544f;
+    lanes_int bits = (lanes_int)lanes_choose(x > tiny, x, tiny), exponent = (bits - LOG2_SPLIT_BITS) >> 23;
+    lanes r = (lanes)(bits - exponent * (1 << 23)) - 1.0f, p;
+    LOG2_POLYNOMIAL(p, r);
     return __builtin_convertvector(exponent, lanes) + r * p;
 }
 
-/* Returns 2^x for x <= 0; below -126 the result is 0. Uses the same polynomial as exp2_down in field/kernels.c. */
+/* Returns 2^x for x <= 0; below -126 the result is 0. */
 SOFT_INLINE lanes lanes_exp2_down(lanes x)
 {
     x = lanes_most(x, (lanes){ 0 } - 127.0f);
     lanes_int whole = lanes_whole(x - 0.5f);
-    lanes f = x - __builtin_convertvector(whole, lanes);
-    lanes p = f * 0.0013407237129285932f + 0.009671861305832863f;
-    p = p * f + 0.055503085255622864f;
-    p = p * f + 0.24022234976291656f;
-    p = p * f + 0.6931472420692444f;
-    p = p * f + 1.0f;
+    lanes f = x - __builtin_convertvector(whole, lanes), p;
+    EXP2_POLYNOMIAL(p, f);
     return p * (lanes)((whole + 127) * (1 << 23));
 }
 
