@@ -52,23 +52,16 @@ struct sampler { /* state of the sampling in one thread */
     size_t queued, capacity;
 };
 
-struct amplify_job {
-    struct weights *weights;
-    const uint8_t *members_marked;
-    const uint32_t *members;
-    const double *ones;
-    float *errors; /* error of each vertex */
-};
-
 struct drawn_error_job {
-    const struct weights *weights;
+    struct weights *weights;
     const struct field_params *params;
     const uint8_t *usable, *members_marked;
     float radius_m, accepted, error_m;
     const uint32_t *members;
     const double *ones;
-    uint32_t first; /* number of the first triangle */
-    float *errors;  /* error of each triangle */
+    uint32_t first;       /* number of the first triangle */
+    float *errors;        /* error of each triangle */
+    float *vertex_errors; /* error of each vertex by errors of distances; NULL: not measured */
 };
 
 /* --- weights at points ------------------------------------------------------------------------------------------------------ */
@@ -248,7 +241,7 @@ static bool amplifies_distances(const struct weights *weights)
    below half a colour step are left out: added to errors of interpolation just below a step, they would mark most of the surface. */
 static void amplify_some(void *arg, size_t begin, size_t end)
 {
-    const struct amplify_job *job = arg;
+    const struct drawn_error_job *job = arg;
     const double e = PLANT_DISTANCE_ERROR * (double)job->weights->power;
     const struct weights_terms terms = { job->members, job->ones, job->members_marked, job->weights->member_count };
     for (size_t block = begin; block < end; block++) {
@@ -258,7 +251,7 @@ static void amplify_some(void *arg, size_t begin, size_t end)
         for (size_t j = 0; j < count; j++) { /* the weight of the nearest sensor is 1 (kernels.h) */
             double share = total[j] > 0 ? fmax(1 / total[j], 0.5) : 1;
             double error = 2 * e * share * (1 - share);
-            job->errors[at + j] = error > 0.5 * (double)STEP_OF_COLOR ? (float)error : 0;
+            job->vertex_errors[at + j] = error > 0.5 * (double)STEP_OF_COLOR ? (float)error : 0;
         }
     }
 }
@@ -381,9 +374,9 @@ static void spread(struct weights *weights, float *errors, const float *at_verti
 }
 
 /* resolved: preparation left no interpolation error, so only errors of distances are measured. */
-static void measure_level(struct drawn_error_job *job, struct weights *weights, const struct asset_level *level, bool resolved,
-                          struct workers *workers)
+static void measure_level(struct drawn_error_job *job, const struct asset_level *level, bool resolved, struct workers *workers)
 {
+    struct weights *weights = job->weights;
     const struct asset_view *file = &weights->layout->file->view;
     size_t members = weights->member_count;
     uint32_t *numbers = mem_array(members, sizeof(*numbers));
@@ -397,18 +390,17 @@ static void measure_level(struct drawn_error_job *job, struct weights *weights, 
     job->ones = ones;
     job->members_marked = unmarked;
     const size_t blocks = (level->vertex_count + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
-    struct amplify_job amplify = { weights, unmarked, numbers, ones, NULL };
     if (amplifies_distances(weights))
-        amplify.errors = mem_try_array(blocks * KERNEL_BLOCK, sizeof(float));
+        job->vertex_errors = mem_try_array(blocks * KERNEL_BLOCK, sizeof(float));
     workers_for(workers, blocks, 4, prepare_some, weights);
-    if (amplify.errors)
-        workers_for(workers, blocks, 4, amplify_some, &amplify);
+    if (job->vertex_errors)
+        workers_for(workers, blocks, 4, amplify_some, job);
     for (uint32_t p = level->first_primitive; !resolved && p < level->first_primitive + level->primitive_count; p++) {
         job->first = file->primitives[p].first_index / 3;
         workers_for(workers, file->primitives[p].index_count / 3, GRAIN, measure_some, job);
     }
-    spread(weights, job->errors, amplify.errors, level);
-    mem_free(amplify.errors);
+    spread(weights, job->errors, job->vertex_errors, level);
+    mem_free(job->vertex_errors);
     mem_free(numbers);
     mem_free(unmarked);
     mem_free(ones);
@@ -463,6 +455,6 @@ void drawn_error_measure(struct weights *weights, const struct field_params *par
     weights->errors = weights->errors ? weights->errors : mem_try_array(layout->vertex_count, sizeof(float));
     weights->errors_version++;
     if (job.errors && weights->errors)
-        measure_level(&job, weights, &file->levels[number], resolved, workers);
+        measure_level(&job, &file->levels[number], resolved, workers);
     mem_free(job.errors);
 }
