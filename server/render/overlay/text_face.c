@@ -4,18 +4,49 @@
 
 #include <cairo-ft.h>
 #include <fontconfig/fontconfig.h>
-#include <pthread.h>
 #include <stdbool.h>
 #include <string.h>
 
+#include "base/mem.h"
+
 enum { FIRST_UNCOVERED = 0x590 }; /* first code point that DejaVu Sans may lack: Hebrew */
 
-static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-/* --- protected by the lock: the last fonts found; [0] regular, [1] bold */
-static struct found_face {
+struct found_face {
     FcCharSet *letters; /* NULL: no search yet */
     cairo_font_face_t *face;
-} found[2];
+};
+/* key under which a drawing context keeps the last fonts found, an array of two: [0] regular, [1] bold */
+static const cairo_user_data_key_t found_key;
+
+static void drop(struct found_face *found)
+{
+    if (found->letters)
+        FcCharSetDestroy(found->letters);
+    if (found->face)
+        cairo_font_face_destroy(found->face);
+}
+
+static void free_found(void *arg)
+{
+    struct found_face *found = arg;
+    drop(&found[0]);
+    drop(&found[1]);
+    mem_free(found);
+}
+
+/* Returns NULL if memory is short. */
+static struct found_face *found_of(cairo_t *cairo, bool bold)
+{
+    struct found_face *found = cairo_get_user_data(cairo, &found_key);
+    if (!found) {
+        found = mem_array(2, sizeof(*found));
+        if (cairo_set_user_data(cairo, &found_key, found, free_found) != CAIRO_STATUS_SUCCESS) {
+            mem_free(found);
+            return NULL;
+        }
+    }
+    return &found[bold];
+}
 
 /* Returns the set of the letters in a text; the caller frees it. NULL: DejaVu Sans has all letters. */
 static FcCharSet *letters_beyond(const char *text)
@@ -49,10 +80,7 @@ static void find(struct found_face *out, const FcCharSet *letters, bool bold)
     FcPatternDestroy(wanted);
     if (!match)
         return;
-    if (out->letters)
-        FcCharSetDestroy(out->letters);
-    if (out->face)
-        cairo_font_face_destroy(out->face);
+    drop(out);
     out->letters = FcPatternGetCharSet(match, FC_CHARSET, 0, &has) == FcResultMatch ? FcCharSetCopy(has) : FcCharSetCreate();
     out->face = cairo_ft_font_face_create_for_pattern(match);
     FcPatternDestroy(match);
@@ -65,12 +93,11 @@ void text_face_choose(cairo_t *cairo, const char *text)
     bool bold = cairo_font_face_get_type(now) == CAIRO_FONT_TYPE_TOY && cairo_toy_font_face_get_weight(now) == CAIRO_FONT_WEIGHT_BOLD;
     if (!letters)
         return;
-    pthread_mutex_lock(&lock);
-    if (!found[bold].letters || !FcCharSetIsSubset(letters, found[bold].letters))
-        find(&found[bold], letters, bold);
-    if (found[bold].face)
-        cairo_set_font_face(cairo, found[bold].face);
-    pthread_mutex_unlock(&lock);
+    struct found_face *found = found_of(cairo, bold);
+    if (found && (!found->letters || !FcCharSetIsSubset(letters, found->letters)))
+        find(found, letters, bold);
+    if (found && found->face)
+        cairo_set_font_face(cairo, found->face);
     FcCharSetDestroy(letters);
 }
 
@@ -82,10 +109,7 @@ bool text_face_has(const char *text)
         return true;
     find(&has, letters, false);
     bool all = has.letters && FcCharSetIsSubset(letters, has.letters);
-    if (has.letters)
-        FcCharSetDestroy(has.letters);
-    if (has.face)
-        cairo_font_face_destroy(has.face);
+    drop(&has);
     FcCharSetDestroy(letters);
     return all;
 }
