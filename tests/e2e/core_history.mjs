@@ -7,9 +7,9 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { isDeepStrictEqual } from 'node:util';
 import { openPage, settle, shoot, travel, waitForHealth, waitForPicture } from './support/browser.mjs';
-import { Client, FLAG } from './conformance/client.mjs';
 import { missingClocks, withClockOff } from './support/clocks.mjs';
 import { Node, Nodes, sleep, until } from './support/nodes.mjs';
+import { FLAG, PlainClient } from './support/plain_client.mjs';
 import { notBuilt, runProgram } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt() || (missingClocks() ?? false), timeout: 240000 };
@@ -82,16 +82,16 @@ test('pictures of the past are equal to the byte; readings of then have the qual
         assert.ok(one.equals(other), `${s} s: ${one.length}, ${other.length} bytes`);
     }
     const seen = async (node) => {
-        const client = await Client.open(node.port);
+        const client = await PlainClient.open(node.port);
         await client.hello({ token: nodes.tokens.operator });
-        const { from_us } = await client.wait('a beginning', () => client.texts.find((m) => m.type === 'time' && m.from_us));
-        client.say('time', { at_us: at(900), speed: 0 });
-        await client.picture('of then', (p) => p.flags & FLAG.past && p.data_time_us === at(900));
-        const tags = await client.wait('tags of then', () => client.texts.find((m) => m.type === 'tags' && m.time_us === at(900)));
-        client.say('params', { seq: 7, show: 'difference', baseline: { set: 'then' } });
-        const { baseline } = await client.wait('a baseline of then', () => client.texts.find((m) => m.type === 'params' && m.seq === 7));
-        client.say('time', { at_us: at(1000), speed: 60 });
-        await client.picture('a minute later', (p) => p.flags & FLAG.past && p.data_time_us > at(1060));
+        const { from_us } = await client.until('a beginning', () => client.texts.find((m) => m.type === 'time' && m.from_us));
+        client.say({ type: 'time', at_us: at(900), speed: 0 });
+        await client.frameWhere('of then', (p) => p.flags & FLAG.past && p.data_time_us === at(900));
+        const tags = await client.until('tags of then', () => client.texts.find((m) => m.type === 'tags' && m.time_us === at(900)));
+        client.say({ type: 'params', seq: 7, show: 'difference', baseline: { set: 'then' } });
+        const { baseline } = await client.until('a baseline of then', () => client.texts.find((m) => m.type === 'params' && m.seq === 7));
+        client.say({ type: 'time', at_us: at(1000), speed: 60 });
+        await client.frameWhere('a minute later', (p) => p.flags & FLAG.past && p.data_time_us > at(1060));
         client.close();
         return { from_us, values: tags.values, baseline };
     };

@@ -5,13 +5,12 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Client } from './conformance/client.mjs';
-import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
+import { PlainClient } from './support/plain_client.mjs';
+import { notBuilt, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
 const options = { skip: notBuilt(), timeout: 280000 };
 const MANY = 20000;
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const name = (i) => `X-${String(i).padStart(5, '0')}`;
 let plant;
 
@@ -62,21 +61,21 @@ test('pages hold every tag once, in order, with what its register holds', option
 });
 
 test('who looks meanwhile gets pictures, and all tags', options, async () => {
-    const client = await Client.open(plant.port);
+    const client = await PlainClient.open(plant.port);
     const welcome = await client.hello({});
     assert.equal(welcome.tags.length, MANY + 3);
-    await client.picture('the first');
+    await client.frameWhere('the first');
     let asking = true;
     const asked = (async () => {
         while (asking)
             await pages(5000);
     })();
-    const shown = client.pictures.length;
+    const shown = client.frames.length;
     for (let i = 0; i < 10; i++) {
-        client.say('camera', { seq: i + 1, eye: [5, -6, 3 + 0.2 * i], target: [1, 0, 0] });
+        client.say({ type: 'camera', seq: i + 1, eye: [5, -6, 3 + 0.2 * i], target: [1, 0, 0] });
         await sleep(100);
     }
-    await client.wait('pictures between the pages', () => client.pictures.length > shown + 2);
+    await client.until('pictures between the pages', () => client.frames.length > shown + 2);
     asking = false;
     await asked;
     client.close();

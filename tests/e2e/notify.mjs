@@ -5,15 +5,14 @@ import { spawn, spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { Client } from './conformance/client.mjs';
+import { PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
 import { promise } from './support/promise.mjs';
 import { HookServer, MailServer, makeCertificate } from './support/receivers.mjs';
-import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
 // Makes a plant of two boxes and three tags; extra: number of additional tags. Values above 50 raise an alarm.
 async function createPlant(notify, extra = 0) {
@@ -44,10 +43,10 @@ const isCalm = (plant) => until('calm readings', async () => {
 const metric = async (plant, name) => Number((await (await fetch(`http://127.0.0.1:${plant.port}/metrics`)).text())
     .split('\n').find((line) => line.startsWith(`${name} `))?.split(' ').at(-1) ?? NaN);
 async function acknowledge(plant, tag, kinds) {
-    const client = await Client.open(plant.port);
+    const client = await PlainClient.open(plant.port);
     await client.hello({});
     await client.text('alarms');
-    client.say('alarm', { seq: 1, action: 'acknowledge', alarms: kinds.map((kind) => [tag, kind]), name: 'Kim' });
+    client.say({ type: 'alarm', seq: 1, action: 'acknowledge', alarms: kinds.map((kind) => [tag, kind]), name: 'Kim' });
     assert.equal((await client.text('alarmed')).done, kinds.length);
     client.close();
 }

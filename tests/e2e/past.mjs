@@ -5,11 +5,10 @@ import assert from 'node:assert/strict';
 import { appendFileSync, existsSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Client, FLAG } from './conformance/client.mjs';
-import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { FLAG, PlainClient } from './support/plain_client.mjs';
+import { notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 
 const skip = notBuilt();
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const BEGIN_S = Math.floor(Date.now() / 1000) - 3600;
 const at = (s) => (BEGIN_S + s) * 1e6;
 let plant;
@@ -42,15 +41,15 @@ before(async () => {
 after(() => plant?.destroy());
 
 async function open(fields) {
-    const client = await Client.open(plant.port);
+    const client = await PlainClient.open(plant.port);
     client.welcome = await client.hello(fields);
     return client;
 }
 
 async function travel(client, us, speed = 0) {
-    client.say('time', { at_us: us, speed });
-    const seen = await client.wait('the instant', () => client.texts.find((m) => m.type === 'time' && m.at_us === us));
-    await client.picture('of it', (p) => p.flags & FLAG.past && p.data_time_us === us);
+    client.say({ type: 'time', at_us: us, speed });
+    const seen = await client.until('the instant', () => client.texts.find((m) => m.type === 'time' && m.at_us === us));
+    await client.frameWhere('of it', (p) => p.flags & FLAG.past && p.data_time_us === us);
     return seen;
 }
 
@@ -59,9 +58,9 @@ const reading = (client, index) => client.texts.filter((m) => m.type === 'tags')
 
 test('a session that says nothing is at now, and knows where history begins', { skip }, async () => {
     const client = await open();
-    const time = await client.wait('a time with a beginning', () => client.texts.find((m) => m.type === 'time'));
+    const time = await client.until('a time with a beginning', () => client.texts.find((m) => m.type === 'time'));
     assert.deepEqual([time.at_us, time.speed], [null, 0]);
-    const first = await client.picture('the first');
+    const first = await client.frameWhere('the first');
     assert.equal(first.flags & FLAG.past, 0);
     client.close();
 });
@@ -70,21 +69,21 @@ test('pictures, tags, markers and picks are of the instant, with qualities as th
     const client = await open();
     const seen = await travel(client, at(300.5));
     assert.equal(seen.from_us, at(0));
-    const tags = await client.wait('tags of then', () => client.texts.find((m) => m.type === 'tags' && m.time_us === at(300.5)));
+    const tags = await client.until('tags of then', () => client.texts.find((m) => m.type === 'tags' && m.time_us === at(300.5)));
     assert.equal(tags.values.length, 3, 'all of them');
     assert.ok(Math.abs(reading(client, 0)[1] - (10 + 300.5 / 60)) < 0.2 && reading(client, 1)[1] === 40);
     assert.deepEqual(reading(client, 2).slice(1, 3), [null, 'bad'], 'never recorded');
-    client.say('fit', { seq: 1, id: 'TI-1' });
+    client.say({ type: 'fit', seq: 1, id: 'TI-1' });
     const camera = await client.text('camera');
-    client.say('pick', { seq: 2, x: 160.5, y: 90.5, camera });
+    client.say({ type: 'pick', seq: 2, x: 160.5, y: 90.5, camera });
     const picked = await client.text('picked');
     assert.equal(picked.time_us, at(300.5));
     assert.ok(Math.abs(picked.value - 15) < 0.5, `${picked.value}`);
     await travel(client, at(900));
-    await client.wait('TI-2 lost', () => reading(client, 1)[2] === 'bad');
+    await client.until('TI-2 lost', () => reading(client, 1)[2] === 'bad');
     assert.equal(reading(client, 1)[3], 'Bad_CommunicationError');
     await travel(client, at(2400));
-    const empty = await client.picture('of the time when nothing ran', (p) => p.data_time_us === at(2400));
+    const empty = await client.frameWhere('of the time when nothing ran', (p) => p.data_time_us === at(2400));
     assert.ok(empty.flags & FLAG.noLiveData && empty.oldest_age_ms === 0xffffffff);
     client.close();
 });
@@ -93,37 +92,37 @@ test('play goes on at its speed, stands, and comes back to now', { skip }, async
     const client = await open();
     await travel(client, at(60), 120);
     const began = performance.now();
-    await client.picture('ten seconds of the past later', (p) => p.flags & FLAG.past && p.data_time_us > at(180));
-    const took_s = (performance.now() - began) / 1000, gone_s = client.pictures.at(-1).data_time_us / 1e6 - BEGIN_S - 60;
+    await client.frameWhere('ten seconds of the past later', (p) => p.flags & FLAG.past && p.data_time_us > at(180));
+    const took_s = (performance.now() - began) / 1000, gone_s = client.frames.at(-1).data_time_us / 1e6 - BEGIN_S - 60;
     assert.ok(gone_s <= 120 * (took_s + 1), `${gone_s} s of the past in ${took_s} s`);
-    const times = client.pictures.filter((p) => p.flags & FLAG.past).map((p) => p.data_time_us);
+    const times = client.frames.filter((p) => p.flags & FLAG.past).map((p) => p.data_time_us);
     assert.deepEqual(times, [...times].sort((a, b) => a - b));
-    client.say('time', { speed: 0 });
-    const stood = await client.wait('a stand', () => client.texts.findLast((m) => m.type === 'time' && m.at_us && m.speed === 0));
+    client.say({ type: 'time', speed: 0 });
+    const stood = await client.until('a stand', () => client.texts.findLast((m) => m.type === 'time' && m.at_us && m.speed === 0));
     await sleep(700);
-    assert.ok(client.pictures.at(-1).data_time_us <= Math.max(stood.at_us, times.at(-1)) + 120e6);
-    const before = client.pictures.at(-1).seq;
-    client.say('time', { at_us: null });
-    const now = await client.picture('of now', (p) => p.seq > before && !(p.flags & FLAG.past));
+    assert.ok(client.frames.at(-1).data_time_us <= Math.max(stood.at_us, times.at(-1)) + 120e6);
+    const before = client.frames.at(-1).seq;
+    client.say({ type: 'time', at_us: null });
+    const now = await client.frameWhere('of now', (p) => p.seq > before && !(p.flags & FLAG.past));
     assert.ok(now.data_time_us > at(3500));
-    client.say('time', { at_us: at(3500), speed: 3600 });
-    await client.wait('the present', () => client.texts.findLast((m) => m.type === 'time')?.at_us === null &&
-        client.pictures.at(-1).data_time_us > at(3550) && !(client.pictures.at(-1).flags & FLAG.past));
+    client.say({ type: 'time', at_us: at(3500), speed: 3600 });
+    await client.until('the present', () => client.texts.findLast((m) => m.type === 'time')?.at_us === null &&
+        client.frames.at(-1).data_time_us > at(3550) && !(client.frames.at(-1).flags & FLAG.past));
     client.close();
 });
 
 test('who looks at now never notices, and who follows comes along', { skip }, async () => {
     const live = await open(), client = await open(), follower = await open();
-    follower.say('follow', { session: client.welcome.session });
+    follower.say({ type: 'follow', session: client.welcome.session });
     await follower.text('following');
-    await live.picture('refined', (p) => p.flags & FLAG.still);
+    await live.frameWhere('refined', (p) => p.flags & FLAG.still);
     await travel(client, at(300), 600);
-    await follower.picture('of then too', (p) => p.flags & FLAG.past && p.data_time_us >= at(300));
-    await follower.wait('the time', () => follower.texts.find((m) => m.type === 'time' && m.at_us >= at(300) && m.speed === 600));
+    await follower.frameWhere('of then too', (p) => p.flags & FLAG.past && p.data_time_us >= at(300));
+    await follower.until('the time', () => follower.texts.find((m) => m.type === 'time' && m.at_us >= at(300) && m.speed === 600));
     const ofThen = (m) => m.type === 'tags' && m.time_us >= at(300) && m.time_us < at(3000);
-    await follower.wait('tags of then', () => follower.texts.find(ofThen));
+    await follower.until('tags of then', () => follower.texts.find(ofThen));
     await sleep(1000);
-    assert.ok(live.pictures.every((p) => !(p.flags & FLAG.past) && p.data_time_us > at(3000)));
+    assert.ok(live.frames.every((p) => !(p.flags & FLAG.past) && p.data_time_us > at(3000)));
     assert.ok(live.texts.filter((m) => m.type === 'tags').every((m) => m.time_us > at(3000)));
     for (const one of [live, client, follower])
         one.close();
@@ -140,7 +139,7 @@ test('the same instant is drawn once for all who look at it', { skip }, async ()
         const before = await metric('plantcast_renders_shared_total');
         await Promise.all([first, second].map((client) => travel(client, at(s))));
         const isThere = (p) => p.flags & FLAG.still && p.data_time_us === at(s);
-        await Promise.all([first, second].map((client) => client.picture('refined', isThere)));
+        await Promise.all([first, second].map((client) => client.frameWhere('refined', isThere)));
         isShared = await metric('plantcast_renders_shared_total') > before;
     }
     assert.ok(isShared);
@@ -149,14 +148,14 @@ test('the same instant is drawn once for all who look at it', { skip }, async ()
 });
 
 test('who begins in the past, or comes back there, never sees now', { skip }, async () => {
-    const client = await Client.open(plant.port);
+    const client = await PlainClient.open(plant.port);
     const { resume } = await client.hello({ at_us: at(600) });
-    assert.equal((await client.picture('the first')).data_time_us, at(600));
+    assert.equal((await client.frameWhere('the first')).data_time_us, at(600));
     client.socket.destroy();
-    const again = await Client.open(plant.port);
-    again.say('hello', { resume });
+    const again = await PlainClient.open(plant.port);
+    again.say({ type: 'hello', resume });
     assert.equal((await again.text('welcome')).resumed, true);
-    const first = await again.picture('the first again');
+    const first = await again.frameWhere('the first again');
     assert.deepEqual([first.data_time_us, first.flags & FLAG.past], [at(600), FLAG.past]);
     again.close();
 });
@@ -164,7 +163,7 @@ test('who begins in the past, or comes back there, never sees now', { skip }, as
 test('mistakes are answered by their names', { skip }, async () => {
     const client = await open();
     for (const fields of [{}, { at_us: 'noon' }, { at_us: -5 }, { speed: 2 }, { at_us: at(0), speed: 1e9 }]) {
-        client.say('time', fields);
+        client.say({ type: 'time', ...fields });
         const error = await client.text('error');
         assert.deepEqual([error.code, error.about], ['bad_field', 'time'], JSON.stringify(fields));
     }
@@ -220,16 +219,16 @@ test('an imported gap, blanks and state words are no data, in pictures, readings
     assert.equal(imported.code, 0, imported.err);
     assert.match(imported.out, /11 samples of 1 tag .*\nBad samples: 3\nDuplicate times: 1 .*\nGaps without data: 1 \(longer than 100 s\)/);
     const url = `http://127.0.0.1:${plant.port}`, client = await open();
-    client.say('fit', { seq: 1, id: 'TI-1' });
+    client.say({ type: 'fit', seq: 1, id: 'TI-1' });
     const camera = await client.text('camera');
     const expected = [[5, 10.5], [25, null], [45, 12], [55, null], [65, 12], [75, null], [day, null], [2 * day - 1, null],
         [2 * day + 5, 80]];
     for (const [i, [s, value]] of expected.entries()) {
         await travel(client, (from + s) * 1e6);
         const severity = value ? undefined : 'bad';
-        await client.wait(`the reading at ${s} s`, () => reading(client, 0)[1] === value && reading(client, 0)[2] === severity);
-        client.say('pick', { seq: i + 2, x: 160.5, y: 90.5, camera });
-        const picked = await client.wait('a pick', () => client.texts.find((m) => m.type === 'picked' && m.seq === i + 2));
+        await client.until(`the reading at ${s} s`, () => reading(client, 0)[1] === value && reading(client, 0)[2] === severity);
+        client.say({ type: 'pick', seq: i + 2, x: 160.5, y: 90.5, camera });
+        const picked = await client.until('a pick', () => client.texts.find((m) => m.type === 'picked' && m.seq === i + 2));
         assert.ok(value ? Math.abs(picked.value - value) < 0.1 : picked.value === null, `${s} s: ${picked.value}`);
     }
     client.close();

@@ -7,7 +7,7 @@ import { once } from 'node:events';
 import { appendFileSync, existsSync, readdirSync, readFileSync, renameSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Client } from './conformance/client.mjs';
+import { PlainClient } from './support/plain_client.mjs';
 import { promise } from './support/promise.mjs';
 import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 
@@ -34,14 +34,14 @@ before(async () => {
 after(() => plant?.destroy());
 
 async function enter(more = {}) {
-    const client = await Client.open(plant.port);
+    const client = await PlainClient.open(plant.port);
     client.welcome = await client.hello({ params: { seq: 1, group: 'temperature' }, ...more });
     return client;
 }
 
-const place = (client, moves) => client.say('place', { seq: ++seq, moves });
+const place = (client, moves) => client.say({ type: 'place', seq: ++seq, moves });
 const probe = (client) => {
-    client.say('pick', { seq: ++seq, x: 160, y: 90, camera: { eye: [2, 0.1, 0.1], target: [0.5, 0.1, 0.1] } });
+    client.say({ type: 'pick', seq: ++seq, x: 160, y: 90, camera: { eye: [2, 0.1, 0.1], target: [0.5, 0.1, 0.1] } });
     return client.text('picked');
 };
 
@@ -56,7 +56,7 @@ async function placed(client) {
 
 test('who tries a place sees its field, and nobody else does', options, async () => {
     const engineer = await enter(), other = await enter();
-    await engineer.wait('readings', () => engineer.pictures.length > 0);
+    await engineer.until('readings', () => engineer.frames.length > 0);
     const before = await probe(other);
     place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0.5, 0.05, 0.05] }]);
     const { sensors: [sensor] } = await placed(engineer);
@@ -79,7 +79,7 @@ test('who follows an engineer is shown the plant as it is', options, async () =>
     const engineer = await enter(), other = await enter();
     place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0.5, 0, 0] }]);
     await placed(engineer);
-    other.say('follow', { session: engineer.welcome.session });
+    other.say({ type: 'follow', session: engineer.welcome.session });
     await other.text('following');
     assert.ok((await probe(other)).nearest.every(({ tag }) => tag !== 'TI-9'));
     engineer.close();
@@ -99,7 +99,7 @@ test('what cannot be is refused with the reason, and nothing moves', options, as
     await wrong([{ tag: 'TI-1', asset: 'E-101', position: [50, 0, 0] }], /TI-1: this location is too far from E-101/);
     await wrong([{ tag: 'TI-1', asset: 'E-101', position: [0, 0, 'a'] }], /position/);
     await wrong([1, 2].map((z) => ({ tag: 'TI-1', asset: 'E-101', position: [0, 0, z / 4] })), /TI-1 is moved twice/);
-    engineer.say('save_tags', { seq: ++seq });
+    engineer.say({ type: 'save_tags', seq: ++seq });
     assert.match((await engineer.text('error')).text, /no sensor has been moved/);
     place(engineer, [{ tag: 'TI-1', asset: 'E-101', position: [1, 0, 0] }]);
     const { sensors: [far] } = await placed(engineer);
@@ -109,7 +109,7 @@ test('what cannot be is refused with the reason, and nothing moves', options, as
 
 test('gaps: what is far from every sensor, and what has no data', options, async () => {
     const engineer = await enter();
-    engineer.say('gaps', { seq: ++seq, far_m: 0.5 });
+    engineer.say({ type: 'gaps', seq: ++seq, far_m: 0.5 });
     const before = await engineer.text('gaps');
     assert.equal(before.seq, seq);
     assert.deepEqual(before.assets.map(({ asset, sensors }) => [asset, sensors]), [['E-101', 2]]);
@@ -121,7 +121,7 @@ test('gaps: what is far from every sensor, and what has no data', options, async
 
     place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0, 0.8, 0] }]);
     await placed(engineer);
-    engineer.say('gaps', { seq: ++seq, far_m: 0.5 });
+    engineer.say({ type: 'gaps', seq: ++seq, far_m: 0.5 });
     const after = await engineer.text('gaps');
     assert.equal(after.assets[0].sensors, 3);
     assert.ok(after.assets[0].far_share < box.far_share);
@@ -134,7 +134,7 @@ test('a list is saved: the difference first, then in force for all, the old one 
     place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0, 0.5, 0.12345] },
         { tag: 'TI-2', asset: 'E-101', position: [-0.5, 0.25, 0] }]);
     await placed(engineer);
-    engineer.say('save_tags', { seq: ++seq });
+    engineer.say({ type: 'save_tags', seq: ++seq });
     const diff = await engineer.text('tags_diff');
     assert.equal(diff.conflict, false);
     assert.deepEqual(diff.lines, [
@@ -143,12 +143,12 @@ test('a list is saved: the difference first, then in force for all, the old one 
     ]);
     assert.equal(readFileSync(tagsFile, 'utf8'), old, 'nothing is written before it is confirmed');
 
-    engineer.say('save_tags', { seq: ++seq, confirm: '0123456789abcdef' }); // the hash of another change
+    engineer.say({ type: 'save_tags', seq: ++seq, confirm: '0123456789abcdef' }); // the hash of another change
     await engineer.text('tags_diff');
     assert.equal(readFileSync(tagsFile, 'utf8'), old);
 
-    engineer.say('save_tags', { seq: ++seq, confirm: diff.hash });
-    engineer.say('save_tags', { seq: ++seq, confirm: diff.hash }); // sends the same message again while the first one is carried out
+    engineer.say({ type: 'save_tags', seq: ++seq, confirm: diff.hash });
+    engineer.say({ type: 'save_tags', seq: ++seq, confirm: diff.hash }); // sends the same message again while the first one is carried out
     const answers = [await engineer.text('tags_saved', 60000), await engineer.text('tags_saved', 60000)];
     const saved = answers.find((answer) => answer.saved), refused = answers.find((answer) => !answer.saved);
     assert.match(refused.errors.join(), /another list is being applied/);
@@ -164,7 +164,7 @@ test('a list is saved: the difference first, then in force for all, the old one 
     }
     let nearest = []; // a sensor counts once its first reading has arrived from the device
     while (nearest.length === 0) {
-        other.say('pick', { seq: ++seq, x: 160, y: 90, camera: { eye: [0.1, 4, 0.15], target: [0, 0, 0.1] } });
+        other.say({ type: 'pick', seq: ++seq, x: 160, y: 90, camera: { eye: [0.1, 4, 0.15], target: [0, 0, 0.1] } });
         ({ nearest } = await other.text('picked'));
     }
     assert.equal(nearest[0].tag, 'TI-9');
@@ -176,11 +176,11 @@ test('a list that somebody else changed meanwhile is not written over: what they
     const engineer = await enter(), good = readFileSync(tagsFile, 'utf8');
     place(engineer, [{ tag: 'TI-1', asset: 'E-101', position: [0.5, 0.25, 0] }]);
     await placed(engineer);
-    engineer.say('save_tags', { seq: ++seq });
+    engineer.say({ type: 'save_tags', seq: ++seq });
     const { hash } = await engineer.text('tags_diff');
     appendFileSync(tagsFile, 'TI-10,400009,Float,°C,theirs,temperature,,,,,1,\n');
     const theirs = readFileSync(tagsFile, 'utf8');
-    engineer.say('save_tags', { seq: ++seq, confirm: hash });
+    engineer.say({ type: 'save_tags', seq: ++seq, confirm: hash });
     const { conflict, lines } = await engineer.text('tags_diff');
     assert.equal(conflict, true);
     assert.deepEqual(lines, [[6, null, 'TI-10,400009,Float,°C,theirs,temperature,,,,,1,']]);
@@ -196,7 +196,7 @@ test('a version of a list that is a symlink is found by the name that saving tel
     renameSync(tagsFile, real);
     symlinkSync('lists-v1.csv', tagsFile);
     writeFileSync(`${real}.1`, before);
-    engineer.say('restore_tags', { seq: ++seq, kept: 'lists-v1.csv.1' });
+    engineer.say({ type: 'restore_tags', seq: ++seq, kept: 'lists-v1.csv.1' });
     const { lines, conflict } = await engineer.text('tags_diff');
     assert.equal(conflict, false);
     assert.equal(lines.length, 1, JSON.stringify(lines));
@@ -212,10 +212,10 @@ test('a list that cannot be prepared is put back', options, async () => {
     const box = readFileSync(model), files = readdirSync(plant.folder).sort();
     place(engineer, [{ tag: 'TI-1', asset: 'E-101', position: [0.5, 0.25, 0] }]);
     await placed(engineer);
-    engineer.say('save_tags', { seq: ++seq });
+    engineer.say({ type: 'save_tags', seq: ++seq });
     const { hash } = await engineer.text('tags_diff');
     writeFileSync(model, 'not a model');
-    engineer.say('save_tags', { seq: ++seq, confirm: hash });
+    engineer.say({ type: 'save_tags', seq: ++seq, confirm: hash });
     const answer = await engineer.text('tags_saved', 60000);
     writeFileSync(model, box);
     assert.equal(answer.saved, false);
@@ -230,12 +230,12 @@ test('while another program is at work in the plant\'s folder, a list is not sav
     const engineer = await enter(), good = readFileSync(tagsFile, 'utf8'), files = readdirSync(plant.folder).sort();
     place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0, 0.5, 0.25] }]);
     await placed(engineer);
-    engineer.say('save_tags', { seq: ++seq });
+    engineer.say({ type: 'save_tags', seq: ++seq });
     const { hash } = await engineer.text('tags_diff');
     const held = spawn('flock', [plant.folder, 'sh', '-c', 'echo held; read line'], { stdio: ['pipe', 'pipe', 'ignore'] });
     t.after(() => held.stdin.end());
     await once(held.stdout, 'data');
-    engineer.say('save_tags', { seq: ++seq, confirm: hash });
+    engineer.say({ type: 'save_tags', seq: ++seq, confirm: hash });
     const began = performance.now();
     await probe(engineer);
     promise(t, 'until the loop, which does not wait, answers', performance.now() - began, 2000);
@@ -245,7 +245,7 @@ test('while another program is at work in the plant\'s folder, a list is not sav
     assert.equal(readFileSync(tagsFile, 'utf8'), good);
     assert.deepEqual(readdirSync(plant.folder).sort(), files);
     // Saving waits for a short match or import, and then locks the folder itself.
-    engineer.say('save_tags', { seq: ++seq, confirm: hash });
+    engineer.say({ type: 'save_tags', seq: ++seq, confirm: hash });
     await new Promise((done) => setTimeout(done, 300));
     held.stdin.end();
     assert.equal((await engineer.text('tags_saved', 60000)).saved, true);
@@ -253,7 +253,7 @@ test('while another program is at work in the plant\'s folder, a list is not sav
 });
 
 const prove = (client, tag, expected, more = {}) => {
-    client.say('prove', { seq: ++seq, tag, expected, tolerance: 0.5, ...more });
+    client.say({ type: 'prove', seq: ++seq, tag, expected, tolerance: 0.5, ...more });
     return client.text('proved');
 };
 
@@ -286,7 +286,7 @@ test('a forced value proves a tag, for all to see; beyond the tolerance it does 
         quality = list.find(({ name }) => name === 'PI-1').quality;
     }
     assert.equal((await prove(engineer, 'PI-1', 5)).why, 'the reading is not good');
-    engineer.say('prove', { seq: ++seq, tag: 'TI-1', expected: 1 });
+    engineer.say({ type: 'prove', seq: ++seq, tag: 'TI-1', expected: 1 });
     assert.match((await engineer.text('error')).text, /tolerance/);
     engineer.close();
     other.close();

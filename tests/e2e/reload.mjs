@@ -5,15 +5,14 @@ import { spawnSync } from 'node:child_process';
 import { closeSync, constants, openSync, readFileSync, renameSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Client } from './conformance/client.mjs';
+import { PlainClient } from './support/plain_client.mjs';
 import { promise } from './support/promise.mjs';
-import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
 const skip = notBuilt();
 const options = { skip, timeout: 300000 };
 const patienceMs = 100000; // timeout: a reload takes a second, but longer on a busy machine
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let plant, tagsFile, firstTags;
 
 before(async () => {
@@ -53,14 +52,14 @@ test('errors leave what was there in force, and are named with their place', opt
 });
 
 test('what changed is said; sessions, alarms and readings go on', options, async () => {
-    const client = await Client.open(plant.port);
+    const client = await PlainClient.open(plant.port);
     const welcome = await client.hello({});
-    client.say('params', { seq: 1, group: 'temperature', ramp_interval: 10 });
-    client.say('camera', { seq: 1, eye: [5, -6, 4], target: [1, 0, 0] });
+    client.say({ type: 'params', seq: 1, group: 'temperature', ramp_interval: 10 });
+    client.say({ type: 'camera', seq: 1, eye: [5, -6, 4], target: [1, 0, 0] });
     await client.text('alarms');
     for (let i = 0; i < 50 && !(await active()).includes('TI-1/H unacknowledged'); i++)
         await sleep(100);
-    client.say('alarm', { seq: 1, action: 'acknowledge', alarms: [['TI-1', 'H']], name: 'Kim' });
+    client.say({ type: 'alarm', seq: 1, action: 'acknowledge', alarms: [['TI-1', 'H']], name: 'Kim' });
     await client.text('alarmed');
     assert.ok((await active()).includes('TI-1/H acknowledged'));
     const first = welcome.plant.configuration;
@@ -69,7 +68,7 @@ test('what changed is said; sessions, alarms and readings go on', options, async
 
     const limited = readFileSync(tagsFile, 'utf8').replace('P-101A,3,0,0.5,60,', 'P-101A,3,0,0.5,60,9');
     writeFileSync(tagsFile, `${limited}XX-9,400007,Float,bar,spare,,,,,,1,\n`);
-    const shown = client.pictures.length, answer = await reload();
+    const shown = client.frames.length, answer = await reload();
     assert.equal(answer.status, 200, JSON.stringify(answer));
     assert.deepEqual(answer.changes.sort(), ['tag PI-1: H none > 9', 'tag XX-9 added']);
     assert.equal(answer.before, first);
@@ -78,7 +77,7 @@ test('what changed is said; sessions, alarms and readings go on', options, async
     assert.equal(again.session, welcome.session, 'the same session');
     assert.equal(again.view.ramp_interval, 10, 'and the same view');
     assert.deepEqual(again.tags.map(({ name }) => name), ['TI-1', 'TI-2', 'PI-1', 'XX-9']);
-    await client.wait('a picture of the new plant', () => client.pictures.length > shown); // pictures continue
+    await client.until('a picture of the new plant', () => client.frames.length > shown); // pictures continue
     assert.ok((await active()).includes('TI-1/H acknowledged'), 'nobody has to acknowledge it again');
     assert.match(await metric(`plantcast_configuration_info{hash="${first}"}`), / 0$/);
     const tags = (await (await fetch(url('/api/v1/tags'))).json()).tags;
@@ -123,19 +122,20 @@ test('who may not, and from where it may not be', options, async () => {
 });
 
 test('the picture goes on until the new plant has one', options, async (t) => {
-    const client = await Client.open(plant.port);
+    const client = await PlainClient.open(plant.port);
     await client.hello({ width: 1280, height: 720 });
     let seq = 0, welcome = null;
-    const turn = setInterval(() => client.say('camera', { seq: ++seq, eye: [5, -6, 4 + 0.5 * Math.sin(seq / 10)], target: [1, 0, 0] }), 16);
-    await client.wait('pictures', () => client.pictures.length >= 10);
+    const turn = setInterval(() => client.say(
+        { type: 'camera', seq: ++seq, eye: [5, -6, 4 + 0.5 * Math.sin(seq / 10)], target: [1, 0, 0] }), 16);
+    await client.until('pictures', () => client.frames.length >= 10);
     const asked = performance.now();
     plant.daemon.child.kill('SIGHUP');
-    await client.wait('a welcome', () => (welcome = client.texts.some((m) => m.type === 'welcome') ? performance.now() : null),
+    await client.until('a welcome', () => (welcome = client.texts.some((m) => m.type === 'welcome') ? performance.now() : null),
         patienceMs);
-    const shown = client.pictures.length;
-    await client.wait('pictures of the new plant', () => client.pictures.length >= shown + 5);
+    const shown = client.frames.length;
+    await client.until('pictures of the new plant', () => client.frames.length >= shown + 5);
     clearInterval(turn);
-    const times = client.pictures.map(({ at }) => at).filter((at) => at > asked);
+    const times = client.frames.map(({ at }) => at).filter((at) => at > asked);
     const gaps = times.map((at, i) => at - (times[i - 1] ?? asked));
     const longest = Math.max(...gaps), whole = welcome - asked;
     client.close();
@@ -143,7 +143,7 @@ test('the picture goes on until the new plant has one', options, async (t) => {
 });
 
 test('again and again, by signal, under clients that move', options, async () => {
-    const clients = await Promise.all([1, 2, 3].map(() => Client.open(plant.port)));
+    const clients = await Promise.all([1, 2, 3].map(() => PlainClient.open(plant.port)));
     for (const client of clients)
         await client.hello({});
     const base = readFileSync(tagsFile, 'utf8');
@@ -152,18 +152,18 @@ test('again and again, by signal, under clients that move', options, async () =>
         plant.daemon.child.kill('SIGHUP');
         for (let k = 1; k <= 20; k++) {
             for (const client of clients)
-                client.say('camera', { seq: 100 * i + k, eye: [5, -6, 4 + 0.05 * k], target: [1, 0, 0] });
+                client.say({ type: 'camera', seq: 100 * i + k, eye: [5, -6, 4 + 0.05 * k], target: [1, 0, 0] });
             await sleep(25);
         }
         for (const client of clients)
-            await client.wait('a welcome', () => client.texts.some((m) => m.type === 'welcome'), patienceMs);
+            await client.until('a welcome', () => client.texts.some((m) => m.type === 'welcome'), patienceMs);
         for (const client of clients)
             client.texts = client.texts.filter((m) => m.type !== 'welcome');
     }
     for (const client of clients) {
-        const shown = client.pictures.length;
-        client.say('camera', { seq: 9999, eye: [6, -6, 4], target: [1, 0, 0] });
-        await client.wait('a picture in the end', () => client.pictures.length > shown);
+        const shown = client.frames.length;
+        client.say({ type: 'camera', seq: 9999, eye: [6, -6, 4], target: [1, 0, 0] });
+        await client.until('a picture in the end', () => client.frames.length > shown);
         client.close();
     }
 });

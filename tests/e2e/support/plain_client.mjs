@@ -3,7 +3,7 @@
 import { createHash, randomBytes } from 'node:crypto';
 import { connect } from 'node:net';
 
-const MORE = 8; // flag: another part of the same picture follows
+export const FLAG = { key: 1, still: 2, noLiveData: 4, more: 8, past: 32 }; // more: another part of the same picture follows
 const OPCODE = { continuation: 0, text: 1, binary: 2, close: 8, ping: 9, pong: 10 };
 
 // Resolves with { status, headers (lower case), body } of one HTTP request; `head` is sent as given. localAddress: source address,
@@ -159,7 +159,7 @@ export class PlainClient {
                 return; // the server gave this frame up
             this.frames.push({ ...frame, at: performance.now() });
             // a picture in parts is acknowledged with its last part, as the rest may be given up
-            if (this.acknowledge && !(frame.flags & MORE))
+            if (this.acknowledge && !(frame.flags & FLAG.more))
                 this.say({ type: 'ack', seq: frame.seq });
         }
         this.wake();
@@ -230,7 +230,7 @@ export class PlainClient {
         return this.text('welcome');
     }
 
-    frameWhere(what, question, timeoutMs) {
+    frameWhere(what, question = () => true, timeoutMs = undefined) {
         return this.until(what, () => this.frames.find(question), timeoutMs);
     }
 
