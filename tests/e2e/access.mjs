@@ -10,11 +10,10 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { encodeFrame, http, PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
-import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 
 const NGINX = '/usr/sbin/nginx';
 const skip = notBuilt();
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let plant, tokensFile, tokens;
 
 const token = (...args) => runProgram('plantcast', ['token', ...args]);

@@ -10,11 +10,10 @@ import { after, before, test } from 'node:test';
 import { http, PlainClient } from './support/plain_client.mjs';
 import { promise } from './support/promise.mjs';
 import { sweep } from './support/sweep.mjs';
-import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
 const skip = notBuilt();
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let plant, trail, tokens, syslog;
 
 const path = (name) => join(plant.folder, name);

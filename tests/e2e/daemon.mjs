@@ -9,7 +9,7 @@ import { after, before, test } from 'node:test';
 import { inflateRawSync } from 'node:zlib';
 import { encodeFrame, get, http, PlainClient } from './support/plain_client.mjs';
 import { promise } from './support/promise.mjs';
-import { BIN, notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { BIN, notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 
 const VECTORS = 'protocol/vectors/client';
 const skip = notBuilt();
@@ -27,7 +27,6 @@ before(async () => {
 after(() => plant?.destroy());
 
 const valueOf = (message, index) => message.values.find((row) => row[0] === index);
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
 // Waits until the newest row of a tag satisfies the question, and returns it.
 const tagUntil = (client, index, what, question, timeoutMs) => client.until(`tag ${index}: ${what}`, () => {

@@ -12,11 +12,10 @@ import { folderOfTests } from './support/folders.mjs';
 import { freePort } from './support/ports.mjs';
 import { cpuMs } from './support/processes.mjs';
 import { long } from './support/promise.mjs';
-import { BIN, notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { BIN, notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const folder = folderOfTests();
 
 const write = (text) => {

@@ -8,11 +8,10 @@ import { after, test } from 'node:test';
 import { Faults, faultsMissing } from './support/faults.mjs';
 import { get, PlainClient } from './support/plain_client.mjs';
 import { sweep } from './support/sweep.mjs';
-import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { long } from './support/promise.mjs';
 
 const skip = notBuilt() || (faultsMissing() ?? false);
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const LOSSES = Number(process.env.LOSSES ?? sweep(4, 2)), WARM = ['80', '35'], STILL = 2, GROWTH_BYTES = 24e6, ROUNDS = 3;
 const PATIENCE_MS = 180000;
 const SIZES = [[320, 180], [400, 300], [480, 270], [480, 270]], MOVERS = [2, 3];

@@ -11,11 +11,10 @@ import { encodeFrame, get, PlainClient } from './support/plain_client.mjs';
 import { missing as missingDemo, startPlant } from './support/plant.mjs';
 import { cpuMs } from './support/processes.mjs';
 import { promise } from './support/promise.mjs';
-import { BIN, notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { BIN, notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 
 const skip = notBuilt();
 const noDemo = missingDemo();
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const SILENT = 1000, PATIENCE_S = 3, FLOOD_PER_S = 10000, PATIENCE_MS = 60000;
 const PINGS = 4000, MESSAGES_PER_S = 1000;
 const HELLO = { type: 'hello', width: 320, height: 180, codecs: ['jpeg'] };

@@ -12,7 +12,7 @@ import { after, afterEach, before, test } from 'node:test';
 import { SCREENSHOTS } from './support/browser.mjs';
 import { freePort } from './support/ports.mjs';
 import { family } from './support/processes.mjs';
-import { notBuilt, startTiny } from './support/tiny_plant.mjs';
+import { notBuilt, sleep, startTiny } from './support/tiny_plant.mjs';
 import { missingDisplay, savePng, startDisplay } from './support/x_display.mjs';
 
 const CHROMIUM = '/usr/bin/chromium';
@@ -26,7 +26,6 @@ setInterval(async () => {
         for (;;);
 }, 200);
 </script>`;
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let display, server, port, state, kiosk, beats, answer;
 
 function serve() {

@@ -8,10 +8,9 @@ import { after, afterEach, before, test } from 'node:test';
 import { Broker, missingBroker } from './support/broker.mjs';
 import { promise } from './support/promise.mjs';
 import { PublishedPlant } from './support/published_plant.mjs';
-import { notBuilt, runProgram } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram, sleep } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt() || (missingBroker() ?? false), timeout: 240000 };
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const TAGS = {
     number: ['TI-1,plant/ti1,,°C,temperature,E-101,0.5,0,0,30,,,,,', 'TI-2,,,°C,temperature,E-101,-0.5,0,0,2,,,,,',
         'PI-1,,,bar,pressure,P-101A,3,0,0.5,30,Linear,0,27648,0,10', 'XS-1,plant/xs1,bool,,,,,,,30,,,,,'],

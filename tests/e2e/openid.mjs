@@ -12,11 +12,10 @@ import { PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
 import { long, promise } from './support/promise.mjs';
 import { sweep } from './support/sweep.mjs';
-import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
 const skip = notBuilt();
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let plant, provider, token, port;
 
 const path = (name) => join(plant.folder, name);

@@ -9,13 +9,12 @@ import { median } from './support/crowd.mjs';
 import { CuttableLink, missingPostgres, PostgresServer } from './support/postgres_server.mjs';
 import { promise } from './support/promise.mjs';
 import { sweep } from './support/sweep.mjs';
-import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until as waitFor } from './support/until.mjs';
 
 const skip = notBuilt() || (missingPostgres() ?? false);
 const AWAY_MS = sweep(600000, 0); // additional time for which the database is away in long runs
 const options = { skip, timeout: 240000 + AWAY_MS };
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const TAGS = ['TI-1', 'TI-2', 'PI-1'];
 let server, plant, link, feeding, plain, databases = 0;
 

@@ -6,11 +6,10 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Broker, missingBroker } from './support/broker.mjs';
 import { PublishedPlant } from './support/published_plant.mjs';
-import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until as waitFor } from './support/until.mjs';
 
 const options = { skip: notBuilt() || (missingBroker() ?? false), timeout: 240000 };
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const PREFIX = 'plantcast/two boxes';
 let broker, plant, other, plain, client, heard, publications;
 

@@ -6,11 +6,10 @@ import { chmodSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { PlainClient } from './support/plain_client.mjs';
-import { notBuilt, Program, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, Program, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 280000 };
 const DAY_BYTES = 10e6, DAY_S = 24 * 3600;
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let plant, token;
 const costs = {}; // bytes and lines of the log for each kind of event
 

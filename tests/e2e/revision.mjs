@@ -13,7 +13,7 @@ import { test } from 'node:test';
 import { inFolder } from './support/folders.mjs';
 import { copyGroup, findGroup, readRvm, writeRvm } from './support/rvm_file.mjs';
 import { sweep } from './support/sweep.mjs';
-import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
+import { BIN, missing, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
 const absent = missing();
@@ -23,7 +23,6 @@ const noData = notBuilt || (existsSync(`${SAMPLE}.rvm`) ? false : 'no ../shared/
 const run = (program, ...args) => spawnSync(join(BIN, program), args, { encoding: 'utf8', timeout: 120000 });
 const good = (said) => (assert.equal(said.status, 0, said.stderr), said);
 const KILLS = sweep(24, 6);
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
 const rowsOf = (path) => readFileSync(path, 'utf8').trim().split('\n').slice(1).map((line) => line.split(','));
 const review = (folder) => rowsOf(join(folder, 'review.csv'))

@@ -6,7 +6,7 @@ import { after, before, test } from 'node:test';
 import { get, PlainClient } from './support/plain_client.mjs';
 import { promise } from './support/promise.mjs';
 import { long } from './support/promise.mjs';
-import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, sleep, TinyPlant } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
 const crowded = { ...options, skip: options.skip || long };
@@ -14,7 +14,6 @@ const GREEDY = { localAddress: '127.0.0.2' }, OTHER = { localAddress: '127.0.0.3
 const LARGE = { width: 4096, height: 4096 }, BIG_PICTURE = '/snapshot.png?width=4096&height=4096';
 // Addresses of this machine have per-address limits only if these are given.
 const LIMITS = ['address-sessions=32', 'address-pixels=134217728', 'address-snapshots=4'].flatMap((one) => ['--limit', one]);
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let plant;
 
 before(async () => {

@@ -11,11 +11,10 @@ import { openPage, shoot, waitForHealth, waitForPicture } from './support/browse
 import { alteredFilms } from './support/mp4_boxes.mjs';
 import { chunksOf, pngOf, textOf, withRows, withText } from './support/png_chunks.mjs';
 import { PlainClient } from './support/plain_client.mjs';
-import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 
 const noFfmpeg = spawnSync('ffmpeg', ['-version']).status === 0 ? false : 'ffmpeg is not there';
 const skip = notBuilt();
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const STATEMENT = 'Plantcast statement', SIGNATURE = 'Plantcast signature';
 let plant, picture;
 

@@ -7,10 +7,9 @@ import sparkplug from 'sparkplug-client';
 import payloads from 'sparkplug-payload';
 import { Broker, missingBroker } from './support/broker.mjs';
 import { PublishedPlant } from './support/published_plant.mjs';
-import { notBuilt } from './support/tiny_plant.mjs';
+import { notBuilt, sleep } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt() || (missingBroker() ?? false), timeout: 240000 };
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const encode = (payload) => Buffer.from(payloads.get('spBv1.0').encodePayload(payload));
 const ROWS = ['TI-1,U100/edge#Inlet/Temperature,,°C,temperature,E-101,0.5,0,0,,,,,,',
     'TI-2,U100/edge/skid#TI-2,,°C,temperature,E-101,-0.5,0,0,,,,,,',

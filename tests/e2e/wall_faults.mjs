@@ -6,7 +6,7 @@ import { after, before, test } from 'node:test';
 import { openPage } from './support/browser.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { promise } from './support/promise.mjs';
-import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, sleep, TinyPlant } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
 const [WIDTH, HEIGHT] = [640, 360], NEAR_MS = 2500;
@@ -15,7 +15,6 @@ views: [{ id: all, title: All, view: "group=temperature&camera=3.5,-7,1,1.5,0,0,
 walls:
 - { id: wide, tile: { columns: 2, rows: 1, views: all } }
 `;
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let plant;
 
 before(async () => {

@@ -11,12 +11,11 @@ import { openPage, shoot } from './support/browser.mjs';
 import { freePort } from './support/ports.mjs';
 import { promise } from './support/promise.mjs';
 import { makeCertificate } from './support/receivers.mjs';
-import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { missing, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 
 const none = missing();
 const options = { skip: none.length > 0 ? `not built: ${none}` : false, timeout: 240000 };
 const SIZE = [1280, 720], LARGE_BYTES = 9 << 20, NAME = 'Zwei Kästen, 탱크 2';
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const tokens = {};
 let plant, other, otherArgs, fake, fakePort, picture, small;
 

@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import { after, afterEach, before, beforeEach, test } from 'node:test';
 import { openPage, shoot } from './support/browser.mjs';
 import { PlainClient } from './support/plain_client.mjs';
-import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, sleep, TinyPlant } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
 const [WIDTH, HEIGHT] = [640, 360], SCREEN = { viewport: { width: WIDTH, height: HEIGHT } }, FAR = [1.5, -20, 0];
@@ -19,7 +19,6 @@ walls:
 - { id: wide, tile: { columns: 2, rows: 1, bezel_mm: 10, views: all } }
 - { id: other, displays: [{ grid: [main], panes: [{ area: main, views: all }] }] }
 `;
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let plant, pages, crew, seq = 0;
 
 before(async () => {

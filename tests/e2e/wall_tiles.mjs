@@ -7,7 +7,7 @@ import { burnShift } from '../../clients/web/core/wall.js';
 import { Canvas } from './support/png_pixels.mjs';
 import { get, PlainClient } from './support/plain_client.mjs';
 import { Relay, relayMissing } from './support/relay.mjs';
-import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { long } from './support/promise.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
@@ -22,7 +22,6 @@ walls:
   displays: [{ grid: [a], panes: [{ area: a, clock: yes }] }]
 `;
 const BEZEL = [20, 10].map((mm) => Math.round((mm * Math.hypot(WIDTH, HEIGHT)) / (10 * 25.4)));
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let plant;
 
 before(async () => {

@@ -7,11 +7,10 @@ import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { test } from 'node:test';
 import { freePort } from './support/ports.mjs';
-import { BIN, missing, Program, TinyPlant } from './support/tiny_plant.mjs';
+import { BIN, missing, Program, sleep, TinyPlant } from './support/tiny_plant.mjs';
 
 const RULES = resolve('deploy/prometheus'), absent = missing();
 const noPrometheus = spawnSync('promtool', ['--version']).status !== 0 && 'prometheus is not installed';
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const promtool = (...args) => spawnSync('promtool', args, { cwd: RULES, encoding: 'utf8', timeout: 60000 });
 
 test('every rule is one to promtool, fires when it should, and has its place in the runbook', { skip: noPrometheus }, () => {

@@ -11,13 +11,12 @@ import { after, before, test } from 'node:test';
 import { DESKTOP, openPage, PHONE, shoot, waitForPicture } from '../support/browser.mjs';
 import { freePort } from '../support/ports.mjs';
 import { makeCertificate } from '../support/receivers.mjs';
-import { notBuilt, Program, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
+import { notBuilt, Program, runProgram, sleep, TinyPlant } from '../support/tiny_plant.mjs';
 
 const PASSES = 'proxy_http_version 1.1; proxy_set_header Upgrade $http_upgrade; proxy_set_header Connection "upgrade";';
 const NGINX = '/usr/sbin/nginx', LINES = /proxy_set_header Upgrade \$http_upgrade; proxy_set_header Connection "upgrade";/;
 const options = { skip: notBuilt(), timeout: 200000 };
 const withNginx = { ...options, skip: options.skip || (existsSync(NGINX) ? false : 'nginx is not installed') };
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let plant;
 
 before(async () => {

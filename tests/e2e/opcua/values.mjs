@@ -11,7 +11,7 @@ import { opcuaOptions } from '../support/opcua.mjs';
 import { promise } from '../support/promise.mjs';
 import { PublishedPlant } from '../support/published_plant.mjs';
 import { sweep } from '../support/sweep.mjs';
-import { BIN, runProgram } from '../support/tiny_plant.mjs';
+import { BIN, runProgram, sleep } from '../support/tiny_plant.mjs';
 
 const options = opcuaOptions(180000);
 const NODE = 'nsu=urn:test:plant%3B1;s=';
@@ -19,7 +19,6 @@ const ROWS = [`TI-1,${NODE}TI-1,,°C,temperature,E-101,0.5,0,0,,,,,,`, `TI-2,${N
     `PI-1,${NODE}PI-1,,bar,pressure,P-101A,3,0,0.5,,Linear,0,27648,0,10`, `XS-1,${NODE}XS-1,bool,,,,,,,,,,,,`];
 const ROW3 = `ROW-3,${NODE}Row[3],,,,,,,,,,,,,`, TEXT = `TEXT,${NODE}Text,,,,,,,,,,,,,`;
 const TEMPS = [0, 2, 5].map((i) => `T-${i},[${i}]${NODE}Temps,,,,,,,,,,,,,`);
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const good = { quality_name: 'Good' };
 const MANY = sweep(5000, 1200), PATIENCE_MS = 120000;
 let server, plant;
