@@ -205,7 +205,7 @@ $(out)/lib/%.a:
 	@mkdir -p $(@D); rm -f $@; $(AR) rcs $@ $^
 
 # Generated headers.
-made_headers := $(gen)/glad/include/glad/gl.h $(patsubst %,$(gen)/words_%.h,refused overlay video)
+made_headers := $(gen)/glad/include/glad/gl.h $(gen)/colormaps.h $(patsubst %,$(gen)/words_%.h,refused overlay video)
 # The compiler vectorises loops that select one of two numbers only if comparisons cannot trap.
 $(call objects,$(addsuffix .c,server/surface/surface_field preprocess/subdivision/interp_weights protocol/distance_pack)): \
     CFLAGS += -fno-trapping-math
@@ -252,11 +252,16 @@ COMMIT ?= $(or $(shell git rev-parse --short=12 HEAD 2>/dev/null),unknown)
 $(shell mkdir -p $(gen); echo '#define PLANTCAST_COMMIT "$(COMMIT)"' | cmp -s - $(gen)/commit.h || \
         echo '#define PLANTCAST_COMMIT "$(COMMIT)"' >$(gen)/commit.h)
 
-# Shaders, colour maps and the fleet page as C strings that are looked up by name (server/base/text/embedded.h).
-embedded_files := $(wildcard shaders/*.vert shaders/*.frag shaders/*.comp shaders/*.glsl shaders/maps/*.csv clients/fleet/* \
+# Shaders and the fleet page as C strings that are looked up by name (server/base/text/embedded.h).
+embedded_files := $(wildcard shaders/*.vert shaders/*.frag shaders/*.comp shaders/*.glsl clients/fleet/* \
                              clients/web/core/phrases.js clients/web/words/fleet.*.js)
 $(gen)/embedded.c: deploy/embed $(embedded_files)
 	@mkdir -p $(@D); deploy/embed $(embedded_files) >$@.new && mv $@.new $@
+
+# The built-in colour maps, the default one first.
+color_maps := $(patsubst %,shaders/maps/%.csv,relief calm viridis cividis diverging turbo operator)
+$(gen)/colormaps.h: deploy/colormaps $(color_maps)
+	@mkdir -p $(@D); deploy/colormaps $(color_maps) >$@.new && mv $@.new $@
 
 # Texts that programs share with the page: one file per subject and language.
 word_files = $(foreach l,$(2),clients/web/words/$(1).$(l).js)

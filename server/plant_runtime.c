@@ -7,7 +7,6 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "scene/far_sensors.h"
-#include "field/colormap.h"
 #include "message/view_named.h"
 #include "scene/scene_create.h"
 #include "version.h"

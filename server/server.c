@@ -24,7 +24,6 @@
 #include "encode/encoder.h"
 #include "scene/far_sensors.h"
 #include "scene/manifest.h"
-#include "field/colormap.h"
 #include "plant_runtime.h"
 #include "provenance/signing_key.h"
 #include "reload.h"
@@ -464,7 +463,6 @@ static bool server_start(struct server *server)
     if (!start_audit(server))
         return false;
     set_time_zone(server->runtime->plant);
-    colormaps_of_plant(server->runtime->plant);
     if (server->params.socket_fd < 0 && !net_port_free(server->log, server->params.address, server->params.port))
         return false;
     if (!net_access_good(server->log, &server->params.access) || !load_signing_key(server))

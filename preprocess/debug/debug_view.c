@@ -8,7 +8,7 @@
 #include "base/math/extent.h"
 #include "base/mem.h"
 #include "base/math/vec.h"
-#include "field/colormap.h"
+#include "plant/colormaps.h"
 #include "preprocess/debug/glb_writer.h"
 #include "surface/repair/repair.h"
 #include "surface/mesh/trimesh.h"
@@ -105,7 +105,7 @@ static void color_at(const struct debug_drawing *drawing, uint32_t point, const 
     const uint8_t *rgb = plain;
     if (!plain) {
         double share = drawing->farthest_m > 0 ? (double)drawing->view->distances_m[point] / drawing->farthest_m : 0;
-        rgb = colormap_at((size_t)colormap_find("viridis"))->rgb[(int)min_of(max_of(255 * share, 0), 255)];
+        rgb = colormap_at(NULL, (size_t)colormap_find(NULL, "viridis"))->rgb[(int)min_of(max_of(255 * share, 0), 255)];
     }
     for (int i = 0; i < 3; i++)
         out[i] = (uint16_t)(shade * glb_linear(rgb[i]));

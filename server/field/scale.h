@@ -11,7 +11,7 @@
 #define FIELD_SCALE_H
 #include <stdbool.h>
 
-#include "field/colormap.h"
+#include "base/color/colormap.h"
 #include "plant/plant.h"
 
 enum { SCALE_BREAKS = PLANT_BREAKS, SCALE_EDGES = 64 };

@@ -3,9 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "field/colormap.h"
 #include "message/json_fields.h"
 #include "message/visibility.h"
+#include "plant/colormaps.h"
 
 static const double NUMBER_MAX = 1e12, RANGE_LEAST = 1e-9;
 
@@ -121,12 +121,12 @@ static bool parse_range(const json_t *o, struct params_change *out, struct messa
     return false;
 }
 
-static bool parse_colormap(const json_t *o, struct params_change *out, struct message_error *error)
+static bool parse_colormap(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error)
 {
     const json_t *value = json_object_get(o, "colormap");
     if (!value)
         return true;
-    if (!json_is_string(value) || (out->colormap = colormap_find(json_string_value(value))) < 0)
+    if (!json_is_string(value) || (out->colormap = colormap_find(plant, json_string_value(value))) < 0)
         return refuse_name("colormap", value, REFUSAL_UNKNOWN, error);
     out->given |= GIVEN_COLORMAP;
     return true;
@@ -180,7 +180,7 @@ bool params_parse(const struct plant *plant, const json_t *o, struct params_chan
 {
     *out = (struct params_change){ .selected_asset = -1 };
     return parse_group(plant, o, out, error) && parse_names(o, out, error) && parse_numbers(o, out, error) && parse_reach(o, out, error) &&
-           parse_range(o, out, error) && parse_colormap(o, out, error) && parse_selected(plant, o, out, error) &&
+           parse_range(o, out, error) && parse_colormap(plant, o, out, error) && parse_selected(plant, o, out, error) &&
            parse_light(o, out, error) && parse_environment(plant, o, out, error) && params_parse_show(plant, o, out, error) &&
            params_parse_paint(o, out, error) && visibility_parse(plant, o, out, error);
 }

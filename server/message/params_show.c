@@ -3,8 +3,8 @@
    of single sensors. */
 #include <string.h>
 
-#include "field/colormap.h"
 #include "message/json_fields.h"
+#include "plant/colormaps.h"
 #include "plant/singles.h"
 
 static const char *const NOW = "now";
@@ -183,7 +183,7 @@ static void take_quantity(const struct params_context *context, const struct fie
         return;
     view_default_scale(context->scene, view);
     if (now->show == SHOW_DIFFERENCE || before->show == SHOW_DIFFERENCE)
-        view->colormap = now->show == SHOW_DIFFERENCE ? colormap_find("diverging") : 0;
+        view->colormap = now->show == SHOW_DIFFERENCE ? colormap_find(context->scene->plant, "diverging") : 0;
 }
 
 /* Returns true if the view can be drawn correctly, otherwise fills *error. An asset with a single sensor may have a surface that is not

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "base/text/text.h"
-#include "field/colormap.h"
 #include "message/names.h"
+#include "plant/colormaps.h"
 
 /* tolerance for comparing unit vectors of a view, because reading the written query normalises them again */
 static const double ROUNDING = 1e-12;
@@ -105,7 +105,8 @@ static bool put_field(struct view_address *out, const struct params_context *con
 static bool put_half(struct view_address *out, const struct params_context *context, const struct view *half, struct message_error *error)
 {
     const struct color_scale *scale = &half->color_scale;
-    return put_field(out, context, &half->field, error) && view_address_add(out, "colormap", colormap_at((size_t)half->colormap)->name) &&
+    const struct colormap *map = colormap_at(context->scene->plant, (size_t)half->colormap);
+    return put_field(out, context, &half->field, error) && view_address_add(out, "colormap", map->name) &&
            put_number(out, "ramp_interval", half->ramp_interval) &&
            put_numbers(out, "range", (double[2]){ half->range_min, half->range_max }, 2) &&
            view_address_add(out, "scale", name_of(names_scale, scale->log)) && put_list(out, "breaks", scale->breaks, scale->break_count) &&

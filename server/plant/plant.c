@@ -176,8 +176,6 @@ void plant_destroy(struct plant **plant_ptr)
     free_groups(plant);
     free_sources(plant);
     free_tags(plant);
-    for (size_t i = 0; i < plant->display.colormap_count; i++)
-        mem_free(plant->display.colormaps[i].name);
     for (size_t i = 0; i < plant->display.environment_count; i++) {
         mem_free(plant->display.environments[i].name);
         mem_free(plant->display.environments[i].path);

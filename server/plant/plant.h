@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/color/colormap.h"
 #include "base/text/diag.h"
 #include "plant/tags/units.h"
 
@@ -144,10 +145,6 @@ struct plant_group {
 };
 
 enum { PLANT_COLORMAPS = 16 };
-struct plant_colormap { /* a colour map that is read from an image */
-    char *name;
-    uint8_t rgb[256][3]; /* colours in sRGB, of values from the group's `min` (index 0) to its `max` (index 255) */
-};
 
 enum transport { TRANSPORT_TCP, TRANSPORT_RTU_TCP /* RTU frames over TCP */, TRANSPORT_RTU /* a serial line */ };
 enum { PLANT_HOSTS = 4 };
@@ -374,7 +371,7 @@ struct plant_display { /* initial display of a client, and what its user can cho
     size_t environment_count;
     struct plant_link links[PLANT_LINKS];
     size_t link_count;
-    struct plant_colormap colormaps[PLANT_COLORMAPS];
+    struct colormap colormaps[PLANT_COLORMAPS]; /* read from images (plant/colormaps.h) */
     size_t colormap_count;
 };
 

@@ -244,7 +244,7 @@ const char *plant_needs_restart(const struct plant *before, const struct plant *
         return "another folder of history, or history switched on or off, needs a restart of the daemon";
     bool same = before->display.colormap_count == after->display.colormap_count;
     for (size_t i = 0; same && i < before->display.colormap_count; i++)
-        same = same_text(before->display.colormaps[i].name, after->display.colormaps[i].name) &&
+        same = !strcmp(before->display.colormaps[i].name, after->display.colormaps[i].name) &&
                !memcmp(before->display.colormaps[i].rgb, after->display.colormaps[i].rgb, sizeof(before->display.colormaps[i].rgb));
     return same ? NULL : "changed colour maps need a restart of the daemon";
 }

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "field/lab.h"
+#include "base/color/lab.h"
 
 enum { RUNS = 5, FINDER_CELLS = 7, GREY = 128 };
 /* tolerance for the lengths of a finder pattern's runs of dark and light pixels, as a fraction of a cell */

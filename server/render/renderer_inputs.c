@@ -19,7 +19,7 @@ bool renderer_find_light(struct renderer *renderer, struct frame_context *contex
 {
     if (!context->light)
         context->light = light_get(&renderer->light, &context->lit_by);
-    context->colormap = shaded_colormap_cache_get(&renderer->colormaps, context->view);
+    context->colormap = shaded_colormap_cache_get(&renderer->colormaps, renderer->scene->plant, context->view);
     return context->light && context->colormap.colors;
 }
 

@@ -3,7 +3,7 @@
 #include "render/shaded_colormap.h"
 
 #include "base/mem.h"
-#include "field/lab.h"
+#include "base/color/lab.h"
 
 const uint8_t colormap_no_data[2][3] = { { HATCH_LIGHT_GREY, HATCH_LIGHT_GREY, HATCH_LIGHT_GREY },
                                          { HATCH_DARK_GREY, HATCH_DARK_GREY, HATCH_DARK_GREY } };

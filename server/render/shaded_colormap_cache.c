@@ -20,14 +20,12 @@ static bool same_scale(const struct scale *a, const struct scale *b)
 
 static const struct colormap_shades *shades_of(struct shaded_colormap_cache *colormaps, const struct view *view, const struct colormap *map)
 {
-    size_t number = view_is_operator(view) ? colormap_count() : (size_t)view->colormap;
-    if (!colormaps->shades)
-        colormaps->shades = mem_array(colormap_count() + 1, sizeof(struct colormap_shades *));
-    if (!colormaps->shades[number]) {
-        colormaps->shades[number] = mem_new(sizeof(struct colormap_shades));
-        colormap_shades_init(map, colormaps->shades[number]);
+    struct colormap_shades **shades = &colormaps->shades[view_is_operator(view) ? COLORMAPS_MOST : view->colormap];
+    if (!*shades) {
+        *shades = mem_new(sizeof(struct colormap_shades));
+        colormap_shades_init(map, *shades);
     }
-    return colormaps->shades[number];
+    return *shades;
 }
 
 /* Returns a free entry, or the least recently used one, whose colour map it frees. */
@@ -43,10 +41,11 @@ static struct shaded_colormap_cache_entry *make_room(struct shaded_colormap_cach
     return oldest;
 }
 
-struct shaded_colormap shaded_colormap_cache_get(struct shaded_colormap_cache *colormaps, const struct view *view)
+struct shaded_colormap shaded_colormap_cache_get(struct shaded_colormap_cache *colormaps, const struct plant *plant,
+                                                 const struct view *view)
 {
     struct shaded_colormap_cache_entry wanted = { .used = ++colormaps->uses };
-    view_scale(view, &wanted.scale);
+    view_scale(plant, view, &wanted.scale);
     wanted.line_count = view_lines(view, wanted.lines);
     for (int i = 0; i < colormaps->count; i++) {
         struct shaded_colormap_cache_entry *entry = &colormaps->at[i];
@@ -71,8 +70,7 @@ void shaded_colormap_cache_finish(struct shaded_colormap_cache *colormaps)
 {
     for (int i = 0; i < colormaps->count; i++)
         shaded_colormap_finish(&colormaps->at[i].colormap);
-    for (size_t i = 0; colormaps->shades && i <= colormap_count(); i++)
+    for (size_t i = 0; i <= COLORMAPS_MOST; i++)
         mem_free(colormaps->shades[i]);
-    mem_free(colormaps->shades);
     *colormaps = (struct shaded_colormap_cache){ 0 };
 }

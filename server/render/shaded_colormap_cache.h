@@ -12,18 +12,17 @@ struct shaded_colormap_cache_entry {
     uint64_t used;
 };
 
-enum { SHADED_COLORMAPS = 16 };
+enum { SHADED_COLORMAPS = 16, COLORMAPS_MOST = COLORMAPS_BUILT_IN + PLANT_COLORMAPS };
 struct shaded_colormap_cache { /* zero-initialise */
-    /* tables of shades: those of the colour maps of the protocol, by their index there, then those of the operator's display; an entry is
-       NULL until first used */
-    struct colormap_shades **shades;
+    struct colormap_shades *shades[COLORMAPS_MOST + 1]; /* by index of the colour map, then the operator's; NULL: not used yet */
     struct shaded_colormap_cache_entry at[SHADED_COLORMAPS];
     int count;
     uint64_t uses;
 };
 
 /* Returns the colour map of the view, valid until SHADED_COLORMAPS others have been requested. All zero: out of GPU memory. */
-struct shaded_colormap shaded_colormap_cache_get(struct shaded_colormap_cache *colormaps, const struct view *view);
+struct shaded_colormap shaded_colormap_cache_get(struct shaded_colormap_cache *colormaps, const struct plant *plant,
+                                                 const struct view *view);
 void shaded_colormap_cache_finish(struct shaded_colormap_cache *colormaps);
 
 #endif

@@ -2,6 +2,7 @@
 /* Default views, halves of split views, and equality of views. */
 #include "render/view.h"
 #include "base/math/search.h"
+#include "plant/colormaps.h"
 #include "scene/scene_create.h"
 
 #include <math.h>
@@ -71,14 +72,14 @@ bool view_is_operator(const struct view *view)
     return view->field.show == SHOW_OPERATOR;
 }
 
-void view_scale(const struct view *view, struct scale *scale)
+/* Sets all members but the colour map. */
+static void set_scale(const struct view *view, struct scale *scale)
 {
     if (view_is_operator(view)) {
-        *scale = (struct scale){ .map = colormap_operator(), .min = -LIMIT_PLACE_MOST, .max = LIMIT_PLACE_MOST };
+        *scale = (struct scale){ .min = -LIMIT_PLACE_MOST, .max = LIMIT_PLACE_MOST };
         return;
     }
     *scale = (struct scale){
-        .map = colormap_at((size_t)view->colormap),
         .min = view->range_min,
         .max = view->range_max,
         .log = view->color_scale.log,
@@ -86,6 +87,12 @@ void view_scale(const struct view *view, struct scale *scale)
         .break_count = view->color_scale.break_count,
     };
     memcpy(scale->breaks, view->color_scale.breaks, sizeof(scale->breaks));
+}
+
+void view_scale(const struct plant *plant, const struct view *view, struct scale *scale)
+{
+    set_scale(view, scale);
+    scale->map = view_is_operator(view) ? &colormap_operator : colormap_at(plant, (size_t)view->colormap);
 }
 
 static void get_half(const struct view *view, struct split_half *out)
@@ -143,7 +150,7 @@ int view_lines(const struct view *view, double lines[VIEW_ALL_LINES])
         return LIMIT_COUNT;
     }
     struct scale scale;
-    view_scale(view, &scale);
+    set_scale(view, &scale);
     int count = scale_edges(&scale, lines), distinct = 0;
     memcpy(lines + count, view->color_scale.lines, (size_t)view->color_scale.line_count * sizeof(*lines));
     count += view->color_scale.line_count;

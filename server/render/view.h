@@ -82,7 +82,7 @@ void view_default_scale(const struct scene *scene, struct view *view);
 /* Returns whether the view shows values relative to their alarm limits (SHOW_OPERATOR). Such a view has colours, lines and a legend of its
    own, and ignores the view's other settings of these. */
 bool view_is_operator(const struct view *view);
-void view_scale(const struct view *view, struct scale *scale);
+void view_scale(const struct plant *plant, const struct view *view, struct scale *scale);
 /* Fills `lines` with the ascending values at which a line is drawn: isolines, and edges of colour bands within the range. Returns the
    number of lines. */
 enum { VIEW_ALL_LINES = VIEW_LINES + SCALE_EDGES };

@@ -15,7 +15,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "field/colormap.h"
+#include "plant/colormaps.h"
 #include "render/renderer.h"
 #include "tests/support/crowd.h"
 #include "tests/support/measure.h"
@@ -154,7 +154,7 @@ static double coverage_from(struct paper_bench *bench, const struct camera *came
     make_view(bench, PROBE_WIDTH_PX, PROBE_HEIGHT_PX, &view);
     view.camera = *camera;
     struct frame *one = draw(bench, &view);
-    view.colormap = colormap_find("turbo");
+    view.colormap = colormap_find(NULL, "turbo");
     struct frame *other = draw(bench, &view);
     int covered = 0;
     for (int i = 0; i < PROBE_WIDTH_PX * PROBE_HEIGHT_PX; i++)

@@ -9,7 +9,7 @@
 
 #include "base/clock.h"
 #include "encode/encoder.h"
-#include "field/colormap.h"
+#include "plant/colormaps.h"
 #include "render/renderer_impl.h"
 #include "render/soft/depth_cells.h"
 #include "render/soft/soft_impl.h"
@@ -170,7 +170,7 @@ static void write_pairs(struct demo_scene *bench, const char *folder)
                 move(&view, &pairs[i - 1]);
             snprintf(name, sizeof(name), "%s_%s", looks[look], i ? pairs[i - 1].name : "first");
             write_picture(bench, &view, folder, name);
-            const struct colormap *map = colormap_at((size_t)view.colormap);
+            const struct colormap *map = colormap_at(NULL, (size_t)view.colormap);
             write_file(folder, "colours", "rgb", NULL, 0, map->rgb, sizeof(map->rgb));
         }
 }

@@ -27,7 +27,7 @@ static struct toy *make_wall(void)
 static size_t differences(const struct frame *both, const struct frame *wall)
 {
     size_t count = 0, pixels = (size_t)wall->width_px * (size_t)wall->height_px;
-    const struct colormap *map = colormap_at((size_t)wall->view.colormap);
+    const struct colormap *map = colormap_at(NULL, (size_t)wall->view.colormap);
     for (size_t i = 0; i < pixels; i++)
         count += map_index_exact(map, wall->bgrx + 4 * i) >= 0 && memcmp(both->bgrx + 4 * i, wall->bgrx + 4 * i, 3) != 0;
     return count;

@@ -185,7 +185,7 @@ static void compare_soft(const struct drawn_error_case *site, const struct view 
                 const float *number = measured[y * WIDTH_PX + x];
                 if (!is_within(measured, x, y) || number[2] > 0.5f)
                     continue;
-                int off = map_colors_off(colormap_at((size_t)flat.colormap), frame_pixel(frame, x, y), (double)number[0]);
+                int off = map_colors_off(colormap_at(NULL, (size_t)flat.colormap), frame_pixel(frame, x, y), (double)number[0]);
                 tally->soft += off >= 0;
                 tally->soft_off += off > 1;
             }

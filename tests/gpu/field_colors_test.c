@@ -2,7 +2,7 @@
 /* Field colours: on a flat plate every pixel shows the field's value by the legend's rule. */
 #include "tests/support/test.h"
 
-#include "field/lab.h"
+#include "base/color/lab.h"
 #include "render/overlay/overlay.h"
 #include "render/shaded_colormap.h"
 #include "tests/support/planned.h"
@@ -62,7 +62,7 @@ static double value_at(const struct scalars *scalars, int x, int y)
 static bool is_color_of(const struct view *view, double value, const uint8_t *bgrx)
 {
     struct scale scale;
-    view_scale(view, &scale);
+    view_scale(NULL, view, &scale);
     double slack = 1e-4 * (view->range_max - view->range_min);
     int mix = view->tier == TIER_REFINED ? 4 : 0;
     for (int side = -1; side <= 1; side++) {
@@ -109,7 +109,7 @@ TEST_WITH(test_every_pixel_has_the_legends_color, set_up, tear_down)
     look_down(&view);
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++)
         for (int interpolation = INTERPOLATION_SHEPARD; interpolation <= INTERPOLATION_PAPER; interpolation++)
-            for (int map = 0; map < (int)colormap_count(); map++) {
+            for (int map = 0; map < (int)colormap_count(NULL); map++) {
                 view.tier = (enum tier)tier;
                 view.field.interpolation = (enum interpolation)interpolation;
                 view.colormap = map;
@@ -203,7 +203,7 @@ TEST_WITH(test_labels_stand_on_their_lines, set_up, tear_down)
 
 TEST_WITH(test_beyond_the_range_has_its_own_colors, set_up, tear_down)
 {
-    const struct colormap *map = colormap_at(0);
+    const struct colormap *map = colormap_at(NULL, 0);
     struct view view;
     look_down(&view);
     view.range_min = 40;
@@ -230,7 +230,7 @@ TEST_WITH(test_readings_at_the_ends_stay_on_the_map, set_up, tear_down)
         struct frame *frame = stand_draw(&stand, &view);
         for (int y = 2; y < SIDE_PX - 2; y++)
             for (int x = 2; x < SIDE_PX - 2; x++)
-                assert_int_equal(map_index_exact(colormap_at(0), frame_pixel(frame, x, y)), end ? 255 : 0);
+                assert_int_equal(map_index_exact(colormap_at(NULL, 0), frame_pixel(frame, x, y)), end ? 255 : 0);
         frame_unref(&frame);
     }
 }
@@ -273,7 +273,7 @@ TEST_WITH(test_lost_sensor_leaves_its_place_empty, set_up, tear_down)
     for (int y = 4; y < 40; y++)
         for (int x = SIDE_PX / 2 - 30; x < SIDE_PX / 2 + 30; x++)
             assert_true(is_grey(frame_pixel(frame, x, y)));
-    assert_true(map_index_exact(colormap_at(0), frame_pixel(frame, 6, SIDE_PX - 7)) >= 0);
+    assert_true(map_index_exact(colormap_at(NULL, 0), frame_pixel(frame, 6, SIDE_PX - 7)) >= 0);
     frame_unref(&frame);
 }
 
@@ -290,7 +290,7 @@ TEST_WITH(test_uncertain_is_stippled, set_up, tear_down)
         for (int y = 2; y < SIDE_PX - 2; y++)
             for (int x = 2; x < SIDE_PX - 2; x++) {
                 map += is_color_of(&view, 50.2, frame_pixel(frame, x, y));
-                dots += frame_pixel(frame, x, y)[1] < colormap_at(0)->rgb[128][1] / 2 + colormap_uncertain[1] / 2;
+                dots += frame_pixel(frame, x, y)[1] < colormap_at(NULL, 0)->rgb[128][1] / 2 + colormap_uncertain[1] / 2;
             }
         assert_true(map > SIDE_PX * SIDE_PX / 2);
         assert_true(dots > SIDE_PX * SIDE_PX / 10);
@@ -498,14 +498,14 @@ TEST_WITH(test_default_look_keeps_to_the_palette, set_up, tear_down)
     view.look = LOOK_DEFAULT;
     view.ramp_interval = 200; /* a single band has one colour, in which only lightness may differ */
     uint8_t rgb[3], shaded[3];
-    memcpy(rgb, colormap_at(0)->rgb[128], 3);
+    memcpy(rgb, colormap_at(NULL, 0)->rgb[128], 3);
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         view.tier = (enum tier)tier;
         struct frame *frame = stand_draw(&stand, &view);
         const uint8_t *pixel = frame_pixel(frame, SIDE_PX / 2, SIDE_PX / 2);
         bool found = false;
         for (int row = 0; row < COLORMAP_ROWS; row++) {
-            lab_shade(rgb, colormap_at(0)->shading * (2.0 * row / (COLORMAP_ROWS - 1) - 1), shaded);
+            lab_shade(rgb, colormap_at(NULL, 0)->shading * (2.0 * row / (COLORMAP_ROWS - 1) - 1), shaded);
             found = found || (shaded[0] == pixel[2] && shaded[1] == pixel[1] && shaded[2] == pixel[0]);
         }
         assert_true(found);
@@ -523,7 +523,7 @@ TEST_WITH(test_context_has_no_color, set_up, tear_down)
     struct toy *toy = toy_create();
     struct view view;
     for (uint32_t i = 0; i < STRIPS; i++) {
-        const uint8_t *rgb = colormap_at(0)->rgb[i * 255 / (STRIPS - 1)];
+        const uint8_t *rgb = colormap_at(NULL, 0)->rgb[i * 255 / (STRIPS - 1)];
         materials[i] = (struct asset_material){ .base_color = { rgb[0] / 255.0f, rgb[1] / 255.0f, rgb[2] / 255.0f, 1 },
                                                 .roughness = 0.7f,
                                                 .normal_scale = 1,

@@ -117,7 +117,7 @@ TEST_WITH(test_without_memory_there_is_no_data, set_up, tear_down)
             /* the content differs, so the frame is drawn again */
             assert_true(planned_content(stand.renderer, &view, stand.snapshot) != content);
             struct frame *frame = stand_draw(&stand, &view);
-            assert_true(map_index_exact(colormap_at(0), frame_pixel(frame, 8, SIDE_PX - 8)) >= 0);
+            assert_true(map_index_exact(colormap_at(NULL, 0), frame_pixel(frame, 8, SIDE_PX - 8)) >= 0);
             frame_unref(&frame);
         }
 }

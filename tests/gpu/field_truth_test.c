@@ -73,9 +73,9 @@ static int shown_at(const struct view *view, double x_m, double y_m)
 {
     struct frame *frame = stand_draw(&stand, view);
     const uint8_t *pixel = pixel_at(frame, x_m, y_m);
-    int index = map_index_exact(colormap_at(0), pixel);
+    int index = map_index_exact(colormap_at(NULL, 0), pixel);
     if (index < 0 && view->tier == TIER_REFINED && !is_grey(pixel))
-        index = map_index_nearest(colormap_at(0), pixel, false);
+        index = map_index_nearest(colormap_at(NULL, 0), pixel, false);
     frame_unref(&frame);
     return index;
 }
@@ -128,7 +128,7 @@ TEST_WITH(test_a_reading_of_zero_is_a_reading, set_up, tear_down)
         assert_int_equal(shown_at(&view, 1, 3), 0);
         toy_set(stand.snapshot, HOTTEST, -0.5, QUALITY_GOOD);
         struct frame *frame = stand_draw(&stand, &view);
-        assert_true(is_rgb(pixel_at(frame, 2.02, 2.02), colormap_at(0)->below));
+        assert_true(is_rgb(pixel_at(frame, 2.02, 2.02), colormap_at(NULL, 0)->below));
         frame_unref(&frame);
     }
 }
@@ -189,7 +189,7 @@ TEST_WITH(test_beyond_the_range, set_up, tear_down)
     {
         toy_set(stand.snapshot, HOTTEST, 1e9, QUALITY_GOOD);
         struct frame *frame = stand_draw(&stand, &view);
-        assert_true(is_rgb(pixel_at(frame, 2.02, 2.02), colormap_at(0)->above));
+        assert_true(is_rgb(pixel_at(frame, 2.02, 2.02), colormap_at(NULL, 0)->above));
         frame_unref(&frame);
         view.field.interpolation = INTERPOLATION_PAPER; /* clamps */
         assert_true(shown_at(&view, 2.02, 2.02) >= 0);

@@ -122,7 +122,7 @@ static void split_up(struct view *view)
     memcpy(right.color_scale.breaks, (double[]){ 30, 60 }, 2 * sizeof(double));
     right.color_scale.break_count = 2;
     right.color_scale.lines[right.color_scale.line_count++] = 45;
-    right.colormap = colormap_find("calm");
+    right.colormap = colormap_find(NULL, "calm");
     view_split(view, &right);
 }
 

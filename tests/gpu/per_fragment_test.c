@@ -158,7 +158,7 @@ static void compare(const struct view *view, const float (*numbers)[4], const st
     tally->worst = fmax(tally->worst, fabs((double)number[0] - truth.value));
     if (truth.no_data)
         return;
-    int off = map_colors_off(colormap_at((size_t)view->colormap), frame_pixel(frame, x, y), truth.value);
+    int off = map_colors_off(colormap_at(NULL, (size_t)view->colormap), frame_pixel(frame, x, y), truth.value);
     assert_true(off >= 0);
     tally->most_off = off > tally->most_off ? off : tally->most_off;
 }

@@ -3,7 +3,7 @@
    effect that glTF specifies. */
 #include "tests/support/test.h"
 
-#include "field/lab.h"
+#include "base/color/lab.h"
 #include "render/split_view.h"
 #include "scene/framing.h"
 #include "tests/support/measure.h"

@@ -103,7 +103,7 @@ static double misread(const struct colormap *map, const struct frame *truth, con
 /* Measures each delivery path in p95[]. Returns the worst of them. */
 static double measure(const struct view *view, double p95[WAYS])
 {
-    const struct colormap *map = colormap_at((size_t)view->colormap);
+    const struct colormap *map = colormap_at(NULL, (size_t)view->colormap);
     struct view flat = *view;
     double worst = 0;
     flat.look = LOOK_FLAT;
@@ -164,14 +164,14 @@ TEST_WITH(test_shading_is_not_read_as_value, set_up, tear_down)
     struct view view;
     double p95[WAYS];
     look_close(&view);
-    for (int map = 0; map < (int)colormap_count(); map++)
+    for (int map = 0; map < (int)colormap_count(NULL); map++)
         for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
             if (!sweep_takes(map, tier - TIER_PREVIEW, 2))
                 continue;
             view.colormap = map;
             view.tier = (enum tier)tier;
             double worst = measure(&view, p95);
-            assert_true(worst <= 3 || !colormap_at((size_t)map)->safe);
+            assert_true(worst <= 3 || !colormap_at(NULL, (size_t)map)->safe);
         }
 }
 

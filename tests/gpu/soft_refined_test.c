@@ -264,7 +264,7 @@ TEST(test_new_colors_too)
     struct view view = soft_view(&stand, TIER_REFINED, 300, 200);
     struct frame *frame = soft_draw_anew(&stand, &view);
     frame_unref(&frame);
-    view.colormap = (int)colormap_count() - 1;
+    view.colormap = (int)colormap_count(NULL) - 1;
     view.range_min = 30;
     view.range_max = 70;
     assert_same_anew(&view);

@@ -78,7 +78,7 @@ struct soft_values_tally {
 
 static void compare(const struct view *view, const float (*numbers)[4], const struct frame *frame, struct soft_values_tally *tally)
 {
-    const struct colormap *map = colormap_at((size_t)view->colormap);
+    const struct colormap *map = colormap_at(NULL, (size_t)view->colormap);
     for (int y = 1; y < HEIGHT_PX - 1; y++)
         for (int x = 1; x < WIDTH_PX - 1; x++) {
             int at = y * WIDTH_PX + x;

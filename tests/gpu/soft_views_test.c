@@ -37,7 +37,7 @@ TEST(test_looks)
     static const enum look looks[] = { LOOK_FLAT, LOOK_MATERIALS, LOOK_GLOSSY };
     struct view view = soft_view(&stand, TIER_PREVIEW, 400, 300);
     view.look = LOOK_FLAT;
-    view.colormap = (int)colormap_count() - 1;
+    view.colormap = (int)colormap_count(NULL) - 1;
     view.range_min = 30; /* some values lie below the range and some above */
     view.range_max = 70;
     soft_assert_like_gl(&stand, &view, 0.002);
@@ -148,7 +148,7 @@ TEST(test_still_camera)
             toy_fill(stand.snapshot, i * 3.0);
             soft_assert_like_gl(&stand, &view, selected < 0 ? 0.01 : 0.02);
         }
-        view.colormap = (int)colormap_count() - 1;
+        view.colormap = (int)colormap_count(NULL) - 1;
         view.range_max -= 10;
         soft_assert_like_gl(&stand, &view, selected < 0 ? 0.01 : 0.02);
         view.range_min = 10;

@@ -35,7 +35,7 @@ static void make_view(struct view *view)
     struct view right;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, view);
     right = *view;
-    right.colormap = colormap_find("viridis");
+    right.colormap = colormap_find(NULL, "viridis");
     right.look = LOOK_FLAT;
     memcpy(right.color_scale.lines, (double[]){ 20, 40, 60 }, 3 * sizeof(double));
     right.color_scale.line_count = 3;

@@ -35,7 +35,7 @@ static int reset(void **state)
 /* Counts the pixels with exactly the colour of this value. */
 static int count_value(const struct frame *frame, double value)
 {
-    const struct colormap *map = colormap_at((size_t)view.colormap);
+    const struct colormap *map = colormap_at(NULL, (size_t)view.colormap);
     int count = 0, index = (int)(value / 100 * 256);
     for (int y = 0; y < frame->height_px; y++)
         for (int x = 0; x < frame->width_px; x++)

@@ -2,7 +2,7 @@
 /* Shared parts of GL tests: the context that PLANTCAST_GL names, a plant to draw, and pictures of it. */
 #ifndef TESTS_SUPPORT_RIG_H
 #define TESTS_SUPPORT_RIG_H
-#include "field/colormap.h"
+#include "plant/colormaps.h"
 #include "gpu/gl.h"
 #include "render/renderer.h"
 #include "tests/support/toy.h"

@@ -2,7 +2,7 @@
 /* Tests of the colour maps as tables and as colours. */
 #include "tests/support/test.h"
 
-#include "field/colormap.h"
+#include "plant/colormaps.h"
 
 /* --- CIELAB (D65) and deuteranopia (Machado, Oliveira, Fernandes 2009, severity 1) ---------------------------------------- */
 
@@ -70,30 +70,30 @@ static double lab_distance(const double a[3], const double b[3])
 TEST(test_names)
 {
     static const char *const names[] = { "relief", "calm", "viridis", "cividis", "diverging", "turbo" };
-    assert_int_equal(colormap_count(), 6);
+    assert_int_equal(colormap_count(NULL), 6);
     for (int i = 0; i < 6; i++) {
-        assert_int_equal(colormap_find(names[i]), i);
-        assert_string_equal(colormap_at((size_t)i)->name, names[i]);
+        assert_int_equal(colormap_find(NULL, names[i]), i);
+        assert_string_equal(colormap_at(NULL, (size_t)i)->name, names[i]);
     }
-    assert_int_equal(colormap_find("jet"), -1);
+    assert_int_equal(colormap_find(NULL, "jet"), -1);
 }
 
 TEST(test_tables_are_whole)
 {
     static const uint8_t viridis_first[3] = { 68, 1, 84 }, viridis_last[3] = { 253, 231, 37 }, turbo_last[3] = { 122, 4, 3 };
-    assert_memory_equal(colormap_at(2)->rgb[0], viridis_first, 3);
-    assert_memory_equal(colormap_at(2)->rgb[255], viridis_last, 3);
-    assert_memory_equal(colormap_at(5)->rgb[255], turbo_last, 3);
-    for (size_t i = 0; i < colormap_count(); i++) /* the rows of a map are complete and in order: neighbouring colours differ little */
+    assert_memory_equal(colormap_at(NULL, 2)->rgb[0], viridis_first, 3);
+    assert_memory_equal(colormap_at(NULL, 2)->rgb[255], viridis_last, 3);
+    assert_memory_equal(colormap_at(NULL, 5)->rgb[255], turbo_last, 3);
+    for (size_t i = 0; i < colormap_count(NULL); i++) /* the rows of a map are complete and in order: neighbouring colours differ little */
         for (int row = 1; row < 256; row++)
             for (int k = 0; k < 3; k++)
-                assert_true(abs(colormap_at(i)->rgb[row][k] - colormap_at(i)->rgb[row - 1][k]) <= 8);
+                assert_true(abs(colormap_at(NULL, i)->rgb[row][k] - colormap_at(NULL, i)->rgb[row - 1][k]) <= 8);
 }
 
 TEST(test_ends_are_not_on_the_map)
 {
-    for (size_t i = 0; i < colormap_count(); i++) {
-        const struct colormap *map = colormap_at(i);
+    for (size_t i = 0; i < colormap_count(NULL); i++) {
+        const struct colormap *map = colormap_at(NULL, i);
         double below[3], above[3], at[3];
         lab_of(map->below, 0, below);
         lab_of(map->above, 0, above);
@@ -109,7 +109,7 @@ TEST(test_ends_are_not_on_the_map)
 TEST(test_maps_for_relief_are_low_in_contrast_and_ordered)
 {
     for (int i = 0; i < 4; i++) {
-        const struct colormap *map = colormap_at((size_t)(i / 2));
+        const struct colormap *map = colormap_at(NULL, (size_t)(i / 2));
         int as_deuteranope = i % 2;
         double before[3], at[3], first[3];
         lab_of(map->rgb[0], as_deuteranope, first);
@@ -131,7 +131,7 @@ TEST(test_maps_for_relief_leave_room_for_shading)
     for (int row = 0; row < 512; row++)
         for (int step = -1; step <= 1; step += 2) {
             double lab[3], c[3];
-            lab_of(colormap_at((size_t)(row / 256))->rgb[row % 256], 0, lab);
+            lab_of(colormap_at(NULL, (size_t)(row / 256))->rgb[row % 256], 0, lab);
             lab[0] += 7 * step;
             linear_from_lab(lab, c);
             for (int k = 0; k < 3; k++)
@@ -142,7 +142,7 @@ TEST(test_maps_for_relief_leave_room_for_shading)
 /* Tests that shading is not read as value: L* is changed by up to 7 and the value is read back from the nearest legend colour. */
 TEST(test_relief_is_read_back_through_shading)
 {
-    const struct colormap *map = colormap_at(0);
+    const struct colormap *map = colormap_at(NULL, 0);
     for (int as_deuteranope = 0; as_deuteranope < 2; as_deuteranope++) {
         int misread = 0, total = 0;
         for (int row = 0; row < 256; row += 3)
@@ -173,19 +173,21 @@ TEST(test_relief_is_read_back_through_shading)
 TEST(test_maps_can_be_added)
 {
     uint8_t rgb[256][3];
-    size_t before = colormap_count();
+    struct plant *plant = mem_new(sizeof(*plant));
+    size_t before = colormap_count(plant);
     for (int i = 0; i < 256; i++)
         memcpy(rgb[i], (uint8_t[]){ 20, (uint8_t)i, 20 }, 3); /* in this map darkness encodes the value, so shading must be limited */
-    int added = colormap_add("mine", (const uint8_t(*)[3])rgb);
-    assert_int_equal(added, before);
-    assert_int_equal(colormap_find("mine"), added);
-    const struct colormap *map = colormap_at((size_t)added);
+    assert_true(colormap_add(plant, "mine", (const uint8_t(*)[3])rgb));
+    assert_int_equal(colormap_count(plant), before + 1);
+    assert_int_equal(colormap_find(plant, "mine"), before);
+    assert_int_equal(colormap_find(NULL, "mine"), -1);
+    const struct colormap *map = colormap_at(plant, before);
     assert_memory_equal(map->rgb, rgb, sizeof(rgb));
     assert_true(map->shading >= 2 && map->shading < COLORMAP_SHADING);
     for (int i = 0; i < 256; i++)
         assert_true(memcmp(map->below, rgb[i], 3) && memcmp(map->above, rgb[i], 3));
-    rgb[0][0] = 99;
-    assert_int_equal(colormap_add("mine", (const uint8_t(*)[3])rgb), added); /* changed, not added again */
-    assert_true(colormap_at((size_t)added)->rgb[0][0] == 99 && colormap_count() == before + 1);
-    assert_int_equal(colormap_add("relief", (const uint8_t(*)[3])rgb), -1);
+    while (colormap_count(plant) < COLORMAPS_BUILT_IN + PLANT_COLORMAPS)
+        assert_true(colormap_add(plant, "other", (const uint8_t(*)[3])rgb));
+    assert_false(colormap_add(plant, "one too many", (const uint8_t(*)[3])rgb));
+    mem_free(plant);
 }

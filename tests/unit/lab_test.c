@@ -2,8 +2,8 @@
 /* Shaded colours: only lightness changes, by no more than allowed, and never outside sRGB. */
 #include "tests/support/test.h"
 
-#include "field/colormap.h"
-#include "field/lab.h"
+#include "plant/colormaps.h"
+#include "base/color/lab.h"
 
 /* CIELAB by CIE 15:2004 with the IEC 61966-2-1 primaries, independent of the production code. */
 static void lab_of(const uint8_t rgb[3], double lab[3])
@@ -22,13 +22,13 @@ static void lab_of(const uint8_t rgb[3], double lab[3])
 
 TEST(test_only_lightness_changes)
 {
-    for (size_t m = 0; m < colormap_count(); m++)
+    for (size_t m = 0; m < colormap_count(NULL); m++)
         for (int i = 0; i < 256; i += 5)
             for (double offset = -COLORMAP_SHADING; offset <= COLORMAP_SHADING; offset += 1.75) {
                 uint8_t shaded[3];
                 double was[3], is[3];
-                lab_shade(colormap_at(m)->rgb[i], offset, shaded);
-                lab_of(colormap_at(m)->rgb[i], was);
+                lab_shade(colormap_at(NULL, m)->rgb[i], offset, shaded);
+                lab_of(colormap_at(NULL, m)->rgb[i], was);
                 lab_of(shaded, is);
                 double change = is[0] - was[0];
                 assert_true(fabs(change) <= fabs(offset) + 0.5 && change * offset >= -0.3 * fabs(offset));
@@ -40,7 +40,7 @@ TEST(test_maps_for_relief_have_room_for_shading)
 {
     for (int i = 0; i < 512; i++)
         for (int sign = -1; sign <= 1; sign += 2) {
-            const uint8_t *rgb = colormap_at((size_t)(i / 256))->rgb[i % 256];
+            const uint8_t *rgb = colormap_at(NULL, (size_t)(i / 256))->rgb[i % 256];
             uint8_t shaded[3];
             double was[3], is[3];
             lab_shade(rgb, sign * COLORMAP_SHADING, shaded);
@@ -65,14 +65,14 @@ TEST(test_no_shading_leaves_the_color)
 /* The shading that the colour map files declare is what their colours allow. */
 TEST(test_shading_and_safety)
 {
-    for (size_t m = 0; m < colormap_count(); m++) {
-        struct colormap judged = *colormap_at(m);
+    for (size_t m = 0; m < colormap_count(NULL); m++) {
+        struct colormap judged = *colormap_at(NULL, m);
         colormap_rate_shading(&judged);
         printf("# %s: L* +-%.1f%s\n", judged.name, judged.shading, judged.safe ? ", safe" : "");
-        assert_true(judged.shading == colormap_at(m)->shading && judged.safe == colormap_at(m)->safe);
+        assert_true(judged.shading == colormap_at(NULL, m)->shading && judged.safe == colormap_at(NULL, m)->safe);
     }
-    assert_true(colormap_at(0)->safe && colormap_at(0)->shading == COLORMAP_SHADING);
-    assert_true(colormap_operator()->shading == COLORMAP_SHADING);
+    assert_true(colormap_at(NULL, 0)->safe && colormap_at(NULL, 0)->shading == COLORMAP_SHADING);
+    assert_true(colormap_operator.shading == COLORMAP_SHADING);
 }
 
 TEST(test_maps_that_cannot_be_read_are_not_safe)

@@ -6,7 +6,7 @@
 #include <dirent.h>
 
 #include "base/text/text.h"
-#include "field/colormap.h"
+#include "plant/colormaps.h"
 #include "message/json_fields.h"
 #include "message/view_query.h"
 #include "message/view_query_write.h"
@@ -133,7 +133,7 @@ TEST(what_is_left_out_stays)
     view = changed(view, "{\"type\":\"params\",\"seq\":1,\"power\":4,\"colormap\":\"viridis\",\"selected\":\"P-101A\",\"light\":[0,0,9]}");
     view = changed(view, "{\"type\":\"params\",\"seq\":2,\"ramp_interval\":5}");
     assert_true(view.field.power == 4 && view.ramp_interval == 5 && view.selected_asset == 1 && view.light_dir[2] == 1);
-    assert_int_equal(view.colormap, colormap_find("viridis"));
+    assert_int_equal(view.colormap, colormap_find(NULL, "viridis"));
     view = changed(view, "{\"type\":\"params\",\"seq\":3,\"selected\":null,\"reach_m\":2}");
     assert_true(view.selected_asset == -1 && view.field.reach_m == 2 && view.field.power == 4);
     view = changed(view, "{\"type\":\"params\",\"seq\":4,\"reach_m\":null}");
@@ -205,10 +205,10 @@ TEST(a_view_splits)
     view_default(small_scene(), 641, 360, &view);
     view = both_changed(view, "{\"type\":\"params\",\"seq\":1,\"colormap\":\"viridis\",\"split\":{\"distance\":\"euclidean\"}}");
     assert_true(view.split && view.field.distance == DISTANCE_GEODESIC && view.right.field.distance == DISTANCE_EUCLIDEAN);
-    assert_int_equal(view.right.colormap, colormap_find("viridis")); /* the right half takes what the left half had */
+    assert_int_equal(view.right.colormap, colormap_find(NULL, "viridis")); /* the right half takes what the left half had */
     view = both_changed(view, "{\"type\":\"params\",\"seq\":2,\"colormap\":\"cividis\",\"split\":{\"group\":\"pressure\"}}");
     assert_true(view.field.group == 0 && view.right.field.group == 1 && view.right.range_max == 16);
-    assert_int_equal(view.right.colormap, colormap_find("viridis"));
+    assert_int_equal(view.right.colormap, colormap_find(NULL, "viridis"));
     view_half(&view, 0, &half);
     assert_true(half.width_px == 320 && !half.split && half.field.group == 0);
     view_half(&view, 1, &half);
@@ -246,7 +246,7 @@ TEST(what_is_shown_brings_its_own_range_and_colors)
     assert_true(straight.range_max == 5);
     struct view difference = changed(distance, "{\"type\":\"params\",\"seq\":6,\"show\":\"difference\",\"baseline\":\"now\"}");
     assert_true(difference.range_min == -40 && difference.range_max == 40);
-    assert_int_equal(difference.colormap, colormap_find("diverging"));
+    assert_int_equal(difference.colormap, colormap_find(NULL, "diverging"));
     struct view value = changed(difference, "{\"type\":\"params\",\"seq\":7,\"show\":\"value\"}");
     assert_true(value.range_min == 20 && value.range_max == 180 && value.colormap == 0);
     struct view group = changed(difference, "{\"type\":\"params\",\"seq\":8,\"group\":\"pressure\"}");

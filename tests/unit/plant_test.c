@@ -690,7 +690,7 @@ CASE(colour_maps_come_from_images)
     plant_case_load(f, yaml.at, small_csv);
     plant_case_assert_loaded(f, 0);
     assert_int_equal(f->plant->display.colormap_count, 2);
-    const struct plant_colormap *a = &f->plant->display.colormaps[0], *b = &f->plant->display.colormaps[1];
+    const struct colormap *a = &f->plant->display.colormaps[0], *b = &f->plant->display.colormaps[1];
     assert_string_equal(a->name, "a");
     assert_true(a->rgb[0][0] == 0 && a->rgb[255][2] == 200 && abs(a->rgb[127][0] - 200) < 3 && abs(a->rgb[127][1] - 100) < 3);
     assert_true(abs(a->rgb[85][0] - 100) < 3); /* half-way between the first two */

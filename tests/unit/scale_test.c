@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The scale of the legend: from values to positions to colours, in bands and on logarithmic scales. */
 #include "field/scale.h"
+#include "plant/colormaps.h"
 
 #include "tests/support/test.h"
 
 static struct scale linear(double min, double max, double interval)
 {
-    return (struct scale){ .map = colormap_at(0), .min = min, .max = max, .interval = interval };
+    return (struct scale){ .map = colormap_at(NULL, 0), .min = min, .max = max, .interval = interval };
 }
 
 static void expect_row(int row, double value, double min, double max, double interval)
@@ -28,10 +29,10 @@ TEST(test_continuous)
 
 TEST(test_outside)
 {
-    for (size_t i = 0; i < colormap_count(); i++) {
+    for (size_t i = 0; i < colormap_count(NULL); i++) {
         struct scale scale = linear(0, 100, 10);
         uint8_t rgb[3];
-        scale.map = colormap_at(i);
+        scale.map = colormap_at(NULL, i);
         scale_look_up(&scale, -0.001, rgb);
         assert_memory_equal(rgb, scale.map->below, 3);
         scale_look_up(&scale, 100.001, rgb);

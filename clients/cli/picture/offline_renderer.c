@@ -13,9 +13,9 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "encode/encoder.h"
-#include "field/colormap.h"
 #include "base/text/timestamp.h"
 #include "message/view_query.h"
+#include "plant/colormaps.h"
 #include "plant/sections/image_ramp.h"
 #include "render/overlay/overlay.h"
 #include "render/split_view.h"
@@ -93,22 +93,21 @@ bool offline_renderer_open_gl(struct offline_renderer *offline, const struct sna
     return offline->renderer != NULL;
 }
 
-/* Registers the plant's colour maps, and those that --colormap gives as image files. */
-static bool add_colormaps(const struct offline_renderer *offline, const struct snapshot_options *options)
+/* Adds the colour maps that --colormap gives as image files. */
+static bool add_colormaps(struct offline_renderer *offline, const struct snapshot_options *options)
 {
     static const char name[] = "colormap=";
-    colormaps_of_plant(offline->plant);
     for (size_t i = 0; i < options->arg_count; i++) {
         const char *path = options->args[i] + sizeof(name) - 1;
         uint8_t rgb[256][3];
         char why[IMAGE_WHY_BYTES];
-        if (strncmp(options->args[i], name, sizeof(name) - 1) != 0 || colormap_find(path) >= 0 || !strpbrk(path, "./"))
+        if (strncmp(options->args[i], name, sizeof(name) - 1) != 0 || colormap_find(offline->plant, path) >= 0 || !strpbrk(path, "./"))
             continue;
-        if (!image_ramp(path, rgb, why)) {
-            fprintf(stderr, "plantcast: --colormap: %s: %s\n", path, why);
+        bool read = image_ramp(path, rgb, why);
+        if (!read || !colormap_add(offline->plant, path, (const uint8_t(*)[3])rgb)) {
+            fprintf(stderr, "plantcast: --colormap: %s: %s\n", path, read ? "the plant has too many colour maps" : why);
             return false;
         }
-        colormap_add(path, (const uint8_t(*)[3])rgb);
     }
     return true;
 }

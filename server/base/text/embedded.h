@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Text files embedded in the program: shaders and colour maps, named relative to shaders/, and the fleet page, named by its path.
+/* Text files embedded in the program: shaders, named relative to shaders/, and the fleet page, named by its path.
    Immutable. Thread: any. */
 #ifndef BASE_TEXT_EMBEDDED_H
 #define BASE_TEXT_EMBEDDED_H

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reads the plant file's `colormaps`: names and images. */
+#include "plant/colormaps.h"
+
+#include <stdio.h>
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/text/embedded.h"
 #include "plant/plant_impl.h"
 #include "plant/sections/image_ramp.h"
 
@@ -11,26 +13,45 @@ struct record {
     char *name, *image;
 };
 
-static bool is_taken(const struct plant *plant, const char *name)
+size_t colormap_count(const struct plant *plant)
 {
-    char *file = mem_printf("maps/%s.csv", name);
-    bool taken = embedded_find(file) != NULL;
-    mem_free(file);
-    for (size_t i = 0; i + 1 < plant->display.colormap_count; i++)
-        taken = taken || !strcmp(plant->display.colormaps[i].name, name);
-    return taken;
+    return COLORMAPS_BUILT_IN + (plant ? plant->display.colormap_count : 0);
 }
 
-static void read_image(struct yaml_reader *reader, const struct plant *plant, struct plant_colormap *map, const char *image,
+const struct colormap *colormap_at(const struct plant *plant, size_t index)
+{
+    return index < COLORMAPS_BUILT_IN ? &colormaps_built_in[index] : &plant->display.colormaps[index - COLORMAPS_BUILT_IN];
+}
+
+int colormap_find(const struct plant *plant, const char *name)
+{
+    for (size_t i = 0; i < colormap_count(plant); i++)
+        if (!strcmp(colormap_at(plant, i)->name, name))
+            return (int)i;
+    return -1;
+}
+
+bool colormap_add(struct plant *plant, const char *name, const uint8_t rgb[256][3])
+{
+    if (plant->display.colormap_count == PLANT_COLORMAPS)
+        return false;
+    struct colormap *map = &plant->display.colormaps[plant->display.colormap_count++];
+    snprintf(map->name, sizeof(map->name), "%s", name);
+    memcpy(map->rgb, rgb, sizeof(map->rgb));
+    colormap_complete(map);
+    return true;
+}
+
+static void read_image(struct yaml_reader *reader, const struct plant *plant, uint8_t rgb[256][3], const char *image,
                        struct text_position place)
 {
     char why[IMAGE_WHY_BYTES], *path = *image == '/' ? mem_strdup(image) : mem_printf("%s/%s", plant->files.folder, image);
-    if (!image_ramp(path, map->rgb, why))
+    if (!image_ramp(path, rgb, why))
         yaml_error(reader, place, "image: '%s': %s", path, why);
     mem_free(path);
 }
 
-static void read_colormap(struct yaml_reader *reader, yaml_node_t *node, const struct plant *plant, struct plant_colormap *map)
+static void read_colormap(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
 {
     static const struct yaml_key keys[] = {
         { "name", KEY_NAME, true, offsetof(struct record, name), 0, 0, NULL, NULL },
@@ -39,12 +60,14 @@ static void read_colormap(struct yaml_reader *reader, yaml_node_t *node, const s
     };
     struct record record = { 0 };
     struct yaml_map where;
+    uint8_t rgb[256][3] = { 0 };
     yaml_map_read(reader, node, "a colour map", keys, &record, &where);
-    map->name = record.name ? record.name : mem_strdup("");
-    if (record.name && is_taken(plant, record.name))
+    if (record.name && colormap_find(plant, record.name) >= 0)
         yaml_error(reader, yaml_map_place(&where, "name"), "name: there is a colour map '%s' already", record.name);
     if (record.image)
-        read_image(reader, plant, map, record.image, yaml_map_place(&where, "image"));
+        read_image(reader, plant, rgb, record.image, yaml_map_place(&where, "image"));
+    colormap_add(plant, record.name ? record.name : "", (const uint8_t(*)[3])rgb);
+    mem_free(record.name);
     mem_free(record.image);
 }
 
@@ -55,5 +78,5 @@ void plant_colormaps_read(struct yaml_reader *reader, yaml_node_t *node, void *r
     if (count > PLANT_COLORMAPS)
         yaml_error(reader, yaml_place(node), "colormaps: expected at most %d, found %d", PLANT_COLORMAPS, count);
     for (int i = 0; i < count && i < PLANT_COLORMAPS; i++)
-        read_colormap(reader, yaml_list_item(reader, node, i), plant, &plant->display.colormaps[plant->display.colormap_count++]);
+        read_colormap(reader, yaml_list_item(reader, node, i), plant);
 }

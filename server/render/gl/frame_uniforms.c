@@ -32,7 +32,7 @@ static void fill_scale(struct frame_uniforms *block, const struct frame_context 
 {
     const struct view *view = context->view;
     struct scale scale;
-    view_scale(view, &scale);
+    view_scale(context->gpu_scene->scene->plant, view, &scale);
     double low = scale.log ? log2(scale.min) : scale.min, high = scale.log ? log2(scale.max) : scale.max;
     block->scale[0] = (float)low;
     block->scale[1] = (float)(1 / (high - low));

@@ -57,11 +57,12 @@ static void line_ticks(struct ticks *ticks, const struct scale *scale, const dou
 }
 
 /* Chooses the ticks of the colour bar: both ends of the range and all isolines, if their texts fit; otherwise round numbers. */
-static void choose_ticks(struct ticks *ticks, const struct view *view, double most)
+static void choose_ticks(struct ticks *ticks, const struct pen *pen, double most)
 {
+    const struct view *view = &pen->view;
     struct scale scale;
     double lines[VIEW_ALL_LINES];
-    view_scale(view, &scale);
+    view_scale(pen->scene->plant, view, &scale);
     int count = view_lines(view, lines);
     ticks->count = 0;
     if (view_is_operator(view)) {
@@ -114,7 +115,7 @@ static int choose_limits(const struct pen *pen, struct ticks *ticks, int names[L
 {
     const struct plant_group *group = &pen->scene->plant->groups[pen->view.field.group];
     struct scale scale;
-    view_scale(&pen->view, &scale);
+    view_scale(pen->scene->plant, &pen->view, &scale);
     ticks->count = 0;
     for (int i = 0; i < LIMIT_COUNT && pen->view.field.show == SHOW_VALUE; i++) {
         int before = ticks->count;
@@ -136,7 +137,7 @@ double overlay_bar_left(struct pen *pen)
 double overlay_bar_width(struct pen *pen)
 {
     struct ticks ticks;
-    choose_ticks(&ticks, &pen->view, 12);
+    choose_ticks(&ticks, pen, 12);
     pen_font(pen, 0.9, false);
     return overlay_bar_left(pen) + 2.3 * pen->text_px + text_width(pen, &ticks);
 }
@@ -182,7 +183,7 @@ static void draw_ticks(struct pen *pen, const struct label_box *bar, const struc
 {
     struct ticks ticks;
     double right = bar->x + bar->width;
-    choose_ticks(&ticks, &pen->view, most_ticks(pen, bar->height));
+    choose_ticks(&ticks, pen, most_ticks(pen, bar->height));
     spread(ticks.places, ticks.count, LINE_GAP * pen->text_px / bar->height);
     pen_font(pen, 0.9, false);
     for (int i = 0; i < ticks.count; i++) {
@@ -213,7 +214,7 @@ static void draw_limits(struct pen *pen, const struct label_box *bar, const stru
 void overlay_bar(struct pen *pen, const struct label_box *bar)
 {
     struct scale scale;
-    view_scale(&pen->view, &scale);
+    view_scale(pen->scene->plant, &pen->view, &scale);
     draw_colors(pen, bar, &scale);
     draw_lines(pen, bar, &scale);
     cairo_rectangle(pen->cairo, bar->x, lround(bar->y), bar->width, lround(bar->height));

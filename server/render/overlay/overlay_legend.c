@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "plant/influence.h"
 #include "render/overlay/overlay_pen.h"
+#include "plant/colormaps.h"
 #include "render/shaded_colormap.h"
 
 enum { NOTES = 6, ROWS = 7 + ALARM_PRIORITIES };
@@ -197,7 +198,7 @@ static void write_words(const struct pen *pen, struct legend *legend)
         add_note(legend, pen_word(pen, WORD_DEVIATION));
     if (view->field.show == SHOW_BLIND)
         write_hot_spot(pen, legend);
-    if (!view_is_operator(view) && !colormap_at((size_t)view->colormap)->safe)
+    if (!view_is_operator(view) && !colormap_at(pen->scene->plant, (size_t)view->colormap)->safe)
         add_note(legend, pen_word(pen, WORD_MISREAD));
     write_drawn_error(pen, legend);
     if (view->look == LOOK_GLOSSY) {
@@ -307,7 +308,7 @@ static void draw_rules(struct pen *pen, const struct label_box *box)
 static void draw_dots(struct pen *pen, const struct label_box *box)
 {
     struct scale scale;
-    view_scale(&pen->view, &scale);
+    view_scale(pen->scene->plant, &pen->view, &scale);
     fill_box(pen, box, scale.map->rgb[128]);
     pen_rgb(pen, colormap_uncertain);
     for (int i = 0; i < 6; i++) {
@@ -320,7 +321,7 @@ static void draw_dots(struct pen *pen, const struct label_box *box)
 static void draw_swatch(struct pen *pen, const struct label_box *box, enum row row)
 {
     struct scale scale;
-    view_scale(&pen->view, &scale);
+    view_scale(pen->scene->plant, &pen->view, &scale);
     switch (row) {
     case ROW_BELOW: fill_box(pen, box, scale.map->below); break;
     case ROW_NO_LIMITS: draw_rules(pen, box); break;
@@ -378,7 +379,7 @@ void overlay_legend(struct pen *pen)
 {
     struct scale scale;
     struct legend legend = { .note_count = 0 };
-    view_scale(&pen->view, &scale);
+    view_scale(pen->scene->plant, &pen->view, &scale);
     write_words(pen, &legend);
     lay_out(pen, &legend);
     pen_card(pen, &legend.card);
@@ -423,7 +424,7 @@ bool overlay_legend_is_shared(struct pen *pen)
             left = pen->view;
         pen_choose_half(pen, half);
         write_words(pen, &legends[half]);
-        view_scale(&pen->view, &scales[half]);
+        view_scale(pen->scene->plant, &pen->view, &scales[half]);
     }
     const struct view *right = &pen->view;
     const struct color_scale *a = &left.color_scale, *b = &right->color_scale;

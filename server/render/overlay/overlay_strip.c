@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "field/lab.h"
+#include "base/color/lab.h"
 #include "protocol/strip_format.h"
 #include "render/overlay/overlay_pen.h"
 
@@ -19,7 +19,7 @@ static void choose_ink(const struct pen *pen, struct strip_ink *ink)
 {
     const struct view *view = &pen->view;
     const struct plant *plant = pen->scene->plant;
-    view_scale(view, &ink->scale);
+    view_scale(plant, view, &ink->scale);
     struct strip strip = {
         .min = (float)ink->scale.min, .max = (float)ink->scale.max, .log = ink->scale.log, .show = (uint8_t)view->field.show
     };

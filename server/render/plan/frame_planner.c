@@ -129,7 +129,7 @@ void frame_plan_complete(struct frame_plan *plan, const struct frame_planner *pl
 {
     int64_t begin_ns = clock_mono_ns();
     struct scale scale;
-    view_scale(&plan->view, &scale);
+    view_scale(planner->gpu_scene->scene->plant, &plan->view, &scale);
     fields_trim(planner->fields);
     if (plan->view.look != LOOK_MATERIALS)
         fields_get(planner->fields,

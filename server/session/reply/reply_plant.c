@@ -7,9 +7,9 @@
 
 #include "base/mem.h"
 #include "base/text/json_text.h"
-#include "field/colormap.h"
 #include "message/json_values.h"
 #include "message/names.h"
+#include "plant/colormaps.h"
 #include "plant/influence.h"
 #include "plant/singles.h"
 #include "session/session.h"
@@ -75,11 +75,11 @@ static json_t *groups(const struct plant *plant)
     return list;
 }
 
-static json_t *colormaps(void)
+static json_t *colormaps(const struct plant *plant)
 {
     json_t *list = json_array();
-    for (size_t i = 0; i < colormap_count(); i++) {
-        const struct colormap *map = colormap_at(i);
+    for (size_t i = 0; i < colormap_count(plant); i++) {
+        const struct colormap *map = colormap_at(plant, i);
         /* the 8 extra bytes are needed because lws_b64_encode_string() writes a few bytes beyond the text */
         char base64[sizeof(map->rgb) / 3 * 4 + 8];
         lws_b64_encode_string((const char *)map->rgb, sizeof(map->rgb), base64, sizeof(base64));
@@ -194,7 +194,7 @@ static void set_home(json_t *object, const struct session_context *context, int 
 static void set_lists(json_t *object, const struct session_context *context, bool open)
 {
     json_object_set_new(object, "groups", groups(context->plant));
-    json_object_set_new(object, "colormaps", colormaps());
+    json_object_set_new(object, "colormaps", colormaps(context->plant));
     json_object_set_new(object, "environments", environments(context->plant));
     json_object_set_new(object, "links", open ? json_array() : links(context->plant));
     json_object_set_new(object, "assets", assets(context->services->scene, open));

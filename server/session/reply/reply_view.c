@@ -3,11 +3,11 @@
 #include "session/reply/reply_impl.h"
 
 #include "base/text/json_text.h"
-#include "field/colormap.h"
 #include "message/json_values.h"
 #include "message/names.h"
 #include "message/view_named.h"
 #include "message/visibility.h"
+#include "plant/colormaps.h"
 #include "session/session.h"
 #include "session/view/session_view.h"
 #include "views/named_views.h"
@@ -73,7 +73,7 @@ static void set_shown(json_t *object, const struct session_context *context, con
     json_object_set_new(object, "power", number(field->power));
     json_object_set_new(object, "radius_m", number(field->radius_m));
     json_object_set_new(object, "reach_m", number(field->reach_m));
-    json_object_set_new(object, "colormap", string(colormap_at((size_t)view->colormap)->name));
+    json_object_set_new(object, "colormap", string(colormap_at(plant, (size_t)view->colormap)->name));
     json_object_set_new(object, "ramp_interval", number(view->ramp_interval));
     json_object_set_new(object, "range", json_pack("[o,o]", number(view->range_min), number(view->range_max)));
     json_object_set_new(object, "scale", string(name_of(names_scale, view->color_scale.log)));

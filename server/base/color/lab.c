@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Conversions of colour spaces (CIE 15:2004, IEC 61966-2-1). */
-#include "field/lab.h"
+#include "base/color/lab.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Conversion between sRGB and CIELAB (D65), and simulation of deuteranopia. Pure. Thread: any. */
-#ifndef FIELD_LAB_H
-#define FIELD_LAB_H
+#ifndef BASE_COLOR_LAB_H
+#define BASE_COLOR_LAB_H
 #include <stdbool.h>
 #include <stdint.h>
 

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "field/colormap.h"
-#include "field/lab.h"
+#include "base/color/colormap.h"
+#include "base/color/lab.h"
 
 static const double MAX_MISREAD = 0.03 * 256; /* tolerance in colours */
 /* fraction of samples that must be read correctly; stricter than the 0.95 promised for frames (struct colormap: safe), because frames
