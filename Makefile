@@ -205,7 +205,7 @@ $(out)/lib/%.a:
 	@mkdir -p $(@D); rm -f $@; $(AR) rcs $@ $^
 
 # Generated headers.
-made_headers := $(gen)/glad/include/glad/gl.h $(gen)/colormaps.h $(patsubst %,$(gen)/words_%.h,refused overlay video)
+made_headers := $(gen)/glad/include/glad/gl.h $(gen)/colormaps.h $(gen)/engineers.h $(patsubst %,$(gen)/words_%.h,refused overlay video)
 # The compiler vectorises loops that select one of two numbers only if comparisons cannot trap.
 $(call objects,$(addsuffix .c,server/surface/surface_field preprocess/subdivision/interp_weights protocol/distance_pack)): \
     CFLAGS += -fno-trapping-math
@@ -262,6 +262,12 @@ $(gen)/embedded.c: deploy/embed $(embedded_files)
 color_maps := $(patsubst %,shaders/maps/%.csv,relief calm viridis cividis diverging turbo operator)
 $(gen)/colormaps.h: deploy/colormaps $(color_maps)
 	@mkdir -p $(@D); deploy/colormaps $(color_maps) >$@.new && mv $@.new $@
+
+# Parameters for engineers only, from the page's list: X(name, part of the name of its bit in enum params_given).
+$(gen)/engineers.h: clients/web/core/session.js
+	@mkdir -p $(@D); sed -n "s/^export const ENGINEERS = \[\(.*\)\];.*/\1/p" $< | tr -d "' " | tr , '\n' | \
+	    awk 'BEGIN { printf "#define ENGINEERS_PARAMS(X)" } { bit = toupper($$0); sub(/_M$$/, "", bit); printf " X(%s, %s)", $$0, bit } \
+	         END { print ""; exit NR == 0 }' >$@.new && mv $@.new $@
 
 # Texts that programs share with the page: one file per subject and language.
 word_files = $(foreach l,$(2),clients/web/words/$(1).$(l).js)

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "engineers.h" /* made from clients/web/core/session.js */
 #include "message/names.h"
 #include "message/view_address.h"
 
@@ -14,14 +15,15 @@ const struct name names_role[] = {
 
 /* Parameters that only engineers may change: each combination of values makes the server compute another field, and using them needs
    expertise. */
-static const unsigned ENGINEERS = GIVEN_FILL | GIVEN_STRENGTH | GIVEN_DECAY | GIVEN_POWER | GIVEN_RADIUS | GIVEN_REACH | GIVEN_SENSORS;
-
-/* names of these parameters in queries */
-static const char *const ENGINEERS_NAMES[] = { "fill", "strength", "decay", "power", "radius_m", "reach_m", "sensors" };
+#define BIT(name, bit) | GIVEN_##bit
+#define NAME(name, bit) #name,
+#define LISTED(name, bit) ", " #name
+static const unsigned ENGINEERS = 0 ENGINEERS_PARAMS(BIT);
+static const char *const ENGINEERS_NAMES[] = { ENGINEERS_PARAMS(NAME) };
 
 static bool refuse_params(struct message_error *error)
 {
-    message_refuse(error, "not_allowed", "fill, strength, decay, power, radius_m, reach_m, sensors", REFUSAL_ROLE_ENGINEER);
+    message_refuse(error, "not_allowed", &(ENGINEERS_PARAMS(LISTED))[2], REFUSAL_ROLE_ENGINEER);
     return false;
 }
 

@@ -13,7 +13,8 @@ export const PARAMS = [
     'show', 'split',
 ];
 const SAID = [...PARAMS, 'sensor', 'baseline', 'baselines', 'sensors', 'unit']; // parameters that the server reports
-export const ENGINEERS = ['fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'sensors']; // parameters for engineers only
+// Parameters for engineers only. The build makes the server's list from this line.
+export const ENGINEERS = ['fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'sensors'];
 // parameters that both halves of a split view share
 const SHARED = ['light', 'environment', 'backdrop', 'arrows', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split'];
 // lists that are sent even if empty, because the plant's defaults may not be empty
