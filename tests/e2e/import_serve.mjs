@@ -449,7 +449,7 @@ test('placed by hand: the engineer\'s panel takes over, and the tag is not unpla
     const engineer = page.locator('#engineer'), dialog = page.locator('dialog.diff[open]');
     const { x, y } = await drawnAt(page, [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, max[2]]);
     await page.mouse.click(x, y);
-    await engineer.locator('.moves .off', { hasText: /^not on E-101 as listed$/ }).waitFor();
+    await engineer.locator('.moves .off', { hasText: /^not on E-101, where it is listed$/ }).waitFor();
     await engineer.getByRole('button', { name: 'Save …' }).click();
     await dialog.locator('.off', { hasText: 'TT-9999 was on E-101 and is now on P-201A: is that intended?' }).waitFor();
     await settle(page);
@@ -694,8 +694,8 @@ test('a guessed unit is a question that reads again; lost elements are counted a
         new RegExp(what).test(document.querySelector('#import .report').textContent), pattern, { timeout: 120000 });
     try {
         await choose(sheet, [{ name: 'skid.stl', text: stl() }, { name: 'lines.ifc', text: ifc }]);
-        await shown('skid.stl does not say its unit. Taken as metres: the model is 2 m long');
-        await shown('2 elements lack triangles');
+        await shown('skid.stl does not state its unit. If the unit is metres, the model is 2 m long');
+        await shown('2 elements have missing triangles');
         await sheet.locator('#import [data-kind=lost] summary').click();
         await sheet.locator('#import [data-kind=lost] li').nth(1).waitFor();
         const items = await sheet.locator('#import [data-kind=lost] li').allTextContents();
@@ -703,7 +703,7 @@ test('a guessed unit is a question that reads again; lost elements are counted a
         assert.match(items[1], /^LINE-1001 #904 .*its representation is empty/);
         await settle(sheet);
         await shoot(sheet, 'import-11-report');
-        for (const [language, words] of [['ko', '삼각형이 빠진 요소 2개'], ['de', '2 Elementen fehlen Dreiecke']]) {
+        for (const [language, words] of [['ko', '삼각형이 빠진 요소 2개'], ['de', '2 Elemente sind unvollständig']]) {
             await sheet.goto(`${own.url}?lang=${language}`);
             await sheet.getByText(words).waitFor({ state: 'attached' });
         }
@@ -713,7 +713,7 @@ test('a guessed unit is a question that reads again; lost elements are counted a
         await sheet.locator('#import .unit [data-unit=mm]').click();
         await sheet.waitForFunction(() => document.querySelector('#import .report') && !document.querySelector('#import .unit'), null,
             { timeout: 120000 });
-        await shown('^2 elements lack triangles');
+        await shown('^2 elements have missing triangles');
         const { models } = await (await own.api('/report')).json(), state = await own.idle();
         assert.deepEqual([state.units, state.mesh_units, state.failed], ['', 'mm', null]);
         assert.deepEqual(models.map(({ file, unit, lost_count: count }) => [file, unit, count]),

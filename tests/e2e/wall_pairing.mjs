@@ -116,7 +116,7 @@ test('an engineer lets it in, and who did it is in the audit trail', options, as
     await desk.page.click('#devices button[type=submit]');
     const row = desk.page.locator('#devices-list li');
     await row.waitFor();
-    assert.match(await row.textContent(), /Display 1 of room, from 127\.0\.0\.1, paired by engineer-1/);
+    assert.match(await row.textContent(), /Display 1 of room, address 127\.0\.0\.1, paired by engineer-1/);
     id = await row.getAttribute('data-id');
     await wall.page.locator('.pane.alarms').waitFor();
     await wall.page.waitForFunction(() => document.querySelector('.pane.views iframe').contentWindow.plantcast?.session.picture);

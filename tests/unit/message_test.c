@@ -358,7 +358,7 @@ TEST(what_is_not_drawn_truly_on_whole_triangles_is_refused)
     assert_false(query(paper, 1, &view, &error));
     assert_int_equal(error.refusal.code, REFUSAL_UNCUT);
     assert_string_equal(error.refusal.args, "group=temperature\ncount=1\nall=2\nasset=E-101");
-    assert_non_null(strstr(error.text, "“paper” cannot be drawn accurately where temperature has one"));
+    assert_non_null(strstr(error.text, "“paper” (Kim & Suh) cannot be drawn accurately where temperature has one"));
     assert_false(query(split, 1, &view, &error));
     assert_false(query(far, 2, &view, &error));
     assert_int_equal(error.refusal.code, REFUSAL_FAR_UNCUT);

@@ -8,15 +8,15 @@ quiet: Keine aktiven Alarme.
 aside: Zurückgestellt oder unterdrückt ({count})
 until: bis {time}
 by: durch {who}
-edge: Ziehen ändert die Breite
+edge: Zum Ändern der Breite ziehen
 held: Messung gestört: letzter Zustand gehalten
 heldfrom: Messung gestört: Zustand gehalten seit {time}
 fly: Zu {tag} fliegen
 stale: Nicht aktuell: Stand {time}, als die Verbindung abbrach.
-which: Welche Alarme
+which: Angezeigte Alarme
 search: Filtern
 unfilter: Filter aufheben: {count} von {all}, {what}
-filtered(one): Der einzige Alarm passt nicht.
+filtered(one): Der einzige Alarm passt nicht zum Filter.
 filtered(other): Keine Treffer unter {count} Alarmen.
 choose: {tag} auswählen
 chooseall: Alle auswählen
@@ -41,12 +41,12 @@ gone: Gegangen
 acknowledge: Quittieren
 shelve: Zurückstellen …
 reset: Zurücksetzen
-unshelve: Wieder melden
+unshelve: Zurückstellung aufheben
 in_service: Wieder in Betrieb nehmen
 
 [shelve]
 title: {what} zurückstellen
-for: Für
+for: Dauer
 quarter: 15 Minuten
 hour: 1 Stunde
 shift: 8 Stunden
@@ -60,7 +60,7 @@ active: Aktiv
 unacknowledged: Unquittiert
 acknowledged: Quittiert
 returned: Gegangen
-latched: Gehalten
+latched: Selbsthaltend
 shelved: Zurückgestellt
 suppressed: Unterdrückt
 out_of_service: Außer Betrieb
@@ -71,12 +71,12 @@ priority: Prio
 tag: Messstelle
 kind: Alarm
 area: Bereich
-about: Benennung
-us: Gekommen
-then: Damals
+about: Beschreibung
+us: Zeit
+then: Wert
 now: Jetzt
 limit: Grenze
-since: Dauer
+since: Alter
 do: Aktionen
 order: Reihenfolge
 sort: Nach {what} sortieren
@@ -84,7 +84,7 @@ sort: Nach {what} sortieren
 [journal]
 title: Journal
 csv: CSV
-which: Welche Änderungen
+which: Angezeigte Änderungen
 span: Zeitraum
 all: Alle Änderungen
 raised: Gekommen
@@ -112,18 +112,18 @@ reset: Zurückgesetzt
 shelve: Zurückgestellt
 unshelve: Wieder gemeldet
 suppress: Unterdrückt
-unsuppress: Nicht unterdrückt
+unsuppress: Nicht mehr unterdrückt
 out_of_service: Außer Betrieb
 in_service: In Betrieb
-carry: Durch Gerät ersetzt
-call: Gekommen
+carry: Durch Gerätealarm abgedeckt
+call: Erneut gekommen
 
 [moment]
-show: Den Augenblick davor zeigen
+show: 30 s vor dem Alarm zeigen
 raised: gekommen {time}
 early: {s} s davor
 late: {s} s danach
-now: beim Alarm
+now: Zeitpunkt des Alarms
 before: 30 s davor
 at: Zum Alarm
 play: Abspielen

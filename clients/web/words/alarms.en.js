@@ -13,10 +13,10 @@ held: bad measurement: last state held
 heldfrom: bad measurement: state held since {time}
 fly: Fly to {tag}
 stale: Out of date: as of {time}, when the connection was lost.
-which: Which alarms
+which: Alarms to show
 search: Filter
 unfilter: Clear the filter: {count} of {all} shown, {what}
-filtered(one): The only alarm does not match.
+filtered(one): The only alarm does not match the filter.
 filtered(other): No match among {count} alarms.
 choose: Select {tag}
 chooseall: Select all
@@ -46,7 +46,7 @@ in_service: Return to service
 
 [shelve]
 title: Shelve {what}
-for: For
+for: Duration
 quarter: 15 minutes
 hour: 1 hour
 shift: 8 hours
@@ -72,8 +72,8 @@ tag: Tag
 kind: Alarm
 area: Area
 about: Description
-us: Raised
-then: Then
+us: Time
+then: Value
 now: Now
 limit: Limit
 since: Age
@@ -84,7 +84,7 @@ sort: Sort by {what}
 [journal]
 title: Journal
 csv: CSV
-which: Which changes
+which: Changes to show
 span: Time range
 all: All changes
 raised: Raised
@@ -102,7 +102,7 @@ to: To
 count(one): {count} change
 count(other): {count} changes
 cut: {count} of the newest {all} changes, back to {time}
-older: Read older ones
+older: Load older changes
 
 [change]
 raise: Raised
@@ -115,17 +115,17 @@ suppress: Suppressed
 unsuppress: Unsuppressed
 out_of_service: Out of service
 in_service: In service
-carry: Held by device
-call: Raised
+carry: Covered by device alarm
+call: Raised again
 
 [moment]
-show: Show the moment before
+show: Show 30 s before the alarm
 raised: raised {time}
 early: {s} s before
 late: {s} s after
-now: at the raise
+now: at the time of the alarm
 before: 30 s before
-at: At the alarm
+at: Go to the alarm
 play: Play
 live: Back to live
 `;

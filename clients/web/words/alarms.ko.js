@@ -13,14 +13,14 @@ held: 계측 불량: 마지막 상태 유지
 heldfrom: 계측 불량: {time}부터 상태 유지
 fly: {tag}(으)로 이동
 stale: 현재 값 아님: 연결이 끊긴 {time} 기준입니다.
-which: 알람 종류
+which: 알람 상태
 search: 필터
 unfilter: 필터 해제: {all}건 중 {count}건, {what}
 filtered(other): {count}건 중 필터에 맞는 것이 없습니다.
 choose: {tag} 선택
 chooseall: 모두 선택
 acknowledge: {count}건 확인
-also: 또한 {what}
+also: 그 밖에 {what}
 priorities: 모든 우선순위
 areas: 모든 구역
 chosen(other): {count}건 선택됨
@@ -69,8 +69,8 @@ tag: 태그
 kind: 알람
 area: 구역
 about: 설명
-us: 발생
-then: 발생값
+us: 시각
+then: 값
 now: 현재값
 limit: 한계
 since: 경과
@@ -98,7 +98,7 @@ from: 시작
 to: 끝
 count(other): 변경 {count}건
 cut: 최신 변경 {all}건 중 {count}건, {time}까지
-older: 이전 변경 읽기
+older: 이전 변경 더 보기
 
 [change]
 raise: 발생
@@ -112,10 +112,10 @@ unsuppress: 억제 해제
 out_of_service: 사용 중지
 in_service: 사용 재개
 carry: 장치 알람으로 대체
-call: 발생
+call: 다시 알림
 
 [moment]
-show: 발생 직전 보기
+show: 발생 30초 전 보기
 raised: {time} 발생
 early: {s}초 전
 late: {s}초 후

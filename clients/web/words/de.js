@@ -4,12 +4,13 @@
 export default `
 none: keine
 novalue: kein Wert
-viewport: Anlage, 3D-Ansicht. Pfeiltasten drehen, Plus und Minus zoomen, W A S D verschieben, F passt ein, Fragezeichen hilft.
+viewport: Anlage, 3D-Ansicht. Pfeiltasten drehen, Plus und Minus zoomen, W A S D verschieben, F zeigt alles,
+  Fragezeichen öffnet die Hilfe.
 legend: Legende
 card: Messstelle
 place: Stelle
 status: Status
-timings: Leistungswerte
+timings: Antwortzeiten
 
 [part]
 failed: Dieser Teil der Seite konnte nicht geladen werden. Er wird geladen, sobald der Server antwortet.
@@ -24,16 +25,16 @@ d: {n} d
 equipment: Anlagenliste
 quantity: Messgröße
 display: Darstellung
-colours: Farben
+colours: Farbskala
 ramp: Farbstufen
 lines: Isolinien
 look: Schattierung
-show: Zeigen
+show: Anzeige
 views: Ansichten, Schnitt, sichtbare Anlagenteile
 picture: Bild: Vergleich, Licht
 split: Geteilte Ansicht
 history: Verlauf
-fit: Einpassen
+fit: Ins Bild einpassen
 home: Grundansicht
 help: Hilfe
 hold: Werte einfrieren
@@ -57,8 +58,8 @@ difference: Differenz
 [look]
 default: Farbtreu
 glossy: Glänzend
-flat: Flach
-materials: Werkstoffe
+flat: Unschattiert
+materials: Materialien
 
 [lines]
 none: Keine
@@ -67,9 +68,9 @@ chosen: Eigene
 
 [ramp]
 smooth: Stufenlos
-group: Standardbänder
+group: Standardstufen
 limits: Grenzwerte
-chosen: Eigene Bänder
+chosen: Eigene Stufen
 
 [quantity]
 temperature: Temperatur
@@ -164,17 +165,17 @@ leap.less: Am Ende des Monats (UTC) entfällt eine Schaltsekunde.
 oldest: Ältester Messwert
 frames: Bilder
 rate: {count}/s
-still: ruht
+still: Leerlauf
 latency: Latenz
 ms: {n} ms
-behind: {n} s zurück
+behind: {n} s Verzug
 config: Konfiguration
 picture: Bild
 retry: Jetzt versuchen
 
 [health]
 nothing: Zu dieser Zeit wurden keine Daten aufgezeichnet
-connecting: Verbinden
+connecting: Verbindet …
 live: Live
 partly: Live, teils simuliert
 simulated: Simuliert
@@ -203,7 +204,7 @@ version: Diese Seite und der Server haben verschiedene Versionen
 forbidden: Nicht erlaubt
 long: Eine Nachricht war zu lang
 full: Der Server ist ausgelastet
-slow: Dieser Browser kam nicht nach
+slow: Dieser Browser ist zu langsam
 unreachable: Der Server ist nicht erreichbar
 unanswered: Der Server antwortet nicht
 silent: Der Server antwortet nicht mehr

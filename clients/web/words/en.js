@@ -4,10 +4,10 @@
 export default `
 none: none
 novalue: no value
-viewport: Plant, 3D view. Arrow keys turn, plus and minus zoom, W A S D move, F fits, question mark helps.
+viewport: Plant, 3D view. Arrow keys turn, plus and minus zoom, W A S D move, F fits the view, question mark opens help.
 legend: Legend
 card: Tag
-place: Place
+place: Location
 status: Status
 timings: Performance
 
@@ -57,7 +57,7 @@ difference: Difference
 [look]
 default: True colours
 glossy: Glossy
-flat: Flat
+flat: Unshaded
 materials: Materials
 
 [lines]
@@ -187,7 +187,7 @@ sources: Sources {sources} do not answer.
 past: History
 returning: Returning to live
 playing: {instant}, playing {speed}×
-back: {instant}, playing back {speed}×
+back: {instant}, playing backwards {speed}×
 noanswer: No answer
 silent: No response from the server for {age}.
 old: This picture is {age} old.
@@ -199,7 +199,7 @@ retrying: Trying again now.
 
 [reason]
 down: The server shut down
-version: This page and the server speak different versions
+version: This page and the server have different versions
 forbidden: Not allowed
 long: A message was too long
 full: The server has reached its limit

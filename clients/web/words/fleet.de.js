@@ -9,7 +9,7 @@ priority: Priorität {priority}
 since: Keine Antwort seit {time}
 never: Noch keine Antwort
 first: Erste Abfrage läuft
-links: Verbindungen
+links: Datenquellen
 down: {down} von {all} gestört
 up: {all} in Ordnung
 version: Version

@@ -9,7 +9,7 @@ priority: Priority {priority}
 since: No answer since {time}
 never: No answer yet
 first: First request sent
-links: Links
+links: Data sources
 down: {down} of {all} down
 up: {all} up
 version: Version

@@ -21,21 +21,21 @@ phase.loading: Die Anlage wird gezeichnet …
 done: Die Anlage ist aktiv
 cancel: Abbrechen
 again: Noch einmal lesen
-details: Was gefunden wurde
+details: Bericht
 size: Größe
 metres: {wide} × {deep} × {high} m
 encoding: Zeichensatz von Namen und Einheiten
 encoding.found: wie in den Dateien angegeben oder erkannt
 encoding.read: {file}: gelesen als {name}
 encoding.unsure: {file}: gelesen als {name}, vielleicht {other}
-outside: Weit außerhalb und nicht in der ersten Ansicht: {triangles} Dreiecke, bis {away_m} m entfernt.
-report.lost(one): {count} Element fehlen Dreiecke
-report.lost(other): {count} Elementen fehlen Dreiecke
+outside: Weit entfernt vom Rest und nicht in der ersten Ansicht: {triangles} Dreiecke, bis {away_m} m entfernt.
+report.lost(one): {count} Element ist unvollständig (Dreiecke fehlen)
+report.lost(other): {count} Elemente sind unvollständig (Dreiecke fehlen)
 report.errors(one): {count} Fehler beim Lesen
 report.errors(other): {count} Fehler beim Lesen
-report.left(one): {count} Teil eines Modells ist weggelassen
-report.left(other): {count} Teile von Modellen sind weggelassen
-unit.ask: {file} nennt keine Einheit. Angenommen: {unit}. Das Modell ist dann {length} m lang. Welche Einheit stimmt?
+report.left(one): {count} Teil eines Modells wurde weggelassen
+report.left(other): {count} Teile von Modellen wurden weggelassen
+unit.ask: {file} nennt keine Einheit. Mit der Einheit {unit} ist das Modell {length} m lang. Welche Einheit stimmt?
 unit.all: Die Antwort gilt für alle diese Dateien.
 unit.length: {length} m lang
 units: Einheit des Modells
@@ -58,20 +58,20 @@ source: Messwerte
 source.none: noch keine
 source.host: Modbus-TCP-Gerät
 source.port: Port
-source.unit: Unit
+source.unit: Unit-ID
 source.order: Bytefolge
 source.unstated: nicht angegeben
-source.base: Erstes Register
+source.base: Nummer des ersten Registers
 source.connect: Verbinden
 source.live: {good} von {count} Messstellen haben Werte
 source.bad: {count} × {why}
-source.note: Adressen stehen in der Messstellenliste. Die Quelle wird in plant.yaml geschrieben.
+source.note: Die Adressen stehen in der Messstellenliste. Die Quelle wird in plant.yaml eingetragen.
 tags: Messstellen
 filter: Zeigen
 filter.all: Alle
 filter.sure: Zugeordnet
 filter.likely: Fraglich
-filter.none: Offen
+filter.none: Nicht zugeordnet
 filter.unplaced: Ohne Ort
 sign.sure: ✓
 sign.likely: ?

@@ -21,31 +21,31 @@ phase.loading: Drawing the plant …
 done: The plant is live
 cancel: Cancel
 again: Read again
-details: What was found
+details: Report
 size: Size
 metres: {wide} × {deep} × {high} m
 encoding: Character encoding of names and units
 encoding.found: as the files state, or as detected
 encoding.read: {file}: read as {name}
 encoding.unsure: {file}: read as {name}, but it may be {other}
-outside: Far outside and not in the first view: {triangles} triangles, up to {away_m} m away.
-report.lost(one): {count} element lacks triangles
-report.lost(other): {count} elements lack triangles
+outside: Far away from the rest, not in the first view: {triangles} triangles, up to {away_m} m away.
+report.lost(one): {count} element has missing triangles
+report.lost(other): {count} elements have missing triangles
 report.errors(one): {count} error while reading
 report.errors(other): {count} errors while reading
-report.left(one): {count} part of a model is left out
-report.left(other): {count} parts of models are left out
-unit.ask: {file} does not say its unit. Taken as {unit}: the model is {length} m long. Which unit is right?
-unit.all: The answer holds for all of these files.
+report.left(one): {count} part of a model was left out
+report.left(other): {count} parts of models were left out
+unit.ask: {file} does not state its unit. If the unit is {unit}, the model is {length} m long. Which unit is right?
+unit.all: The answer applies to all of these files.
 unit.length: {length} m long
-units: Units of the model
+units: Unit of the model
 units.said: as in the file
 units.m: metres
 units.mm: millimetres
 units.cm: centimetres
 units.in: inches
 units.ft: feet
-up: Up in the model
+up: Up axis of the model
 up.said: as in the file
 up.y: Y
 up.z: Z
@@ -58,10 +58,10 @@ source: Values
 source.none: none yet
 source.host: Modbus TCP device
 source.port: Port
-source.unit: Unit
+source.unit: Unit ID
 source.order: Byte order
 source.unstated: not stated
-source.base: First register
+source.base: First register number
 source.connect: Connect
 source.live: {good} of {count} tags have values
 source.bad: {count} × {why}

@@ -20,20 +20,20 @@ phase.loading: 플랜트 그리는 중 …
 done: 플랜트 구성이 적용되었습니다
 cancel: 취소
 again: 다시 읽기
-details: 찾은 내용
+details: 읽기 결과
 size: 크기
 metres: {wide} × {deep} × {high} m
 encoding: 이름과 단위의 문자 인코딩
 encoding.found: 파일에 적힌 대로 또는 자동 판별
 encoding.read: {file}: {name}(으)로 읽음
 encoding.unsure: {file}: {name}(으)로 읽음, {other}일 수 있음
-outside: 멀리 벗어나 첫 화면에 없음: 삼각형 {triangles}개, 최대 {away_m} m.
+outside: 나머지와 멀리 떨어져 첫 화면에 없음: 삼각형 {triangles}개, 최대 {away_m} m.
 report.lost(other): 삼각형이 빠진 요소 {count}개
 report.errors(other): 읽기 오류 {count}개
 report.left(other): 제외된 모델 항목 {count}개
 unit.ask: {file}에 단위가 적혀 있지 않습니다. {unit}(으)로 보면 모델 길이는 {length} m입니다.
  어느 단위가 맞습니까?
-unit.all: 답은 이 파일 모두에 적용됩니다.
+unit.all: 답은 이 파일들 모두에 적용됩니다.
 unit.length: 길이 {length} m
 units: 모델의 단위
 units.said: 파일대로
@@ -42,7 +42,7 @@ units.mm: 밀리미터
 units.cm: 센티미터
 units.in: 인치
 units.ft: 피트
-up: 모델의 위쪽
+up: 모델의 위쪽 축
 up.said: 파일대로
 up.y: Y
 up.z: Z
@@ -55,10 +55,10 @@ source: 측정값
 source.none: 아직 없음
 source.host: Modbus TCP 장치
 source.port: 포트
-source.unit: 유닛
+source.unit: 유닛 ID
 source.order: 바이트 순서
 source.unstated: 지정 안 함
-source.base: 첫 레지스터
+source.base: 첫 레지스터 번호
 source.connect: 연결
 source.live: 태그 {count}개 중 {good}개에 값이 있음
 source.bad: {count} × {why}
@@ -82,7 +82,7 @@ save: 저장
 undo: 버리기
 selected: 선택한 설비에: {asset}
 alike: {pattern} 형식 {count}개 모두 수락
-off: 설비 없음
+off: 해당 설비 없음
 place: 직접 배치
-choose: 그림에서 설비를 클릭한 다음 여기에서 확인하세요.
+choose: 화면에서 설비를 클릭한 다음 여기에서 확인하세요.
 `;

@@ -28,7 +28,7 @@ colours: 색상표
 ramp: 색 단계
 lines: 등치선
 look: 음영
-show: 보기
+show: 표시
 views: 시점, 단면, 설비 표시
 picture: 화면: 비교, 조명
 split: 화면 분할
@@ -41,7 +41,7 @@ go: 실시간 값으로
 unrecorded: 이력 기록이 없어 값을 정지할 수 없습니다
 more: 더 보기
 measure: 거리 측정
-snapshot: 그림 저장
+snapshot: 이미지 저장
 share: 공유
 theme: 밝은/어두운 화면 전환
 engineer: 엔지니어링: 센서와 필드
@@ -55,9 +55,9 @@ distance: 거리
 difference: 차이
 
 [look]
-default: 색 그대로
+default: 정확한 색
 glossy: 광택
-flat: 평면
+flat: 음영 없음
 materials: 재질
 
 [lines]
@@ -69,7 +69,7 @@ chosen: 직접 지정
 smooth: 연속
 group: 기본 구간
 limits: 한계
-chosen: 사용자 구간
+chosen: 직접 지정
 
 [quantity]
 temperature: 온도
@@ -103,10 +103,10 @@ waiting: 첫 화면 대기 중
 right: 오른쪽 범례
 colours: {min}~{max}의 색
 distance: {tag}에서의 거리
-operator: 태그마다 정해진 한계 기준.
+operator: 태그별 한계값 기준.
 log: 로그 눈금.
 unsafe: 잘못 읽기 쉬운 색상표.
-glossy: 광택: 빛이 색을 바꿉니다. 값을 읽지 마십시오.
+glossy: 광택: 빛이 색을 바꿉니다. 값을 읽지 마세요.
 nolimits: 한계 없음
 nodata: 데이터 없음
 uncertain: 불확실
@@ -159,7 +159,7 @@ unset.why: 서버 시계가 동기화되지 않았습니다. 시각은 틀릴 �
 within: 서버 시계가 {n} ms 이내로 동기화되었습니다.
 leap: 이번 달 말(UTC)에 윤초가 추가됩니다.
 leap.less: 이번 달 말(UTC)에 음의 윤초로 1초가 빠집니다.
-oldest: 가장 오래된 지시값
+oldest: 가장 오래된 측정값
 frames: 프레임
 rate: {count}/s
 still: 대기
@@ -182,7 +182,7 @@ nodata: 실시간 데이터 없음
 nosensor: 값을 보내는 센서가 없습니다.
 source: 소스 {source}이(가) 응답하지 않습니다.
 sources: 소스 {sources}이(가) 응답하지 않습니다.
-past: 과거 이력
+past: 과거 시점
 returning: 실시간으로 복귀 중
 playing: {instant}, {speed}× 재생
 back: {instant}, {speed}× 역재생
@@ -216,8 +216,8 @@ bad: 불량
 unknown: 알 수 없음
 
 [simulated]
-all: 시뮬레이션
-partly: 일부 시뮬레이션
+all: 모의값
+partly: 일부 모의값
 
 [proof]
 none: 루프체크 안 됨

@@ -7,65 +7,71 @@ sun: aus {wind}, {height}° Höhe
 
 [distance]
 metres: {metres} m
-geodesic: Geodätisch
+geodesic: Oberfläche
 geodesic.why: Abstand entlang der Oberfläche: Wärme springt nicht über Spalte
-euclidean: Euklidisch
+euclidean: Luftlinie
 euclidean.why: Gerader Abstand durch den Raum
 heat: Wärmemethode
-heat.why: Wie im Aufsatz, auf Punkten der Oberfläche, zum Vergleich: 0,5 % Fehler, geht durch dünne Wände
+heat.why: Wie in Kim & Suh 2025, an Stichprobenpunkten der Oberfläche, zum Vergleich: 0,5 % Fehler, geht durch dünne
+  Wände
 
 [interpolation]
 shepard: Shepard
-shepard.why: Inverse Distanzwichtung: an jedem Messpunkt gleich dem Messwert
-paper: Paper
-paper.why: Algorithmus 1 von Kim & Suh 2025: glatter, erreicht aber die Messwerte nicht
+shepard.why: Inverse Distanzgewichtung: an jedem Sensor gleich dem Messwert
+paper: Kim & Suh
+paper.why: Algorithmus 1 von Kim & Suh 2025: glatter, weicht aber an den Sensoren von den Messwerten ab
 harmonic: Wärmeleitung
-harmonic.why: Stationäre Wärmeleitung in der Wand zwischen Messpunkten.
-  Nicht, wo Medium oder Luft die Wärme abführt, nicht für Druck oder Durchfluss
-fin: Leitung und Verlust
-fin.why: Wie Wärmeleitung, aber die Wand verliert Wärme an die Luft; unbekannt, wo Messpunkte unter ein Zehntel beitragen. Nicht für
-  gedämmte oder beheizte Wände
+harmonic.why: Stationäre Wärmeleitung in der Wand zwischen den Sensoren. Ungeeignet, wo Medium oder Luft die Wärme
+  abführt, und für Druck oder Durchfluss
+fin: Wärmeleitung mit Verlust
+fin.why: Wie Wärmeleitung, aber die Wand verliert Wärme an die Luft. Kein Wert, wo Sensoren unter ein Zehntel beitragen.
+  Ungeeignet für gedämmte oder beheizte Wände
 gp: Am wahrscheinlichsten
-gp.why: Gauß-Prozess: wahrscheinlichstes Feld mit seiner Unsicherheit. Nicht, wo sich unabhängige Teile berühren
+gp.why: Gauß-Prozess: wahrscheinlichstes Feld mit seiner Unsicherheit. Ungeeignet, wo sich Teile berühren, die nichts
+  miteinander zu tun haben
 
 [bar]
 distance: Abstand
 interpolation: Interpolation
 
 [neighbours]
-say: Laut Nachbarn
+say: Laut Nachbarsensoren
 above: {predicted}; zeigt {by} mehr
 below: {predicted}; zeigt {by} weniger
-title: Größte Abweichungen von Nachbarn
-why: Jeder Messwert und was die anderen Sensoren am Anlagenteil erwarten lassen. Nicht, wo einer abweichen soll, wie am Einlass.
+title: Größte Abweichungen von Nachbarsensoren
+why: Vergleicht jeden Messwert mit dem, was die anderen Sensoren am Anlagenteil erwarten lassen. Gilt nicht, wo ein
+  Sensor abweichen soll, etwa am Einlass.
 
 [drift]
 week: Drift in einer Woche
 found: {by}: driftet
 none: {by}: keine Drift erkannt
 unknown: {by}: nicht bestimmbar
-why: Änderung gegenüber den Nachbarn, nach Stundenmitteln. Nicht, wo der Prozess selbst die Unterschiede ändert.
+why: Änderung gegenüber den Nachbarsensoren, aus Stundenmitteln. Gilt nicht, wenn der Prozess selbst die Unterschiede
+  geändert hat.
 
 [coverage]
 since: seit {when}
 title: Sensorabdeckung
 none: Aus
 uncertainty: Unsicherheit
-uncertainty.note: Standardabweichung, aus den jetzt guten Sensoren.
-uncertainty.why: So weit kann das Feld abweichen, wenn sich die Fläche verhält, wie gp annimmt. Nicht, wo die Reichweite geschätzt ist.
+uncertainty.note: Standardabweichung, berechnet aus den Sensoren, die jetzt gut sind.
+uncertainty.why: Möglicher Fehler des Felds, wenn sich die Werte auf der Fläche so ändern, wie der Gauß-Prozess annimmt.
+  Unzuverlässig, wenn dessen Reichweite nur geschätzt ist.
 blind: Blinde Flecken
 blind.of: Erkennbarer Hotspot: {name}
 blind.note: Schwächster Hotspot von {size} m, der den nächsten Sensor um 5 % des Bereichs bewegt.
-blind.why: So heiß muss eine kleine Stelle werden, bis ein Sensor sie zeigt. Nicht für andere Formen oder andere Wege der Wärme.
+blind.why: So heiß muss eine kleine Stelle werden, bis ein Sensor sie zeigt. Gilt nicht für andere Formen oder andere
+  Wege der Wärme.
 
 [picture]
 from: Abstand von
 tag: Messstelle
 difference: Differenz zu
-kept: Gespeicherte Messwerte
-now: Jetzt
-name: Name für aktuelle Messwerte
-keep: Messwerte speichern
+kept: Gespeicherte Werte
+now: Aktuelle Werte
+name: Name für aktuelle Werte
+keep: Werte speichern
 scale: Skala
 fill: Flächen ohne Daten
 light: Licht: Sonne {where}
@@ -79,9 +85,10 @@ around.why: Umgebung
 [arrows]
 title: Richtungen
 arrows: Pfeile
-arrows.why: Die Länge zeigt den Wert. Aus Sensoren interpoliert: gilt nicht zwischen Flächen und nicht als berechnete Strömung.
-strokes: Striche
-strokes.why: Laufende Striche: schneller, wo der Wert größer ist. Aus Sensoren interpoliert: keine Bahnen eines Fluids.
+arrows.why: Die Länge zeigt den Wert. Aus Sensoren interpoliert: gilt nicht im Raum zwischen Flächen und ist keine
+  berechnete Strömung.
+strokes: Laufende Striche
+strokes.why: Je größer der Wert, desto schneller. Aus Sensoren interpoliert: keine Bahnen eines Fluids.
 none: Keine
 none.why: Richtungen werden nicht gezeichnet; Farben zeigen nur den Wert.
 unknown: Richtung unbekannt
@@ -92,9 +99,9 @@ log: Logarithmisch
 
 [fill]
 none: Schraffiert
-none.why: Wo kein guter Messpunkt hinreicht, wird nichts gezeigt
-neighbours: Aus Nachbarn
-neighbours.why: Gefüllt und gepunktet
+none.why: Wo kein guter Sensor hinreicht, wird kein Wert gezeigt
+neighbours: Aus der Umgebung
+neighbours.why: Mit Werten der Umgebung gefüllt und gepunktet
 
 [split]
 right: Was die rechte Hälfte zeigt
@@ -114,18 +121,18 @@ W: W
 NW: NW
 
 [walls]
-unknown: Die Anlagendatei hat keine Wand „{id}“. Es gibt: {known}
-display: Die Wand „{id}“ hat {count} Bildschirme und keinen Bildschirm {n}
+unknown: Die Anlagendatei hat keine Videowand „{id}“. Es gibt: {known}
+display: Videowand „{id}“ hat {count} Bildschirme, aber keinen Bildschirm {n}
 lost: Keine Verbindung zur Anlage seit {time}
 never: Keine Verbindung zur Anlage
 self: Bildschirm {display} von {wall}, wartet seit {time}
 denied: Dieser Bildschirm braucht ein eigenes Token
-digits: Zum Koppeln gibt die Rolle engineer diesen Code unter „Ansichten“ ein
+digits: Zum Koppeln gibt ein Engineer diesen Code unter „Ansichten“ ein
 asks: Kopplungscode wird vom Server angefordert
 left: Code läuft in {time} ab
 place: Bildschirm {display} von {wall}
-crowded: Zu viele Bildschirme warten auf Kopplung; wird wiederholt
-nowhere: Die Anlagendatei hat keinen Bildschirm {display} an Wand „{wall}“
+crowded: Zu viele Bildschirme warten auf Kopplung; neuer Versuch folgt
+nowhere: Die Anlagendatei hat keinen Bildschirm {display} an Videowand „{wall}“
 token: Token
 enter: Eingeben
 held: festgehalten von {who} seit {time}
@@ -138,20 +145,20 @@ more(one): und {count} weiterer
 more(other): und {count} weitere
 counts: {active} aktiv, {waiting} unquittiert
 flood: Alarmschwall: {active} aktiv, {waiting} unquittiert
-late: Die Verbindung zu dieser Anzeige ist zu langsam; nicht aktualisiert seit {time}
-missing: Anzeige {displays} nicht verbunden
+late: Die Verbindung zu diesem Bildschirm ist zu langsam; nicht aktualisiert seit {time}
+missing: Bildschirm {displays} nicht verbunden
 
 [others]
 gone: Kein Bild von {name} seit {time}
 waiting: Warten auf den Server der Anlage
-unreachable: Ihr Server antwortet nicht
-tls: Dem Zertifikat ihres Servers wird nicht vertraut
-token: Die Datei mit dem Token für sie ist nicht lesbar
-refused: Ihr Server nimmt das Token nicht an
-busy: Ihr Server ist überlastet
-slow: Ihr Server antwortet zu langsam
-large: Ihr Server sendet zu viel
-no_picture: Ihr Server sendet kein Bild
+unreachable: Der Server der Anlage antwortet nicht
+tls: Dem Zertifikat des Servers dieser Anlage wird nicht vertraut
+token: Die Token-Datei für den Server dieser Anlage ist nicht lesbar
+refused: Der Server der Anlage nimmt das Token nicht an
+busy: Der Server der Anlage ist überlastet
+slow: Der Server der Anlage antwortet zu langsam
+large: Der Server der Anlage sendet zu viele Daten
+no_picture: Der Server der Anlage sendet kein Bild
 unheard: Keine Angaben vom Server dieser Anlage
 
 [notes]
@@ -159,7 +166,7 @@ legend: Notizen
 text: Schichtnotiz
 at: Anheften an
 until: Sichtbar bis
-save: Notiz anlegen
+save: Notiz hinzufügen
 place: diese Stelle
 ends: bis {time}
 handover: Schichtübergabe
@@ -176,16 +183,16 @@ week: 1 Woche
 ever: bis zum Entfernen
 
 [remote]
-legend: Bildwand
-pane: Feld einer Bildwand
-desk: Name des Platzes
+legend: Videowand
+pane: Feld der Videowand
+desk: Name des Arbeitsplatzes
 where: {wall} {display}: {area}
 send: Diese Ansicht senden
 hold: Festhalten
 back: Freigeben
-point: Mit der Maus zeigen
+point: Meinen Mauszeiger auf der Videowand zeigen
 there: verbunden
-gone: dieser Schirm ist nicht verbunden
+gone: dieser Bildschirm ist nicht verbunden
 sent: {title}, gesendet von {who}, {time}
 held: festgehalten von {who}, {time}
 
@@ -194,7 +201,7 @@ legend: Bildschirme
 digits: Kopplungscode
 pair: Koppeln
 revoke: Entkoppeln
-is: Bildschirm {display} von {wall}, von {from}, gekoppelt von {who}, {time}
+is: Bildschirm {display} von {wall}, Adresse {from}, gekoppelt von {who}, {time}
 
 [handover]
 title: Schichtübergabe, {plant}
@@ -206,7 +213,7 @@ standing: Aktiv oder unquittiert
 active: Jetzt aktiv
 waiting: Jetzt unquittiert
 about: Beschreibung
-value: Wert (Grenze)
+value: Wert (Grenzwert)
 asides: Jetzt zurückgestellt oder unterdrückt
 raised: Gekommene Alarme
 acknowledged: Quittiert
@@ -226,7 +233,7 @@ ended: entfernt von {who}, {time}
 cut: Liste gekürzt: es gab mehr Alarme
 gives: Übergeben von
 takes: Übernommen von
-denied: Nur Operatoren dürfen die Übergabe öffnen: anmelden oder Token eingeben, dann auf der Seite öffnen
+denied: Nur Operatoren dürfen die Übergabe öffnen: anmelden oder Token eingeben, dann von der Seite aus öffnen
 
 [named]
 legend: Gespeicherte Ansichten
@@ -236,7 +243,7 @@ unknown: Eine Ansicht „{id}“ gibt es nicht
 wrong: Diese Ansicht lässt sich nicht zeigen: {why}
 more: Mehr zu {title}
 by: {who}, {time}
-update: Auf aktuelle Ansicht setzen
+update: Durch aktuelle Ansicht ersetzen
 up: Nach oben
 down: Nach unten
 remove: Entfernen
@@ -250,7 +257,7 @@ cut: Schnitt
 where: Lage des Schnitts
 turn: Umdrehen
 equipment: Anlagenteil: {what}
-select: Erst Anlagenteil wählen
+select: Erst ein Anlagenteil wählen
 all: Alle zeigen
 stays: {axis} {sign} {at} m behalten
 part: {percent} % von {what}
@@ -278,7 +285,7 @@ oblique: schräg
 [shown]
 hide: Ausblenden
 ghost: Transparent
-only: Nur dies
+only: Nur dieses
 hidden: {hidden} von {all} ausgeblendet
 ghosts(one): {count} transparent
 ghosts(other): {count} transparent
@@ -302,7 +309,7 @@ worst: höchster
 novalue: Kein Wert
 quality: Qualität
 age: Alter
-on: An
+on: Anlagenteil
 trend: Trend
 add: Zum Trend hinzufügen
 HH: über Grenzwert Hoch-Hoch
@@ -314,7 +321,7 @@ ALM: Alarm
 
 [place]
 measured: Hier gemessen
-between: Zwischen Messpunkten
+between: Zwischen Sensoren
 no data: Keine Daten: nächster Sensor gestört oder außer Reichweite
 context: Kein Sensor für diese Messgröße
 equipment: Ein Sensor gilt für das ganze Teil: sein Ort ist angenommen
@@ -323,11 +330,11 @@ uncertain: {state}, unsicher
 drawn: Für diesen Punkt berechnet. Das Bild ringsum kann um bis zu {value} abweichen
 hide: Ausblenden
 ghost: Transparent
-only: Nur dies
+only: Nur dieses
 
 [following]
 title: Sie folgen der Ansicht von {who}
-gone: Die Ansicht von {who} ist beendet: ihr letztes Bild
+gone: Die Sitzung von {who} ist beendet: dies ist die letzte Ansicht
 awaited: Warten auf die Ansicht, der diese Seite folgt
 someone: jemand anderem
 
@@ -345,7 +352,7 @@ active: Aktiv
 unacknowledged: Unquittiert
 acknowledged: Quittiert
 returned: Gegangen, unquittiert
-latched: Gehalten
+latched: Selbsthaltend
 shelved: Zurückgestellt
 suppressed: Planmäßig unterdrückt
 out_of_service: Außer Betrieb
@@ -379,18 +386,18 @@ later: Später
 in: Vergrößern
 out: Verkleinern
 back: Voriger Zeitraum
-add: Tag hinzufügen
-none: Kein Tag passt zu „{text}“
-full: Höchstens {count} Tags: zuerst einen entfernen
-tag: Tag
+add: Messstelle hinzufügen
+none: Keine Messstelle passt zu „{text}“
+full: Höchstens {count} Messstellen: zuerst eine entfernen
+tag: Messstelle
 at: Fadenkreuz
 now: Jetzt
-then: Gezeigt
+then: Gezeigte Zeit
 min: Min
 mean: Mittel
 max: Max
-known: Bekannt
-focus: Diese Kurve hervorheben und ihre Grenzen zeigen
+known: Verfügbar
+focus: Diese Kurve hervorheben und ihre Grenzwerte zeigen
 chart: Diagramme. Pfeiltasten bewegen das Fadenkreuz, Plus und Minus zoomen, Bildtasten verschieben, Enter zeigt den Zeitpunkt.
 table: Werte und Statistik
 raised: {alarm}, ausgelöst {time}
@@ -424,11 +431,11 @@ slider: Gezeigter Zeitpunkt
 live: Zurück zu Live
 now: Jetzt
 ago: {instant} · vor {age}
-lost: {source}: ausgefallen
-uncounted: Zu viele Alarme, um sie hier zu zählen
+lost: {source}: keine Verbindung
+uncounted: Zu viele Alarme zum Zählen
 unrecorded: nicht aufgezeichnet
-raised(one): {count} Alarm gekommen
-raised(other): {count} Alarme gekommen
+raised(one): {count} Alarm ausgelöst
+raised(other): {count} Alarme ausgelöst
 
 [quality]
 because: {quality}: {detail}
@@ -455,10 +462,10 @@ most: 95 %
 input: Eingabe bis Bild
 sensor: Messwert bis Bild
 wait: Warten
-field: Feld
+field: Feldberechnung
 render: Zeichnen
 encode: Kodieren
-network: Netz
+network: Netzwerk
 decode: Dekodieren
 rate: {pictures} Bilder/s, {kbit} kbit/s
 follow: Wer {link} öffnet, sieht diese Ansicht.
@@ -472,7 +479,7 @@ open: (nur ansehen)
 nobody: Nicht angemeldet.
 person: Über den Identitätsanbieter angemeldet.
 token: Mit Token angemeldet.
-here: Am Server selbst ist keine Anmeldung nötig.
+here: Sie arbeiten am Server selbst: keine Anmeldung nötig.
 in: Anmelden: {provider}
 out: Abmelden
 
@@ -491,17 +498,17 @@ mouse: Maus
 touch: Berühren
 keys: Tasten
 turn: Drehen
-turn.mouse: Links ziehen
+turn.mouse: Ziehen mit linker Taste
 turn.touch: Ein Finger
 move: Verschieben
-move.mouse: Rechts, Mitte oder [Shift] ziehen
+move.mouse: Ziehen mit rechter oder mittlerer Taste oder [Shift]
 move.touch: Zwei Finger
 look: Umsehen
 look.mouse: Ziehen mit [Ctrl]
 look.touch: Drei Finger
 zoom: Zoomen
-zoom.mouse: Rad
-zoom.touch: Spreizen
+zoom.mouse: Mausrad
+zoom.touch: Zwei Finger spreizen
 fit: Einpassen
 fit.mouse: Doppelklick
 fit.touch: Doppelt tippen
@@ -509,11 +516,11 @@ home: Grundansicht
 back: Zurück zur vorigen Ansicht
 from: Blick von
 from.keys: [T] oben, [I] schräg, [O] parallel, [V] alle Ansichten, [P] Bild
-what: Bestimmen
+what: Information zeigen
 what.mouse: Klick
 what.touch: Tippen
-selected: Gewähltes
-selected.keys: [X] ausblenden, [G] transparent, [L] allein, [U] alle
+selected: Gewähltes Anlagenteil
+selected.keys: [X] ausblenden, [G] transparent, [L] nur dieses, [U] alle zeigen
 quantity.keys: [1] bis [9]
 equipment.keys: [B], suchen [/]
 history.keys: [Y], zurück zu Live [N]
@@ -524,8 +531,8 @@ mark.bad: gestört: kein Wert
 mark.behind: verdeckt
 mark.alarm: Alarm; die Farbe zeigt die Priorität
 mark.acknowledged: quittierter Alarm
-mark.returned: gegangen oder gehalten
-crowd: Gedrängte Markierungen werden ausgedünnt; näher heranzoomen zeigt alle. Alarme fehlen nie.
+mark.returned: gegangen oder selbsthaltend
+crowd: Wo Markierungen zu dicht liegen, fehlen einige; näher heranzoomen zeigt alle. Alarme fehlen nie.
 
 [measure]
 first: Ersten Punkt anklicken
@@ -539,20 +546,20 @@ parts: horizontal {level} m, vertikal {rise} m
 failed: Kein Bild: {why}
 unnamed: ein Vergleich braucht unter einem Namen gespeicherte Werte
 shown: Speichern, was zu sehen ist
-shown.note: Pixel für Pixel, mit den Werten, die es zeigt; ohne Legende, Marken und Uhr.
-again: Mit Legende und Marken speichern
+shown.note: Pixel für Pixel, mit den gezeigten Werten; ohne Legende, Markierungen und Uhr.
+again: Mit Legende und Markierungen speichern
 again.note: Vom Server neu gezeichnet. Beide sind signiert: „plantcast verify“ erkennt jede Änderung.
 late: kein signiertes Bild empfangen
 
 [share]
 title: Teilen
 what: Was der Link öffnet
-view: Ansicht
-view.why: Öffnet diese Ansicht: Kamera, Größe, Farben, Zeitpunkt.
+view: Diese Ansicht
+view.why: Öffnet diese Ansicht: Kamera, Messgröße, Farben, Zeitpunkt.
 tag: Messstelle
-tag.why: Der Code öffnet die Seite an der Messstelle. Ausdrucken und am Apparat anbringen.
-asset: Apparat
-asset.why: Der Code öffnet die Seite am Apparat. Ausdrucken und dort anbringen.
+tag.why: Öffnet die Seite an dieser Messstelle. Ausdrucken und am Anlagenteil anbringen.
+asset: Anlagenteil
+asset.why: Öffnet die Seite an diesem Anlagenteil. Ausdrucken und dort anbringen.
 follow: Mir folgen
 follow.why: Wer ihn öffnet, sieht mit, solange diese Seite offen ist.
 link: Link
@@ -561,7 +568,7 @@ copied: Kopiert
 code: Der Link als QR-Code
 nocode: Dieser Server wurde ohne QR-Codes gebaut (npm fehlte).
 local: Funktioniert nur auf diesem Rechner: die Adresse ist lokal.
-people: Mitschauende
+people: Zuschauer
 alone: Niemand folgt Ihnen.
 followers(one): {count} Person folgt Ihnen.
 followers(other): {count} Personen folgen Ihnen.
@@ -581,12 +588,12 @@ radius_m: Radius (m), 0 = automatisch
 reach_m: Reichweite (m), leer = unbegrenzt
 of: Nur für {tag}
 choose: Für einen Sensor: erst auswählen
-reset(one): Wie eingestellt ({count} Sensor)
-reset(other): Wie eingestellt ({count} Sensoren)
+reset(one): Wie konfiguriert ({count} Sensor)
+reset(other): Wie konfiguriert ({count} Sensoren)
 
 [proof]
 fail: Loop-Check nicht bestanden
-changed: Loop-Check veraltet: seither geändert
+changed: Loop-Check veraltet: Messstelle seither geändert
 pass: Loop-Check bestanden
 
 [eng]
@@ -594,30 +601,31 @@ title: Engineering
 close: Engineering schließen
 place: Platzieren
 prove: Loop-Check
-method: Feld
+method: Feldberechnung
 what: Aufgabe
 find: Messstelle suchen
 nowhere: nicht platziert
 on: an {asset}
-choose: Eine Messstelle wählen, dann auf die Oberfläche klicken; oder ihre Marke ziehen.
-click: {tag}: auf die Oberfläche klicken oder die Marke ziehen.
+choose: Eine Messstelle wählen, dann auf die Oberfläche klicken; oder ihre Markierung ziehen.
+click: {tag}: auf die Oberfläche klicken oder die Markierung ziehen.
 missed: Hier ist keine Oberfläche.
 moves: Entwurf (nur für Sie sichtbar)
 nomoves: Nichts versetzt. Bis zum Speichern sehen nur Sie Ihre Änderungen.
 off: {metres} m neben der Oberfläche
 left: nicht an {asset}, anders als in der Liste
-waiting: gerade Abstände; Abstände entlang der Oberfläche folgen
-straight: nur gerade Abstände
-ready: entlang der Oberfläche
+waiting: vorerst Luftlinie; Abstände entlang der Oberfläche folgen
+straight: nur Luftlinie
+ready: Abstände entlang der Oberfläche
 undo: Rückgängig
 back: Alles verwerfen
-gaps: Lücken
+gaps: Messlücken
 save: Speichern …
-gaps.of: Lücken: {quantity}
-gap: Am weitesten von jeder Messstelle: {metres} m. {far} % der Oberfläche sind über {limit} m entfernt; {lost} % haben jetzt keine Daten.
-gap.next: Am weitesten auseinander: {a} zu {b}, {metres} m.
-gap.off: {tag} ist {metres} m neben der Oberfläche von {asset} (höchstens {limit} m)
-gap.none: Keine Messstelle steht neben ihrer Oberfläche.
+gaps.of: Messlücken: {quantity}
+gap: Größter Abstand zum nächsten Sensor: {metres} m. {far} % der Oberfläche sind über {limit} m entfernt; {lost} %
+  haben jetzt keine Daten.
+gap.next: Am weitesten von anderen Sensoren entfernt: {a}, {metres} m von {b}.
+gap.off: {tag} liegt {metres} m neben der Oberfläche von {asset} (höchstens {limit} m)
+gap.none: Kein Sensor liegt neben der Oberfläche.
 diff: {file} speichern?
 diff.before: vorher
 diff.after: nachher
@@ -633,15 +641,15 @@ saved: Angewendet. Die vorige Liste ist als {kept} gesichert.
 unsaved: Nicht gespeichert: {text}
 device: Gerät
 proven: {done} von {count} bestanden
-expected: Erwartet
+expected: Erwarteter Wert
 tolerance: Toleranz ±
-watch: Beobachten
+watch: Änderungen beobachten
 watching: Jetzt am Messumformer einen festen Wert vorgeben.
 still: Noch hat sich kein Messwert geändert.
 moved: {tag} hat sich am meisten geändert: um {by}.
 swapped: {tag} hat sich geändert, nicht {wanted}: sind sie vertauscht?
 compare: Vergleichen
-fails: Nicht bestanden
+fails: Als nicht bestanden melden
 csv: Werte aus CSV …
 csv.note: {count} erwartete Werte wurden gelesen.
 csv.bad: Die Spalten Tag Name, Expected, Tolerance sind nötig.
@@ -658,13 +666,13 @@ tags: Messstellen
 pattern: Name oder Beschreibung; * und ? in Namen
 within: Höchster Abstand zur Fläche (m)
 confidence: Mindestsicherheit (0 bis 1)
-count(one): {count} Ort würde bestätigt. Er ist im Bild blau umringt.
-count(other): {count} Orte würden bestätigt. Sie sind im Bild blau umringt.
+count(one): {count} Ort würde bestätigt. Er hat im Bild einen blauen Ring.
+count(other): {count} Orte würden bestätigt. Sie haben im Bild blaue Ringe.
 none: Kein Ort würde bestätigt.
 nowhere: {count} ausgelassen: weder Knoten noch Position in der Liste
 missing: {count} ausgelassen: das Anlagenteil hat kein Modell
 far: {count} ausgelassen: weiter von der Fläche entfernt
-unsure: {count} ausgelassen: geringere oder keine bekannte Sicherheit
+unsure: {count} ausgelassen: Sicherheit geringer oder unbekannt
 go: {count} bestätigen
 saved(one): {count} Ort bestätigt. Die vorige Liste ist als {kept} gesichert.
 saved(other): {count} Orte bestätigt. Die vorige Liste ist als {kept} gesichert.

@@ -12,20 +12,22 @@ geodesic.why: Distance along the surface: heat does not jump across gaps
 euclidean: Euclidean
 euclidean.why: Straight-line distance through space
 heat: Heat method
-heat.why: As in the paper, on sampled surface points, for comparison: 0.5 % off, and passes through thin walls
+heat.why: As in Kim & Suh 2025, on sampled points of the surface, for comparison: 0.5 % off, and passes through thin
+  walls
 
 [interpolation]
 shepard: Shepard
 shepard.why: Inverse distance weighting: equals the reading at each sensor
-paper: Paper
-paper.why: Algorithm 1 of Kim & Suh 2025: smoother, but does not reach the readings
+paper: Kim & Suh
+paper.why: Algorithm 1 of Kim & Suh 2025: smoother, but differs from the readings at the sensors
 harmonic: Conduction
-harmonic.why: Steady heat conduction along the wall between sensors. Not where a fluid or air carries heat away, nor for pressure or flow
-fin: Conduction and loss
-fin.why: As conduction, but the wall loses heat to the air; unknown where sensors contribute less than a tenth. Not for insulated or
-  heated walls
+harmonic.why: Steady heat conduction along the wall between sensors. Not valid where a fluid or air carries heat away,
+  nor for pressure or flow
+fin: Conduction, heat loss
+fin.why: As conduction, but the wall loses heat to the air; no value where sensors contribute less than a tenth. Not
+  valid for insulated or heated walls
 gp: Most probable
-gp.why: Gaussian process: most probable field, with its uncertainty. Not where unrelated parts touch
+gp.why: Gaussian process: the most probable field, with its uncertainty. Not valid where unrelated parts touch
 
 [bar]
 distance: Distance
@@ -36,33 +38,37 @@ say: Neighbours suggest
 above: {predicted}; reads {by} higher
 below: {predicted}; reads {by} lower
 title: Largest deviations from neighbours
-why: Each reading, and what the other sensors of its asset suggest. Not where a sensor is meant to differ, as at an inlet.
+why: Compares each reading with what the other sensors of the equipment suggest. Not valid where a sensor is meant to
+  differ, as at an inlet.
 
 [drift]
 week: Drift over a week
 found: {by}: drifts
 none: {by}: no drift detected
 unknown: {by}: cannot be determined
-why: Change against its neighbours, by hourly means. Not where the process itself changed the differences.
+why: Change of the reading against its neighbours, from hourly means. Not valid if the process itself changed the
+  differences.
 
 [coverage]
 since: since {when}
 title: Sensor coverage
 none: Off
 uncertainty: Uncertainty
-uncertainty.note: Standard deviation, from the sensors that are good now.
-uncertainty.why: How far the field may be off, if the surface behaves as the gp kernel assumes. Not where its range is a guess.
+uncertainty.note: Standard deviation, computed from the sensors that are good now.
+uncertainty.why: Possible error of the field, if values vary over the surface as the Gaussian process assumes. Not
+  reliable where the range of its kernel is a guess.
 blind: Blind spots
 blind.of: Detectable hot spot: {name}
 blind.note: Weakest hot spot of {size} m that moves the nearest sensor by 5 % of the range.
-blind.why: How hot a small spot must get before any sensor shows it. Not for other shapes, nor where heat takes other paths.
+blind.why: How hot a small spot must get before any sensor shows it. Not valid for other shapes, nor where heat takes
+  other paths.
 
 [picture]
 from: Distance from
 tag: Tag
 difference: Difference from
 kept: Saved readings
-now: Now
+now: Current readings
 name: Name for current readings
 keep: Save readings
 scale: Scale
@@ -78,9 +84,10 @@ around.why: Backdrop
 [arrows]
 title: Directions
 arrows: Arrows
-arrows.why: Length shows the value. Interpolated from sensors: not valid between surfaces, nor as a computed flow.
+arrows.why: The length shows the value. Interpolated from sensors: not valid between surfaces, and not a computed flow.
 strokes: Streaks
-strokes.why: Animated streaks: faster where the value is larger. Interpolated from sensors: not the paths of a fluid.
+strokes.why: Animated streaks: faster where the value is larger. Interpolated from sensors: they are not the paths of a
+  fluid.
 none: None
 none.why: Directions are not drawn; colours show the value alone.
 unknown: Direction unknown
@@ -91,9 +98,9 @@ log: Logarithmic
 
 [fill]
 none: Hatched
-none.why: Nothing is shown where no good sensor reaches
+none.why: No value is shown where no good sensor reaches
 neighbours: From neighbours
-neighbours.why: Filled and dotted
+neighbours.why: Filled with values from the surroundings, and dotted
 
 [split]
 right: What the right half shows
@@ -114,7 +121,7 @@ NW: NW
 
 [walls]
 unknown: The plant file has no wall '{id}'. Its walls: {known}
-display: Wall '{id}' has {count} displays, and no display {n}
+display: Wall '{id}' has {count} displays, but no display {n}
 lost: No connection to the plant since {time}
 never: No connection to the plant
 self: Display {display} of {wall}, waiting since {time}
@@ -145,7 +152,7 @@ gone: No picture from {name} since {time}
 waiting: Waiting for its server
 unreachable: Its server does not answer
 tls: Its server's certificate is not trusted
-token: The file with the token for it cannot be read
+token: The token file for its server cannot be read
 refused: Its server rejects the token
 busy: Its server is overloaded
 slow: Its server answers too slowly
@@ -182,7 +189,7 @@ where: {wall} {display}: {area}
 send: Send this view
 hold: Hold
 back: Release
-point: Point with the mouse
+point: Show my pointer on the wall
 there: connected
 gone: this display is not connected
 sent: {title}, sent by {who}, {time}
@@ -193,7 +200,7 @@ legend: Displays
 digits: Pairing code
 pair: Pair
 revoke: Revoke
-is: Display {display} of {wall}, from {from}, paired by {who}, {time}
+is: Display {display} of {wall}, address {from}, paired by {who}, {time}
 
 [handover]
 title: Shift handover, {plant}
@@ -243,7 +250,7 @@ look: Show
 back: Undo
 
 [views]
-from: Look from
+from: View from
 projection: Projection
 cut: Section
 where: Section position
@@ -301,7 +308,7 @@ worst: highest
 novalue: No value
 quality: Quality
 age: Age
-on: On
+on: Equipment
 trend: Trend
 add: Add to trend
 HH: above the high-high limit
@@ -322,7 +329,7 @@ uncertain: {state}, uncertain
 drawn: Computed for this point. The picture around it may be off by up to {value}
 hide: Hide
 ghost: Transparent
-only: Only
+only: Only this
 
 [following]
 title: Following the view of {who}
@@ -388,7 +395,7 @@ then: Time shown
 min: Min
 mean: Mean
 max: Max
-known: Known
+known: Available
 focus: Emphasise this curve and show its limits
 chart: Charts. Arrow keys move the crosshair, plus and minus zoom, Page keys move the range, Enter shows that instant.
 table: Values and statistics
@@ -423,8 +430,8 @@ slider: Time shown
 live: Back to live
 now: Now
 ago: {instant} · {age} ago
-lost: {source}: lost
-uncounted: Too many alarms to count them here
+lost: {source}: no connection
+uncounted: Too many alarms to count
 unrecorded: not recorded
 raised(one): {count} alarm raised
 raised(other): {count} alarms raised
@@ -454,7 +461,7 @@ most: 95 %
 input: Input to picture
 sensor: Reading to picture
 wait: waiting
-field: field
+field: field calculation
 render: drawing
 encode: encoding
 network: network
@@ -471,7 +478,7 @@ open: (view only)
 nobody: Not signed in.
 person: Signed in through the identity provider.
 token: Signed in with a token.
-here: On the server’s own machine, where no sign-in is required.
+here: You are on the server’s own machine: no sign-in is required.
 in: Sign in: {provider}
 out: Sign out
 
@@ -506,13 +513,13 @@ fit.mouse: Double click
 fit.touch: Double tap
 home: Home
 back: Back to previous view
-from: Look from
+from: View from
 from.keys: [T] top, [I] corner, [O] parallel, [V] all views, [P] picture
 what: Identify
 what.mouse: Click
 what.touch: Tap
 selected: Selected
-selected.keys: [X] hide, [G] transparent, [L] alone, [U] all
+selected.keys: [X] hide, [G] transparent, [L] only this, [U] show all
 quantity.keys: [1] to [9]
 equipment.keys: [B], search [/]
 history.keys: [Y], back to live [N]
@@ -523,7 +530,7 @@ mark.bad: bad: no value
 mark.behind: hidden behind something
 mark.alarm: alarm; its colour is the priority
 mark.acknowledged: acknowledged alarm
-mark.returned: returned or latched
+mark.returned: returned to normal, or latched
 crowd: Crowded markers are thinned out; zoom in to see all. Alarms are never left out.
 
 [measure]
@@ -585,7 +592,7 @@ reset(other): As configured ({count} sensors)
 
 [proof]
 fail: Loop check failed
-changed: Loop check outdated: changed since
+changed: Loop check outdated: the tag was changed since
 pass: Loop check passed
 
 [eng]
@@ -593,7 +600,7 @@ title: Engineering
 close: Close engineering panel
 place: Place
 prove: Loop check
-method: Field
+method: Field settings
 what: Task
 find: Find a tag
 nowhere: not placed
@@ -604,17 +611,18 @@ missed: There is no surface here.
 moves: Draft (only you see it)
 nomoves: Nothing moved. Only you see your changes until you save.
 off: {metres} m off the surface
-left: not on {asset} as listed
-waiting: straight-line distances; surface distances follow
+left: not on {asset}, where it is listed
+waiting: straight-line distances now; distances along the surface follow
 straight: straight-line distances only
-ready: along the surface
+ready: distances along the surface
 undo: Undo
 back: Discard all
-gaps: Gaps
+gaps: Coverage gaps
 save: Save …
-gaps.of: Gaps: {quantity}
-gap: Farthest from any sensor: {metres} m. {far} % of the surface is more than {limit} m away; {lost} % has no data now.
-gap.next: Farthest apart: {a} to {b}, {metres} m.
+gaps.of: Coverage gaps: {quantity}
+gap: Largest distance to the nearest sensor: {metres} m. {far} % of the surface is more than {limit} m away; {lost} %
+  has no data now.
+gap.next: Most isolated sensor: {a}, {metres} m from {b}.
 gap.off: {tag} is {metres} m off the surface of {asset} (at most {limit} m)
 gap.none: No sensor is off its surface.
 diff: Save {file}?
@@ -634,7 +642,7 @@ device: Device
 proven: {done} of {count} passed
 expected: Expected
 tolerance: Tolerance ±
-watch: Watch
+watch: Watch for changes
 watching: Force the transmitter now.
 still: No reading has changed yet.
 moved: {tag} changed most: by {by}.

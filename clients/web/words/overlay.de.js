@@ -24,7 +24,7 @@ held_since: gehalten seit {}
 unknown_then: damals unbekannt
 from: Abstand von {}
 hot_spot: Erkennbarer Hotspot: {}
-hot_spot_size: von {} m, als {} % des Bereichs
+hot_spot_size: {} m groß, sichtbar mit {} % des Bereichs
 since: seit {}
 alarms: {} Alarme
 worst: höchster {}
@@ -36,23 +36,23 @@ configuration: Konfiguration {}
 clock_unset: UHR NICHT SYNCHRONISIERT
 simulated: SIMULIERT
 no_live_data: KEINE LIVE-DATEN
-history: VERLAUF
+history: VERGANGENHEIT
 no_data_then: KEINE DATEN
 unseen_one: {} nicht sichtbarer Alarm
 unseen: {} nicht sichtbare Alarme
 unseen_such_as: {} nicht sichtbare Alarme, wie
 look_default: Farbtreu
 look_glossy: Glänzend
-look_flat: Flach
-look_materials: Werkstoffe
+look_flat: Unschattiert
+look_materials: Materialien
 interpolation_shepard: Shepard
-interpolation_paper: Algorithmus 1 des Aufsatzes
+interpolation_paper: Kim & Suh, Algorithmus 1
 interpolation_harmonic: Wärmeleitung in der Wand
-interpolation_fin: Leitung und Verlust an die Luft
+interpolation_fin: Wärmeleitung und Verlust an die Luft
 interpolation_gp: Wahrscheinlichstes Feld
-distance_geodesic: Geodätischer Abstand
-distance_euclidean: Euklidischer Abstand
-distance_heat: Geodätisch, Wärmemethode
+distance_geodesic: Abstand entlang der Oberfläche
+distance_euclidean: Luftlinie
+distance_heat: Abstand nach der Wärmemethode
 power: Exponent {}
 strength: Stärke {}
 decay: Abfall {}
@@ -62,6 +62,6 @@ reach: Reichweite {} m
 reach_unlimited: Reichweite unbegrenzt
 not_filled: Nicht gefüllt
 filled: Aus Nachbarn gefüllt
-weighted: Von Hand gewichtete Messpunkte: {}
-as_configured: Messpunkte wie konfiguriert
+weighted: Von Hand gewichtete Sensoren: {}
+as_configured: Sensoren wie konfiguriert
 `;

@@ -22,9 +22,9 @@ glossy_2: the colours
 bad: BAD
 held_since: held since {}
 unknown_then: unknown at that time
-from: From {}
+from: Distance from {}
 hot_spot: Detectable hot spot: {}
-hot_spot_size: of {} m, as {} % of the range
+hot_spot_size: of {} m, seen as {} % of the range
 since: since {}
 alarms: {} alarms
 worst: highest {}
@@ -43,10 +43,10 @@ unseen: {} alarms out of sight
 unseen_such_as: {} alarms out of sight, such as
 look_default: True colours
 look_glossy: Glossy look
-look_flat: Flat look
+look_flat: Unshaded
 look_materials: Materials
 interpolation_shepard: Shepard
-interpolation_paper: Algorithm 1 of the paper
+interpolation_paper: Kim & Suh, Algorithm 1
 interpolation_harmonic: Conduction along the wall
 interpolation_fin: Conduction and loss to the air
 interpolation_gp: Most probable field

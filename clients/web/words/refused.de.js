@@ -3,27 +3,26 @@
 export default `
 role_operator: dafür ist die Rolle Operator nötig
 role_engineer: dafür ist die Rolle Engineer nötig
-no_group: in dieser Anlage gibt es „{name}“ nicht (Messgröße)
-no_asset: in dieser Anlage gibt es „{name}“ nicht (Anlagenteil)
-no_tag: in dieser Anlage gibt es „{name}“ nicht (Messstelle)
-no_device: in dieser Anlage gibt es „{name}“ nicht (Gerät)
-no_view: in dieser Anlage gibt es „{name}“ nicht (Ansicht)
+no_group: diese Anlage hat keine Messgröße „{name}“
+no_asset: diese Anlage hat kein Anlagenteil „{name}“
+no_tag: diese Anlage hat keine Messstelle „{name}“
+no_device: diese Anlage hat kein Gerät „{name}“
+no_view: diese Anlage hat keine Ansicht „{name}“
 unknown: „{name}“ ist hier nicht bekannt
-uncut: „Paper“ wird nicht genau gezeichnet, wo {group} nur einen Sensor hat ({count} von {all} Anlagenteilen, zuerst {asset}). In
-  der Anlagendatei hilft „singles: cut“ bei dieser Gruppe.
-far_uncut: Abstände werden nicht genau gezeichnet, wo {group} nur einen Sensor hat, wie an {asset}.
-  In der Anlagendatei hilft „singles: cut“ bei dieser
-  Gruppe.
+uncut: „Kim & Suh“ lässt sich nicht genau zeichnen, wo {group} nur einen Sensor hat ({count} von {all} Anlagenteilen,
+  zuerst {asset}). Abhilfe: in der Anlagendatei bei dieser Gruppe „singles: cut“ setzen.
+far_uncut: Abstände lassen sich nicht genau zeichnen, wo {group} nur einen Sensor hat, wie an {asset}. Abhilfe: in der
+  Anlagendatei bei dieser Gruppe „singles: cut“ setzen.
 assumed: der Ort dieses Sensors an {asset} ist nicht angegeben: Abstände von ihm gibt es nicht
 elsewhere: die Alarme verwaltet ein anderes System
 anew: die Anlage wird neu geladen; bitte erneut versuchen
 quiet: es gibt nichts zu quittieren
-latched: er ist nicht gehalten, noch aktiv oder nicht quittiert
+latched: zurücksetzen lässt sich nur ein quittierter Alarm mit Selbsthaltung, der nicht mehr aktiv ist
 otherwise: sein Zustand hat sich inzwischen geändert
 shelf: ein Alarm kann höchstens eine Woche zurückgestellt werden
 tolerance: der Wert liegt außerhalb der Toleranz
 reading: der Messwert ist nicht gut
-failed: von Ihnen als durchgefallen gemeldet
+failed: als nicht bestanden gemeldet
 disk: nicht gespeichert: der Server kann nicht auf seinen Datenträger schreiben
 disk_full: nicht gespeichert: der Datenträger des Servers ist voll
 disk_locked: nicht gespeichert: der Datenträger des Servers ist schreibgeschützt
@@ -61,13 +60,13 @@ numbers: höchstens {count} Zahlen, jede größer als die vorige
 log: eine logarithmische Skala braucht einen Bereich über 0
 range: der Bereich muss unter seinem Ende beginnen
 between: erwartet wird eine Zahl von {low} bis {high}
-placeless: dieser Sensor hat keinen Ort in dieser Messgröße
+placeless: dieser Sensor hat für diese Messgröße keinen Ort
 narrow: das Bild ist zu schmal zum Teilen
 memory: dem Server fehlt Speicher; das letzte Bild bleibt
 gone: dieser Benutzer ist nicht mehr verbunden
-linkless: dieser kurze Link ist unbekannt oder nicht mehr gespeichert: einen neuen erbitten
-links_often: in kurzer Zeit wurden zu viele Kurzlinks erstellt; bitte in einer Minute erneut versuchen
-coreless: nicht verfügbar: der Kern ist nicht erreichbar; bitte erneut versuchen
+linkless: dieser Kurzlink ist unbekannt oder nicht mehr gespeichert: einen neuen anfordern
+links_often: es wurden zu viele Kurzlinks erstellt; bitte in einer Minute erneut versuchen
+coreless: nicht verfügbar: der Kernserver ist nicht erreichbar; bitte erneut versuchen
 unrecorded: es wird nichts aufgezeichnet (history: record: no)
 unreadable: die Aufzeichnung ist nicht lesbar; den Grund nennt das Protokoll des Servers
 token_needed: ein Token ist nötig: melden Sie sich an, oder senden Sie Authorization: Bearer TOKEN
@@ -75,11 +74,11 @@ token_unknown: dieses Token ist unbekannt oder abgelaufen
 token_ended: dieses Token ist abgelaufen oder wurde widerrufen
 signed_out: Sie sind abgemeldet
 token_guesses: von dieser Adresse kamen zu viele falsche Tokens; in 5 s erneut versuchen
-token_node: mit dem Token eines Dienstes lässt sich kein Bildstrom öffnen
+token_node: dieses Token gehört einem Dienst (Rolle renderer oder standby), keinem Benutzer
 token_views: „{name}“ ist nicht erlaubt: dieses Token gilt für die Ansichten {views}
-token_display: dieses Token gehört zu Bildschirm {display} der Wand {wall}
+token_display: dieses Token gehört zu Bildschirm {display} der Videowand {wall}
 views_only: dieses Token gilt nur für Bilder einiger Ansichten
-display_only: das Token dieses Geräts gilt nur für seinen Bildschirm einer Wand
+display_only: das Token dieses Geräts gilt nur für seinen Bildschirm der Videowand
 pictures_only: ohne das Token eines Benutzers sind nur Bilder verfügbar
 foreign: die Anfrage kommt von einer Seite einer anderen Website
 connections: diese Adresse hat ihre Höchstzahl an Verbindungen erreicht; später erneut versuchen
@@ -89,17 +88,18 @@ pixels_address: diese Adresse hat die Höchstzahl an Pixeln erreicht; mit kleine
 pixels_view: dieser Server zeichnet höchstens {count} Pixel für eine Ansicht
 movers: eine weitere bewegte Ansicht würde alle zu langsam machen; später versuchen
 late: Messwerte erscheinen schon verspätet; später noch einmal versuchen
-tile_token: dafür ist das Token von Bildschirm {display} der Wand {wall} oder die Rolle Engineer nötig
-tileless: Bildschirm {display} der Wand {wall} ist keine ihrer Kacheln
-display_token: ein Bildschirm einer Wand braucht ein Token
+tile_token: dafür ist das Token von Bildschirm {display} der Videowand {wall} oder die Rolle Engineer nötig
+tileless: Bildschirm {display} der Videowand {wall} ist keine ihrer Kacheln
+display_token: ein Bildschirm einer Videowand braucht ein Token
 unpaired: Bildschirme brauchen hier kein Token
 signed_token: signierte Bilder enthalten Messwerte: dafür ist ein Token nötig
-signed_display: Bilder von Bildschirmen und von Tokens für einige Ansichten werden nicht signiert
+signed_display: Bilder von Bildschirmen und Bilder für Tokens, die nur für einige Ansichten gelten, werden nicht
+  signiert
 signed_key: dieser Server hat keinen Schlüssel zum Signieren (plantcastd --signing-key)
 unsigned: der Server konnte ein Bild nicht signieren
-unsigned_trial: Sensoren werden gerade an anderen Orten erprobt
+unsigned_trial: Sensoren sind probeweise an andere Orte versetzt
 unsigned_baseline: der Vergleichsstand hat keinen Namen
-unsigned_long: die Ansicht hat mehr Argumente, als Platz haben
+unsigned_long: die Ansicht hat zu viele Argumente
 overrides: höchstens {count} Sensoren lassen sich zugleich übersteuern
 breakless: die Anlagendatei nennt für {group} kein „{key}“
 name_expected: erwartet wird ein Name von 1 bis {bytes} Bytes ohne Steuerzeichen, nicht „now“
@@ -126,7 +126,7 @@ upload_cut: der Upload endete, bevor die Datei vollständig war
 too_fast: zu viele Anfragen: Ihre wird verzögert
 limit: das Bild ist zu groß für diesen Server
 not_allowed: hier nicht erlaubt
-core_lost: der Kern ist nicht erreichbar: vielleicht wurde nichts ausgeführt; prüfen Sie es, sobald er zurück ist
+core_lost: der Kernserver ist nicht erreichbar: vielleicht wurde nichts ausgeführt; bitte prüfen, sobald er zurück ist
 
 [page]
 refused: Der Server hat abgelehnt: {text}

@@ -9,15 +9,15 @@ no_tag: this plant has no tag “{name}”
 no_device: this plant has no device “{name}”
 no_view: this plant has no view “{name}”
 unknown: “{name}” is unknown here
-uncut: “paper” cannot be drawn accurately where {group} has one sensor ({count} of {all} assets, the first {asset}). The plant file
-  may say “singles: cut” at that group.
-far_uncut: distances cannot be drawn accurately where {group} has one sensor, as on {asset}.
-  The plant file may say “singles: cut” at that group.
+uncut: “paper” (Kim & Suh) cannot be drawn accurately where {group} has one sensor ({count} of {all} assets, the first
+  {asset}). Set “singles: cut” for that group in the plant file.
+far_uncut: distances cannot be drawn accurately where {group} has one sensor, as on {asset}. Set “singles: cut” for that
+  group in the plant file.
 assumed: the location of this sensor on {asset} is not given, so it has no distances
 elsewhere: alarms are managed by another system
 anew: the plant is reloading; try again
 quiet: there is nothing to acknowledge
-latched: it is not latched, still active, or not acknowledged
+latched: only an acknowledged, latched alarm that is no longer active can be reset
 otherwise: its state has changed meanwhile
 shelf: an alarm can be shelved for at most a week
 tolerance: the value is beyond the tolerance
@@ -60,12 +60,12 @@ numbers: at most {count} numbers, each larger than the one before
 log: a logarithmic scale needs a range above 0
 range: the range must begin below its end
 between: a number from {low} to {high} is expected
-placeless: this sensor has no location in this quantity
+placeless: this sensor has no location for this quantity
 narrow: the picture is too narrow to split
 memory: the server is short of memory; the last picture stays
 gone: this user is no longer connected
 linkless: this short link is unknown or no longer stored: ask for a new one
-links_often: too many short links were made within a short time; try again in a minute
+links_often: too many short links were made; try again in a minute
 coreless: unavailable: the core cannot be reached; try again
 unrecorded: no history is recorded (history: record: no)
 unreadable: history cannot be read; the server’s log says why
@@ -74,7 +74,7 @@ token_unknown: this token is unknown or has expired
 token_ended: this token has expired or was revoked
 signed_out: you are signed out
 token_guesses: too many wrong tokens came from this address; try again in 5 s
-token_node: a token of a daemon cannot open a stream
+token_node: this token belongs to a daemon (role renderer or standby), not to a user
 token_views: “{name}” is not allowed: this token is for the views {views}
 token_display: this token belongs to display {display} of wall {wall}
 views_only: this token is valid only for pictures of some views
@@ -93,7 +93,7 @@ tileless: display {display} of wall {wall} is not one of its tiles
 display_token: a wall’s display needs a token
 unpaired: displays need no token here
 signed_token: signed frames contain readings: they need a token
-signed_display: frames of displays, and of tokens for some views, are not signed
+signed_display: frames of displays, and frames for tokens that are valid for some views, are not signed
 signed_key: this server has no key to sign with (plantcastd --signing-key)
 unsigned: the server could not sign a frame
 unsigned_trial: sensors are tried out at other places

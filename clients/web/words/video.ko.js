@@ -3,7 +3,7 @@
 export default `
 starting: 시작하는 중
 not_let_in: 접근 거부
-no_view: 그런 뷰가 없음
+no_view: 해당 뷰 없음
 no_picture: 화면 없음
 too_slow: 서버가 너무 느림
 silent: 서버가 응답하지 않음
@@ -11,7 +11,7 @@ no_connection: 서버에 연결되지 않음
 no_values: 실시간 값 없음
 since: {}부터
 nothing_yet: 아직 받은 화면이 없습니다
-token: 서버가 이 토큰을 받지 않습니다: {}
+token: 서버가 이 토큰을 거부합니다: {}
 tokens: 서버가 이 주소의 토큰을 잠시 동안 확인하지 않습니다
 answers: 서버 응답 {}: {}
 views: 뷰 '{}'이(가) 없습니다. 있는 뷰: {}

@@ -140,7 +140,7 @@ async function lookAtTools(look) {
     await page.locator('#engineer-toggle').click();
     await page.locator('#engineer .tags button').first().click();
     await look('engineer-place');
-    await page.getByRole('button', { name: 'Lücken', exact: true }).click();
+    await page.getByRole('button', { name: 'Messlücken', exact: true }).click();
     await page.locator('#engineer .gaps h3').waitFor();
     await look('engineer-gaps');
     await page.locator('#engineer label', { hasText: 'Loop-Check' }).click();

@@ -62,7 +62,7 @@ test('a tag that stands nowhere is put onto the surface by a click, and its fiel
     await land(page); // waits because the panel's opening has moved the picture
     const { x, y } = await at([0.2, -0.5, 0.2]);
     await page.mouse.click(x, y);
-    await says('#engineer .moves', 'TI-9 on E-101 .*\\d{3}along the surface');
+    await says('#engineer .moves', 'TI-9 on E-101 .*\\d{3}distances along the surface');
     const place = await moved();
     assert.ok(Math.hypot(place[0] - 0.2, place[1] + 0.5, place[2] - 0.2) < 0.02, `${place}`);
     await page.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ tag }) => tag.name === 'TI-9'));
@@ -93,8 +93,9 @@ test('its marker is dragged over the surface; one step back for the whole way', 
 });
 
 test('gaps are told', options, async () => {
-    await button('Gaps').click();
-    await says('#engineer .gaps', 'Gaps: Temperature.*No sensor is off its surface.*E-101 Farthest from any sensor: \\d.*Farthest apart');
+    await button('Coverage gaps').click();
+    await says('#engineer .gaps', 'Coverage gaps: Temperature.*No sensor is off its surface.*' +
+        'E-101 Largest distance to the nearest sensor: \\d.*Most isolated sensor');
     await settle(page);
     await shoot(page, 'engineer-gaps');
 });
@@ -107,7 +108,7 @@ const snapshot = async () => {
     return Buffer.from(await answer.arrayBuffer());
 };
 
-test('the list is saved: what changes is shown, then it is in force', options, async () => {
+test('the list is saved: what changes is shown, then the list is active', options, async () => {
     const old = readFileSync(tagsFile, 'utf8');
     await says('#assets-list', 'E-101.*2 sensors.*Unassigned tags.*1 sensor');
     await button('Save …').click();
@@ -137,12 +138,12 @@ test('walk: who moved is pointed out, swapped ones too; a value that fits proves
     await page.locator('#engineer .part:not([hidden]) .tags button', { hasText: 'TI-1' }).click();
     await says('#engineer .judge output', '^now 80');
     await page.waitForTimeout(700); // waits for some readings, from which the noise is measured
-    await button('Watch').click();
+    await button('Watch for changes').click();
     await plant.tell('set TI-2 60');
     await says('#engineer .judge .note', 'TI-2 changed, not TI-1: are they swapped');
     await settle(page);
     await shoot(page, 'engineer-swapped');
-    await button('Watch').click();
+    await button('Watch for changes').click();
     await plant.tell('set TI-1 90');
     await says('#engineer .judge .note', '^TI-1 changed most: by 10');
     await page.getByLabel('Expected').fill('90,2');
@@ -204,7 +205,7 @@ test('on a tablet: a tap places, a finger drags', options, async () => {
     await look(on, [2.6, -2.2, 1.6]);
     const { x, y } = await at([0.1, -0.5, 0.1], on);
     await on.touchscreen.tap(x, y);
-    await says('#engineer .moves', 'TI-1 on E-101 .*\\d{3}along the surface', on); // the server has answered
+    await says('#engineer .moves', 'TI-1 on E-101 .*\\d{3}distances along the surface', on); // the server has answered
     assert.ok(Math.hypot(...(await moved(on)).map((v, i) => v - [0.1, -0.5, 0.1][i])) < 0.03);
     await settle(on);
     await shoot(on, 'engineer-tablet');
@@ -220,7 +221,7 @@ test('on a tablet: a tap places, a finger drags', options, async () => {
     });
     await touch('touchEnd');
     assert.deepEqual(await on.evaluate(() => globalThis.plantcast.session.camera.eye), eye, 'the camera stays');
-    await says('#engineer .moves', '\\d{3}along the surface', on);
+    await says('#engineer .moves', '\\d{3}distances along the surface', on);
     await settle(on);
     await shoot(on, 'engineer-tablet-dragged');
     assert.equal(await text('#engineer .hint', on), 'TI-1: click on the surface, or drag its marker.');
@@ -235,7 +236,7 @@ test('where the folder of the list may not be written, that is said, and nothing
     await look(page, [2.2, -2.2, 1.6]);
     const { x, y } = await at([0.1, -0.5, 0.3]);
     await page.mouse.click(x, y);
-    await says('#engineer .moves', 'TI-9 on E-101 .*\\d{3}along the surface');
+    await says('#engineer .moves', 'TI-9 on E-101 .*\\d{3}distances along the surface');
     chmodSync(plant.folder, 0o555);
     try {
         await button('Save …').click();

@@ -9,7 +9,7 @@ import { openPage, waitForPicture } from '../support/browser.mjs';
 import { missing, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 
 const options = { skip: missing().length > 0 && `not built: ${missing().join(', ')}`, timeout: 240000 };
-const PAPER = /“paper” cannot be drawn accurately where pressure has one sensor \(1 of 2 assets, the first P-101A\)/;
+const PAPER = /“paper” \(Kim & Suh\) cannot be drawn accurately where pressure has one sensor \(1 of 2 assets, the first P-101A\)/;
 const DISTANCES = /distances cannot be drawn accurately where pressure has one sensor, as on P-101A/;
 
 test('paper and distances of a single sensor are refused, until the plant file has its equipment cut', options, async () => {
@@ -44,7 +44,7 @@ test('paper and distances of a single sensor are refused, until the plant file h
         await ask({ group: 'pressure' });
         await shown('pressure', 'shepard');
         await ask({ interpolation: 'paper' });
-        await page.getByText('“paper” cannot be drawn accurately where pressure has one sensor').waitFor();
+        await page.getByText('“paper” (Kim & Suh) cannot be drawn accurately where pressure has one sensor').waitFor();
         await shown('pressure', 'shepard');
         assert.equal(await page.evaluate(() => globalThis.plantcast.session.params.interpolation), 'shepard');
         await ask({ group: 'temperature', interpolation: 'paper' }); // two sensors, on the only asset that has sensors of this group

@@ -526,7 +526,7 @@ test('while a PLC was lost the bar is hatched, and says whose; not while one of 
         assert.ok(performance.now() < end, JSON.stringify([stopped, await strips('lost')]));
         await own.waitForTimeout(300);
     }
-    assert.equal((await strips('lost')).find(holds(stopped + 4e6))[2], 'plc1: lost');
+    assert.equal((await strips('lost')).find(holds(stopped + 4e6))[2], 'plc1: no connection');
     await own.evaluate(() => globalThis.plantcast.modules.there('timeline').askMarks());
     await settle(own);
     await shoot(own, 'past-lost');

@@ -171,7 +171,7 @@ test('the picture that is kept is the one that is seen', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ show: 'value', ghost: [] }));
 });
 
-test('a saved picture has the page\'s theme, and below it the notes in force', options, async () => {
+test('a saved picture has the page\'s theme, and below it the active notes', options, async () => {
     const noteIds = () => page.evaluate(() => globalThis.plantcast.session.notes.map(({ id }) => id));
     const post = (message) => page.evaluate((one) => {
         const { session } = globalThis.plantcast;
@@ -249,9 +249,9 @@ test('an engineer sets range, factors and one sensor\'s own, and has them as con
     assert.equal((await params()).group, 'temperature');
     await page.keyboard.press('Escape');
     await page.locator('#engineer-toggle').click();
-    await page.locator('#engineer label', { hasText: 'Field' }).click();
+    await page.locator('#engineer label', { hasText: 'Field settings' }).click();
     await page.locator('#own-factors').waitFor();
-    for (const [id, choice] of [['distance', 'Euclidean'], ['interpolation', 'Paper'], ['fill', 'From neighbours'],
+    for (const [id, choice] of [['distance', 'Euclidean'], ['interpolation', 'Kim & Suh'], ['fill', 'From neighbours'],
         ['distance', 'Geodesic'], ['interpolation', 'Shepard'], ['fill', 'Hatched']]) {
         await page.locator(`#${id} label`, { hasText: choice }).click();
         await waitForParam(id, await page.locator(`#${id} input:checked`).inputValue());
@@ -354,7 +354,7 @@ test('what of a link is not in this plant is said, in the reader\'s language; th
         await shoot(phone, 'link-astray');
     });
     await opened(`${url}?lang=de#asset=E-9&group=pressure&distance=geodesic`, SCREEN,
-        /^Dieser Link passt nicht: in dieser Anlage gibt es „E-9“ nicht \(Anlagenteil\)\./, async (other) => {
+        /^Dieser Link passt nicht: diese Anlage hat kein Anlagenteil „E-9“\./, async (other) => {
             const { params } = await view(other);
             assert.deepEqual([params.group, params.distance, params.selected ?? null], ['pressure', 'geodesic', null]);
         });
