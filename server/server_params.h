@@ -11,7 +11,7 @@
 #include "corelink/core_link.h"
 #include "gpu/gl.h"
 
-/* Whether the daemon reads field devices, draws for users, or both (SERVER_ALL). SERVER_CORE is like SERVER_ALL, but renderers (daemons
+/* Tasks of the daemon: SERVER_ALL reads field devices and draws for users. SERVER_CORE is like SERVER_ALL, but renderers (daemons
    that draw for users) may connect, too. SERVER_RENDER is such a renderer. */
 enum server_role { SERVER_ALL, SERVER_CORE, SERVER_RENDER };
 

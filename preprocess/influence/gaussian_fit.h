@@ -5,10 +5,10 @@
 #define PREPROCESS_INFLUENCE_GAUSSIAN_FIT_H
 #include "preprocess/influence/gaussian.h"
 
-struct readings_table {     /* readings at the instants at which every sensor has a number */
+struct readings_table {     /* readings at the instants at which every sensor has one */
     size_t count, instants; /* count: number of sensors */
     double *values;         /* [instant][sensor] */
-    size_t left_out;        /* instants dropped because some sensor has no number */
+    size_t left_out;        /* number of instants left out, because a sensor has no reading then */
 };
 
 /* Reads a CSV file: a header line of names, then one line of readings per instant; only the columns of the `count` named sensors are used.

@@ -13,7 +13,7 @@
 static const int64_t JOIN_NS = 2 * NS_PER_S, JOIN_MAX_NS = 64 * NS_PER_S;
 /* maximum number of packets that a client may lag behind and still catch up; also the maximum number of frames planned but not encoded */
 enum { MAX_LAG_PACKETS = ENCODE_STREAM_KEPT / 2 };
-/* limit on the bytes of packets kept per stream, divided by two; a last key frame that is larger replaces this number */
+/* half of the bytes of packets that a stream keeps; if the last key frame is larger, the stream keeps twice that frame's bytes */
 static const size_t KEPT_BYTES = 64 * 1024;
 
 /* --- members of streams ----------------------------------------------------------------------------------------------- */

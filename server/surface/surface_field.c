@@ -196,13 +196,13 @@ static struct edge_window sight_of(double ab, double to_a, double to_b)
     return (struct edge_window){ (float)ab, (float)ab / 2, 1 / (2 * (float)ab), (float)x, (float)y };
 }
 
-/* Returns the smaller one of best2 and the squared length of the straight way from the source through the edge to the point. da, db:
- * distances of the edge's ends from the source, which is placed beyond the edge to fit both. The way counts only if it crosses the edge. */
+/* Returns the smaller one of best2 and the squared length of the straight path from the source through the edge to the point. da, db:
+ * distances of the edge's ends from the source, which is placed beyond the edge to fit both. A path that misses the edge is ignored. */
 SIMD_BODY float through_edge(const struct edge_window *sight, float da, float db, float best2)
 {
     const float x = sight->x, y = sight->y;
     float sx = (da - db) * (da + db) * sight->per + sight->half, sy2 = (da - sx) * (da + sx), sy = sqrtf(sy2 > 0 ? sy2 : 0);
-    /* cut / dy: position along the edge, counted from a, at which the straight way crosses it */
+    /* cut / dy: position along the edge, counted from a, at which the straight path crosses it */
     float dx = x - sx, dy = y + sy, cut = sx * y + x * sy;
     float straight2 = dx * dx + dy * dy;
     /* if da or db is INFINITY, the conditions are not all true, and the result is INFINITY */
@@ -211,8 +211,8 @@ SIMD_BODY float through_edge(const struct edge_window *sight, float da, float db
     return straight2 < best2 ? straight2 : best2;
 }
 
-/* Fills a row of distances (one per source) for a surface point. Each is the shortest of two kinds of ways: the straight way that enters
- * the point's triangle through an edge, if it passes within that edge, and the distance at a corner plus the way from this corner. */
+/* Fills a row of distances (one per source) for a surface point. Each is the shortest of two kinds of paths: the straight path that enters
+ * the point's triangle through an edge, if it passes within that edge, and the path through a corner of the triangle. */
 SIMD_BODY void fill_row(const struct edge_window sights[3], const float to_m[3], const float *restrict a, const float *restrict b,
                         const float *restrict c, size_t count, float *restrict out)
 {

@@ -48,7 +48,7 @@ for (const schema of ['IFC2X3', 'IFC4', 'IFC4X3_ADD2'])
 
 const hasOcct = existsSync(join(BIN, 'plantcast-import-occt'));
 
-// How far areas of the second reader may differ. Infinity: its shape is wrong, as its volume or its box shows.
+// Tolerances for areas that the second reader computes. Infinity: its shape is wrong, as its volume or its bounding box shows.
 const SECOND_OFF = [[/elbow/, Infinity, 'fills the hole'], [/half of an arc/, Infinity, 'takes the whole arc'],
     [/on a (wall|cylinder)|gradient|sloping/, Infinity, 'lays the profile flat'], [/two outer bounds/, Infinity, 'draws one of two faces'],
     [/polyline|composite|(mapped|clipped) pipe/, 0.085, 'pinches a pipe at a corner'], [/B-rep with/, 0.05, 'draws circles coarsely'],

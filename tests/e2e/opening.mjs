@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How soon a page shows the plant: measured on the page, from the request to the first picture on the screen.
+// Measures on the page how soon it shows the plant: from the request to the first picture on the screen.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { browserWith, DESKTOP } from './support/browser.mjs';

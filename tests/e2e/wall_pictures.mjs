@@ -66,7 +66,7 @@ async function keep(page, name, [width]) {
     await page.screenshot({ path: `${path}.png` });
 }
 
-// Whether each pane of views has a refined picture of its own size, and each trend its curves.
+// Returns whether each pane of views has a refined picture of its own size, and each trend its curves.
 const whole = () => [...document.querySelectorAll('.pane iframe')].every((frame) => {
     const { session } = frame.contentWindow.plantcast ?? {}, { picture } = session ?? {};
     return frame.closest('.trend') ? frame.contentWindow.plantcast?.trends?.series.size > 0 :

@@ -316,7 +316,7 @@ TEST(test_needles)
     assert_true(tally.marked > tally.compared / 4 && tally.worst_marked > STEP); /* a good part of the pixels is marked uncertain */
 }
 
-/* Small triangles, whose field is right, stay unmarked next to marked needles. */
+/* On a plate of needle-shaped triangles and small ones, only the needles, whose field is inexact, are marked. */
 TEST(test_half_of_needles)
 {
     struct drawn_error_tally tally;

@@ -58,7 +58,7 @@ static double value_at(const struct scalars *scalars, int x, int y)
     return u > v ? a + u * (b - a) + v * (c - b) : a + v * (b - a) + u * (c - b);
 }
 
-/* Whether the pixel has exactly a colour of the map. In refined frames samples are averaged, so neighbouring colours may mix. */
+/* Returns whether the pixel has exactly a colour of the map. In refined frames samples are averaged, so neighbouring colours may mix. */
 static bool is_color_of(const struct view *view, double value, const uint8_t *bgrx)
 {
     struct scale scale;
@@ -74,7 +74,7 @@ static bool is_color_of(const struct view *view, double value, const uint8_t *bg
     return false;
 }
 
-/* Whether an isoline runs through the pixel or a neighbour. */
+/* Returns whether an isoline runs through the pixel or a neighbour. */
 static bool near_line(const struct view *view, const struct scalars *scalars, int x, int y)
 {
     double lines[VIEW_ALL_LINES], low = INFINITY, high = -INFINITY;

@@ -80,7 +80,7 @@ static int shown_at(const struct view *view, double x_m, double y_m)
     return index;
 }
 
-/* Whether a square on the first plate is grey everywhere, which means hatched. */
+/* Returns whether a square on the first plate is grey everywhere, which means hatched. */
 static bool is_hatched(const struct view *view, double x_m, double y_m, double half_m)
 {
     struct frame *frame = stand_draw(&stand, view);

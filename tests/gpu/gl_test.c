@@ -186,7 +186,7 @@ static bool draws_with(struct log *log, const char *name, const char *renderer)
     return good;
 }
 
-/* Whether every usable device of the list can be opened by index and by address. */
+/* Returns whether every usable device of the list can be opened by index and by address. */
 static bool right_devices_draw(struct log *log, char *list)
 {
     for (char *line = strtok(list, "\n"); line; line = strtok(NULL, "\n")) {

@@ -30,7 +30,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* How a frame is encoded, and how its viewer sees colours. */
+/* Encoding of a frame, and colour vision of its viewer. */
 struct delivery_path {
     const char *name;
     int quality;                             /* quality of the JPEG; 0: no JPEG */

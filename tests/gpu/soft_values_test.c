@@ -50,7 +50,7 @@ static bool has_value(const float number[4])
     return number[1] >= 0 && number[1] < 0.5f && number[2] < 0.5f;
 }
 
-/* Whether depth bends here: it is linear in the image on a flat surface, and nearly linear on a curved one. */
+/* Returns whether depth bends here, as at an edge. In the image, depth is linear on a flat surface, and nearly linear on a curved one. */
 static bool bends(const float (*numbers)[4], int at, int step)
 {
     double before = (double)numbers[at - step][3], here = (double)numbers[at][3], after = (double)numbers[at + step][3];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How far tests go through endless sets of random views, shapes or faults: completely if PLANTCAST_LONG=1 (`make test-long`). */
+/* Says how much of a large set of random views, shapes or faults a test tries: all of it if PLANTCAST_LONG=1 (`make test-long`). */
 #ifndef TESTS_SWEEP_H
 #define TESTS_SWEEP_H
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* When a renderer without a core moves its sessions: what the balancer says, and when. */
+/* A renderer that has lost its core moves its sessions to other renderers, depending on the load balancer's reports and their times. */
 #include "tests/support/test.h"
 
 #include "base/clock.h"

@@ -363,7 +363,7 @@ TEST(test_losing_the_hottest_is_not_painted_over)
             size_t nearest = 0;
             for (size_t i = 1; i < 5; i++) {
                 float least_m = asset_distance_m(&rig.plant->file.view, nearest, j), m = asset_distance_m(&rig.plant->file.view, i, j);
-                /* a vertex equally near to the lost sensor is at the lost sensor's position */
+                /* at equal distances, the vertex takes the value of the sensor that is not lost */
                 if (m < least_m || (m == least_m && nearest == 2))
                     nearest = i;
             }

@@ -44,7 +44,7 @@ static void end(pid_t pid)
     waitpid(pid, NULL, 0);
 }
 
-/* What a command prints; mem_free. */
+/* Returns the output of a command; the caller frees it (mem_free). */
 static char *output_of(const char *command, int *status)
 {
     struct text text = { 0 };

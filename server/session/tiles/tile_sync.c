@@ -145,8 +145,8 @@ static uint64_t common(const struct session_tiles *tiles, uint64_t presented)
     return 0;
 }
 
-/* Requests another picture for all members if nothing is in flight and some member has a frame that was never presented. Such differences
-   arise if a newer request replaced the old one in time for one member but not for another. */
+/* Requests another picture for all members if no frame is in flight and some member has a frame that it never presented, because other
+   members lack a frame of the same picture: a newer request replaced theirs before it was drawn. */
 static void ask_anew(const struct session_tiles *tiles)
 {
     bool any = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much the page transfers, how soon it shows the plant, and its parts that are loaded on first use.
+// Measures how much the page transfers and how soon it shows the plant; tests its parts that are loaded on first use.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';

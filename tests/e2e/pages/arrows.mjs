@@ -100,7 +100,7 @@ async function until(what, good) {
 }
 
 test('arrows go round the tank as the wind does, from where sensors are to where none is', options, async () => {
-    // At the pole the four directions cancel out.
+    // Up to two arrows may be unknown: at the top of the tank the directions of the four sensors cancel out.
     const known = ({ rows }) => rows.length > 15 && rows.filter(isUnknown).length < 3 && rows.every((row) => row[5] === 0);
     const { rows, width, height } = await until('directions known', known);
     let front = 0;

@@ -74,7 +74,7 @@ async function profileWith(args, shape) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-chromium-'));
     const whole = { executablePath: CHROMIUM, ...shape, args: [...QUIET, ...args] };
     const context = await playwright().chromium.launchPersistentContext(folder, whole);
-    process.once('exit', () => { // removed at exit, because a closed browser goes on writing for a while
+    process.once('exit', () => { // removed at exit, because a closed browser still writes files for a while
         try {
             rmSync(folder, { recursive: true, force: true });
         } catch {
@@ -169,7 +169,7 @@ export async function openPage(url, screen = DESKTOP, before = null, arrange = n
     return { page, errors, close };
 }
 
-// Whether to take screenshots: in `make test-long`, or with PLANTCAST_SHOTS=1, because they would take longer than the tests themselves.
+// true: take screenshots. Only in `make test-long`, or with PLANTCAST_SHOTS=1, because they would take longer than the tests themselves.
 export const SHOOTS = sweep(true, process.env.PLANTCAST_SHOTS === '1');
 
 export async function shoot(page, name) {

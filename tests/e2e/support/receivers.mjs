@@ -17,8 +17,9 @@ export function makeCertificate(folder, name = 'mail') {
         throw new Error(String(stderr));
 }
 
-// As much of RFC 5321 as one message needs. mode: 'take', 'hang' (never answers), 'refuse' (550 to every recipient), 'busy' (451).
-// starttls: TLS starts on request, and no mail is accepted before; otherwise TLS from the first byte.
+// A mail server that implements only the part of RFC 5321 that one message needs. mode: 'take', 'hang' (never answers),
+// 'refuse' (550 to every recipient), 'busy' (451). starttls: TLS starts on request, and no mail is accepted before; otherwise TLS from
+// the first byte.
 export class MailServer {
     constructor(folder, { starttls = false, user = null, password = null } = {}) {
         Object.assign(this, { starttls, user, password, mode: 'take', mails: [], tried: 0, sockets: new Set() });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far tests go through endless sets: completely if PLANTCAST_LONG=1 (`make test-long`), as in tests/support/sweep.h.
+// Says how much of a large set a test tries: all of it if PLANTCAST_LONG=1 (`make test-long`), as in tests/support/sweep.h.
 const isWhole = process.env.PLANTCAST_LONG === '1';
 
 // Returns `whole` in a long run, otherwise `part`.

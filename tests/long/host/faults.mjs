@@ -127,7 +127,7 @@ async function certificates({ site }) {
         await until('the new certificate', async () => await site.serial(renderer) !== before, 30);
     }
 }
-// As deploy/pages/STANDBY.md says: both cores in turn; here also renderers, which have the same plant file.
+// Reloads one core after the other, as deploy/pages/STANDBY.md says, and the renderers, which have the same plant file.
 async function reload({ site, leader, standby }) {
     const text = readFileSync(site.two.file, 'utf8'), [was, is] = /description: warm/.test(text) ? ['warm', 'cold'] : ['cold', 'warm'];
     writeFileSync(site.two.file, text.replace(`description: ${was}`, `description: ${is}`));

@@ -100,7 +100,8 @@ export class Operator {
     }
     get sees() { return performance.now() - this.seenAt < PICTURE_MS; }
 
-    // Returns the longest time in milliseconds within which this operator saw no live plant, of all that ended or go on since then.
+    // Returns the longest time in milliseconds in which this operator saw no live plant, of the times that ended after `since` or have not
+    // ended yet.
     longestBlind(since) {
         const now = performance.now();
         return Math.max(0, ...[...this.gaps, [this.seenAt, now]].filter(([, to]) => to >= since)

@@ -208,7 +208,7 @@ export class Site {
 
     plantcast(...args) { return run(join(BIN, 'plantcast'), args, { signal: this.over.signal, timeout: PROGRAM_MS }); }
 
-    // Ends everything, also after a start that failed or goes on. Throws the first error in the end.
+    // Ends everything, also after a start that failed or is not complete. At the end, throws the first error.
     destroy() { return this.ending ??= this.endAll(); }
     async endAll() {
         this.over.abort();
