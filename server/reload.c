@@ -42,7 +42,7 @@ struct reload {
     struct refusal refusal;        /* reason why the running reload could not save the tag list; REFUSAL_NONE: it was saved */
     /* held while the runtime is replaced, and while it takes the lead (becomes the one that polls devices): the two must not overlap */
     pthread_mutex_t put_lock;
-    bool ended; /* true: this core's lead has ended, so no new plant may be put in force; protected by put_lock */
+    bool ended; /* true: this core's lead has ended, so no new plant may be activated; protected by put_lock */
     /* thread that makes this core the leader, and ends its lead; a thread of its own, so that neither waits for a running reload */
     struct thread leader;
     bool leads, ends; /* orders for that thread: take the lead; end the lead; protected by leader.lock */
@@ -429,8 +429,8 @@ static void record_import(const struct reload *reload, const struct import_order
                                                              .result = why ? "failed" : "done",
                                                              .who = reload->by,
                                                              .what = order->anew           ? "the plant was created again from its exports"
-                                                                     : order->models       ? "models were read, tags matched"
-                                                                     : order->decides      ? "decisions about tags were taken"
+                                                                     : order->models       ? "models were read and tags matched"
+                                                                     : order->decides      ? "decisions about tags were applied"
                                                                      : *order->source.host ? "a source was set"
                                                                                            : "tags were matched",
                                                              .why = why });

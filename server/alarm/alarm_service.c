@@ -213,9 +213,9 @@ static void add_counters(struct alarm_service *service)
             counters_add(c, name, "gauge", "Alarms shown in the alarm list, by priority; 1 is the most urgent.");
         mem_free(name);
     }
-    service->counters.active = counters_add(c, "plantcast_alarms_active", "gauge", "Shown alarms whose cause persists.");
+    service->counters.active = counters_add(c, "plantcast_alarms_active", "gauge", "Alarms in the alarm list whose cause persists.");
     service->counters.standing =
-        counters_add(c, "plantcast_alarms_standing", "gauge", "Shown alarms whose cause has persisted for more than a day.");
+        counters_add(c, "plantcast_alarms_standing", "gauge", "Alarms in the alarm list whose cause has persisted for more than a day.");
     service->counters.chattering =
         counters_add(c, "plantcast_alarms_chattering", "gauge", "Alarms raised three times or more within the last minute.");
     service->counters.held = counters_add(c, "plantcast_alarms_held", "gauge", "Active alarms whose reading is Bad.");

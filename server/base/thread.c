@@ -18,7 +18,7 @@ bool thread_start(struct thread *thread, struct log *log, const char *name, void
     int error = pthread_create(&thread->id, NULL, run, arg);
     thread->started = !error;
     if (error)
-        log_err(log, "%s: no thread: %s", name, strerror(error));
+        log_err(log, "%s: cannot start a thread: %s", name, strerror(error));
     return !error;
 }
 

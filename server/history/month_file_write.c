@@ -218,7 +218,7 @@ int month_file_note(struct month_file *file, int64_t t_us, const char *kind, con
     sqlite3_bind_int64(note, 1, t_us);
     database_bind_text(note, 2, kind);
     database_bind_text(note, 3, text);
-    return month_run(file, note, "cannot note an event");
+    return month_run(file, note, "cannot record an event");
 }
 
 /* --- rolling up --------------------------------------------------------------------------------------------------------------- */
@@ -431,7 +431,7 @@ static int roll_again(struct month_file *file, int tag, int64_t id, int64_t from
         sqlite3_bind_int64(clear, 2, id);
         sqlite3_bind_int64(clear, 3, from_us);
         sqlite3_bind_int64(clear, 4, INT64_MAX);
-        error = month_run(file, clear, "cannot roll up again");
+        error = month_run(file, clear, "cannot delete outdated aggregates");
     }
     reset_rollups(&rollups, file->tags[tag].step);
     if (!error)
@@ -466,7 +466,7 @@ static int forget(struct month_file *file, int which, int64_t from_us, int64_t t
     sqlite3_bind_int64(s, 2, to_us);
     if (which != SQL_FORGET_GAP_NOTES)
         sqlite3_bind_int64(s, 3, gap_quality);
-    return month_run(file, s, "cannot forget a gap");
+    return month_run(file, s, "cannot delete a gap");
 }
 
 struct gap_points {
@@ -540,7 +540,7 @@ static int end_lines(struct month_file *file, uint32_t gap_quality, bool sends_g
     }
     sqlite3_reset(held);
     if (!error)
-        error = database_fail(&file->db, code, "cannot read held points");
+        error = database_fail(&file->db, code, "cannot read the newest samples");
     if (!error)
         error = month_seconds_write(file, rows, count, NULL, 0);
     file->waiting += error ? 0 : count;
@@ -550,7 +550,7 @@ static int end_lines(struct month_file *file, uint32_t gap_quality, bool sends_g
 
 int month_file_clear_held(struct month_file *file)
 {
-    return month_run(file, month_sql(file, SQL_CLEAR_HELD), "cannot clear held points");
+    return month_run(file, month_sql(file, SQL_CLEAR_HELD), "cannot delete the newest samples of a past month");
 }
 
 int month_file_recover(struct month_file *file, uint32_t gap_quality, bool sends_gaps, int64_t *ended_us)

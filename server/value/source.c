@@ -50,7 +50,7 @@ struct source *source_begin(const struct source *params, const char *what, struc
     int error = pthread_create(&made->thread, NULL, thread_main, made);
     made->has_thread = !error;
     if (error) {
-        log_err(base.log, "%s: no thread: %s", what, strerror(error));
+        log_err(base.log, "%s: cannot start a thread: %s", what, strerror(error));
         source_stop(&made);
     }
     return made;

@@ -339,7 +339,7 @@ struct other_plants *other_plants_start(struct log *log, const struct plant *pla
     bool usable = curl_global_init(CURL_GLOBAL_DEFAULT) == CURLE_OK && (others->multi = curl_multi_init());
     others->started = usable && pthread_create(&others->thread, NULL, other_plants_main, others) == 0;
     if (!others->started) {
-        log_err(log, "pictures of other plants cannot be requested: %s", usable ? "no thread" : "libcurl cannot be used");
+        log_err(log, "pictures of other plants cannot be requested: %s", usable ? "a thread cannot be started" : "libcurl cannot be used");
         other_plants_stop(&others);
     }
     return others;

@@ -47,7 +47,7 @@ static int drain(pid_t pid, int wait_s)
 {
     int64_t end_ns = clock_mono_ns() + wait_s * NS_PER_S;
     if (!is_daemon(pid)) {
-        fprintf(stderr, "plantcast: %d: no plantcastd\n", (int)pid);
+        fprintf(stderr, "plantcast: no plantcastd has the process ID %d\n", (int)pid);
         return 1;
     }
     if (kill(pid, SIGUSR1) != 0) {

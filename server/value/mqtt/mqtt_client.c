@@ -229,7 +229,7 @@ struct mqtt_client *mqtt_client_start(const struct plant_source *source, int hos
         good = pthread_create(&thread, NULL, connect_main, client) == 0;
         if (!good) {
             client->users = 1;
-            snprintf(why, 200, "no thread");
+            snprintf(why, 200, "a thread cannot be started");
         }
     }
     if (good)
