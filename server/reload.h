@@ -15,7 +15,7 @@ struct reload *reload_create(const struct plant_runtime_context *context, struct
 void reload_destroy(struct reload **reload);
 /* Asks for a reload and does not wait; if a reload is running, another one follows it. who: the user who asks, copied. Thread: any. */
 void reload_ask(struct reload *reload, const char *who);
-/* On a renderer or a standby core, asks for a reload because its core loads the plant. The new plant is put in force once the core has
+/* On a renderer or a standby core, asks for a reload because its core loads the plant. The new plant is activated once the core has
    ended the connection `session` (core_link_session()), which it does to switch to its own new plant; if the core does not switch, the new
    plant is dropped. session 0: the core has switched already. configuration: hash of the core's configuration; a plant with another hash
    is dropped; NULL: not known. Does not wait. Thread: any. */

@@ -44,7 +44,7 @@ struct supervision *supervision_create(struct log *log, struct counters *counter
     supervision->all = counters;
     supervision->counters.reload_good = counters_add(counters, "plantcast_reload_good", "gauge", "1 unless the last reload was refused.");
     supervision->counters.reloaded_s = counters_add(counters, "plantcast_configuration_loaded_timestamp_seconds", "gauge",
-                                                    "Time the configuration in force was loaded, in seconds since 1970.");
+                                                    "Time at which the active configuration was loaded, in seconds since 1970.");
     counter_set(supervision->counters.reload_good, 1);
     counter_set(supervision->counters.reloaded_s, clock_utc_ns() / NS_PER_S);
     counter_set(counters_add(counters, "plantcast_build_info{version=\"" PLANTCAST_VERSION "\",commit=\"" PLANTCAST_COMMIT "\"}", "gauge",
@@ -90,7 +90,7 @@ static void say_status(struct supervision *supervision, size_t sessions, const c
     supervision->said_sessions = sessions;
     supervision->said_core = core;
     service_notify("STATUS=%s%s%zu session%s%s", core ? core : "", core ? "; " : "", sessions, sessions == 1 ? "" : "s",
-                   refused ? "; the last reload was refused, an older configuration is in force" : "");
+                   refused ? "; the last reload was refused, an older configuration is active" : "");
 }
 
 /* Sends the watchdog message from the event loop, and only while the render thread is alive: if either hangs, the service manager

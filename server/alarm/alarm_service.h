@@ -47,8 +47,8 @@ uint64_t alarm_service_changes(struct alarm_service *service, uint64_t since, vo
    the reason of a refusal, or REFUSAL_NONE. */
 enum refusal_code alarm_service_act(struct alarm_service *service, const char *name, enum alarm_kind kind, const struct alarm_act *act);
 /* Together with the next two functions tells whether alarm changes made between alarm_service_begin() and alarm_service_end() are in the
-   journal on disk (base/files/settling.h). Without a journal they count as on disk. Changes that are not on disk are in force, but would
-   be lost if the daemon were killed. */
+   journal on disk (base/files/settling.h). Without a journal they count as on disk. Changes that are not on disk have taken effect, but
+   would be lost if the daemon were killed. */
 struct settling_ticket alarm_service_begin(struct alarm_service *service);
 void alarm_service_end(struct alarm_service *service, struct settling_ticket *ticket);
 int alarm_service_settled(struct alarm_service *service, const struct settling_ticket *ticket);

@@ -29,7 +29,7 @@ struct net_status { /* state of the event loop, passed to the callback at each t
     bool has_core;              /* true: readings arrive from the core; always true without --role render */
     const char *core;           /* role of this core in a pair of cores (static text); NULL: there is no pair */
     bool drains;                /* true: the daemon drains: it closes sessions so that their clients move to other daemons */
-    int64_t certificate_ends_s; /* expiry of the certificate in force, seconds of UTC since 1970; 0: no certificate */
+    int64_t certificate_ends_s; /* expiry of the active certificate, seconds of UTC since 1970; 0: no certificate */
 };
 
 struct net_params {
@@ -59,7 +59,7 @@ struct net_params {
     /* callback in the event loop that reloads the plant because this daemon's core reloads it, see reload_follow(). NULL: this daemon has
        no core */
     void (*follow)(void *arg, uint64_t session, const char *configuration);
-    /* callback in the event loop that puts a saved tag list in force and takes ownership of `save`; NULL: tag lists cannot be saved */
+    /* callback in the event loop that activates a saved tag list and takes ownership of `save`; NULL: tag lists cannot be saved */
     void (*save)(void *arg, struct tag_save *save);
     struct plant_import *import; /* service that imports plants; NULL: import is off */
     /* callback in the event loop after an import order of user `who` was accepted; set only with `import` */

@@ -523,7 +523,7 @@ void stream_on_historical_snapshot(struct server_context *server, const struct h
 /* --- libwebsockets events --------------------------------------------------------------------------------------------- */
 
 /* Returns whether answers to actions must still be sent. At shutdown that is done before connections are closed: a client that lacks an
-   answer cannot tell whether its action is in force. */
+   answer cannot tell whether its action took effect. */
 static bool owes_answer(const struct stream *stream)
 {
     return stream->close_code == LWS_CLOSE_STATUS_GOINGAWAY && stream->session->owed.reply_count > 0;

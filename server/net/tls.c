@@ -153,7 +153,7 @@ static int write_chain(const SSL_CTX *context, const char *path)
     return error;
 }
 
-/* Writes the certificate that is in force to the service's folder in /run. Prometheus and other programs of this machine read it there to
+/* Writes the active certificate to the service's folder in /run. Prometheus and other programs of this machine read it there to
    verify this server. */
 static void publish(const struct tls *tls)
 {

@@ -24,7 +24,7 @@ struct plant_services {
     struct historian *historian;     /* NULL: nothing is recorded */
     struct notifier *notifier;       /* service that sends alarm notifications; NULL: none are sent */
     struct loop_checks *loop_checks; /* NULL: loops cannot be checked */
-    char *tag_list;                  /* text of the tag list that is in force; NULL: it could not be read */
+    char *tag_list;                  /* text of the active tag list; NULL: it could not be read */
     char *history_folder;            /* NULL: nothing is recorded */
 };
 

@@ -195,7 +195,7 @@ void session_tile_tell(struct session *session, const bool *there, const int64_t
 
 /* Shows the session's trial sensor positions again, with exact distances, once these were computed. */
 void session_on_placed(struct session *session, int64_t now_ns);
-/* Removes from the session the tag list that a reload is to put in force, and returns it; the caller owns it. NULL: there is none. */
+/* Removes from the session the tag list that a reload is to activate, and returns it; the caller owns it. NULL: there is none. */
 struct tag_save *session_take_save(struct session *session);
 /* Queues the answer to the message `gaps` (sensor coverage). */
 void session_on_coverage(struct session *session, const struct sensor_coverage_answer *answer);

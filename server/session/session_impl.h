@@ -28,7 +28,7 @@ char *session_note_what(const struct session *session, const struct message *mes
 char *session_wall_what(const struct message *message);
 /* Records an action in the audit trail. event: "alarm", "view", "note", "wall", "device" or "proof". */
 void session_record_action(const struct session *session, const char *event, const char *what, const char *answer);
-/* Records that a tag list is being put in force: by save_tags with `moved` moved sensors, by accept_places or by restore_tags. */
+/* Records that a tag list is being activated: by save_tags with `moved` moved sensors, by accept_places or by restore_tags. */
 void session_record_save(const struct session *session, const struct message *message, size_t moved);
 /* If the message's parameters save or remove baselines for all users, records that in the audit trail. */
 void session_record_params(const struct session *session, const struct message *message);

@@ -106,7 +106,7 @@ static void make_id(const json_t *list, int64_t now_us, char id[NOTE_ID_BYTES])
     while (kept_list_find(list, id) < json_array_size(list));
 }
 
-/* Finds the note that `id` names, if it is in force, and sets *at to its index. Returns REFUSAL_NONE, or why the note cannot be changed. */
+/* Finds the note that `id` names, if it is active, and sets *at to its index. Returns REFUSAL_NONE, or why the note cannot be changed. */
 static enum refusal_code find_in_force(const json_t *list, const char *id, int64_t now_us, size_t *at)
 {
     *at = kept_list_find(list, id);

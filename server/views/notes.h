@@ -34,7 +34,7 @@ enum refusal_code notes_add(struct notes *notes, const struct note *note, const 
 /* Ends a note and queues the file (kept_list_put()). may_end_others: the user may also end notes that other users wrote. Returns
    REFUSAL_NONE, or why it failed. */
 enum refusal_code notes_end(struct notes *notes, const char *id, const char *who, bool may_end_others, int64_t now_us);
-/* Returns the author of a note in force or ended; NULL if no such note is stored. The name is valid until the notes change. */
+/* Returns the author of an active or ended note; NULL if no such note is stored. The name is valid until the notes change. */
 const char *notes_author(const struct notes *notes, const char *id);
 /* Returns a counter that increases with each change of the notes; 0: there has been no note. */
 uint64_t notes_number(const struct notes *notes);

@@ -165,7 +165,7 @@ test('on a full disk each kind is answered with "not kept", and why; once there 
         if (answer.unaudited)
             unaudited.push(name);
         if (type === 'alarmed')
-            assert.deepEqual([answer.done, answer.not_kept], [0, 1], 'it is in force, and not kept');
+            assert.deepEqual([answer.done, answer.not_kept], [0, 1], 'it has taken effect, and is not kept');
     }
     const refused = await upload('full.obj', 'v 0 0 0\n'.repeat(100000));
     assert.equal(refused.status, 507, await refused.text());
@@ -177,7 +177,7 @@ test('on a full disk each kind is answered with "not kept", and why; once there 
     free();
     await until('that the journal is written again', () => /the alarm journal can be written again/.test(plant.daemon.said));
     await killed();
-    assert.notEqual((await alarm()).state, 'unacknowledged', 'what was in force, and could not be kept then, was once there was room');
+    assert.notEqual((await alarm()).state, 'unacknowledged', 'a change that could not be kept is kept once there is space');
 });
 
 test('what is answered as done is there after a kill -9 in that moment, and in the trail', { ...options, timeout: 300000 }, async (t) => {

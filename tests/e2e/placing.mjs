@@ -129,7 +129,7 @@ test('gaps: what is far from every sensor, and what has no data', options, async
     engineer.close();
 });
 
-test('a list is saved: the difference first, then in force for all, the old one beside it', options, async () => {
+test('a list is saved: the difference first, then active for all, with the old one kept', options, async () => {
     const engineer = await enter(), other = await enter(), old = readFileSync(tagsFile, 'utf8');
     place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0, 0.5, 0.12345] },
         { tag: 'TI-2', asset: 'E-101', position: [-0.5, 0.25, 0] }]);

@@ -39,7 +39,7 @@ const active = async () => {
     return alarms.map(({ tag, kind, state }) => `${tag}/${kind} ${state}`);
 };
 
-test('errors leave what was there in force, and are named with their place', options, async () => {
+test('after errors the previous plant stays active, and each error is named with its place', options, async () => {
     const before = await (await fetch(url('/api/v1/plant'))).json();
     const good = readFileSync(tagsFile, 'utf8');
     writeFileSync(tagsFile, good.replace('TI-2,400003,Float', 'TI-2,400003,Flaot'));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Notes survive a restart, expire or are ended by hand, and are limited in number; the notes in force during a shift can be listed. */
+/* Notes survive a restart, expire or are ended by hand, and are limited in number; those active during a shift can be listed. */
 #include "tests/support/test.h"
 
 #include <errno.h>

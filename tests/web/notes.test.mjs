@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Notes: their positions in the plant, and until when they are in force.
+// Notes: their positions in the plant, and until when they are shown.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { inForce, isOfPlant, placeOf, whereOf } from '../../clients/web/core/notes.js';

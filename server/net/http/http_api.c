@@ -253,7 +253,7 @@ int api_link(struct server_context *server, struct http_exchange *request)
     return request_answer_json(request, json_text(json_pack("{s:s}", "view", view), 0));
 }
 
-/* Lists the notes in force between `from` and `to`; by default from an hour ago until now. */
+/* Lists the notes that were active between `from` and `to`; by default from an hour ago until now. */
 int api_notes(struct server_context *server, struct http_exchange *request)
 {
     struct message_error error = { 0 };

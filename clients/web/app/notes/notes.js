@@ -176,7 +176,7 @@ export class Notes {
         return pin;
     }
 
-    // Returns who wrote a note, and until when it is in force.
+    // Returns who wrote a note, and until when it is shown.
     authorOf(note) {
         return [note.by, endText(this.session.model, note)].filter(Boolean).join(' · ');
     }

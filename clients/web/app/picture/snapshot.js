@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Saves a picture as a file: redrawn by the server, with the notes in force, or, if the server signs frames, the exact frame on the screen.
+// Saves a picture as a file: redrawn by the server, with the active notes, or, if the server signs frames, the exact frame on the screen.
 import { ask } from '../../core/history.js';
 import { inForce } from '../../core/notes.js';
 import { snapshotQuery } from '../../core/query.js';
