@@ -71,7 +71,7 @@ priority: Prio
 tag: Messstelle
 kind: Alarm
 area: Bereich
-about: Beschreibung
+about: Benennung
 us: Zeit
 then: Wert
 now: Jetzt

@@ -4,8 +4,7 @@
 export default `
 none: keine
 novalue: kein Wert
-viewport: Anlage, 3D-Ansicht. Pfeiltasten drehen, Plus und Minus zoomen, W A S D verschieben, F zeigt alles,
-  Fragezeichen öffnet die Hilfe.
+viewport: Anlage, 3D-Ansicht. Pfeile drehen, Plus und Minus zoomen, W A S D verschieben, F zeigt alles, Fragezeichen öffnet Hilfe.
 legend: Legende
 card: Messstelle
 place: Stelle

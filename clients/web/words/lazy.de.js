@@ -396,7 +396,7 @@ then: Gezeigte Zeit
 min: Min
 mean: Mittel
 max: Max
-known: Verfügbar
+known: Gültig
 focus: Diese Kurve hervorheben und ihre Grenzwerte zeigen
 chart: Diagramme. Pfeiltasten bewegen das Fadenkreuz, Plus und Minus zoomen, Bildtasten verschieben, Enter zeigt den Zeitpunkt.
 table: Werte und Statistik
@@ -601,7 +601,7 @@ title: Engineering
 close: Engineering schließen
 place: Platzieren
 prove: Loop-Check
-method: Feldberechnung
+method: Berechnung
 what: Aufgabe
 find: Messstelle suchen
 nowhere: nicht platziert

@@ -395,7 +395,7 @@ then: Time shown
 min: Min
 mean: Mean
 max: Max
-known: Available
+known: Valid
 focus: Emphasise this curve and show its limits
 chart: Charts. Arrow keys move the crosshair, plus and minus zoom, Page keys move the range, Enter shows that instant.
 table: Values and statistics
