@@ -45,7 +45,7 @@ test('no word is said that is not in the files of words, and no key is shown', o
     const browser = await openPage(`${url}?lang=de`, { viewport: { width: 1440, height: 900 } }, null, async (page) => {
         await page.route(/\/words\/(lazy\.|alarms\.)?de\.js/, async (route) => {
             const text = await (await route.fetch()).text();
-            const marked = text.replace(/^([\w. ]+(?:\(\w+\))?: )(.*)$/gm,
+            const marked = text.replace(/^([\w. ]+(?:\(\w+\))?: )(.*(?:\n +.*)*)$/gm,
                 (_, key, said) => `${key}⟦${(said.match(/\{\w+\}/g) ?? []).join('⟧⟦')}⟧`);
             await route.fulfill({ body: marked, contentType: 'text/javascript' });
         });

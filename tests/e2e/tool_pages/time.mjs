@@ -408,6 +408,8 @@ test('alarms are marked where they were raised', options, async () => {
 
 const instantOf = (us) => page.waitForFunction((to) => globalThis.plantcast.session.time.atUs === to, us);
 const timeText = (us) => new Date(us / 1000).toISOString().slice(0, 19);
+// Returns an instant `s` seconds after the history begins, or one second later: Chromium drops seconds of :00 from a date field.
+const afterBegin = (s) => (BEGIN_S + s + ((BEGIN_S + s) % 60 === 0)) * 1e6;
 
 test('marks lead to their instant, from alarm to alarm, and to a date', options, async () => {
     const raises = await page.evaluate(async () => {
@@ -438,8 +440,7 @@ test('marks lead to their instant, from alarm to alarm, and to a date', options,
         await page.locator('#time-after').click();
         await instantOf([...new Set(raises)][1]);
     }
-    // Chromium drops seconds of :00 from a field, so the instant has others.
-    const us = (BEGIN_S + 777 + ((BEGIN_S + 777) % 60 === 0)) * 1e6;
+    const us = afterBegin(777);
     await page.locator('#time-date').fill(timeText(us));
     await instantOf(us);
     await page.locator('#time-slider').focus();
@@ -454,7 +455,7 @@ test('marks lead to their instant, from alarm to alarm, and to a date', options,
 });
 
 test('two times are compared side by side, with one camera', options, async () => {
-    const us = (BEGIN_S + 900) * 1e6, inner = () => page.frames().find((frame) => frame.url().includes('pane=compare'));
+    const us = afterBegin(900), inner = () => page.frames().find((frame) => frame.url().includes('pane=compare'));
     if (!await page.locator('#timeline').isVisible())
         await page.locator('#time-toggle').click();
     await page.locator('#time-compare').click();
