@@ -28,8 +28,8 @@
 #define LINE_OF_SIZE 2.5e-7
 #define MORE_PLACES 12.0        /* number of positions for which memory is reserved, in multiples of the model's number of positions */
 #define MAX_REPORTED_EDGES 2000 /* maximum number of short edges of a coarser level that are measured for the report */
-/* subdivision of a level stops when a round of splits may add fewer triangles than this share of the level's; a round may add half of the
- * triangles that the limit leaves */
+/* subdivision of a level stops when a round of splits may add fewer triangles than this share of the level's triangles; a round may
+ * add half of the triangles that the limit leaves */
 #define FULL 2e-4
 
 /* limits of the triangles added to the finest level: as a multiple of its triangles, and as a count; the larger limit applies */

@@ -89,7 +89,7 @@ export function wideView(head, views, eyePx) {
     return { fov: 2 * Math.atan(tall) / RADIANS, width, height };
 }
 
-// Returns the camera of the wide picture from the head's place.
+// Returns the camera of the wide picture, at the position of the head.
 export function headCamera(rig, matrix, fov) {
     const { at, axes: [, up, back] } = poseOf(rig, matrix);
     return { eye: at, target: along(at, back, -2), up, fov };

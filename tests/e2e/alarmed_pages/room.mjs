@@ -45,7 +45,7 @@ const amiss = (page) => page.evaluate(() => {
             found.push(`${part.id} leaves the picture`);
     const legend = document.getElementById('legend'), strip = box(legend).height <= 28;
     const texts = [...legend.querySelectorAll('.ticks span, .limits span, .keys span')]
-        .filter((text) => !strip || text.checkVisibility()); // on a phone, a tap opens the strip and shows the others
+        .filter((text) => !strip || text.checkVisibility()); // on a phone, the legend is a strip that hides some texts until it is tapped
     const isSaid = shown('#legend').length > 0 && /No data|Keine Daten/.test(legend.querySelector('.keys').textContent);
     if (picture.height > (innerWidth < 720 ? 125 : 200) && !isSaid)
         found.push('no legend, or no key for what has no data');

@@ -112,7 +112,8 @@ test('a part that cannot be loaded says so, and comes by itself once it can be',
                 await page.locator(opened).waitFor();
                 await page.waitForFunction(() => globalThis.plantcast.session.picture); // the page still works
             }
-        }, (page) => all === words && away(page, all[0][1])); // blocked early: an alarm ring would fetch the words
+        }, (page) => all === words && away(page, all[0][1])); // blocks the file before the page opens, because a ring of an
+        // alarm would load it
 });
 
 test('no part says anything before the words of parts are there', options, () => {

@@ -115,7 +115,7 @@ export class Nodes {
     }
 
     // Waits until exactly one daemon polls; there may be none only while it reconnects. The system lists connections piece by piece, so an
-    // ending connection may appear together with its successor: only two that are both there at a second look count.
+    // ending connection may appear together with its successor. Two pollers are an error only if both are listed twice in a row.
     onePoller() {
         let before = [];
         return until('one poller', () => {
