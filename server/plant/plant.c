@@ -3,6 +3,7 @@
 #include "plant/plant.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 #include <xxhash.h>
@@ -215,20 +216,22 @@ static char *beside(const struct plant *plant, const char *ending)
     return mem_printf("%s/%.*s.%s", plant->files.folder, end && end > name ? (int)(end - name) : (int)strlen(name), name, ending);
 }
 
-char *plant_service_folder(const struct plant *plant, const char *name)
+char *plant_service_folder(const char *path, const char *name)
 {
     static const char installed[] = "/etc/plantcast/", file[] = "/plant.yaml";
-    const char *path = plant->files.path;
+    char *real = *path == '/' ? NULL : realpath(path, NULL);
+    path = real ? real : path;
     size_t length = strlen(path), before = sizeof(installed) - 1, after = sizeof(file) - 1;
-    if (length <= before + after || strncmp(path, installed, before) != 0 || strcmp(path + length - after, file) != 0)
-        return NULL;
-    return mem_printf("/var/lib/plantcast/%.*s/%s", (int)(length - before - after), path + before, name);
+    bool is = length > before + after && !strncmp(path, installed, before) && !strcmp(path + length - after, file);
+    char *folder = is ? mem_printf("/var/lib/plantcast/%.*s/%s", (int)(length - before - after), path + before, name) : NULL;
+    free(real);
+    return folder;
 }
 
 /* Returns `folder` if it exists or the plant is not that of a service, otherwise the service's folder. Takes ownership of `folder`. */
 static char *or_of_service(const struct plant *plant, char *folder, const char *name)
 {
-    char *own = access(folder, F_OK) == 0 ? NULL : plant_service_folder(plant, name);
+    char *own = access(folder, F_OK) == 0 ? NULL : plant_service_folder(plant->files.path, name);
     if (!own)
         return folder;
     mem_free(folder);

@@ -423,14 +423,14 @@ int plant_find_environment(const struct plant *plant, const char *name);
 int plant_find_tag(const struct plant *plant, const char *name);
 /* Returns whether readings of a tag are simulated: the tag's source is simulated, or that of a tag in its expression. */
 bool plant_tag_simulated(const struct plant *plant, int tag);
-/* Returns a folder of the systemd service plantcastd@NAME, whose plant file is /etc/plantcast/NAME/plant.yaml; NULL: the plant file has
-   another path. name: `prepared` or `history`. Free with mem_free(). */
-char *plant_service_folder(const struct plant *plant, const char *name);
+/* Returns a folder of the systemd service plantcastd@NAME, whose plant file is /etc/plantcast/NAME/plant.yaml; NULL: `path` is not that of
+   a service's plant file. name: `prepared` or `history`. Free with mem_free(). */
+char *plant_service_folder(const char *path, const char *name);
 /* Returns the folder of the prepared asset files: FOLDER/NAME.prepared next to NAME.yaml, or the service's folder. Free with
    mem_free(). */
 char *plant_prepared_folder(const struct plant *plant);
-/* Returns the folder in which a program looks for recorded readings: plant_history_folder() if it exists, or the service's folder. Free
-   with mem_free(). */
+/* Returns the folder in which a command reads and writes recorded readings: plant_history_folder() if it exists, or the service's folder.
+   Free with mem_free(). */
 char *plant_recorded_folder(const struct plant *plant);
 /* Returns the folder of the history: FOLDER/NAME.history, unless the plant file names another. Free with mem_free(). */
 char *plant_history_folder(const struct plant *plant);

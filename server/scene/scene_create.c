@@ -361,7 +361,7 @@ static struct scene *create(struct log *log, const struct plant *plant, const ch
 struct scene *scene_create(struct log *log, const struct plant *plant, const char *prepared_folder)
 {
     struct scene *scene = create(log, plant, prepared_folder);
-    char *own = scene ? NULL : plant_service_folder(plant, "prepared");
+    char *own = scene ? NULL : plant_service_folder(plant->files.path, "prepared");
     if (own && !strcmp(own, prepared_folder))
         log_err(log, "%s: the prepared files in %s cannot be used; the service prepares them when it starts: restart it, or read its log",
                 plant->files.path, prepared_folder);

@@ -74,7 +74,7 @@ before(async () => {
     const rows = Array.from({ length: 400 }, (_, i) => `TI-1,${BEGIN_S + i * 60},${(50 + 40 * Math.sin(i / 9)).toFixed(3)}`);
     first.write('/root/series.csv', ['Tag,Time,Value', ...rows].join('\n'));
     ok(first.run(`install -d -o plantcast -g plantcast ${STATE}/history
-        plantcast history import ${ETC}/plant.yaml /root/series.csv --folder ${STATE}/history
+        plantcast history import ${ETC}/plant.yaml /root/series.csv
         chown -R plantcast:plantcast ${STATE}/history`));
     const key = ok(first.run('age-keygen 2>/dev/null'));
     first.write('/root/key', key, 0o600);
@@ -113,6 +113,15 @@ test('a backup while the daemon runs has everything, its keys only encrypted', o
     const plain = spawnSync('grep', ['-rlE', 'PRIVATE KEY|^secret$', made], { encoding: 'utf8' }).stdout;
     assert.equal(plain, '', 'no key lies there in plain text');
     assert.equal(spawnSync('find', [made, '-perm', '/077'], { encoding: 'utf8' }).stdout, '');
+});
+
+test('commands find the history of a service by the path of its plant file', options, () => {
+    ok(first.run(`cd ${ETC} && plantcast backup plant.yaml -o /root/plain`)); // also by a relative path
+    assert.ok(readdirSync(first.path('root/plain')).some((name) => /^history-.*sqlite$/.test(name)));
+    const other = new BareRoot(folder);
+    cpSync(first.path('root/plain'), other.path('root/plain'), { recursive: true });
+    const out = ok(other.run(`mkdir -p ${ETC} ${STATE} && plantcast restore /root/plain ${ETC}/plant.yaml`));
+    assert.match(out, /the history is in \/var\/lib\/plantcast\/p1\/history$/m);
 });
 
 test('one command on a bare host gives the same server', options, async () => {

@@ -201,7 +201,7 @@ CASE(a_service_prepares_by_itself)
 {
     char *own = f->plant->files.path, *folder;
     f->plant->files.path = mem_strdup("/etc/plantcast/none-here/plant.yaml");
-    folder = plant_service_folder(f->plant, "prepared");
+    folder = plant_service_folder(f->plant->files.path, "prepared");
     assert_refused_from(f, folder, "manifest.json: cannot be read", "the service prepares them when it starts");
     assert_refused_from(f, f->folder, "manifest.json: cannot be read", "run plantcast-prep -o ");
     mem_free(folder);

@@ -82,7 +82,7 @@ static void print_usage(FILE *out)
           "If root runs restore, each restored file gets the owner of its folder.\n"
           "If one of the files to restore exists already, restore writes nothing and fails.\n"
           "\n"
-          "  --history DIR           folder of recorded readings (default: from the plant file, else PLANT.history)\n",
+          "  --history DIR           folder of recorded readings (default: from the plant file, PLANT.history or the service's)\n",
           out);
 }
 
@@ -94,7 +94,7 @@ static bool say(const char *what, const char *why)
 
 static char *history_folder(const struct backup_job *job, const struct plant *plant)
 {
-    return job->history ? mem_strdup(job->history) : plant_history_folder(plant);
+    return job->history ? mem_strdup(job->history) : plant_recorded_folder(plant);
 }
 
 /* Returns a path as the plant file would write it: relative if it is below the plant file's folder, else absolute. */
@@ -374,7 +374,8 @@ static char *future_history(const struct backup_job *job, const json_t *manifest
         return mem_strdup(job->history ? job->history : name);
     if (name)
         return mem_printf("%.*s%s", (int)(file - plant_path), plant_path, name);
-    return mem_printf("%.*s.history", (int)(dot ? dot - plant_path : (long)strlen(plant_path)), plant_path);
+    char *service = plant_service_folder(plant_path, "history");
+    return service ? service : mem_printf("%.*s.history", (int)(dot ? dot - plant_path : (long)strlen(plant_path)), plant_path);
 }
 
 static bool check(struct backup_job *job)

@@ -261,7 +261,7 @@ int cmd_history(int argc, char **argv)
     if (!plant)
         return 1;
     struct log *log = log_create(LOG_WARN);
-    char *folder = options.folder ? mem_strdup(options.folder) : (import ? plant_history_folder : plant_recorded_folder)(plant);
+    char *folder = options.folder ? mem_strdup(options.folder) : plant_recorded_folder(plant);
     code = (import ? run_import : run_export)(&options, plant, folder, log);
     mem_free(folder);
     log_destroy(&log);
