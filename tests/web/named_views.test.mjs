@@ -2,7 +2,8 @@
 // Named views: how a session is changed to one, whatever it shows, and how ids are made from titles.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { idFor, viewOf } from '../../clients/web/core/named_views.js';
+import { readAddress, writeAddress } from '../../clients/web/core/address.js';
+import { idFor, isEngineers, regained, viewOf } from '../../clients/web/core/named_views.js';
 import { makeSession, vector } from './fixtures.mjs';
 
 const welcome = vector('server/welcome.json');
@@ -41,6 +42,18 @@ test('a viewer takes the parameters of the field from the saved view', () => {
     assert.deepEqual([params.strength, params.power, params.sensors, params.named], [undefined, undefined, undefined, 'own']);
     assert.equal(viewOf(greeted('viewer').session, 'strength=2').params.named, undefined);
     assert.equal(viewOf(greeted('engineer').session, 'strength=2', 'own').params.strength, 2);
+});
+
+test('after a reload or a reconnect, a viewer takes these parameters from the view again', () => {
+    const { session } = greeted('viewer'), group = session.model.groups[1];
+    session.setParams({ named: 'own', group: group.id, look: 'flat', strength: 2, selected: 'E-101' });
+    const again = regained(session, 'own'); // all that the session shows, since the server begins with the parameters of the view
+    assert.deepEqual([again.named, again.group, again.look, again.selected, again.strength], ['own', group.id, 'flat', 'E-101', undefined]);
+    assert.deepEqual([again.clip, again.split], [null, null]);
+    const { params, ownParams: own } = session, address = writeAddress({ params, own, named: 'own' });
+    assert.match(address, /named=own/);
+    assert.deepEqual([readAddress(address).params.strength, readAddress(writeAddress({ params, own })).params.strength], [undefined, 2]);
+    assert.deepEqual([isEngineers('strength=2'), isEngineers('look=flat')], [true, false]);
 });
 
 test('a plant that is loaded anew may have none any more', () => {

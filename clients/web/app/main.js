@@ -173,13 +173,16 @@ async function bring(name) {
     modules.get(name);
 }
 
-// Opens the view that the URL names, once the server has sent the list of views.
-let named = new URLSearchParams(location.hash.slice(1)).get('view');
+// Opens the view that the URL names, or takes parameters from it, once the server has sent the list of views.
+let fields = new URLSearchParams(location.hash.slice(1));
+session.named = fields.get('named');
 session.on('views', () => {
-    const id = named;
-    if (id)
-        modules.use('views', (views) => views.openNamed(id));
-    named = null;
+    for (const [name, call] of [['view', 'openNamed'], ['named', 'regain']]) {
+        const id = fields.get(name);
+        if (id)
+            modules.use('views', (views) => views[call](id));
+    }
+    fields = new URLSearchParams();
 });
 
 // Goes to the destination of the link that opened the page. Reports parts of the link, or of the previous view, that this plant does not

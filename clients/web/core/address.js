@@ -2,6 +2,7 @@
 // Writes the view to the fragment of the page's URL (after #) and reads it, so that a reload or a shared link shows the same view.
 import { valid } from './camera.js';
 import { clipText, numbersText, readNumbers, readSensors, sensorsText } from './query.js';
+import { ENGINEERS } from './session.js';
 
 const CHOICES = {
     // parameter -> its valid names; null: any name, which the server checks
@@ -23,7 +24,9 @@ const PARAMS = { radius: 'radius_m', reach: 'reach_m' };
 const HALF = ['group', 'show', 'distance', 'interpolation', 'colormap', 'look'];
 
 // Returns the fragment for a view. own: default values of parameters, such as those of a group; parameters with these values are left out.
-export function writeAddress({ camera, params = {}, tag = null, time = null, own = {} }) {
+// named: id of the saved view from which the server takes the parameters that only engineers may send.
+export function writeAddress({ camera, params: all = {}, tag = null, time = null, own = {}, named = null }) {
+    const params = named ? Object.fromEntries(Object.entries(all).filter(([name]) => !ENGINEERS.includes(name))) : all;
     const parts = [], differs = (name) => JSON.stringify(params[name]) !== JSON.stringify(own[name]);
     const put = (name, value) => parts.push(`${name}=${encodeURIComponent(value).replace(/%2C|%3A|%3B/g, decodeURIComponent)}`);
     for (const name of Object.keys(CHOICES)) {
@@ -62,12 +65,14 @@ export function writeAddress({ camera, params = {}, tag = null, time = null, own
         put('tag', tag);
     if (time?.atUs)
         put('at', new Date(time.atUs / 1000).toISOString());
+    if (named)
+        put('named', named);
     if (camera)
         put('camera', numbersText([...camera.eye, ...camera.target, ...camera.up, camera.fov, camera.height_m ?? []].flat()));
     return parts.length > 0 ? `#${parts.join('&')}` : '';
 }
 
-export const addressOf = ({ camera, params, time, ownParams: own }, tag) => writeAddress({ camera, params, tag, time, own });
+export const addressOf = ({ camera, params, time, ownParams: own, named }, tag) => writeAddress({ camera, params, tag, time, own, named });
 
 // Parses the text of a split view's right half, such as group:pressure;look:flat
 function readSplit(text) {

@@ -9,9 +9,9 @@ export const shortLink = (location, id) => new URL(`v/${id}`, location.origin + 
 // Returns URLs { view, follow, tag, asset }; the last two only if one is selected. Links to tag and asset contain nothing else, because QR
 // codes with fewer modules are easier to scan.
 export function shareLinks({ location, session, tag }) {
-    const { camera, params, time, ownParams: own } = session, page = `${location.origin}${location.pathname}`;
+    const { camera, params, time, ownParams: own, named } = session, page = `${location.origin}${location.pathname}`;
     const asset = params.selected;
-    const links = { view: page + writeAddress({ camera, params, tag, time, own }) };
+    const links = { view: page + writeAddress({ camera, params, tag, time, own, named }) };
     if (tag)
         links.tag = page + writeAddress({ tag });
     if (asset)

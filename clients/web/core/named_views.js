@@ -27,6 +27,23 @@ export function viewOf(session, text, id) {
     return { camera: camera ?? session.homeIn(width / ratio, height / ratio), params: all, tag };
 }
 
+// Returns whether a view has parameters that only engineers may send.
+export const isEngineers = (text) => ENGINEERS.some((name) => readAddress(text).params[name] !== undefined);
+
+// Returns those parameters that only engineers may send, as text; null: all have their default values.
+export function engineersOf({ params, ownParams: own }) {
+    const differs = (name) => (name === 'sensors' ? Object.keys(params.sensors ?? {}).length > 0
+        : JSON.stringify(params[name]) !== JSON.stringify(own[name]));
+    return ENGINEERS.some(differs) ? JSON.stringify(ENGINEERS.map((name) => params[name])) : null;
+}
+
+// Returns the parameters of `params` that show what the session shows, with those that only engineers may send from the saved view `id`.
+export function regained(session, id) {
+    const { params } = viewOf(session, textOf(session));
+    ENGINEERS.forEach((name) => delete params[name]);
+    return { ...params, named: id };
+}
+
 // Returns an id made from a title that no other view has.
 export function idFor(title, views) {
     const plain = title.normalize('NFKD').replace(/\p{M}/gu, '').toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-+|-+$/g, '');

@@ -14,7 +14,7 @@ const SCREENS = { viewer: PHONE, operator: { ...TABLET, viewport: { width: 768, 
 // actions that each role may take on a new alarm, if the alarm mode allows them
 const DOES = { viewer: [], operator: ['acknowledge', 'shelve'], engineer: ['acknowledge', 'shelve'] };
 const pages = {};
-let plant, browsers;
+let plant, browsers, flags;
 
 const setMode = (mode) => writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace(/^alarms: \w+$/m, `alarms: ${mode}`));
 
@@ -22,7 +22,7 @@ before(async () => {
     if (skip)
         return;
     plant = await TinyPlant.create();
-    appendFileSync(plant.file, 'alarms: local\n');
+    appendFileSync(plant.file, 'alarms: local\nviews: [{ id: strong, title: Strong, view: "group=temperature&strength=2&power=3" }]\n');
     plant.keepFresh(); // prevents stale readings, so that there is only the intended alarm
     const tags = join(plant.folder, 'tags.csv');
     writeFileSync(tags, readFileSync(tags, 'utf8').split('\n').map((line, i) => line && line + (i === 0 ? ',H' : ',60')).join('\n'));
@@ -34,7 +34,8 @@ before(async () => {
     chmodSync(file, 0o600);
     for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]]) // set before the daemon first reads, so that there is one alarm
         await plant.tell(`set ${tag} ${value}`);
-    await plant.startDaemon('--behind-proxy', '--host', 'plant.example', '--tokens', file);
+    flags = ['--behind-proxy', '--host', 'plant.example', '--tokens', file];
+    await plant.startDaemon(...flags);
     browsers = await Promise.all(Object.entries(SCREENS).map(async ([role, screen]) => {
         const browser = await openPage(`http://plant.example:${plant.port}/`, screen);
         pages[role] = browser.page;
@@ -167,3 +168,25 @@ for (const mode of ['display', 'mirror']) {
             assert.deepEqual(errors, []);
     });
 }
+
+// Parameters of the field are for engineers only: a viewer's page names the view, from which the server takes them.
+test('a viewer keeps a saved view after a reload of the page and a restart of the daemon', options, async () => {
+    const { viewer } = pages, isStrong = () => viewer.waitForFunction(() => {
+        const { confirmed, params, welcomed } = globalThis.plantcast?.session ?? {};
+        return welcomed && params === confirmed && params.strength === 2 && params.power === 3 && params.look === 'flat';
+    });
+    await viewer.evaluate(async () => (await globalThis.plantcast.modules.get('views')).openNamed('strong', false));
+    await viewer.waitForFunction(() => globalThis.plantcast.session.confirmed.strength === 2);
+    await viewer.evaluate(() => globalThis.plantcast.session.setParams({ look: 'flat' })); // a change of the viewer's own stays, too
+    await viewer.waitForFunction(() => /named=strong/.test(location.hash) && /look=flat/.test(location.hash));
+    await viewer.reload();
+    await isStrong();
+    const resume = await viewer.evaluate(() => globalThis.plantcast.session.resume); // each start of the daemon gives another
+    await plant.daemon.stop();
+    await plant.startDaemon(...flags, '--port', String(plant.port));
+    await viewer.waitForFunction((old) => globalThis.plantcast.session.welcomed && globalThis.plantcast.session.resume !== old, resume);
+    await isStrong();
+    await viewer.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure' }));
+    await viewer.waitForFunction(() => /group=pressure/.test(location.hash) && !/named=/.test(location.hash));
+    assert.deepEqual(browsers[0].errors.filter((text) => !/ERR_CONNECTION|WebSocket/.test(text)), []);
+});

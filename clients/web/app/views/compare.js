@@ -55,11 +55,11 @@ export class Compare {
         const choices = [['', say('compare.chosen')], ['now', say('time.now')], ...AGO_S.map((s) => [String(s),
             say('compare.earlier', { span: say(s < 86400 ? 'age.h' : 'age.d', { n: s / (s < 86400 ? HOUR_S : 86400) }) })])];
         fillSelect(this.ago, choices, this.atUs === null ? 'now' : '');
-        const time = { atUs: this.atUs }, { camera, params, ownParams } = session;
+        const time = { atUs: this.atUs }, { camera, params, ownParams, named } = session;
         const query = new URLSearchParams(location.search);
         query.set('theme', document.documentElement.dataset.theme);
         query.set('pane', 'compare');
-        this.frame = make('iframe', { class: 'compare', src: `./?${query}${addressOf({ camera, params, time, ownParams }, null)}`,
+        this.frame = make('iframe', { class: 'compare', src: `./?${query}${addressOf({ camera, params, time, ownParams, named }, null)}`,
             title: say('compare.title'), onload: () => this.furnish() });
         byId('viewport').after(make('div', { class: 'compare-half', id: 'compare-half' }, this.frame, this.bar));
         document.querySelector('.stage').classList.add('compares');

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The list of saved views: opening a view; with the right role also saving, reordering, and restoring earlier versions.
 import { ask } from '../../core/history.js';
-import { idFor, textOf, viewOf } from '../../core/named_views.js';
+import { engineersOf, idFor, isEngineers, regained, textOf, viewOf } from '../../core/named_views.js';
 import { zoneClock } from '../../core/format.js';
 import { refusalText } from '../../core/refusals.js';
 import { say } from '../../core/words.js';
@@ -19,8 +19,17 @@ export class NamedViews {
             make('button', { type: 'submit' }, say('named.save')));
         this.element = make('fieldset', { id: 'named' }, make('legend', {}, say('named.legend')), this.list, this.save);
         byId('views').prepend(this.element);
-        session.on('views', () => this.show());
-        session.on('welcome', () => this.show());
+        session.on('views', () => {
+            this.show();
+            if (this.isNew && session.named && this.own && this.own !== engineersOf(session))
+                this.regain(session.named); // the server has forgotten this session
+            this.isNew = false;
+        });
+        session.on('welcome', () => {
+            this.isNew = true; // until the server has sent the views
+            this.show();
+        });
+        session.on('params', () => this.watch());
         session.on('view_saved', ({ kept, why, refusal }) => (kept ? this.onKept() : tell(refusalText(why, refusal))));
         this.show();
     }
@@ -45,8 +54,37 @@ export class NamedViews {
         this.mark();
     }
 
+    // Takes the parameters that only engineers may send from a saved view, after a reload or a reconnect: the session cannot send them.
+    regain(id) {
+        const { session } = this;
+        if (!session.views.some((view) => view.id === id)) {
+            session.named = null;
+            this.tell(say('named.unknown', { id }));
+            return;
+        }
+        this.remember(id);
+        session.setParams(regained(session, id));
+    }
+
+    // id: saved view whose parameters for engineers the session shows; null: none.
+    remember(id) {
+        this.session.named = id;
+        this.own = null; // the parameters as text, once the server has taken them from the view
+    }
+
+    // Forgets the saved view when its parameters for engineers change, for example because the user shows another group.
+    watch() {
+        const { session } = this;
+        if (!session.named || this.isNew || session.params !== session.confirmed)
+            return;
+        this.own ??= engineersOf(session);
+        if (!this.own || this.own !== engineersOf(session))
+            this.remember(null);
+    }
+
     look(text, fly = true, id = undefined) {
         const { session, modules } = this, { camera, params, tag } = viewOf(session, text, id), found = session.model.tag(tag);
+        this.remember(id && session.role !== 'engineer' && isEngineers(text) ? id : null);
         session.setParams(params);
         if (!fly) {
             modules.there('cameraController')?.land(); // ends a running flight

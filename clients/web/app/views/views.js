@@ -47,6 +47,11 @@ export class Views {
         this.modules.use('namedViews', (named) => named.open(id, fly), 'open');
     }
 
+    // Takes the parameters that only engineers may send from a saved view.
+    regain(id) {
+        this.modules.use('namedViews', (named) => named.regain(id), 'open');
+    }
+
     // Opens a view that is given as the text of a URL fragment.
     lookAt(text) {
         this.modules.use('namedViews', (named) => named.look(text, false), 'open');
