@@ -101,6 +101,10 @@ static int64_t bucket_length(int64_t stretch_us, int level)
 struct gather {
     struct history_series *out;
     int64_t length_us; /* length of the input buckets */
+    /* rollup: of points that no file has in a bucket; continues from one month to the next. done_us: buckets of the rollup that begin
+       before this time are left out, because a file has them */
+    struct rollup rollup;
+    int64_t done_us;
     bool has_last;
     struct history_bucket last;
 };
@@ -137,17 +141,41 @@ static void put_bucket(struct gather *gather, const struct history_bucket *bucke
     gather->has_last = true;
 }
 
-/* Adds points that no rollup contains yet. Points up to done_us are already in a rollup; of these only the last matters, as the start of
-   the line to the next point. */
-static void put_points(struct gather *gather, const struct history_points *points, int64_t done_us)
+/* Adds points that no file has in a bucket. Points before done_us are in one already; of these only the last matters, as the start of the
+   line to the next point. */
+static void put_points(struct gather *gather, const struct history_points *points)
 {
-    struct rollup rollup = { .length_us = gather->length_us, .step = points->step };
     struct history_bucket closed;
+    gather->rollup.length_us = gather->length_us;
+    gather->rollup.step = points->step;
     for (size_t i = 0; i < points->count; i++)
-        if (rollup_put(&rollup, &points->at[i], &closed) && closed.t_us >= done_us)
+        if (rollup_put(&gather->rollup, &points->at[i], &closed) && closed.t_us >= gather->done_us)
             put_bucket(gather, &closed);
-    if (rollup_rest(&rollup, &closed) && closed.t_us >= done_us)
-        put_bucket(gather, &closed);
+}
+
+/* Adds the incomplete bucket of the newest points. */
+static void put_rest(struct gather *gather)
+{
+    struct history_bucket rest;
+    if (rollup_rest(&gather->rollup, &rest) && rest.t_us >= gather->done_us)
+        put_bucket(gather, &rest);
+}
+
+/* Computes the first bucket of a month's file again if the line from the month before enters it: the file's own bucket begins at the first
+   point. Returns whether the bucket was added in *joined. */
+static int join_month(struct month_file *file, const char *tag, const struct history_bucket *first, struct gather *gather, bool *joined)
+{
+    struct history_points points = { 0 };
+    *joined = false;
+    if (!gather->rollup.open)
+        return 0;
+    int error = month_file_points(file, tag, first->t_us - 1, first->t_us + gather->length_us - 1, &points);
+    if (!error && points.count && points.at[0].t_us >= first->t_us) {
+        put_points(gather, &points);
+        *joined = gather->rollup.bucket.t_us > first->t_us;
+    }
+    mem_free(points.at);
+    return error;
 }
 
 static int add_month(struct month_file *file, const char *tag, int level, int64_t from_us, int64_t to_us, struct gather *gather)
@@ -155,14 +183,20 @@ static int add_month(struct month_file *file, const char *tag, int level, int64_
     struct history_buckets buckets = { 0 };
     struct history_points points = { 0 };
     int64_t until_us = from_us;
+    bool joined = false;
     int error = month_file_buckets(file, tag, (enum history_level)level, from_us, to_us, &buckets, &until_us, &gather->out->step);
+    if (!error && buckets.count) {
+        error = join_month(file, tag, buckets.at, gather, &joined);
+        gather->rollup = (struct rollup){ 0 };
+        gather->done_us = until_us;
+    }
     if (!error && until_us <= to_us)
-        error = month_file_points(file, tag, until_us, to_us, &points);
-    for (size_t i = 0; i < buckets.count && !error; i++)
+        error = month_file_points(file, tag, until_us - 1, to_us, &points);
+    for (size_t i = joined; i < buckets.count && !error; i++)
         put_bucket(gather, &buckets.at[i]);
-    if (!error)
-        put_points(gather, &points, buckets.count ? until_us : INT64_MIN);
     gather->out->step |= points.step;
+    if (!error)
+        put_points(gather, &points);
     mem_free(buckets.at);
     mem_free(points.at);
     return error;
@@ -182,24 +216,18 @@ static void drop_edges(struct history_points *points, int64_t from_us, int64_t t
     points->count = last - first;
 }
 
-/* Drops buckets before the range except the last one: each month's file contributed such a bucket. */
-static void drop_early_buckets(struct history_buckets *buckets, int64_t from_us)
+/* Drops buckets outside the range except the last one that begins at or before from_us and the first one that ends after to_us. */
+static void drop_outer_buckets(struct history_series *series, int64_t from_us, int64_t to_us)
 {
-    size_t first = 0;
-    while (first + 1 < buckets->count && buckets->at[first + 1].t_us <= from_us)
+    struct history_buckets *buckets = &series->buckets;
+    size_t first = 0, last = buckets->count;
+    while (first + 1 < last && buckets->at[first + 1].t_us <= from_us)
         first++;
-    for (size_t i = first; i < buckets->count; i++)
+    while (last > first + 1 && buckets->at[last - 2].t_us + series->bucket_us > to_us)
+        last--;
+    for (size_t i = first; i < last; i++)
         buckets->at[i - first] = buckets->at[i];
-    buckets->count -= first;
-}
-
-static void shorten(struct history_series *out, int64_t stretch_us)
-{
-    struct gather gather = { .out = out, .length_us = stretch_us };
-    out->bucket_us = stretch_us;
-    put_points(&gather, &out->points, INT64_MIN);
-    mem_free(out->points.at);
-    out->points = (struct history_points){ .step = out->step };
+    buckets->count = last - first;
 }
 
 /* Logs once for each tag that points are left out. */
@@ -213,7 +241,7 @@ static void report_left_out(struct history_reader *reader, int tag, const struct
     reader->told[tag] = true;
 }
 
-struct month_request { /* part of a series to read from a month's file */
+struct month_request { /* part of a series to read from the months' files */
     const char *tag;
     int level; /* level of buckets; -1: points */
     int64_t from_us, to_us;
@@ -230,7 +258,7 @@ static int read_month(struct history_reader *reader, int month, const struct mon
         return error;
     if (of->level >= 0) {
         error = add_month(file, of->tag, of->level, of->from_us, of->to_us, gather);
-    } else {
+    } else if (!history_points_full(&out->points)) {
         error = month_file_points(file, of->tag, of->from_us, of->to_us, &out->points);
         out->step |= out->points.step;
     }
@@ -240,36 +268,82 @@ static int read_month(struct history_reader *reader, int month, const struct mon
     return error;
 }
 
+/* Reads the parts of a series from all files of its time span. Also reads the newest file before the range, because the line that enters
+   the range may begin there, and the oldest file after it. */
+static int read_months(struct history_reader *reader, const struct month_request *of, struct gather *gather,
+                       struct history_left_out *left_out)
+{
+    size_t count;
+    int *months = month_list(reader->folder, &count), error = 0, first = month_of(of->from_us), last = month_of(of->to_us);
+    for (size_t i = 0; i < count && !error && (left_out || !history_points_full(&gather->out->points)); i++) {
+        bool leads = i + 1 < count && months[i] < first && months[i + 1] >= first;
+        bool follows = i > 0 && months[i] > last && months[i - 1] <= last && (of->level < 0 || gather->rollup.open);
+        if ((months[i] >= first && months[i] <= last) || leads || follows)
+            error = read_month(reader, months[i], of, gather, left_out);
+    }
+    mem_free(months);
+    if (!error && of->level < 0)
+        drop_edges(&gather->out->points, of->from_us, of->to_us);
+    return error;
+}
+
+/* Reads the buckets from from_us to to_us, the one before and the one after. */
+static int read_buckets(struct history_reader *reader, const struct month_request *of, struct history_series *out)
+{
+    struct gather gather = { .out = out, .length_us = of->level < 0 ? out->bucket_us : history_level_us[of->level], .done_us = INT64_MIN };
+    out->buckets.count = 0;
+    /* a bucket that begins with a point also needs the point before: a step may lead to the first one */
+    struct month_request before = { of->tag, of->level, of->level < 0 ? of->from_us - 1 : of->from_us, of->to_us };
+    int error = read_months(reader, &before, &gather, NULL);
+    if (!error && of->level < 0)
+        put_points(&gather, &out->points);
+    if (!error)
+        put_rest(&gather);
+    mem_free(out->points.at);
+    out->points = (struct history_points){ .step = out->step };
+    return error;
+}
+
+int history_intervals(struct history_reader *reader, const char *tag, int64_t from_us, int64_t to_us, int max_count,
+                      struct history_series *out)
+{
+    int64_t stretch_us = wanted_length(to_us - from_us, max_count);
+    int level = level_for(stretch_us), error = 0;
+    int64_t length_us = level < 0 ? stretch_us : bucket_length(stretch_us, level);
+    struct month_request of = { tag, level, from_us - from_us % length_us, to_us - to_us % length_us + length_us - 1 };
+    *out = (struct history_series){ .bucket_us = length_us };
+    /* The buckets before and after the range are read only in part at first: if they are needed, the second pass reads them in full. */
+    for (int pass = 0; pass < 2 && !error; pass++) {
+        error = read_buckets(reader, &of, out);
+        drop_outer_buckets(out, from_us, to_us);
+        const struct history_buckets *buckets = &out->buckets;
+        int64_t first_us = buckets->count ? buckets->at[0].t_us : of.from_us;
+        int64_t last_us = buckets->count ? buckets->at[buckets->count - 1].t_us + length_us - 1 : of.to_us;
+        if (first_us >= of.from_us && last_us <= of.to_us)
+            break;
+        of.from_us = first_us < of.from_us ? first_us : of.from_us;
+        of.to_us = last_us > of.to_us ? last_us : of.to_us;
+    }
+    return error;
+}
+
 int history_series(struct history_reader *reader, const char *tag, int64_t from_us, int64_t to_us, int max_points,
                    struct history_series *out)
 {
-    size_t count;
-    int *months = month_list(reader->folder, &count), error = 0;
-    int64_t stretch_us = wanted_length(to_us - from_us, max_points);
-    int level = level_for(stretch_us), first = month_of(from_us), last = month_of(to_us);
-    *out = (struct history_series){ .bucket_us = level < 0 ? 0 : bucket_length(stretch_us, level) };
-    struct gather gather = { .out = out, .length_us = level < 0 ? 0 : history_level_us[level] };
+    const struct month_request of = { tag, -1, from_us, to_us };
+    const size_t most = (size_t)max_points + 2; /* including the points before and after the range; months' files may have two more */
     struct history_left_out left_out = { 0 };
     int index = reader->plant ? plant_find_tag(reader->plant, tag) : -1;
     bool counts = index >= 0 && !reader->told[index];
-    for (size_t i = 0; i < count && !error; i++) {
-        /* leads: also reads the newest file before the range, because the line that enters the range may begin there; follows: also reads
-           the oldest file after it */
-        bool leads = i + 1 < count && months[i] < first && months[i + 1] >= first;
-        bool follows = i > 0 && months[i] > last && months[i - 1] <= last;
-        if ((months[i] >= first && months[i] <= last) || leads || (level < 0 && follows))
-            error = read_month(reader, months[i], &(struct month_request){ tag, level, from_us, to_us }, &gather,
-                               counts ? &left_out : NULL);
-    }
+    *out = (struct history_series){ .points.max = most + 2 };
+    struct gather gather = { .out = out };
+    int error = read_months(reader, &of, &gather, counts ? &left_out : NULL);
     if (counts)
         report_left_out(reader, index, &left_out);
-    if (!error && level < 0)
-        drop_edges(&out->points, from_us, to_us);
-    drop_early_buckets(&out->buckets, from_us);
-    if (!error && level < 0 && out->points.count > (size_t)max_points + 2)
-        shorten(out, stretch_us);
-    mem_free(months);
-    return error;
+    if (error || out->points.count <= most)
+        return error;
+    history_series_finish(out);
+    return history_intervals(reader, tag, from_us, to_us, max_points, out);
 }
 
 void history_series_finish(struct history_series *series)

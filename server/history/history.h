@@ -20,18 +20,23 @@ struct history_reader *history_reader_create(struct log *log, const char *folder
 void history_reader_show_by(struct history_reader *reader, const struct plant *plant);
 void history_reader_destroy(struct history_reader **reader); /* Frees the reader and sets *reader to NULL; accepts a pointer to NULL. */
 
-/* A series of one tag: its points or, if there are more points than requested, buckets of equal length. Both show spikes in full. */
+/* A series of one tag: its points or, if there are more points than requested, buckets of equal length (intervals). Both show spikes in
+   full. */
 struct history_series {
     bool step;
     struct history_points points; /* points, ascending; including the last one before and the first one after the requested time span */
     int64_t bucket_us;            /* length of a bucket; 0: the series consists of points, not buckets */
-    /* buckets, ascending; the first one begins at or before the requested time span if there is such a bucket. Between two buckets that do
-       not adjoin, the line is straight; if the tag is a switch, the value holds instead */
+    /* buckets, ascending; the first one begins at or before the requested time span and the last one ends after it, if there are such
+       buckets. Between two buckets that do not adjoin, the line is straight; if the tag is a switch, the value holds instead */
     struct history_buckets buckets;
 };
 /* Reads the series of a tag between two times: its points if they are at most max_points, else buckets. */
 int history_series(struct history_reader *reader, const char *tag, int64_t from_us, int64_t to_us, int max_points,
                    struct history_series *out);
+/* Reads the buckets of a tag between two times, even if it has few points. Each is one to two times (to_us - from_us) / max_count long,
+   and begins at a multiple of its length. */
+int history_intervals(struct history_reader *reader, const char *tag, int64_t from_us, int64_t to_us, int max_count,
+                      struct history_series *out);
 void history_series_finish(struct history_series *series);
 
 /* Reads the hourly means of a tag: `hours` whole hours, the last of which ends at or before to_us. The mean of an hour is NaN if less than

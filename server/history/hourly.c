@@ -26,7 +26,7 @@ int history_hourly(struct history_reader *reader, const char *tag, int64_t to_us
     struct history_series series;
     for (int h = 0; h < hours; h++)
         means[h] = NAN;
-    int error = history_series(reader, tag, from_us, end_us - 1, hours, &series);
+    int error = history_intervals(reader, tag, from_us, end_us - 1, hours, &series);
     for (size_t i = 0; i < series.buckets.count && !error; i++) {
         const struct history_bucket *bucket = &series.buckets.at[i];
         int64_t hour = bucket->t_us >= from_us ? (bucket->t_us - from_us) / HOUR_US : -1;

@@ -155,6 +155,12 @@ static int delete_block(struct month_file *file, int64_t id, int64_t t_us)
 
 /* --- the blocks of a tag ------------------------------------------------------------------------------------------------------ */
 
+/* Returns whether the points after from_us exceed the limit of `points`. */
+static bool exceeds(const struct history_points *points, int64_t from_us)
+{
+    return history_points_full(points) && points->at[points->count - 1 - points->max].t_us > from_us;
+}
+
 int month_blocks_read(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out)
 {
     if (!month_has_blocks(file))
@@ -164,7 +170,7 @@ int month_blocks_read(struct month_file *file, int64_t id, int64_t from_us, int6
     sqlite3_bind_int64(blocks, 1, id);
     sqlite3_bind_int64(blocks, 2, from_us);
     while ((code = database_step(&file->db, blocks)) == SQLITE_ROW && !(error = take_block(file, blocks, out)))
-        if (out->at[out->count - 1].t_us > to_us)
+        if (out->at[out->count - 1].t_us > to_us || exceeds(out, from_us))
             break;
     sqlite3_reset(blocks);
     return error ? error : database_fail(&file->db, code, "cannot be read");

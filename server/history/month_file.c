@@ -69,7 +69,7 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_NOTE] = "INSERT INTO event(t, kind, text) VALUES(?, ?, ?)",
     [SQL_BEFORE] = "SELECT t, v, q FROM sample WHERE tag = ? AND t <= ? ORDER BY t DESC LIMIT 1",
     [SQL_AFTER] = "SELECT t, v, q FROM sample WHERE tag = ? AND t > ? ORDER BY t LIMIT 1",
-    [SQL_RANGE] = "SELECT t, v, q FROM sample WHERE tag = ?1 AND t BETWEEN ?2 AND ?3 ORDER BY t",
+    [SQL_RANGE] = "SELECT t, v, q FROM sample WHERE tag = ?1 AND t BETWEEN ?2 AND ?3 ORDER BY t LIMIT ?4",
     [SQL_RECENT_OF] = "SELECT t, v, q FROM recent WHERE tag = ?",
     [SQL_HELD_OF] = "SELECT t, v, q FROM held WHERE tag = ?",
     [SQL_ROLLUPS] = "SELECT t, low, high, mean, first, last, good_us, bad_us, q FROM rollup"

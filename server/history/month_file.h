@@ -29,8 +29,14 @@ struct history_row {
 struct history_points { /* zero-initialise; free `at` with mem_free() */
     struct history_point *at;
     size_t count, capacity;
+    size_t max; /* functions that read a time span may stop when more than this many points of the span are in `at`; 0: no limit */
     bool step;
 };
+/* Returns true if reading has stopped, or may stop, at the limit. */
+static inline bool history_points_full(const struct history_points *points)
+{
+    return points->max && points->count > points->max;
+}
 struct history_buckets { /* zero-initialise; free `at` with mem_free() */
     struct history_bucket *at;
     size_t count, capacity;

@@ -120,6 +120,7 @@ static int add_samples(struct month_file *file, int64_t id, int64_t from_us, int
     sqlite3_bind_int64(range, 1, id);
     sqlite3_bind_int64(range, 2, from_us);
     sqlite3_bind_int64(range, 3, to_us);
+    sqlite3_bind_int64(range, 4, out->max ? (int64_t)out->max + 1 : -1);
     error = add_points(file, range, out);
     if (!error)
         error = one_point(file, SQL_AFTER, id, to_us, &edge);
@@ -146,7 +147,7 @@ static void trim(struct history_points *points, size_t begin, int64_t from_us, i
 
 int month_stored_points(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out)
 {
-    struct history_points samples = { 0 }, blocks = { 0 };
+    struct history_points samples = { .max = out->max }, blocks = { .max = out->max };
     int error = add_samples(file, id, from_us, to_us, &samples);
     if (!error)
         error = month_blocks_read(file, id, from_us, to_us, &blocks);
@@ -162,7 +163,7 @@ int month_stored_points(struct month_file *file, int64_t id, int64_t from_us, in
 static int add_series(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out)
 {
     size_t begin = out->count;
-    struct history_points stored = { 0 }, recent = { 0 };
+    struct history_points stored = { .max = out->max }, recent = { 0 };
     int error = month_stored_points(file, id, from_us, to_us, &stored);
     if (!error)
         error = add_recent(file, id, &recent);

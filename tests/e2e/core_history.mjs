@@ -156,7 +156,7 @@ test('"an hour ago" is the core\'s, also where the renderer\'s clock is an hour 
 });
 
 test('without its core a renderer says that it has no history, once in its log; it has it again afterwards', options, async () => {
-    const path = `/api/v1/history?tags=TI-1&${range}&points=50`, before_ = await body(renderer, path), { port } = core;
+    const path = `/api/v1/history?tags=TI-1&${range}&points=20000`, before_ = await body(renderer, path), { port } = core;
     const picture = `/snapshot.png?width=240&height=160&at=${iso(77)}`;
     await core.stop('SIGKILL');
     await until('its loss', async () => await renderer.metric(`plantcast_core_up{core="${core.url}"}`) === 0);

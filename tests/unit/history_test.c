@@ -18,6 +18,7 @@
 #include "history/recorder.h"
 #include "history/spool.h"
 #include "tests/support/plant_by_hand.h"
+#include "tests/support/sweep.h"
 #include "value/quality.h"
 
 #define S US_PER_S
@@ -407,7 +408,7 @@ CASE(values_hold_until_a_point_at_the_border_of_a_bucket)
     for (int earlier = 0; earlier < 2; earlier++) {
         for (int tag = 0; tag < TAGS; tag++) {
             struct history_series series;
-            assert_int_equal(history_series(s->reader, s->tags[tag].name, NOVEMBER, NOVEMBER + 30 * 3600 * S, 4, &series), 0);
+            assert_int_equal(history_intervals(s->reader, s->tags[tag].name, NOVEMBER, NOVEMBER + 30 * 3600 * S, 4, &series), 0);
             assert_int_equal(series.bucket_us, 8 * 3600 * S);
             assert_int_equal(series.buckets.count, 4);
             for (size_t i = 0; i < 4; i++) {
@@ -441,10 +442,179 @@ CASE(a_span_between_sparse_points_begins_with_the_bucket_before)
         month_file_close(&file);
     }
     for (int64_t from_us = NOVEMBER - 2500 * S; from_us < NOVEMBER + 2500 * S; from_us += 500 * S) {
-        assert_int_equal(history_series(s->reader, "TT-1", from_us, from_us + 1200 * S, 20, &series), 0);
+        assert_int_equal(history_intervals(s->reader, "TT-1", from_us, from_us + 1200 * S, 20, &series), 0);
         assert_int_equal(series.bucket_us, 60 * S); /* as many minutes as points */
         assert_true(series.buckets.count >= 2 && series.buckets.at[0].t_us <= from_us);
         assert_true(series.buckets.at[1].t_us + series.bucket_us > from_us);
+        history_series_finish(&series);
+    }
+    mem_free(points);
+}
+
+/* Adds to *out the part from begin_us to end_us of the line from point a to point b, or to the end of the data if b is NULL. */
+static void add_line(const struct history_point *a, const struct history_point *b, bool step, int64_t begin_us, int64_t end_us,
+                     struct history_bucket *out)
+{
+    begin_us = a->t_us > begin_us ? a->t_us : begin_us;
+    end_us = b && b->t_us < end_us ? b->t_us : end_us;
+    if (a->t_us == begin_us && history_point_usable(a) && begin_us < end_us + !b) {
+        out->low = fmin(out->low, a->value);
+        out->high = fmax(out->high, a->value);
+    }
+    if (!b || end_us <= begin_us)
+        return;
+    if (!history_point_usable(a)) {
+        out->bad_us += end_us - begin_us;
+        return;
+    }
+    bool joined = history_point_joined(a, b, step);
+    double enters = joined ? history_point_between(a, b, begin_us) : a->value;
+    double leaves = joined ? history_point_between(a, b, end_us) : a->value;
+    out->low = fmin(out->low, fmin(enters, leaves));
+    out->high = fmax(out->high, fmax(enters, leaves));
+    out->mean += (enters + leaves) / 2 * (double)(end_us - begin_us);
+    out->good_us += end_us - begin_us;
+}
+
+/* Returns the value at which the line leaves the time t_us; NaN: none. `before`: the value with which it arrives. */
+static double line_at(const struct history_point *points, int count, bool step, int64_t t_us, bool before)
+{
+    for (int i = 0; i + 1 < count; i++) {
+        const struct history_point *a = &points[i], *b = a + 1;
+        if ((before ? a->t_us < t_us && t_us <= b->t_us : a->t_us <= t_us && t_us < b->t_us) && history_point_usable(a))
+            return history_point_joined(a, b, step) ? history_point_between(a, b, t_us) : a->value;
+    }
+    return NAN;
+}
+
+static void assert_close(double got, double wanted)
+{
+    if (!(isnan(got) && isnan(wanted)) && !(fabs(got - wanted) < 1e-6))
+        fail_msg("%.9g instead of %.9g", got, wanted);
+}
+
+/* Compares intervals with the line through the points, integrated here. */
+static void assert_intervals(const struct history_series *series, const struct history_point *points, int count, int64_t from_us,
+                             int64_t to_us)
+{
+    const struct history_buckets *got = &series->buckets;
+    int64_t length_us = series->bucket_us;
+    size_t k = 0;
+    for (int i = 0; i < count; i++) {
+        int64_t begin_us = points[i].t_us - points[i].t_us % length_us, end_us = begin_us + length_us;
+        if (end_us <= from_us || begin_us > to_us || (i > 0 && points[i - 1].t_us >= begin_us))
+            continue;
+        while (k < got->count && got->at[k].t_us < begin_us)
+            k++;
+        assert_true(k < got->count && got->at[k].t_us == begin_us); /* each interval with a point is there */
+    }
+    if (points[0].t_us <= from_us)
+        assert_true(got->count && got->at[0].t_us <= from_us);
+    if (points[count - 1].t_us > to_us)
+        assert_true(got->count && got->at[got->count - 1].t_us + length_us > to_us);
+    for (size_t i = 0; i < got->count; i++) {
+        struct history_bucket wanted = { .low = NAN, .high = NAN };
+        int64_t begin_us = got->at[i].t_us, end_us = begin_us + length_us;
+        for (int p = 0; p < count; p++)
+            if (points[p].t_us < end_us)
+                add_line(&points[p], p + 1 < count ? &points[p + 1] : NULL, series->step, begin_us, end_us, &wanted);
+        assert_int_equal(got->at[i].good_us, wanted.good_us);
+        assert_int_equal(got->at[i].bad_us, wanted.bad_us);
+        assert_close(got->at[i].low, wanted.low);
+        assert_close(got->at[i].high, wanted.high);
+        if (wanted.good_us)
+            assert_close(got->at[i].mean, wanted.mean / (double)wanted.good_us);
+        double enters = line_at(points, count, series->step, begin_us, true);
+        if (points[0].t_us < begin_us && !got->at[i].bad_us)
+            assert_close(got->at[i].first, isnan(enters) ? line_at(points, count, series->step, begin_us, false) : enters);
+        if (points[count - 1].t_us >= end_us)
+            assert_close(got->at[i].last, line_at(points, count, series->step, end_us, true));
+    }
+}
+
+/* Makes points at random times, some close together, some days apart, from October to December. */
+static int make_points(struct history_point *points, int most, bool step)
+{
+    static const int64_t apart_s[] = { 1, 20, 300, 4000, 60000 };
+    int64_t t_us = NOVEMBER - 10 * 86400 * S;
+    int count = 0;
+    for (; count < most && t_us < NOVEMBER + 40 * 86400 * S; count++) {
+        bool bad = rand() % 12 == 0;
+        points[count] = (struct history_point){ t_us, bad ? NAN : step ? rand() % 2 : rand() % 1000,
+                                                bad               ? QUALITY_BAD_SENSOR_FAILURE
+                                                : rand() % 6 == 0 ? QUALITY_UNCERTAIN
+                                                                  : QUALITY_GOOD };
+        t_us += (1 + rand() % apart_s[rand() % 5]) * S;
+        if (rand() % 4 == 0) /* as in tables of other systems */
+            t_us += 3600 * S - t_us % (3600 * S);
+    }
+    return count;
+}
+
+/* Writes the points of each month, the newest ones as a historian that has not moved them to blocks yet. */
+static void write_points(struct history_setup *s, int tag, const struct history_point *points, int count)
+{
+    for (int i = 0, end; i < count; i = end) {
+        int month = month_of(points[i].t_us);
+        for (end = i; end < count && month_of(points[end].t_us) == month;)
+            end++;
+        struct month_file *file = open_file(s, points[i].t_us);
+        int imported = end < count ? end - i : (end - i) * 3 / 4;
+        assert_int_equal(month_file_import(file, tag, points + i, (size_t)imported), 0);
+        for (int k = i + imported; k < end; k++)
+            assert_int_equal(month_file_write(file, &(struct history_row){ tag, points[k] }, 1, NULL, 0), 0);
+        month_file_close(&file);
+    }
+}
+
+/* Intervals of any length over any time, with few points and many, are those of the whole line, also at the borders of months. */
+CASE(intervals_are_those_of_the_line)
+{
+    enum { MOST = 3000 };
+    struct history_point *points = mem_array(MOST, sizeof(*points));
+    for (int tag = 0; tag < TAGS; tag++) {
+        bool step = s->tags[tag].step;
+        int count = make_points(points, MOST, step);
+        write_points(s, tag, points, count);
+        for (int round = 0; round < sweep(2000, 200); round++) {
+            struct history_series series;
+            int64_t from_us = points[rand() % count].t_us + (rand() % 20000 - 10000) * S;
+            if (rand() % 2)
+                from_us = NOVEMBER + (rand() % 2 * 30 * 86400 + rand() % 40000 - 30000) * S;
+            int64_t to_us = from_us + (1 + rand() % (rand() % 2 ? 20000 : 4000000)) * S;
+            int most = 2 + rand() % 300;
+            assert_int_equal(history_intervals(s->reader, s->tags[tag].name, from_us, to_us, most, &series), 0);
+            int64_t least_us = (to_us - from_us) / most;
+            assert_true(series.bucket_us >= least_us && series.bucket_us <= 2 * least_us + 2 * S);
+            assert_true(series.buckets.count <= (size_t)most + 3);
+            assert_intervals(&series, points, count, from_us, to_us);
+            history_series_finish(&series);
+        }
+    }
+    mem_free(points);
+}
+
+/* A span of any length has its points if they are few enough, otherwise intervals. */
+CASE(few_points_of_a_long_time_come_as_points)
+{
+    enum { MOST = 3000, DAY = 86400 };
+    struct history_point *points = mem_array(MOST, sizeof(*points));
+    int count = make_points(points, MOST, false);
+    write_points(s, 0, points, count);
+    for (int round = 0; round < 300; round++) {
+        struct history_series series;
+        int64_t from_us = NOVEMBER + (rand() % (40 * DAY) - 12 * DAY) * S, to_us = from_us + (1 + rand() % (20 * DAY)) * S;
+        int most = 2 + rand() % 1000, first = 0, last = count - 1;
+        while (first + 1 < count && points[first + 1].t_us <= from_us)
+            first++;
+        while (last > first && points[last - 1].t_us > to_us)
+            last--;
+        int there = last - first + 1;
+        assert_int_equal(history_series(s->reader, "TT-1", from_us, to_us, most, &series), 0);
+        assert_int_equal(series.bucket_us == 0, there <= most + 2);
+        assert_int_equal(series.points.count, there <= most + 2 ? there : 0);
+        for (size_t i = 0; i < series.points.count; i++)
+            assert_int_equal(series.points.at[i].t_us, points[first + (int)i].t_us);
         history_series_finish(&series);
     }
     mem_free(points);
@@ -985,7 +1155,7 @@ CASE(points_of_another_quantity_are_left_out)
         assert_int_equal(series.points.count, 1);
         assert_float_equal(series.points.at[0].value, 20, 0);
         history_series_finish(&series);
-        mem_free(read_in_unit(s, after, NOVEMBER + 3600 * S, 2, &series));
+        assert_int_equal(history_intervals(s->reader, "TT-1", NOVEMBER, NOVEMBER + 3600 * S, 2, &series), 0);
         assert_int_equal(series.buckets.count, 1);
         assert_float_equal(series.buckets.at[0].high, 20, 0);
         history_series_finish(&series);

@@ -260,7 +260,7 @@ CASE(a_gap_is_no_data_in_rollups)
     static const int counts[] = { 10, 100, 1000 };
     for (size_t i = 0; i < 3; i++) {
         struct history_series series;
-        assert_int_equal(history_series(reader, "FT-1", OCTOBER_25 - 3 * DAY_US, OCTOBER_25 + DAY_US, counts[i], &series), 0);
+        assert_int_equal(history_intervals(reader, "FT-1", OCTOBER_25 - 3 * DAY_US, OCTOBER_25 + DAY_US, counts[i], &series), 0);
         assert_true(series.bucket_us > 0);
         for (size_t k = 0; k < series.buckets.count; k++) {
             const struct history_bucket *bucket = &series.buckets.at[k];

@@ -284,7 +284,7 @@ CASE(what_was_recorded_is_shown_in_the_unit_of_now)
         struct history_series points, buckets;
         history_reader_show_by(reader, pass ? NULL : c->plant); /* in the second pass the month file itself stores the unit */
         assert_int_equal(history_series(reader, "F", start_us, start_us + 7200 * US_PER_S, 20000, &points), 0);
-        assert_int_equal(history_series(reader, "F", start_us, start_us + 3600 * US_PER_S, 10, &buckets), 0);
+        assert_int_equal(history_intervals(reader, "F", start_us, start_us + 3600 * US_PER_S, 10, &buckets), 0);
         assert_int_equal(history_at(reader, tags, start_us + 2 * US_PER_S, snapshot), 0);
         assert_true(points.points.count >= 2 && fabs(points.points.at[0].value - 100) < 1e-9);
         assert_true(fabs(points.points.at[points.points.count - 2].value - (pass ? 10 : 100)) < 1e-9);
