@@ -67,11 +67,12 @@ static void on_sample(void *arg, const struct sample_event *event)
 static void on_change(void *arg, const struct alarm_change *change)
 {
     struct alarm_service *service = arg;
+    const char *unit = alarm_unit(service->alarms, change->alarm);
     service->raised_now += change->event == ALARM_RAISE && alarm_status_is_annunciated(change->after);
     if (service->journal)
-        journal_add(service->journal, change, change->alarm->name);
+        journal_add(service->journal, change, change->alarm->name, unit);
     if (service->rows)
-        service->rows[++service->row_count % MAX_ROWS] = journal_entry_of(change, change->alarm->name);
+        service->rows[++service->row_count % MAX_ROWS] = journal_entry_of(change, change->alarm->name, unit);
 }
 
 static void on_tag(void *arg, int tag, enum alarm_kind kind, enum alarm_status status)
@@ -127,7 +128,7 @@ static void keep_all(struct alarm_service *service)
     for (int i = alarms_newest(service->alarms); i >= 0; i = alarms_at(service->alarms, i)->older) {
         const struct alarm *alarm = alarms_at(service->alarms, i);
         if (alarm_status_of(alarm) != ALARM_NORMAL)
-            journal_keep(service->journal, alarm, alarm->name);
+            journal_keep(service->journal, alarm, alarm->name, alarm_unit(service->alarms, alarm));
     }
 }
 
@@ -138,7 +139,7 @@ static void keep_since(struct alarm_service *service, uint64_t number)
         const struct alarm *alarm = alarms_at(service->alarms, i);
         if (alarm->number <= number)
             break;
-        journal_keep(service->journal, alarm, alarm->name);
+        journal_keep(service->journal, alarm, alarm->name, alarm_unit(service->alarms, alarm));
     }
 }
 

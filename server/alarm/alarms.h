@@ -87,6 +87,7 @@ const struct alarm *alarms_at(const struct alarms *alarms, int index);
 int alarms_find(const struct alarms *alarms, int tag, enum alarm_kind kind); /* returns the index, or -1 */
 /* returns the index of an alarm, or -1. name: name of the tag; for a LINK alarm, of the device */
 int alarms_find_named(const struct alarms *alarms, const char *name, enum alarm_kind kind);
+const char *alarm_unit(const struct alarms *alarms, const struct alarm *alarm); /* returns the unit of value and limit; "": none */
 enum alarm_status alarm_status_of(const struct alarm *alarm); /* returns the alarm's state as one of the words of ISA-18.2 */
 uint64_t alarms_number(const struct alarms *alarms);          /* returns the newest change number of any alarm */
 /* Returns the index of the alarm that changed last, or -1; its member `older` is the index of the alarm that changed before it. */
@@ -106,6 +107,8 @@ struct alarm_counts {
 void alarms_counts(const struct alarms *alarms, int64_t now_mono_ns, struct alarm_counts *out);
 
 /* --- restoring --- */
+/* Returns an alarm's value or limit in another unit; NaN if the units cannot be converted. A blank unit fits every unit. */
+double alarm_value_in_unit(double value, const char *was, const char *is);
 /* Sets an alarm to a state from the journal. Of the listener only of_tag is called (the alarm that the tag shows), not the callback for
    changes. States that do not exist in this plant's alarm mode are dropped. */
 void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved, struct instant now);

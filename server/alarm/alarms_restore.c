@@ -70,14 +70,16 @@ static void adopt_seen(struct alarms *alarms, const struct alarms *before)
     }
 }
 
-/* Returns the value at which an alarm of the old plant was raised, in the tag's present unit; NAN if the unit cannot be converted. */
-static double value_in_unit(const struct alarms *alarms, const struct alarm *alarm, const struct alarms *before, const struct alarm *from)
+const char *alarm_unit(const struct alarms *alarms, const struct alarm *alarm)
 {
-    const char *was = from->tag < 0 ? NULL : before->plant->tags[from->tag].unit;
-    const char *is = alarm->tag < 0 ? NULL : alarms->plant->tags[alarm->tag].unit;
+    const char *unit = alarm->tag < 0 ? NULL : alarms->plant->tags[alarm->tag].unit;
+    return unit ? unit : "";
+}
+
+double alarm_value_in_unit(double value, const char *was, const char *is)
+{
     struct unit_change change = { 0 };
-    bool known = was && *was && is && *is;
-    return known && units_compare(was, is, &change) > UNITS_CONVERT ? NAN : unit_change_value(&change, from->value);
+    return *was && *is && units_compare(was, is, &change) > UNITS_CONVERT ? NAN : unit_change_value(&change, value);
 }
 
 void alarms_adopt(struct alarms *alarms, const struct alarms *before)
@@ -97,7 +99,7 @@ void alarms_adopt(struct alarms *alarms, const struct alarms *before)
         if (same_limit(alarm, from))
             alarm->condition = from->condition;
         take(alarms, index, from);
-        alarm->value = value_in_unit(alarms, alarm, before, from);
+        alarm->value = alarm_value_in_unit(from->value, alarm_unit(before, from), alarm_unit(alarms, alarm));
     }
 }
 

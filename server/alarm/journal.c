@@ -191,7 +191,14 @@ int journal_settled(struct journal *journal, const struct settling_ticket *ticke
     return state;
 }
 
-struct journal_entry journal_entry_of(const struct alarm_change *change, const char *tag)
+static void set_unit(struct journal_entry *entry, const char *unit)
+{
+    entry->has_unit = strlen(unit) < sizeof(entry->unit);
+    if (entry->has_unit)
+        strcpy(entry->unit, unit);
+}
+
+struct journal_entry journal_entry_of(const struct alarm_change *change, const char *tag, const char *unit)
 {
     struct journal_entry entry = {
         .alarm = *change->alarm,
@@ -203,6 +210,7 @@ struct journal_entry journal_entry_of(const struct alarm_change *change, const c
         .value = change->value,
     };
     strncpy(entry.tag, tag, sizeof(entry.tag) - 1);
+    set_unit(&entry, unit);
     strncpy(entry.who, change->who, sizeof(entry.who) - 1);
     strncpy(entry.reason, change->reason, sizeof(entry.reason) - 1);
     return entry;
@@ -213,16 +221,17 @@ void journal_add_entry(struct journal *journal, const struct journal_entry *entr
     put(journal, entry);
 }
 
-void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag)
+void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag, const char *unit)
 {
-    const struct journal_entry entry = journal_entry_of(change, tag);
+    const struct journal_entry entry = journal_entry_of(change, tag, unit);
     put(journal, &entry);
 }
 
-void journal_keep(struct journal *journal, const struct alarm *alarm, const char *tag)
+void journal_keep(struct journal *journal, const struct alarm *alarm, const char *tag, const char *unit)
 {
     struct journal_entry entry = { .alarm = *alarm };
     strncpy(entry.tag, tag, sizeof(entry.tag) - 1);
+    set_unit(&entry, unit);
     put(journal, &entry);
 }
 
@@ -242,12 +251,16 @@ struct restoring {
     struct instant now;
 };
 
-static void restore(void *arg, const char *tag, const struct alarm *alarm)
+static void restore(void *arg, const char *tag, const char *unit, const struct alarm *alarm)
 {
     struct restoring *restoring = arg;
     int index = alarms_find_named(restoring->alarms, tag, alarm->kind);
-    if (index >= 0)
-        alarms_restore(restoring->alarms, index, alarm, restoring->now);
+    if (index < 0)
+        return;
+    struct alarm saved = *alarm;
+    const char *is = alarm_unit(restoring->alarms, alarms_at(restoring->alarms, index));
+    saved.value = unit ? alarm_value_in_unit(alarm->value, unit, is) : NAN;
+    alarms_restore(restoring->alarms, index, &saved, restoring->now);
 }
 
 /* Restores the alarm states from the file. If the file is damaged, restores none: the thread renames it before it writes. */

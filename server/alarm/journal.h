@@ -21,22 +21,22 @@ struct journal_params {
 struct journal *journal_start(const struct journal_params *params, struct alarms *alarms, struct instant now);
 /* Writes pending rows and ends the thread. &NULL is allowed; sets *journal to NULL. Returns true if all rows are on disk. */
 bool journal_stop(struct journal **journal);
-/* Queues a change to be written. Does not wait; names are copied. */
-void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag);
+/* Queues a change to be written. unit: of the change's value and limit. Does not wait; texts are copied. */
+void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag, const char *unit);
 /* Together with the next two functions tells whether the rows queued between journal_begin() and journal_end() are on disk
    (base/files/settling.h). journal_end() makes the thread write them immediately, even after a failed attempt. None of the three
    functions waits for the disk. */
 struct settling_ticket journal_begin(struct journal *journal);
 void journal_end(struct journal *journal, struct settling_ticket *ticket);
 int journal_settled(struct journal *journal, const struct settling_ticket *ticket);
-/* Returns the journal row for a change of an alarm; names are copied. */
-struct journal_entry journal_entry_of(const struct alarm_change *change, const char *tag);
+/* Returns the journal row for a change of an alarm; texts are copied. */
+struct journal_entry journal_entry_of(const struct alarm_change *change, const char *tag, const char *unit);
 void journal_add_entry(struct journal *journal, const struct journal_entry *entry); /* queues a row to be written; never waits */
 /* Returns true once after a new file was created: it lacks the present states, so the caller must pass each alarm that is not normal to
    journal_keep(). */
 bool journal_asks(struct journal *journal);
 /* Queues the present state of an alarm to be written to the table of states. */
-void journal_keep(struct journal *journal, const struct alarm *alarm, const char *tag);
+void journal_keep(struct journal *journal, const struct alarm *alarm, const char *tag, const char *unit);
 
 /* --- functions that read the journal; thread: one per reader --- */
 /* Calls each() for the rows that match. Returns 0 or -errno (logged); a folder without a journal has no rows. */

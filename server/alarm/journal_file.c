@@ -22,40 +22,61 @@ static const char schema_1[] =
     " until INTEGER NOT NULL, who TEXT NOT NULL, reason TEXT NOT NULL, PRIMARY KEY(tag, kind)) WITHOUT ROWID;"
     "CREATE VIEW journal AS SELECT strftime('%Y-%m-%dT%H:%M:%fZ', t / 1e6, 'unixepoch') AS utc, tag, kind, event, after AS state,"
     " priority, lim AS \"limit\", value, who, reason FROM event;";
-static const char *const schemas[JOURNAL_VERSION] = { schema_1 };
+/* Rows of earlier versions have no unit (NULL), because it is not known. */
+static const char schema_2[] =
+    "ALTER TABLE event ADD COLUMN unit TEXT;"
+    "ALTER TABLE state ADD COLUMN unit TEXT;"
+    "DROP VIEW journal;"
+    "CREATE VIEW journal AS SELECT strftime('%Y-%m-%dT%H:%M:%fZ', t / 1e6, 'unixepoch') AS utc, tag, kind, event, after AS state,"
+    " priority, lim AS \"limit\", value, unit, who, reason FROM event;";
+static const char *const schemas[JOURNAL_VERSION] = { schema_1, schema_2 };
 
-#define ROW "id, t, tag, kind, event, before, after, priority, lim, value, who, reason"
+#define ROW(unit) "id, t, tag, kind, event, before, after, priority, lim, value, who, reason, " unit
 /* Reads rows in the order of an index, so that reading one page takes equally long for old and for new pages. */
-#define IN_TIME "SELECT " ROW " FROM event WHERE t BETWEEN ?1 AND ?2 AND (t < ?3 OR id < ?4)"
+#define IN_TIME(unit) "SELECT " ROW(unit) " FROM event WHERE t BETWEEN ?1 AND ?2 AND (t < ?3 OR id < ?4)"
 #define NEWEST " ORDER BY t DESC, id DESC LIMIT ?5"
-enum { SQL_EVENT, SQL_STATE, SQL_NORMAL, SQL_FORGET, SQL_STATES, SQL_TIME_OF, SQL_ROWS, SQL_ROWS_OF, SQL_AT, SQL_COUNT };
+/* walks through the index from one alarm to the next and takes each alarm's newest row up to the time: a few steps per alarm, however long
+   the journal is */
+#define AT(unit)                                                                                                                           \
+    "WITH RECURSIVE known(tag, kind) AS ("                                                                                                 \
+    " SELECT * FROM (SELECT tag, kind FROM event ORDER BY tag, kind LIMIT 1)"                                                              \
+    " UNION ALL SELECT next.tag, next.kind FROM known JOIN event next ON next.id ="                                                        \
+    " coalesce((SELECT id FROM event WHERE tag = known.tag AND kind > known.kind ORDER BY kind LIMIT 1),"                                  \
+    " (SELECT id FROM event WHERE tag > known.tag ORDER BY tag, kind LIMIT 1))) "                                                          \
+    "SELECT " ROW(unit) " FROM event WHERE id IN (SELECT (SELECT id FROM event WHERE tag = known.tag AND kind = known.kind AND t <= ?1"    \
+    " ORDER BY t DESC, id DESC LIMIT 1) FROM known) AND after <> 'normal' ORDER BY id"
+#define STATES(unit)                                                                                                                       \
+    "SELECT tag, kind, active, unacknowledged, latched, aside, value, raised, changed, until, who, reason, " unit " FROM state"
+/* SQL_..._1: the same for a file of version 1, which has no units. */
+enum {
+    SQL_EVENT, SQL_STATE, SQL_NORMAL, SQL_FORGET, SQL_TIME_OF, SQL_HAS_UNIT,
+    SQL_STATES, SQL_ROWS, SQL_ROWS_OF, SQL_AT, SQL_STATES_1, SQL_ROWS_1, SQL_ROWS_OF_1, SQL_AT_1, SQL_COUNT
+};
 static const char *const sql[SQL_COUNT] = {
     /* skips a row that the file already has, because a leader sends rows again whenever a standby connects */
-    [SQL_EVENT] = "INSERT INTO event(t, tag, kind, event, before, after, priority, lim, value, who, reason)"
-                  " SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11 WHERE NOT EXISTS (SELECT 1 FROM event WHERE tag = ?2 AND kind = ?3"
-                  " AND t = ?1 AND event = ?4 AND before = ?5 AND after = ?6 AND value IS ?9)",
+    [SQL_EVENT] = "INSERT INTO event(t, tag, kind, event, before, after, priority, lim, value, who, reason, unit)"
+                  " SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12 WHERE NOT EXISTS (SELECT 1 FROM event WHERE tag = ?2"
+                  " AND kind = ?3 AND t = ?1 AND event = ?4 AND before = ?5 AND after = ?6 AND value IS ?9)",
     [SQL_STATE] = "INSERT OR REPLACE INTO state(tag, kind, active, unacknowledged, latched, aside, value, raised, changed, until, who,"
-                  " reason) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                  " reason, unit) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
     [SQL_NORMAL] = "DELETE FROM state WHERE tag = ? AND kind = ?",
     [SQL_FORGET] = "DELETE FROM event WHERE t < ?",
-    [SQL_STATES] = "SELECT tag, kind, active, unacknowledged, latched, aside, value, raised, changed, until, who, reason FROM state",
     [SQL_TIME_OF] = "SELECT t FROM event WHERE id = ?",
-    [SQL_ROWS] = IN_TIME NEWEST,
-    [SQL_ROWS_OF] = IN_TIME " AND tag = ?6" NEWEST,
-    /* walks through the index from one alarm to the next and takes each alarm's newest row up to the time: a few steps per alarm,
-       however long the journal is */
-    [SQL_AT] = "WITH RECURSIVE known(tag, kind) AS ("
-               " SELECT * FROM (SELECT tag, kind FROM event ORDER BY tag, kind LIMIT 1)"
-               " UNION ALL SELECT next.tag, next.kind FROM known JOIN event next ON next.id ="
-               " coalesce((SELECT id FROM event WHERE tag = known.tag AND kind > known.kind ORDER BY kind LIMIT 1),"
-               " (SELECT id FROM event WHERE tag > known.tag ORDER BY tag, kind LIMIT 1))) "
-               "SELECT " ROW " FROM event WHERE id IN (SELECT (SELECT id FROM event WHERE tag = known.tag AND kind = known.kind AND t <= ?1"
-               " ORDER BY t DESC, id DESC LIMIT 1) FROM known) AND after <> 'normal' ORDER BY id",
+    [SQL_HAS_UNIT] = "SELECT 1 FROM pragma_table_info('event') WHERE name = 'unit'",
+    [SQL_STATES] = STATES("unit"),
+    [SQL_ROWS] = IN_TIME("unit") NEWEST,
+    [SQL_ROWS_OF] = IN_TIME("unit") " AND tag = ?6" NEWEST,
+    [SQL_AT] = AT("unit"),
+    [SQL_STATES_1] = STATES("NULL"),
+    [SQL_ROWS_1] = IN_TIME("NULL") NEWEST,
+    [SQL_ROWS_OF_1] = IN_TIME("NULL") " AND tag = ?6" NEWEST,
+    [SQL_AT_1] = AT("NULL"),
 };
 static const struct database_format format = { APPLICATION_ID, JOURNAL_VERSION, "", schemas, sql, SQL_COUNT };
 
 struct journal_file {
     struct database db;
+    bool has_unit; /* false: a file of version 1, opened for reading */
 };
 
 /* --- opening ---------------------------------------------------------------------------------------------------------------- */
@@ -64,6 +85,7 @@ static struct journal_file *create(struct log *log, const char *folder)
 {
     struct journal_file *file = mem_new(sizeof(*file));
     database_init(&file->db, log, mem_printf("%s/" JOURNAL_FILE, folder), &format);
+    file->has_unit = true;
     return file;
 }
 
@@ -82,8 +104,13 @@ struct journal_file *journal_file_read(struct log *log, const char *folder, int 
 {
     struct journal_file *file = create(log, folder);
     *error = database_open_to_read(&file->db);
-    if (*error)
+    if (*error) {
         journal_file_close(&file);
+    } else {
+        sqlite3_stmt *s = database_statement(&file->db, SQL_HAS_UNIT);
+        file->has_unit = database_step(&file->db, s) == SQLITE_ROW;
+        sqlite3_reset(s);
+    }
     if (*error == -ENOENT)
         *error = 0;
     return file;
@@ -100,6 +127,14 @@ void journal_file_close(struct journal_file **file)
 
 /* --- writing ---------------------------------------------------------------------------------------------------------------- */
 
+static void bind_unit(sqlite3_stmt *s, int index, const struct journal_entry *entry)
+{
+    if (entry->has_unit)
+        database_bind_text(s, index, entry->unit);
+    else
+        sqlite3_bind_null(s, index);
+}
+
 static int write_event(struct journal_file *file, const struct journal_entry *entry)
 {
     sqlite3_stmt *s = database_statement(&file->db, SQL_EVENT);
@@ -114,6 +149,7 @@ static int write_event(struct journal_file *file, const struct journal_entry *en
     database_bind_value(s, 9, entry->value);
     database_bind_text(s, 10, entry->who);
     database_bind_text(s, 11, entry->reason);
+    bind_unit(s, 12, entry);
     return database_run(&file->db, s);
 }
 
@@ -135,6 +171,7 @@ static int write_state(struct journal_file *file, const struct journal_entry *en
         sqlite3_bind_int64(s, 10, alarm->until.utc_ns / 1000);
         database_bind_text(s, 11, alarm->who);
         database_bind_text(s, 12, alarm->reason);
+        bind_unit(s, 13, entry);
     }
     return database_run(&file->db, s);
 }
@@ -165,9 +202,22 @@ int journal_file_forget(struct journal_file *file, int64_t before_us)
 
 /* --- reading ---------------------------------------------------------------------------------------------------------------- */
 
-int journal_file_states(struct journal_file *file, void (*each)(void *arg, const char *tag, const struct alarm *alarm), void *arg)
+/* Returns a statement that reads: SQL_STATES, SQL_ROWS, SQL_ROWS_OF or SQL_AT, as the file's version needs it. */
+static sqlite3_stmt *reading(struct journal_file *file, int which)
 {
-    sqlite3_stmt *s = database_statement(&file->db, SQL_STATES);
+    return database_statement(&file->db, file->has_unit ? which : which - SQL_STATES + SQL_STATES_1);
+}
+
+/* Returns a column's text; NULL: the column is NULL. */
+static const char *text_or_null(sqlite3_stmt *s, int column)
+{
+    return (const char *)sqlite3_column_text(s, column);
+}
+
+int journal_file_states(struct journal_file *file,
+                        void (*each)(void *arg, const char *tag, const char *unit, const struct alarm *alarm), void *arg)
+{
+    sqlite3_stmt *s = reading(file, SQL_STATES);
     int code;
     while ((code = database_step(&file->db, s)) == SQLITE_ROW) {
         struct alarm alarm = {
@@ -181,7 +231,7 @@ int journal_file_states(struct journal_file *file, void (*each)(void *arg, const
         };
         strncpy(alarm.who, database_text(s, 10), sizeof(alarm.who) - 1);
         strncpy(alarm.reason, database_text(s, 11), sizeof(alarm.reason) - 1);
-        each(arg, database_text(s, 0), &alarm);
+        each(arg, database_text(s, 0), text_or_null(s, 12), &alarm);
     }
     sqlite3_reset(s);
     return database_fail(&file->db, code, "cannot be read");
@@ -202,6 +252,7 @@ static void tell(sqlite3_stmt *s, void (*each)(void *arg, const struct journal_r
         .value = database_value(s, 9),
         .who = database_text(s, 10),
         .reason = database_text(s, 11),
+        .unit = text_or_null(s, 12),
     };
     each(arg, &row);
 }
@@ -229,7 +280,7 @@ int journal_file_rows(struct journal_file *file, const struct journal_query *que
                       void *arg)
 {
     int64_t before_us = query->before_id == INT64_MAX ? INT64_MIN : time_of(file, query->before_id), to_us = query->to_us;
-    sqlite3_stmt *s = database_statement(&file->db, query->tag ? SQL_ROWS_OF : SQL_ROWS);
+    sqlite3_stmt *s = reading(file, query->tag ? SQL_ROWS_OF : SQL_ROWS);
     if (before_us != INT64_MIN && before_us < to_us)
         to_us = before_us;
     sqlite3_bind_int64(s, 1, query->from_us);
@@ -244,7 +295,7 @@ int journal_file_rows(struct journal_file *file, const struct journal_query *que
 
 int journal_file_at(struct journal_file *file, int64_t t_us, void (*each)(void *arg, const struct journal_row *row), void *arg)
 {
-    sqlite3_stmt *s = database_statement(&file->db, SQL_AT);
+    sqlite3_stmt *s = reading(file, SQL_AT);
     sqlite3_bind_int64(s, 1, t_us);
     return tell_all(file, s, each, arg);
 }

@@ -6,7 +6,7 @@
 #include "base/log/log.h"
 
 #define JOURNAL_FILE "alarms.sqlite"
-enum { JOURNAL_VERSION = 1 };
+enum { JOURNAL_VERSION = 2, JOURNAL_UNIT_BYTES = 64 };
 
 struct journal_entry {
     struct alarm alarm; /* the alarm at that time */
@@ -15,7 +15,8 @@ struct journal_entry {
     enum alarm_status before, after;
     int64_t utc_ns;
     double value;
-    char tag[256], who[ALARM_NAME_BYTES], reason[ALARM_REASON_BYTES];
+    bool has_unit; /* false: the unit of value and limit is not known */
+    char tag[256], unit[JOURNAL_UNIT_BYTES], who[ALARM_NAME_BYTES], reason[ALARM_REASON_BYTES];
 };
 
 struct journal_row {
@@ -23,6 +24,7 @@ struct journal_row {
     const char *tag, *kind, *event, *before, *after, *who, *reason; /* valid until the next row */
     int priority;
     double limit, value; /* NaN: none */
+    const char *unit;    /* unit of limit and value at that time; NULL: not known, because an earlier version wrote the row */
 };
 struct journal_query {
     int64_t from_us, to_us;
@@ -41,8 +43,9 @@ void journal_file_close(struct journal_file **file); /* closes the file and sets
 /* Writes all entries in one transaction, without the changes that the file already has. Returns -EBADMSG if the file is damaged. */
 int journal_file_write(struct journal_file *file, const struct journal_entry *entries, size_t count);
 int journal_file_forget(struct journal_file *file, int64_t before_us); /* deletes rows older than before_us */
-/* Calls each() for the stored state of every alarm, as of the last write to the journal. */
-int journal_file_states(struct journal_file *file, void (*each)(void *arg, const char *tag, const struct alarm *alarm), void *arg);
+/* Calls each() for the stored state of every alarm, as of the last write to the journal. unit: of the alarm's value; NULL: not known. */
+int journal_file_states(struct journal_file *file,
+                        void (*each)(void *arg, const char *tag, const char *unit, const struct alarm *alarm), void *arg);
 int journal_file_rows(struct journal_file *file, const struct journal_query *query, void (*each)(void *arg, const struct journal_row *row),
                       void *arg);
 int journal_file_at(struct journal_file *file, int64_t t_us, void (*each)(void *arg, const struct journal_row *row), void *arg);

@@ -39,6 +39,8 @@ static void add_row(void *arg, const struct journal_entry *row)
         json_object_set_new(one, "value", json_real(row->value));
     if (isfinite(row->alarm.limit))
         json_object_set_new(one, "limit", json_real(row->alarm.limit));
+    if (row->has_unit)
+        json_object_set_new(one, "unit", json_string(row->unit));
     json_array_append_new(arg, one);
 }
 
@@ -114,6 +116,7 @@ static bool read_row(const json_t *one, struct journal_entry *out)
                 get_number(one, "before", 0, ALARM_STATUSES - 1, &before) && get_number(one, "after", 0, ALARM_STATUSES - 1, &after) &&
                 get_number(one, "priority", 1, ALARM_PRIORITIES, &out->alarm.priority);
     if (good) {
+        out->has_unit = get_text(one, "unit", out->unit, sizeof(out->unit)); /* earlier versions do not send it */
         out->event = (enum alarm_event)event;
         out->before = (enum alarm_status)before;
         out->after = (enum alarm_status)after;

@@ -245,6 +245,7 @@ char *alarms_api_text(struct alarm_service *alarm_service, const struct plant *p
 /* --- the journal ------------------------------------------------------------------------------------------------------------ */
 
 struct paging {
+    const struct plant *plant;
     json_t *rows;
     struct text *csv; /* NULL: the output is JSON */
     int64_t last_id;
@@ -265,34 +266,53 @@ static void add_journal_csv(struct text *out, const struct journal_row *row)
     text_add_cell(out, row->who, SPECIAL);
     text_add(out, ",");
     text_add_cell(out, row->reason, SPECIAL);
+    text_add(out, ",");
+    text_add_cell(out, row->unit ? row->unit : "", SPECIAL);
     text_add(out, "\n");
 }
 
-static void add_journal_row(void *arg, const struct journal_row *row)
+/* Converts limit and value to the tag's present unit, if the row's unit is known and can be converted to it. */
+static struct journal_row in_present_unit(const struct plant *plant, const struct journal_row *row)
+{
+    struct journal_row out = *row;
+    int tag = plant_find_tag(plant, row->tag);
+    const char *is = tag < 0 ? NULL : plant->tags[tag].unit;
+    struct unit_change change;
+    if (row->unit && is && units_compare(row->unit, is, &change) <= UNITS_CONVERT) {
+        out.limit = unit_change_value(&change, row->limit);
+        out.value = unit_change_value(&change, row->value);
+        out.unit = is;
+    }
+    return out;
+}
+
+static void add_journal_row(void *arg, const struct journal_row *as_written)
 {
     struct paging *paging = arg;
+    const struct journal_row converted = in_present_unit(paging->plant, as_written), *row = &converted;
     paging->last_id = row->id;
     paging->count++;
     if (paging->csv)
         add_journal_csv(paging->csv, row);
     else
         json_array_append_new(paging->rows,
-                              json_pack("{s:I,s:I,s:o,s:s,s:s,s:s,s:s,s:i,s:o,s:o,s:o,s:o}", "id", (json_int_t)row->id, "time_us",
+                              json_pack("{s:I,s:I,s:o,s:s,s:s,s:s,s:s,s:i,s:o,s:o,s:o,s:o,s:o}", "id", (json_int_t)row->id, "time_us",
                                         (json_int_t)row->t_us, "tag", string(row->tag), "kind", row->kind, "event", row->event, "before",
                                         row->before, "state", row->after, "priority", row->priority, "limit", reading_number(row->limit),
-                                        "value", reading_number(row->value), "who", string(row->who), "reason", string(row->reason)));
+                                        "value", reading_number(row->value), "unit", row->unit ? string(row->unit) : json_null(), "who",
+                                        string(row->who), "reason", string(row->reason)));
 }
 
-bool alarms_journal_text(struct log *log, const char *folder, const struct alarm_query *query, struct text *out)
+bool alarms_journal_text(struct log *log, const char *folder, const struct plant *plant, const struct alarm_query *query, struct text *out)
 {
-    struct paging paging = { .rows = json_array(), .csv = query->csv ? out : NULL };
+    struct paging paging = { .plant = plant, .rows = json_array(), .csv = query->csv ? out : NULL };
     const struct journal_query asked = { .from_us = query->from_us,
                                          .to_us = query->to_us,
                                          .before_id = query->before_id,
                                          .tag = query->tag[0] ? query->tag : NULL,
                                          .limit = query->limit };
     if (query->csv)
-        text_add(out, "id,time,tag,kind,event,before,state,priority,limit,value,who,reason\n");
+        text_add(out, "id,time,tag,kind,event,before,state,priority,limit,value,who,reason,unit\n");
     bool good = journal_read(log, folder, &asked, add_journal_row, &paging) == 0;
     if (!good)
         text_finish(out);

@@ -35,6 +35,6 @@ bool alarm_query_parse(const struct plant *plant, bool journal, const char *cons
 char *alarms_api_text(struct alarm_service *alarm_service, const struct plant *plant, const struct alarm_query *query, int64_t now_utc_ns);
 /* Appends the rows of the journal that the query selects, as CSV if query->csv, else as JSON. Reads the disk. Returns false, with *out
    emptied, if the journal cannot be read (logged). Thread: any. */
-bool alarms_journal_text(struct log *log, const char *folder, const struct alarm_query *query, struct text *out);
+bool alarms_journal_text(struct log *log, const char *folder, const struct plant *plant, const struct alarm_query *query, struct text *out);
 
 #endif

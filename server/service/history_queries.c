@@ -154,7 +154,7 @@ static bool read_whole(struct history_queries *queries, struct history_reader *r
         return remote_history_whole(core, queries->plant, query, out);
     if (query->gaps)
         return print_gaps(reader, query, out);
-    alarms_journal_text(queries->log, queries->folder, &query->alarms, out);
+    alarms_journal_text(queries->log, queries->folder, queries->plant, &query->alarms, out);
     return true;
 }
 

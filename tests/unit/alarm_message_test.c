@@ -2,8 +2,10 @@
 /* Alarm messages: what sessions receive, which alarm commands they may send, and what programs receive. */
 #include "tests/support/test.h"
 #include <jansson.h>
+#include <sqlite3.h>
 
 #include "base/clock.h"
+#include "alarm/journal.h"
 #include "message/message_parse.h"
 #include "access/access.h"
 #include "message/alarm_message.h"
@@ -214,7 +216,7 @@ CASE(the_journal_is_read_by_pages)
     alarm_service_halt(s->alarm_service);
     alarm_service_stop(&s->alarm_service);
     assert_true(query(s, true, "limit=2", &q));
-    assert_true(alarms_journal_text(s->log, s->folder, &q, &out));
+    assert_true(alarms_journal_text(s->log, s->folder, s->plant, &q, &out));
     json_t *page = test_json(json_loads(out.at, 0, NULL)), *rows = json_object_get(page, "rows");
     assert_int_equal(json_array_size(rows), 2);
     assert_string_equal(json_string_value(json_object_get(json_array_get(rows, 0), "event")), "shelve");
@@ -223,13 +225,84 @@ CASE(the_journal_is_read_by_pages)
     text_finish(&out);
     assert_true(query(s, true, more, &q));
     q.csv = true;
-    assert_true(alarms_journal_text(s->log, s->folder, &q, &out));
-    assert_non_null(strstr(out.at, ",TT-1,H,raise,normal,unacknowledged,3,80,95,,\n"));
+    assert_true(alarms_journal_text(s->log, s->folder, s->plant, &q, &out));
+    assert_non_null(strstr(out.at, ",TT-1,H,raise,normal,unacknowledged,3,80,95,,,\n"));
     text_finish(&out);
     assert_true(query(s, true, "format=csv", &q));
-    assert_true(alarms_journal_text(s->log, s->folder, &q, &out));
-    assert_non_null(strstr(out.at, ",Kim,\"says \"\"now\"\", and means it\"\n"));
+    assert_true(alarms_journal_text(s->log, s->folder, s->plant, &q, &out));
+    assert_non_null(strstr(out.at, ",Kim,\"says \"\"now\"\", and means it\",\n"));
     text_finish(&out);
+}
+
+/* Starts the alarm service again after a change of the first tag's unit and limit; NULL: the unit stays. */
+static void restart_in(struct alarm_message_setup *s, const char *unit, double limit)
+{
+    alarm_service_stop(&s->alarm_service);
+    if (unit) {
+        mem_free(s->plant->tags[0].unit);
+        s->plant->tags[0].unit = mem_strdup(unit);
+        s->plant->tags[0].alarms.limits[LIMIT_H] = limit;
+    }
+    s->alarm_service = alarm_service_start(&(struct alarm_service_params){
+        .log = s->log, .counters = test_counters(), .plant = s->plant, .store = s->store, .folder = s->folder, .keep_days = 400 });
+}
+
+/* Asserts limit and unit of the journal's oldest row, and the value with which the present alarm H was raised. */
+static void expect_row(struct alarm_message_setup *s, double limit, const char *unit, double value)
+{
+    struct alarm_query q;
+    struct text out = { 0 };
+    assert_true(query(s, true, "limit=100", &q));
+    assert_true(alarms_journal_text(s->log, s->folder, s->plant, &q, &out));
+    json_t *rows = json_object_get(test_json(json_loads(out.at, 0, NULL)), "rows"), *row = json_array_get(rows, json_array_size(rows) - 1);
+    text_finish(&out);
+    assert_string_equal(json_string_value(json_object_get(row, "kind")), "H");
+    assert_float_equal(json_number_value(json_object_get(row, "limit")), limit, 1e-3);
+    if (unit)
+        assert_string_equal(json_string_value(json_object_get(row, "unit")), unit);
+    else
+        assert_true(json_is_null(json_object_get(row, "unit")));
+    assert_true(query(s, false, "limit=100", &q));
+    json_t *alarm = json_array_get(json_object_get(parse(alarms_api_text(s->alarm_service, s->plant, &q, 0)), "alarms"), 0);
+    assert_string_equal(json_string_value(json_object_get(alarm, "kind")), "H");
+    json_t *raised = json_object_get(alarm, "value");
+    assert_true(isnan(value) ? json_is_null(raised) : fabs(json_number_value(raised) - value) < 1e-3);
+}
+
+/* Makes the journal a file of version 1, which has no units. */
+static void make_older(struct alarm_message_setup *s)
+{
+    sqlite3 *db;
+    char *path = temp_path(s->folder, JOURNAL_FILE);
+    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db,
+                                  "DROP VIEW journal; ALTER TABLE event DROP COLUMN unit; ALTER TABLE state DROP COLUMN unit;"
+                                  "CREATE VIEW journal AS SELECT tag FROM event; PRAGMA user_version = 1",
+                                  NULL, NULL, NULL),
+                     SQLITE_OK);
+    sqlite3_close(db);
+}
+
+/* The unit of a tag changes: what the journal has in the old unit is converted, or keeps its unit, and never appears in the new one. */
+CASE(the_journal_keeps_the_unit_of_the_time)
+{
+    s->plant->tags[0].alarms.limits[LIMIT_HH] = NAN;
+    restart_in(s, "bar", 80);
+    give(s, 0, 95, QUALITY_GOOD);
+    restart_in(s, "psi", 80 * 14.5037738);
+    expect_row(s, 80 * 14.5037738, "psi", 95 * 14.5037738);
+    restart_in(s, "°C", 90);
+    expect_row(s, 80, "bar", NAN);
+    restart_in(s, "bar", 80);
+    expect_row(s, 80, "bar", 95);
+    alarm_service_stop(&s->alarm_service);
+    make_older(s);
+    restart_in(s, NULL, 0);
+    expect_row(s, 80, NULL, NAN);
+    give(s, 0, 70, QUALITY_GOOD); /* the file gets the column for this change */
+    give(s, 0, 96, QUALITY_GOOD);
+    restart_in(s, NULL, 0);
+    expect_row(s, 80, NULL, 96);
 }
 
 /* Counters and totalizers have more digits than a transmitter: pages, programs and files must not round them. */

@@ -43,15 +43,16 @@ test('an area is the one of the equipment, else the equipment itself', () => {
 
 test('rows of the journal, also of tags that the plant no longer has; their export', () => {
     const from = { id: 7, time_us: 1e15, tag: 'TI-1', kind: 'HH', event: 'raise', state: 'unacknowledged', priority: 1, value: 95.5,
-        limit: 90, who: '', reason: '' };
-    const other = { ...from, tag: 'TI-9', event: 'shelve', who: '=kim', reason: 'a, "b"' };
-    const known = journalRow(model, from), gone = journalRow(model, other);
+        limit: 90, unit: '°C', who: '', reason: '' };
+    const other = { ...from, tag: 'TI-9', unit: null, event: 'shelve', who: '=kim', reason: 'a, "b"' };
+    const known = journalRow(model, from), gone = journalRow(model, other), changed = journalRow(model, { ...from, unit: 'bar' });
     assert.deepEqual([known.area, known.about, known.us, known.tag.index], ['North', 'Pump', 1e15, 0]);
     assert.deepEqual([gone.area, gone.tag.index], ['', null]);
-    assert.deepEqual(tableCsv([known, gone]).split('\r\n'), [
+    assert.deepEqual(tableCsv([known, gone, changed]).split('\r\n'), [
         'time,state,event,priority,tag,kind,area,description,value,limit,unit,who,reason',
         '2001-09-09T01:46:40.000Z,unacknowledged,raise,1,TI-1,HH,North,Pump,95.5,90,°C,,',
-        '2001-09-09T01:46:40.000Z,unacknowledged,shelve,1,TI-9,HH,,,95.5,90,,\'=kim,"a, ""b"""', '']);
+        '2001-09-09T01:46:40.000Z,unacknowledged,shelve,1,TI-9,HH,,,95.5,90,,\'=kim,"a, ""b"""',
+        '2001-09-09T01:46:40.000Z,unacknowledged,raise,1,TI-1,HH,North,Pump,95.5,90,bar,,', '']);
 });
 
 test('yesterday is from midnight to midnight of the plant, also where a day has 23 hours', () => {

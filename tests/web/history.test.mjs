@@ -87,11 +87,13 @@ test('the value at an instant is that of the drawn line', () => {
 
 test('alarms last from when they were raised until they returned, were shelved, or still do', () => {
     const row = (us, event, before, state, tag = 'A') => ({ time_us: us, event, before, state, tag, kind: 'H', priority: 2, value: 9,
-        limit: 8 });
+        limit: 8, unit: tag === 'A' ? 'bar' : null });
     const rows = [row(9, 'raise', 'normal', 'unacknowledged'), row(7, 'clear', 'acknowledged', 'normal'),
         row(5, 'ack', 'unacknowledged', 'acknowledged'), row(4, 'raise', 'normal', 'unacknowledged'),
         row(3, 'raise', 'normal', 'suppressed', 'B'), row(2, 'clear', 'unacknowledged', 'returned', 'B')];
-    assert.deepEqual(alarmSpans(rows).map(({ us, endUs, tag }) => [us, endUs, tag]), [[4, 7, 'A'], [9, null, 'A']]);
+    assert.deepEqual(alarmSpans(rows, 'bar').map(({ us, endUs, tag, value }) => [us, endUs, tag, value]),
+        [[4, 7, 'A', 9], [9, null, 'A', 9]]);
+    assert.deepEqual(alarmSpans(rows, '°C').map(({ value, limit }) => [value, limit]), [[null, null], [null, null]], 'another unit');
 });
 
 test('ranges are read as people write them, in three languages', () => {

@@ -40,11 +40,11 @@ export const areasOf = (rows) => [...new Set(rows.map(({ area }) => area).filter
 export const isIn = (row, { area = '', priority = '' }) =>
     (area === '' || row.area === area) && (priority === '' || row.priority === Number(priority));
 
-// Converts a row of /api/v1/alarms/journal to a row of the table. Tags that the plant no longer has have no area.
-export function journalRow(model, { id, time_us: us, tag: name, kind, event, state, priority, value, limit, who, reason }) {
+// Converts a row of /api/v1/alarms/journal to a row of the table. Tags that the plant no longer has have no area. unit null: not known.
+export function journalRow(model, { id, time_us: us, tag: name, kind, event, state, priority, value, limit, unit, who, reason }) {
     const tag = model.tag(name) ?? { name, index: null, group: null, asset: null, description: '' };
-    return { id: `j${id}`, us, raisedUs: us, tag, kind, event, state, priority, value, limit, who, reason, area: areaOf(model, tag),
-        about: tag.description ?? '' };
+    return { id: `j${id}`, us, raisedUs: us, tag, kind, event, state, priority, value, limit, unit: unit ?? null, who, reason,
+        area: areaOf(model, tag), about: tag.description ?? '' };
 }
 
 // A cell that a spreadsheet would run as a formula gets an apostrophe, as in the CSV of the server.
@@ -59,6 +59,7 @@ const EXPORTED = ['time', 'state', 'event', 'priority', 'tag', 'kind', 'area', '
 // Returns rows as CSV, with times in UTC.
 export function tableCsv(rows) {
     const lines = rows.map((row) => [row.us === null ? '' : new Date(row.us / 1000).toISOString(), row.state, row.event ?? '', row.priority,
-        row.tag.name, row.kind, row.area, row.about, row.value ?? '', row.limit ?? '', row.tag.unit ?? '', row.who, row.reason]);
+        row.tag.name, row.kind, row.area, row.about, row.value ?? '', row.limit ?? '',
+        (row.unit === undefined ? row.tag.unit : row.unit) ?? '', row.who, row.reason]);
     return [EXPORTED, ...lines].map((cells) => cells.map(csvCell).join(',')).join('\r\n').concat('\r\n');
 }

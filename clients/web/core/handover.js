@@ -13,14 +13,14 @@ export function hearAlarms(model, { mode, alarms }) {
 }
 
 // Adds a raise to the alarms raised. An alarm that rises from H to HH is still the same alarm of its tag, and is not counted again.
-function addRaise(raised, { tag, kind, priority, value, limit, time_us: us }) {
+function addRaise(raised, { tag, kind, priority, value, limit, unit, time_us: us }) {
     const known = raised.get(tag) ?? { tag, kinds: [], priority, count: 0, first: us, active: new Set() };
     const isNew = known.active.size === 0 || known.active.has(kind);
     if (isNew)
         known.active.clear();
     known.active.add(kind);
     raised.set(tag, { ...known, kinds: [...new Set([...known.kinds, kind])], priority: Math.min(known.priority, priority),
-        count: known.count + Number(isNew), last: us, value, limit });
+        count: known.count + Number(isNew), last: us, value, limit, unit: unit ?? null });
 }
 
 // Adds a row of the journal that records an operator's action. Equal actions on several alarms of a tag within SAME_ACT_US become one
@@ -34,9 +34,9 @@ function addAct(list, row) {
         list.push({ ...row, kinds: [kind] });
 }
 
-// rows: rows of the journal, in any order. Returns { raised: [{ tag, kinds, priority, count, first, last, value, limit (of the last
-// raise) }], the most frequent first; acknowledged, shelved, aside (taken out of service or put back): lists of actions with
-// `kinds`, oldest first }.
+// rows: rows of the journal, in any order. Returns { raised: [{ tag, kinds, priority, count, first, last, value, limit, unit (all three of
+// the last raise; unit null: not known) }], the most frequent first; acknowledged, shelved, aside (taken out of service or put back): lists
+// of actions with `kinds`, oldest first }.
 export function sortJournal(rows) {
     const raised = new Map(), out = { acknowledged: [], shelved: [], aside: [] };
     for (const row of [...rows].sort((a, b) => a.time_us - b.time_us || a.id - b.id)) {

@@ -88,11 +88,13 @@ export function valueAt({ points, bucket_us: length, step }, us) {
 }
 
 // Returns the alarms of journal rows (newest first): [{ us, endUs (null: still active), tag, kind, priority, value, limit }], oldest first.
-export function alarmSpans(rows) {
+// value and limit are null if the row has another unit than `unit`.
+export function alarmSpans(rows, unit) {
     const open = new Map(), out = [];
-    for (const { time_us: us, tag, kind, event, state, before, priority, value, limit } of [...rows].reverse()) {
+    for (const { time_us: us, tag, kind, event, state, before, priority, unit: was, ...row } of [...rows].reverse()) {
         const key = `${tag} ${kind}`, alarm = open.get(key);
         if (event === 'raise' && calls(state)) {
+            const [value, limit] = was === unit ? [row.value, row.limit] : [null, null];
             const made = { us, endUs: null, tag, kind, priority, value, limit };
             open.set(key, made);
             out.push(made);

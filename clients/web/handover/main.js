@@ -42,11 +42,11 @@ function aboutOf(model, tag) {
     return about.startsWith(area) ? about : [area, about].filter(Boolean).join(', ');
 }
 
-// Returns a value and the limit that it exceeded, in the tag's unit.
-function valueOf(model, tag, { value, limit }) {
+// Returns a value and the limit that it exceeded, in the unit of a row of the journal (null: not known), else in the tag's.
+function valueOf(model, tag, { value, limit, unit: was }) {
     const group = tag && model.group(tag.group), decimals = group ? decimalsFor(group.max - group.min) : 2;
-    const unit = unitText(tag?.unit || group?.unit), texts = [numberText(value, decimals), limit === null ? ''
-        : `(${numberText(limit, decimals)})`, unit];
+    const unit = unitText(was === undefined ? tag?.unit || group?.unit : was ?? ''), texts = [numberText(value, decimals),
+        limit === null ? '' : `(${numberText(limit, decimals)})`, unit];
     return value === null ? '' : texts.filter(Boolean).join(' ');
 }
 

@@ -103,6 +103,7 @@ count(one): {count} Änderung
 count(other): {count} Änderungen
 cut: {count} der neuesten {all} Änderungen, zurück bis {time}
 older: Ältere laden
+nounit: Einheit unbekannt
 
 [change]
 raise: Gekommen

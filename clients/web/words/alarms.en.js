@@ -103,6 +103,7 @@ count(one): {count} change
 count(other): {count} changes
 cut: {count} of the newest {all} changes, back to {time}
 older: Load older changes
+nounit: unit unknown
 
 [change]
 raise: Raised

@@ -99,6 +99,7 @@ to: 끝
 count(other): 변경 {count}건
 cut: 최신 변경 {all}건 중 {count}건, {time}까지
 older: 이전 변경 더 보기
+nounit: 단위 알 수 없음
 
 [change]
 raise: 발생

@@ -64,6 +64,15 @@ function textsOf(model, tag) {
     return { unit: unitText(tag.unit || group?.unit), text: (value) => (value === null ? '' : numberText(value, decimals)) };
 }
 
+// Returns the content and the title of a cell with a value of a row. A row of the journal may have another unit than the tag has now, or an
+// unknown one (null).
+function thenTexts(model, { tag, unit: was }, value) {
+    const { text, unit } = textsOf(model, tag), then = text(value);
+    if (then === '' || was === undefined || (was !== null && unitText(was) === unit))
+        return [then, null];
+    return was === null ? [`${then} ?`, say('journal.nounit')] : [`${then} ${unitText(was)}`, null];
+}
+
 // Returns the present value and its unit as texts. The value is a dash while the past is shown, or if `fresh` is false: no messages arrive
 // from the server.
 function nowTexts({ model, time }, tag, fresh) {
@@ -97,9 +106,10 @@ const flyButton = (tag, name, fly) => make('button', { type: 'button', class: 'a
 // Returns the <tr> of a row of the alarm list or the journal, which pass different parts: look (attributes of the <tr>), pick (checkbox),
 // state (text), note and also (texts in the description), buttons. fly(tag): called when the user presses the tag's button.
 export function rowOf(session, row, fresh, { look, pick, state, note, also = '', buttons, fly }) {
-    const { tag, kind, priority } = row, { text } = textsOf(session.model, tag), name = make('b', {}, tag.name);
+    const { tag, kind, priority } = row, name = make('b', {}, tag.name);
     const cell = (col, title, ...content) => make('td', { 'data-col': col, title }, ...content);
     const about = [note, row.about, also].filter(Boolean);
+    const [value, limit] = [row.value, row.limit].map((number) => thenTexts(session.model, row, number));
     const element = make('tr', look, cell('pick', null, pick), cell('state', state, state),
         cell('priority', null, badge(priority, isGone(row.state))),
         // the alarm of a field device has no tag index and no position in the model to fly to, so its name is not a button
@@ -107,8 +117,8 @@ export function rowOf(session, row, fresh, { look, pick, state, note, also = '',
         cell('kind', null, say(`kind.${kind}`)), cell('area', row.area, row.area),
         cell('about', about.join(' · '), ...about.flatMap((part, i) =>
             [i > 0 ? ' · ' : null, part === note ? make('em', {}, part) : part])),
-        cell('us', null, timeText(session, row.us)), cell('then', null, text(row.value)), cell('now'),
-        cell('limit', null, text(row.limit)), cell('since'), cell('do', null, ...buttons));
+        cell('us', null, timeText(session, row.us)), cell('then', value[1], value[0]), cell('now'),
+        cell('limit', limit[1], limit[0]), cell('since'), cell('do', null, ...buttons));
     refreshCells(session, element, row, fresh);
     return element;
 }
