@@ -150,10 +150,11 @@ static void take_qualities(struct historian *historian, int64_t mono_ns, int64_t
         const struct reading *reading = &historian->snapshot->readings[i];
         if (reading->quality == recorder_quality(historian->recorder, (int)i))
             continue;
-        const struct sample_event event = { (int)i, quality_is_bad(reading->quality) ? NAN : reading->value, reading->quality, mono_ns,
-                                            utc_ns };
+        int64_t aged_ns = store_aged_ns(historian->store, (int)i, mono_ns), aged_utc_ns = utc_ns - (mono_ns - aged_ns);
+        const struct sample_event event = { (int)i, quality_is_bad(reading->quality) ? NAN : reading->value, reading->quality, aged_ns,
+                                            aged_utc_ns };
         if (store_tell_aged(historian->store, &event))
-            put(historian, (int)i, &(struct history_point){ utc_ns / 1000, event.value, event.quality });
+            put(historian, (int)i, &(struct history_point){ aged_utc_ns / 1000, event.value, event.quality });
     }
 }
 

@@ -43,6 +43,9 @@ void store_listen_all(struct store *store, store_listener *listener, void *arg);
 /* Tells the listeners of store_listen_all() that time alone changed the quality of a tag, for example that its reading went stale. Returns
  * false, with nobody told, if a sample of the tag has arrived since event->mono_ns: that sample tells the quality. */
 bool store_tell_aged(struct store *store, const struct sample_event *event);
+/* Returns since when the tag has had its present quality because of time alone: its reading, or the one of its quality tag, went stale or
+ * counted as unchanged for too long, or a heartbeat stopped. Returns now if there is no such time since the tag's newest sample. */
+int64_t store_aged_ns(struct store *store, int tag, int64_t now_mono_ns);
 /* Removes a listener; the store no longer calls it once this function has returned. */
 void store_unlisten(struct store *store, store_listener *listener, void *arg);
 /* Sets the callback for changes of readings, alarms or links. The thread that makes the change calls it under the store's lock: once, and

@@ -479,6 +479,40 @@ CASE(says_when_a_reading_gets_stale)
     assert_true(take(s, 9 * S) == INT64_MAX); /* both readings are stale */
 }
 
+/* Random writes and pauses: the time since when a reading is old is the first one at which a snapshot shows its quality. */
+CASE(says_since_when_a_reading_is_old)
+{
+    enum { STEP = S / 100 };
+    int found = 0;
+    s->plant->sources[0].heartbeat_s = 3;
+    s->plant->sources[0].heartbeat_tag = 1;
+    s->plant->tags[0].validity.flatline_s = 4;
+    s->plant->tags[2].validity.quality = (struct plant_quality_tag){ .tag = 0, .mask = 1, .want = 1 };
+    set_up_again(s);
+    srand(1);
+    int64_t written_ns = S, since_ns[3] = { 0 };
+    uint32_t before[3] = { 0 };
+    for (int round = 0; round < 300; round++) {
+        int64_t pause_ns = (1 + rand() % 80) * (S / 10);
+        write_one(s, rand() % 3, rand() % 3, QUALITY_GOOD, written_ns);
+        for (int64_t now_ns = written_ns; now_ns < written_ns + pause_ns; now_ns += STEP)
+            for (int tag = 0; tag < 3; tag++) {
+                uint32_t quality = look(s, tag, now_ns)->quality;
+                if (now_ns == written_ns || quality != before[tag])
+                    since_ns[tag] = now_ns;
+                before[tag] = quality;
+                int64_t aged_ns = store_aged_ns(s->store, tag, now_ns);
+                assert_true(aged_ns <= now_ns);
+                if (since_ns[tag] > written_ns) {
+                    assert_true(aged_ns == since_ns[tag]);
+                    found++;
+                }
+            }
+        written_ns += pause_ns;
+    }
+    assert_true(found > 1000);
+}
+
 /* Random writes, losses, alarms and pauses: every change in a snapshot was reported to listeners or predicted by the due time. */
 CASE(nothing_changes_unannounced)
 {
