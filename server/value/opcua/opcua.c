@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "base/clock.h"
+#include "base/log/log_pace.h"
 #include "base/mem.h"
 #include "value/backoff.h"
 #include "value/lookup.h"
@@ -15,6 +16,8 @@
 static const int64_t CONNECT_NS = 15 * NS_PER_S, SUBSCRIBE_NS = 60 * NS_PER_S;
 /* interval at which nodes that the server refused are requested again */
 static const int64_t SERVE_NS = NS_PER_S, RETRY_NS = 30 * NS_PER_S;
+/* shortest interval between readings of all nodes after notifications were lost */
+static const int64_t READ_NS = 10 * NS_PER_S;
 static const int64_t SKEW_NS = 5 * NS_PER_S, SKEW_SAID_NS = 60 * NS_PER_S;
 enum { REFUSALS_SAID = 8 }; /* refused nodes, and refused deadbands, logged per session */
 
@@ -29,6 +32,7 @@ struct opcua_source {
     int refusals_said, deadbands_said;
     bool *wrong; /* by node: true: its last value was not a number, and this was logged */
     int64_t skew_said_ns;
+    struct log_pace missed_pace; /* rate limit of the log line about missing notifications */
 };
 
 /* --- values ----------------------------------------------------------------------------------------------------------------- */
@@ -127,13 +131,28 @@ static void link_up(struct opcua_source *opcua, const struct opcua_client *clien
                  opcua_client_publishing_ms(client), config->poll_ms);
 }
 
+/* Reads all nodes if notifications of changes were lost: otherwise a value would stay old until its next change. */
+static int make_up(struct opcua_source *opcua, struct opcua_client *client, int64_t *next_ns, char why[200])
+{
+    int64_t now_ns = clock_mono_ns();
+    char more[LOG_PACE_BYTES];
+    if (!opcua_client_missed(client) || now_ns < *next_ns)
+        return 0;
+    *next_ns = now_ns + READ_NS;
+    if (log_pace_take(&opcua->missed_pace, now_ns, more))
+        log_warn(opcua->base.log, "source %s: notifications of the server are missing: reading all nodes%s", opcua->base.config->id, more);
+    return opcua_client_read(client, opcua->base.stop_fd, now_ns + SUBSCRIBE_NS, why);
+}
+
 static int serve(struct opcua_source *opcua, struct opcua_client *client, char why[200])
 {
     int status = 0;
-    int64_t retry_ns = clock_mono_ns() + RETRY_NS;
+    int64_t retry_ns = clock_mono_ns() + RETRY_NS, read_ns = 0;
     while (status == 0) {
         int64_t now_ns = clock_mono_ns();
         status = opcua_client_serve(client, opcua->base.stop_fd, now_ns + SERVE_NS, why);
+        if (status == 0)
+            status = make_up(opcua, client, &read_ns, why);
         if (status || now_ns < retry_ns)
             continue;
         retry_ns = now_ns + RETRY_NS;
@@ -197,6 +216,7 @@ static struct source *opcua_create(const struct source *base, struct counters *c
     opcua_nodes_init(&opcua->nodes, base->plant, base->index);
     opcua->wrong = mem_array(opcua->nodes.count, sizeof(*opcua->wrong));
     stamped_writer_init(&opcua->writer, base->plant, base->store);
+    opcua->missed_pace = (struct log_pace){ .first_ns = 60 * NS_PER_S, .longest_ns = 3600 * NS_PER_S };
     log_info(base->log, "source %s: %s:%d: %zu tags in %zu nodes", base->config->id, base->config->hosts[0], base->config->port,
              opcua->nodes.tag_count, opcua->nodes.count);
     return &opcua->base;

@@ -23,10 +23,12 @@ enum { DISCOVERIES = 3 };
 
 /* --- library callbacks ------------------------------------------------------------------------------------------------------ */
 
+/* The library only logs a gap in the sequence numbers of notifications, and so loses the values in between. */
 static void on_log(void *arg, UA_LogLevel level, UA_LogCategory category, const char *format, va_list args)
 {
     struct opcua_client *client = arg;
     (void)category;
+    client->missed |= strstr(format, "subscription sequence number") != NULL;
     if (level >= UA_LOGLEVEL_ERROR)
         vsnprintf(client->said, sizeof(client->said), format, args);
 }
@@ -316,6 +318,11 @@ void opcua_client_destroy(struct opcua_client **client_ptr)
     mem_free(client->url);
     mem_free(client->numeric_url);
     mem_free(client);
+}
+
+bool opcua_client_missed(const struct opcua_client *client)
+{
+    return client->missed;
 }
 
 double opcua_client_publishing_ms(const struct opcua_client *client)

@@ -22,6 +22,7 @@ struct opcua_client {
     UA_Client *library;              /* open62541 client of the channel that is open; NULL: no channel is open */
     UA_EndpointDescription endpoint; /* endpoint that was chosen, whose certificate has been checked */
     bool lost;                       /* the subscription is lost */
+    bool missed;                     /* notifications were lost since the nodes were last read */
     uint32_t max_items;              /* maximum items of one request */
     UA_UInt32 subscription;
     double publishing_ms; /* the server's publishing interval in milliseconds if it is longer than the requested one; 0: it is not */

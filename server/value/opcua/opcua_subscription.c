@@ -255,3 +255,48 @@ int opcua_client_subscribe(struct opcua_client *client, int stop_fd, int64_t dea
         status = ask_for_refused(client, stop_fd, deadline_mono_ns, why);
     return status;
 }
+
+/* --- reading ---------------------------------------------------------------------------------------------------------------- */
+
+static int read_batch(struct opcua_client *client, const size_t *batch, UA_ReadValueId *values, size_t count, int stop_fd,
+                      int64_t deadline_mono_ns, char why[200])
+{
+    UA_ReadRequest request = { .nodesToRead = values, .nodesToReadSize = count, .timestampsToReturn = UA_TIMESTAMPSTORETURN_BOTH };
+    UA_ReadResponse response;
+    int status =
+        opcua_call(client,
+                   &(struct opcua_exchange){ &request, &UA_TYPES[UA_TYPES_READREQUEST], &response, &UA_TYPES[UA_TYPES_READRESPONSE] },
+                   stop_fd, deadline_mono_ns, why);
+    if (status == 0 && response.resultsSize != count) {
+        snprintf(why, 200, "the server answered for only %zu of %zu nodes", response.resultsSize, count);
+        status = -EPROTO;
+    }
+    for (size_t i = 0; status == 0 && i < count; i++)
+        client->events->value(client->events->arg, batch[i], &response.results[i]);
+    UA_ReadResponse_clear(&response);
+    return status;
+}
+
+int opcua_client_read(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
+{
+    UA_ReadValueId *values = mem_array(client->max_items, sizeof(*values));
+    size_t *batch = mem_array(client->max_items, sizeof(*batch));
+    int status = 0;
+    client->missed = false;
+    for (size_t node = 0; node < client->nodes->count && status == 0;) {
+        size_t count = 0;
+        for (; node < client->nodes->count && count < client->max_items; node++) {
+            UA_ReadValueId_init(&values[count]);
+            values[count].attributeId = UA_ATTRIBUTEID_VALUE;
+            if (!client->refused[node] && node_id(client, node, &values[count].nodeId))
+                batch[count++] = node;
+        }
+        if (count > 0)
+            status = read_batch(client, batch, values, count, stop_fd, deadline_mono_ns, why);
+        for (size_t i = 0; i < count; i++)
+            UA_NodeId_clear(&values[i].nodeId);
+    }
+    mem_free(values);
+    mem_free(batch);
+    return status;
+}

@@ -86,6 +86,20 @@ test('all tags are Bad as soon as the server is gone; all is subscribed anew, wh
     await said(/no readings[^]*reading[^]*no readings[^]*reading/);
 });
 
+test('a notification that is lost is noticed, and all nodes are read', options, async () => {
+    await server.anew();
+    await plant.run(server.security(), ROWS);
+    await until('TI-1', { ...good, value: 20 });
+    await until('TI-2', { ...good, value: 21.5 });
+    await server.tell({ lose: true });
+    await server.set('TI-1', 61); // this change is lost, maybe together with the next one
+    await server.set('TI-2', 62);
+    await until('TI-2', { ...good, value: 62 });
+    await until('TI-1', { ...good, value: 61 });
+    await said(/source plc: notifications of the server are missing: reading all nodes/);
+    assert.equal(await plant.metric('connects_total{source="plc"}'), 1);
+});
+
 test('a deadband is the server\'s to apply; a node that cannot have one is read without', options, async () => {
     await server.anew();
     await plant.run(`${server.security()}, deadband_percent: 10`, [...ROWS, `B,${NODE}Bounded,,,,,,,,,,,,,`]);

@@ -84,6 +84,16 @@ function set({ name, value, status = 0, at }) {
         status ? coerceStatusCode(status) : StatusCodes.Good, at ? new Date(at) : undefined);
 }
 
+// Loses the next notification of any subscription: its sequence number is skipped.
+function lose() {
+    const { prototype } = opcua.Subscription, send = prototype._publish_pending_notifications;
+    prototype._publish_pending_notifications = function () {
+        prototype._publish_pending_notifications = send;
+        this._popNotificationToSend();
+        this._get_next_sequence_number();
+    };
+}
+
 for await (const line of createInterface({ input: process.stdin })) {
     const order = JSON.parse(line);
     if (order.serve)
@@ -91,6 +101,8 @@ for await (const line of createInterface({ input: process.stdin })) {
     else if (order.each !== undefined)
         for (let i = 0; i < told.many; i++)
             set({ name: `N${i}`, value: order.each + i });
+    else if (order.lose)
+        lose();
     else if (order.set)
         set(order.set);
     else if (order.anew) {
