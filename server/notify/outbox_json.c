@@ -16,27 +16,36 @@ static json_t *number_or_null(double value)
     return isfinite(value) ? json_real(value) : json_null();
 }
 
-static json_t *save_item(const struct outbox_item *item)
+/* Returns the unit of a tag's alarms; "": none, or the alarm is of a device. */
+static const char *unit_of(const struct outbox *outbox, int tag)
 {
-    return json_pack("{s:s,s:s,s:i,s:i,s:s,s:o,s:o,s:I,s:I}", "name", item->name, "kind", alarm_kind_name(item->kind), "priority",
-                     item->priority, "step", item->step, "status", alarm_status_name(item->status), "value", number_or_null(item->value),
-                     "limit", number_or_null(item->limit), "raised", (json_int_t)item->raised_us, "ended", (json_int_t)item->ended_us);
+    const char *unit = tag < 0 ? NULL : outbox->plant->tags[tag].unit;
+    return unit ? unit : "";
 }
 
-static json_t *save_box(const struct recipient_box *box)
+static json_t *save_item(const struct outbox *outbox, const struct outbox_item *item)
+{
+    return json_pack("{s:s,s:s,s:i,s:i,s:s,s:o,s:o,s:s,s:I,s:I}", "name", item->name, "kind", alarm_kind_name(item->kind), "priority",
+                     item->priority, "step", item->step, "status", alarm_status_name(item->status), "value", number_or_null(item->value),
+                     "limit", number_or_null(item->limit), "unit", unit_of(outbox, item->tag), "raised", (json_int_t)item->raised_us,
+                     "ended", (json_int_t)item->ended_us);
+}
+
+static json_t *save_box(const struct outbox *outbox, const struct recipient_box *box)
 {
     json_t *waiting = json_array(), *batch = json_array();
     for (size_t i = 0; i < box->waiting.count; i++)
-        json_array_append_new(waiting, save_item(&box->waiting.at[i].said));
+        json_array_append_new(waiting, save_item(outbox, &box->waiting.at[i].said));
     for (size_t i = 0; i < box->batch_count; i++)
-        json_array_append_new(batch, save_item(&box->batch[i]));
+        json_array_append_new(batch, save_item(outbox, &box->batch[i]));
     return json_pack("{s:o,s:o,s:s,s:I,s:I,s:I,s:i,s:I}", "waiting", waiting, "message", batch, "id", box->id, "made",
                      (json_int_t)box->batch_us, "since", (json_int_t)box->since_us, "sent", (json_int_t)box->sent_us, "last_priority",
                      box->last_priority, "left_out", (json_int_t)box->left_out);
 }
 
-static json_t *save_episode(const struct plant_notify *notify, const struct episode *episode)
+static json_t *save_episode(const struct outbox *outbox, const struct episode *episode)
 {
+    const struct plant_notify *notify = outbox->plant->notify;
     json_t *told = json_array(), *steps = json_object();
     for (size_t i = 0; i < notify->recipient_count; i++)
         if (episode->told >> i & 1)
@@ -44,11 +53,12 @@ static json_t *save_episode(const struct plant_notify *notify, const struct epis
     for (size_t i = 0; i < notify->rule_count; i++)
         if (episode->rules >> i & 1)
             json_object_set_new(steps, notify->rules[i].id, json_integer(episode->steps[i]));
-    return json_pack("{s:s,s:s,s:i,s:s,s:o,s:o,s:I,s:I,s:I,s:I,s:I,s:o,s:o}", "name", episode->name, "kind", alarm_kind_name(episode->kind),
-                     "priority", episode->priority, "status", alarm_status_name(episode->status), "value", number_or_null(episode->value),
-                     "limit", number_or_null(episode->limit), "raised", (json_int_t)episode->raised_us, "began",
-                     (json_int_t)episode->began_us, "ended", (json_int_t)episode->ended_us, "cleared", (json_int_t)episode->cleared_us,
-                     "told_at", (json_int_t)episode->told_us, "told", told, "steps", steps);
+    return json_pack("{s:s,s:s,s:i,s:s,s:o,s:o,s:s,s:I,s:I,s:I,s:I,s:I,s:o,s:o}", "name", episode->name, "kind",
+                     alarm_kind_name(episode->kind), "priority", episode->priority, "status", alarm_status_name(episode->status), "value",
+                     number_or_null(episode->value), "limit", number_or_null(episode->limit), "unit", unit_of(outbox, episode->tag),
+                     "raised", (json_int_t)episode->raised_us, "began", (json_int_t)episode->began_us, "ended",
+                     (json_int_t)episode->ended_us, "cleared", (json_int_t)episode->cleared_us, "told_at",
+                     (json_int_t)episode->told_us, "told", told, "steps", steps);
 }
 
 json_t *outbox_save(const struct outbox *outbox)
@@ -56,10 +66,10 @@ json_t *outbox_save(const struct outbox *outbox)
     const struct plant_notify *notify = outbox->plant->notify;
     json_t *episodes = json_array(), *boxes = json_object();
     for (size_t i = 0; i < outbox->count; i++)
-        json_array_append_new(episodes, save_episode(notify, &outbox->episodes[i]));
+        json_array_append_new(episodes, save_episode(outbox, &outbox->episodes[i]));
     for (size_t i = 0; i < notify->recipient_count; i++)
         if (notify->recipients[i].kind != NOTIFY_ALERTMANAGER)
-            json_object_set_new(boxes, notify->recipients[i].id, save_box(&outbox->boxes[i]));
+            json_object_set_new(boxes, notify->recipients[i].id, save_box(outbox, &outbox->boxes[i]));
     return json_pack("{s:i,s:o,s:o}", "version", VERSION, "alarms", episodes, "recipients", boxes);
 }
 
@@ -70,10 +80,12 @@ static int64_t integer_of(const json_t *object, const char *key)
     return json_integer_value(json_object_get(object, key));
 }
 
-static double value_of(const json_t *object, const char *key)
+/* Returns a saved value or limit in the tag's present unit; NAN: none, or the unit is not known or cannot be converted. */
+static double value_of(const struct outbox *outbox, const json_t *object, const char *key, int tag)
 {
     const json_t *value = json_object_get(object, key);
-    return json_is_number(value) ? json_number_value(value) : NAN;
+    const char *unit = json_string_value(json_object_get(object, "unit"));
+    return json_is_number(value) && unit ? alarm_value_in_unit(json_number_value(value), unit, unit_of(outbox, tag)) : NAN;
 }
 
 /* Reads the name and kind of an alarm; *tag receives its tag's index, or -1 for a device's alarm. Returns true if the plant still has
@@ -111,8 +123,8 @@ static void restore_episode(struct outbox *outbox, const json_t *object)
     struct episode *episode = outbox_add_episode(outbox, name, tag, kind);
     episode->priority = read_priority(object, "priority");
     episode->status = read_status(object);
-    episode->value = value_of(object, "value");
-    episode->limit = value_of(object, "limit");
+    episode->value = value_of(outbox, object, "value", tag);
+    episode->limit = value_of(outbox, object, "limit", tag);
     episode->raised_us = integer_of(object, "raised");
     episode->began_us = integer_of(object, "began");
     episode->ended_us = integer_of(object, "ended");
@@ -143,8 +155,8 @@ static bool restore_item(const struct outbox *outbox, const json_t *object, stru
     item->priority = read_priority(object, "priority");
     item->step = step < 0 || step >= NOTIFY_STEPS ? 0 : (int)step;
     item->status = read_status(object);
-    item->value = value_of(object, "value");
-    item->limit = value_of(object, "limit");
+    item->value = value_of(outbox, object, "value", item->tag);
+    item->limit = value_of(outbox, object, "limit", item->tag);
     item->raised_us = integer_of(object, "raised");
     item->ended_us = integer_of(object, "ended");
     return true;

@@ -438,6 +438,32 @@ CASE(an_escalated_mail_says_only_what_is_known)
     }
 }
 
+/* A message waits while the tag gets another unit: its value and limit are converted, or left out. */
+CASE(a_message_that_waits_has_the_present_unit)
+{
+    static const struct {
+        const char *unit;
+        double value, limit;
+    } cases[] = { { "degF", 203.9, 194 }, { "bar", NAN, NAN } };
+    for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+        struct outbox_message message;
+        load(f, "  - { id: all, to: ops }\n");
+        put(f, 0, LOCAL, true, true, T0, T0);
+        json_t *saved = test_json(outbox_save(f->outbox));
+        outbox_tick(f->outbox, T0 + 4 * S);
+        mem_free(f->c->plant->tags[0].unit);
+        f->c->plant->tags[0].unit = mem_strdup(cases[i].unit);
+        outbox_destroy(&f->outbox);
+        f->outbox = outbox_create(f->c->plant);
+        assert_true(outbox_restore(f->outbox, saved));
+        outbox_tick(f->outbox, T0 + 4 * S);
+        assert_true(outbox_next(f->outbox, OPS, T0 + 4 * S, &message));
+        const struct outbox_item *item = &message.items[0];
+        assert_true(isnan(cases[i].value) ? isnan(item->value) && isnan(item->limit)
+                                          : fabs(item->value - cases[i].value) < 1e-9 && fabs(item->limit - cases[i].limit) < 1e-9);
+    }
+}
+
 CASE(a_damaged_file_is_refused)
 {
     load(f, "  - { id: all, to: ops }\n");
