@@ -39,6 +39,7 @@ static void read_block(struct modbus_source *modbus, size_t index)
     counter_inc(status == 0 ? modbus->reads_ok : modbus->reads_failed, 1);
     if (status < 0) {
         modbus->manners.timed_out = status == -ETIMEDOUT ? unit : NULL;
+        modbus_manners_late(modbus);
         if (!modbus_unit_doubt(modbus, unit, index))
             modbus_unit_is_down(modbus, unit, strerror(-status));
         return;

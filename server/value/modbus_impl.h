@@ -43,6 +43,7 @@ struct modbus_manners {       /* the device's manners: how it handles connection
        needs a pause between connections. Doubles the time until the next try */
     int failed_connections;
     bool ends_said;
+    struct log_pace late_pace; /* rate limit of the log line about late answers */
 };
 
 struct modbus_source {
@@ -91,6 +92,8 @@ void modbus_manners_before(struct modbus_source *modbus, const struct modbus_uni
 void modbus_manners_after(struct modbus_source *modbus);
 /* Learns from an answer how the device handles connections. */
 void modbus_manners_answered(struct modbus_source *modbus, const struct read_plan_block *block);
+/* Logs, after a failed read, that the device answers later than timeout_ms. */
+void modbus_manners_late(struct modbus_source *modbus);
 /* Learns from a failed read (status < 0) how the device handles connections. Returns true if the device's behaviour explains the failure:
    the block is then requested again on a new connection, from modbus->connect_ns on. */
 bool modbus_manners_excuse_read(struct modbus_source *modbus, int status, bool unit_up);

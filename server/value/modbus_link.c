@@ -23,6 +23,13 @@
 #include "value/read_plan.h"
 
 static const int64_t SETTLE_NS = 50 * NS_PER_MS;
+enum {
+    /* in timeouts: LATEST: after this time, an abandoned request is hardly answered any more; QUIET: then the line counts as cleared after
+       this time without an answer */
+    LATEST_TIMEOUTS = 10,
+    QUIET_TIMEOUTS = 5,
+    DRAINED_ANSWERS = 10, /* most answers that are discarded before the line counts as noisy */
+};
 
 struct modbus_link {
     const struct plant_source *source;
@@ -35,6 +42,9 @@ struct modbus_link {
     int slot_fd;
     bool open;
     bool suspect; /* true (RTU frames only): an abandoned request may still be answered, so the next answer may belong to that request */
+    /* for RTU frames: asked_ns: when the last request was sent; abandoned_ns: when the oldest request was sent that may still be answered,
+       0: none; late_ns: time after which the device answered an abandoned request, 0: it answers in time */
+    int64_t asked_ns, abandoned_ns, late_ns;
     int host;     /* index in source->hosts of the host that is used now */
     int answers;  /* of this connection */
     bool any_unit;
@@ -160,6 +170,11 @@ void modbus_link_set_patience(struct modbus_link *link, int64_t patience_ns)
 int modbus_link_answers(const struct modbus_link *link)
 {
     return link->answers;
+}
+
+int64_t modbus_link_late_ns(const struct modbus_link *link)
+{
+    return link->late_ns;
 }
 
 int64_t modbus_link_first_ns(const struct modbus_link *link, int64_t *answered_ns)
@@ -332,22 +347,55 @@ static int ask(struct modbus_link *link, const struct modbus_question *question,
         return -ECONNRESET;
     if (!link->modbus)
         return ask_framed(link, question, words);
+    link->asked_ns = clock_mono_ns();
     bool bits = table == TABLE_COIL || table == TABLE_DISCRETE;
     int got = bits ? read_bits(link->modbus, table, question->first, question->count, words)
                    : read_words(link->modbus, table, question->first, question->count, words);
     return status_of(got, question->count);
 }
 
-/* Discards the answer to an abandoned request: RTU frames have no transaction numbers, so that answer could be taken for the answer to the
-   next request. To do so, sends a request and discards its answer, then waits one timeout for stray bytes. Returns false if the device does
-   not answer. */
+/* Discards answers until none has come for quiet_ns. Returns how many came; DRAINED_ANSWERS: the line is still not quiet. */
+static int drain(struct modbus_link *link, int64_t quiet_ns)
+{
+    int count = 0;
+    while (count < DRAINED_ANSWERS && wait_for(link->slot_fd, POLLIN, link->stop_fd, clock_mono_ns() + quiet_ns) == 0) {
+        wait_for(-1, 0, link->stop_fd, clock_mono_ns() + SETTLE_NS); /* an answer comes in several pieces */
+        if (!flush(link))
+            break;
+        count++;
+    }
+    return count;
+}
+
+/* Discards the answers to abandoned requests: RTU frames have no transaction numbers, so such an answer could be taken for the answer to
+   the next request. To do so, sends a request, discards its answer, and waits until the line is quiet. That answer may have been the one to
+   the oldest abandoned request; if so, the device takes as long for each of the others. Returns false if the device does not answer. */
 static bool clear_line(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
 {
+    int64_t timeout_ns = link->source->timeout_ms * NS_PER_MS, quiet_ns = timeout_ns;
     if (ask(link, question, words) == -ETIMEDOUT)
         return false;
-    wait_for(-1, 0, link->stop_fd, clock_mono_ns() + link->source->timeout_ms * NS_PER_MS);
-    link->suspect = false;
-    return true;
+    int64_t late_ns = link->abandoned_ns ? clock_mono_ns() - link->abandoned_ns : 0;
+    if (late_ns > LATEST_TIMEOUTS * timeout_ns)
+        quiet_ns = QUIET_TIMEOUTS * timeout_ns;
+    else if (late_ns + late_ns / 4 > quiet_ns)
+        quiet_ns = late_ns + late_ns / 4;
+    int late = drain(link, quiet_ns);
+    if (late > 0 && late_ns > timeout_ns)
+        link->late_ns = late_ns;
+    link->suspect = late == DRAINED_ANSWERS;
+    if (!link->suspect)
+        link->abandoned_ns = 0;
+    return !link->suspect;
+}
+
+/* Records that the last request, in RTU frames, was abandoned. cleared: clear_line() came before it. Then the device may be one that
+   answers only one request on each connection, unless late answers were seen. */
+static void abandon(struct modbus_link *link, bool cleared)
+{
+    if (!link->abandoned_ns)
+        link->abandoned_ns = link->asked_ns;
+    link->suspect |= !cleared || link->late_ns > 0;
 }
 
 /* Called after an answer with the transaction number of another request (a late or duplicate answer). Waits SETTLE_NS for more stray
@@ -378,10 +426,15 @@ int modbus_link_read(struct modbus_link *link, int unit, enum register_table tab
         status = ask_again(link, &question, words);
     if (status >= 0 && link->answers++ == 0)
         link->first_answered_ns = clock_mono_ns();
-    /* A serial device server may send the late answer over the next connection. Exception: after clear_line(), the device may be one that
-       answers only one request per connection. */
-    if (link->modbus && !cleared && (status == -ETIMEDOUT || status == -EPROTO))
-        link->suspect = true;
+    if (status >= 0)
+        link->late_ns = 0;
+    /* a serial device server may send the late answer over the next connection */
+    if (link->modbus && (status == -ETIMEDOUT || status == -EPROTO))
+        abandon(link, cleared);
+    /* listens for the late answer, only to learn how late it is */
+    if (link->modbus && status == -ETIMEDOUT && wait_for(link->slot_fd, POLLIN, link->stop_fd, link->asked_ns + link->patience_ns) == 0 &&
+        flush(link))
+        link->late_ns = clock_mono_ns() - link->asked_ns;
     if (status < 0)
         close_link(link);
     return status == -EBADMSG ? -EPROTO : status;

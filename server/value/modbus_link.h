@@ -36,10 +36,14 @@ void modbus_link_allow_any_unit(struct modbus_link *link, bool any);
 /* Returns the unit number that the last response states. */
 int modbus_link_answered_unit(const struct modbus_link *link);
 /* Modbus TCP: makes the link repeat the first request of each connection every timeout_ms, until an answer arrives or patience_ns have
-   passed. 0: the request is sent once. */
+   passed. 0: the request is sent once. RTU frames: makes the link listen for a late answer until patience_ns after the request, to learn
+   how late it is. */
 void modbus_link_set_patience(struct modbus_link *link, int64_t patience_ns);
 /* Returns the number of requests answered on the current connection, or on the last one if the link is closed. */
 int modbus_link_answers(const struct modbus_link *link);
+/* Returns how long after an abandoned request the device answered it, in nanoseconds; 0: no late answer was seen since the last answer in
+ * time. For RTU frames. */
+int64_t modbus_link_late_ns(const struct modbus_link *link);
 /* Returns the time in nanoseconds from connecting until the first request that was answered was sent. *answered_ns: time from connecting
  * until its answer. */
 int64_t modbus_link_first_ns(const struct modbus_link *link, int64_t *answered_ns);

@@ -7,7 +7,8 @@
 #include "base/clock.h"
 #include "value/modbus_impl.h"
 
-enum { SHORT_CONNECTIONS = 3, REFUSED_CONNECTIONS = 6, CLOSED_CONNECTIONS = 2 };
+/* LISTEN_TIMEOUTS: how long to listen for the answer of a device in RTU frames that does not answer, in timeouts */
+enum { LISTEN_TIMEOUTS = 4, SHORT_CONNECTIONS = 3, REFUSED_CONNECTIONS = 6, CLOSED_CONNECTIONS = 2 };
 /* first delay before reconnecting to a device that refuses connections; doubled each time, because some devices free a closed connection
    only after a while */
 static const int64_t RECONNECT_DELAY_NS = 50 * NS_PER_MS;
@@ -28,6 +29,7 @@ void modbus_manners_init(struct modbus_source *modbus)
     modbus->manners = (struct modbus_manners){ .one_per_connection = config->close_between_polls,
                                                .connect_delay_ns = config->connect_delay_ms * NS_PER_MS };
     modbus->pace = (struct log_pace){ .first_ns = 10 * NS_PER_S, .longest_ns = 3600 * NS_PER_S };
+    modbus->manners.late_pace = (struct log_pace){ .first_ns = 60 * NS_PER_S, .longest_ns = 3600 * NS_PER_S };
     modbus->unit_pace = (struct log_pace){ .first_ns = 60 * NS_PER_S, .longest_ns = 3600 * NS_PER_S };
     for (size_t i = 0; i < modbus->plan.unit_count; i++)
         modbus->units[i].pace = modbus->units[i].busy_pace = modbus->pace;
@@ -51,6 +53,8 @@ void modbus_manners_before(struct modbus_source *modbus, const struct modbus_uni
     if (manners->first_excused)
         patience_ns = GATEWAY_TIMEOUT_NS;
     manners->timed_out = NULL;
+    if (modbus->base.config->transport != TRANSPORT_TCP) /* while no unit is up, listening delays nobody */
+        patience_ns = modbus->link_up ? 0 : LISTEN_TIMEOUTS * modbus->base.config->timeout_ms * NS_PER_MS;
     modbus_link_set_patience(modbus->link, patience_ns);
 }
 
@@ -134,21 +138,53 @@ void modbus_manners_answered(struct modbus_source *modbus, const struct read_pla
 
 /* --- failures --------------------------------------------------------------------------------------------------------------- */
 
+/* Returns a timeout, in milliseconds, that is long enough for a device that answers after late_ns: twice that time. */
+static long long enough_ms(int64_t late_ns)
+{
+    return (2 * late_ns / NS_PER_MS + 99) / 100 * 100;
+}
+
+void modbus_manners_late(struct modbus_source *modbus)
+{
+    int64_t late_ns = modbus_link_late_ns(modbus->link);
+    char more[LOG_PACE_BYTES];
+    if (late_ns && log_pace_take(&modbus->manners.late_pace, clock_mono_ns(), more))
+        log_warn(modbus->base.log,
+                 "source %s: device %s answers up to %lld ms after a request, later than `timeout_ms: %d`, so its answers are not used: "
+                 "set `timeout_ms: %lld`%s",
+                 modbus->base.config->id, modbus_link_name(modbus->link), (long long)(late_ns / NS_PER_MS),
+                 modbus->base.config->timeout_ms, enough_ms(late_ns), more);
+}
+
 static bool is_closed(int status)
 {
     return status == -ECONNRESET || status == -EPIPE || status == -ECONNREFUSED || status == -ECONNABORTED;
 }
 
+/* Says why the source reads one block per connection from now on. A device that takes long for each answer looks like one that answers only
+   once: its second answer does not come in time. */
+static void log_one_per_connection(struct modbus_source *modbus, int status)
+{
+    int64_t wait_ns = modbus->manners.first_wait_ns;
+    char found[200];
+    snprintf(found, sizeof(found),
+             "takes %lld ms for an answer, later than `timeout_ms: %d`: reading one block per connection; set `timeout_ms: %lld`",
+             (long long)(wait_ns / 2 / NS_PER_MS), modbus->base.config->timeout_ms, enough_ms(wait_ns / 2));
+    log_found(modbus, status == -ETIMEDOUT && wait_ns > 0
+                          ? found
+                          : "closes the connection after each answer: reading one block per connection; set `close_between_polls: yes` to "
+                            "do so from the start");
+}
+
 /* Counts a connection that the device closed after a single answer. After SHORT_CONNECTIONS consecutive ones, switches to one request per
  * connection. Logs once that the device closes connections after several answers. */
-static void learn_end(struct modbus_source *modbus, int answers)
+static void learn_end(struct modbus_source *modbus, int answers, int status)
 {
     struct modbus_manners *manners = &modbus->manners;
     manners->short_connections = answers == 1 ? manners->short_connections + 1 : 0;
     if (manners->short_connections == SHORT_CONNECTIONS && !manners->one_per_connection) {
         manners->one_per_connection = true;
-        log_found(modbus, "closes the connection after each answer: reading one block per connection; set `close_between_polls: yes` to do "
-                          "so from the start");
+        log_one_per_connection(modbus, status);
     } else if (answers > 1 && !manners->ends_said) {
         manners->ends_said = true;
         log_info(modbus->base.log, "source %s: device %s closes connections after some answers: reconnecting each time",
@@ -194,7 +230,7 @@ bool modbus_manners_excuse_read(struct modbus_source *modbus, int status, bool u
     if (!is_network(modbus))
         return false;
     if (silent_after_one || (modbus->link_up && answers > 0 && is_closed(status))) {
-        learn_end(modbus, answers);
+        learn_end(modbus, answers, status);
         return true;
     }
     if (!modbus->link_up && answers == 0 && status == -ETIMEDOUT)

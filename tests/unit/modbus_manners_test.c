@@ -236,6 +236,29 @@ CASE(a_slow_first_answer)
     await_line("for the first answer after connecting: waiting for it", 5);
 }
 
+/* Each answer of the device comes later than timeout_ms: the log says which timeout would do. */
+static void check_slow(struct modbus_case *s, enum device_wire wire)
+{
+    s->device.wire = wire;
+    s->plant->sources[0].transport = wire == DEVICE_TCP ? TRANSPORT_TCP : TRANSPORT_RTU_TCP;
+    s->device.manner = DEVICE_LATE;
+    s->device.late_ms = 450;
+    start(s);
+    await_line("later than `timeout_ms: 300`", 30);
+    assert_int_equal(lines_with("close_between_polls"), 0);
+    all_good(s); /* asserts that values that came are the right ones */
+}
+
+CASE(a_slow_device)
+{
+    check_slow(s, DEVICE_TCP);
+}
+
+CASE(a_slow_device_in_rtu_over_tcp)
+{
+    check_slow(s, DEVICE_RTU_TCP);
+}
+
 /* --- units and addresses ----------------------------------------------------------------------------------------------------- */
 
 CASE(an_answer_that_names_unit_0)

@@ -6,6 +6,7 @@
 #include "tests/support/modbus_case.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/sleep.h"
+#include "tests/support/sweep.h"
 #include "value/quality.h"
 
 #define CASE(name) TEST_ON(struct modbus_case *s, name, modbus_case_set_up, modbus_case_tear_down)
@@ -110,6 +111,42 @@ CASE(late_replies_do_not_poison_the_next_connection)
     }
     for (int tag = 0; tag < 2; tag++)
         modbus_case_expect(s, tag, QUALITY_GOOD, 8);
+}
+
+/* A device becomes so slow that every answer comes after the timeout: its values are lost, and never those of another request. */
+static void check_always_late(struct modbus_case *s, enum device_wire wire, int late_ms)
+{
+    modbus_case_add_registers(s, 1);
+    plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16);
+    use_wire(s, wire);
+    s->plant->sources[0].timeout_ms = 200;
+    s->plant->sources[0].pause_ms = 100;
+    s->device.late_ms = late_ms;
+    modbus_case_start(s);
+    for (int tag = 0; tag < 2; tag++)
+        modbus_case_expect(s, tag, QUALITY_GOOD, 3);
+    s->device.manner = DEVICE_LATE;
+    for (int before = s->device.requests; s->device.requests < before + sweep(16, 7); sleep_ns(NS_PER_MS))
+        for (int tag = 0; tag < 2; tag++)
+            if (!quality_is_bad(modbus_case_look(s, tag)->quality))
+                assert_true(modbus_case_look(s, tag)->value == tag * 500);
+    for (int tag = 0; tag < 2; tag++)
+        assert_false(quality_is_good(modbus_case_look(s, tag)->quality));
+    s->device.manner = DEVICE_GOOD;
+    for (int tag = 0; tag < 2; tag++) {
+        modbus_case_expect(s, tag, QUALITY_GOOD, 60);
+        assert_true(modbus_case_look(s, tag)->value == tag * 500);
+    }
+}
+
+CASE(a_slow_device_on_rtu_over_tcp_is_lost)
+{
+    check_always_late(s, DEVICE_RTU_TCP, 250);
+}
+
+CASE(a_slow_device_on_a_serial_line_is_lost)
+{
+    check_always_late(s, DEVICE_LINE, 250);
 }
 
 CASE(an_absent_line_is_tried_again)
