@@ -418,3 +418,12 @@ test('phones: name and state are read, nothing is cut off, all is as large as a 
     await page.locator('#trends .drop').first().waitFor();
     assert.deepEqual(await tooSmall(page), [], 'trend');
 }));
+
+test('at 200 % zoom, the engineering panel is as high as the picture, and both fill the stage', options, () => withPage(
+    { viewport: { width: 640, height: 400 } }, async (page) => {
+        await page.locator('#engineer-toggle').click();
+        await page.locator('#engineer').waitFor();
+        const heights = await Promise.all(['.stage', '#viewport', '#engineer'].map(async (one) =>
+            Math.round((await boxOf(page, one)).height)));
+        assert.deepEqual(heights, Array(3).fill(heights[0]));
+    }));
