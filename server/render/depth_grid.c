@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Quantises the cells of a depth grid, predicts each from its neighbours, and deflates the differences. */
+/* Encodes a depth grid (depth_grid.h): quantises the depths of its cells to codes, predicts each code from its neighbours, and deflates the
+   differences. */
 #include "render/depth_grid.h"
 
 #include <math.h>
@@ -16,13 +17,13 @@ enum { ESCAPE = 255, MOST_SYMBOL_BYTES = 3 };
 enum { PART_DIVIDED, PART_BACK, PART_NEAR, PART_MASKS, PARTS }; /* of the payload */
 /* maximum number of bytes that the ends of deflate blocks add to a payload */
 enum { MOST_BLOCK_BYTES = 100 };
-/* Camera movement up to which pictures that a client makes from a depth grid must be right to a fraction of a pixel, as a part of the
-   distance to the surfaces. It corresponds to an orbit by six degrees. */
+/* Largest camera movement for which pictures that a client reprojects by a depth grid must be right to a fraction of a pixel. Unit:
+   distance from the camera to the surface. It corresponds to an orbit by six degrees. */
 static const double MOVEMENT = 0.1;
 /* Shifts in pixels on the screen that a camera movement by MOVEMENT causes. STEP_SHIFT_PX: smallest shift between two depths that counts as
    a step between them. UNIT_SHIFT_PX: shift between two depths whose codes differ by 1. */
 static const double STEP_SHIFT_PX = 2, UNIT_SHIFT_PX = 1.5;
-/* 1 / distance, in 1/m, below which ground counts as background: 100 km */
+/* Ground whose inverse distance (1/m) is below this counts as background: it is more than 100 km away. */
 static const double LEAST_INVERSE = 1e-5;
 
 /* --- from the depth buffer to metres ----------------------------------------------------------------------------------------- */
@@ -78,8 +79,7 @@ void depth_lens_init(struct depth_lens *lens, const struct view_constants *const
         aim_at_ground(lens, constants->clip_from_plant, plant_from_ground, width_px, height_px);
 }
 
-/* Returns the depth of the ground at a pixel. Returns -INFINITY if no ground is seen there, or if it is so far away that it does not move
-   with the camera. */
+/* Returns the depth of the ground at a pixel. Returns -INFINITY if no ground is seen there, or if it is farther than 1 / LEAST_INVERSE. */
 static float ground_at(const struct depth_lens *lens, double x, double y)
 {
     double at[3];
@@ -271,8 +271,9 @@ static unsigned mask_beside(const struct coder *coder, size_t neighbour, size_t 
     return abs(back - coder->near[i]) < abs(back - coder->far[i]) ? 0xffff : 0;
 }
 
-/* Writes where masks differ from their prediction. A bit is predicted from the bits to its left and above it. If these are equal, the
-   prediction is their value; otherwise it is the opposite of the upper left bit, so that an edge continues straight. */
+/* Writes in which bits the masks of the cells differ from their predictions. A bit is predicted from the bits to its left and above it. If
+   these are equal, the prediction is their value; otherwise it is the opposite of the upper left bit, so that an edge continues
+   straight. */
 static uint8_t *put_masks(const struct coder *coder, uint8_t *out)
 {
     size_t i = 0, columns = (size_t)coder->columns;

@@ -16,8 +16,8 @@ struct depth_cell {
     uint64_t mask; /* one bit per pixel, row by row; 1: the pixel belongs to the nearer side of the step */
 };
 
-/* Conversion of values in the depth buffer to distances. (depth - offset) / factor is 1 / distance in a perspective view, and the distance
-   in an orthographic one, in metres along the direction of view. */
+/* Converts values in the depth buffer to distances from the camera. (depth - offset) / factor is 1 / distance in a perspective view, and
+   the distance in an orthographic one, in metres along the direction of view. */
 struct depth_lens {
     bool orthographic;
     double offset, factor;

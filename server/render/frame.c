@@ -59,8 +59,8 @@ void frame_unref(struct frame **frame_ptr)
     mem_free(frame);
 }
 
-/* Moves a marker's position into the coordinates of a part of the frame. Returns whether any pixel of its symbol may lie in that part: a
-   symbol on the border between two parts is drawn in both. */
+/* Converts a marker's position to the coordinates of `part`, a rectangle of the frame. Returns whether any pixel of its symbol may lie in
+   that part: a symbol on the border between two parts is drawn in both. */
 static bool is_near(const struct frame_part *part, float *x_px, float *y_px)
 {
     *x_px -= (float)part->x_px;

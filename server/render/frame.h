@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A rendered frame: pixels, markers, labels and what they mean. Immutable once shared; reference-counted; may be released on any thread. */
+/* A rendered frame: its pixels, markers and labels, and the time and baseline of the readings that it shows. Immutable once shared;
+   reference-counted; may be released on any thread. */
 #ifndef RENDER_FRAME_H
 #define RENDER_FRAME_H
 #include <stddef.h>
@@ -7,7 +8,7 @@
 
 #include "render/view.h"
 
-#define FRAME_BEHIND_PX (-1e4f) /* value of x_px of a marker that is behind the camera */
+#define FRAME_BEHIND_PX (-1e4f) /* value of frame_marker.x_px for a marker that is behind the camera */
 
 struct frame_marker {
     int tag;
@@ -65,7 +66,9 @@ struct frame {
     struct baseline baseline;    /* baseline from which the frame shows differences; id 0: none */
     struct frame_record *record; /* readings that the frame was drawn from (render/frame_record.h); NULL: not requested */
     struct depth_grid *depth[2]; /* depth grid of the frame, or of each half of a split view; NULL: none */
-    uint64_t content;            /* equal for equal frames: hash of view and field versions, without sequence numbers and times */
+    /* hash of the view and of the versions of its fields, without sequence numbers and times; two frames with the same hash look the
+       same */
+    uint64_t content;
     int triangles;
 };
 

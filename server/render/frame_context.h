@@ -26,7 +26,7 @@ struct frame_context {
     struct reference *reference; /* object that computes the field at each fragment; NULL: the field is interpolated between vertices */
     /* largest error of a level of detail's surface, in pixels of the frame (render/plan/lod_selection.h); 0: finest levels only */
     double error_px;
-    uint64_t shape; /* content_hash_shape() of the frame plan */
+    uint64_t shape; /* content_hash_shape() of the frame plan: a hash of all that the frame shows except values and colours */
     bool gives_depth; /* true: a depth grid is made for the frame */
     bool measured;  /* true: the frame receives the field's values as floats instead of colours */
 };

@@ -9,7 +9,8 @@
 #include "base/system/huge_pages.h"
 
 enum { SPARES = 4 };
-static const size_t SPARE_BYTES = (size_t)16 << 20; /* size in bytes of the largest buffer that the pool keeps; larger frames are rare */
+/* size in bytes of the largest pixel buffer that the pool keeps for reuse; larger frames are rare */
+static const size_t SPARE_BYTES = (size_t)16 << 20;
 
 struct spare_buffer {
     uint8_t *pixels;
@@ -72,7 +73,7 @@ uint8_t *frame_pool_take(struct frame_pool *pool, size_t bytes)
 
 void frame_pool_give(struct frame_pool *pool, uint8_t *pixels, size_t bytes)
 {
-    if (pool && pixels && bytes <= SPARE_BYTES) { /* keeps the buffer in place of the oldest one, which is freed */
+    if (pool && pixels && bytes <= SPARE_BYTES) { /* keeps the buffer for reuse; the oldest kept buffer is freed below */
         pthread_mutex_lock(&pool->lock);
         struct spare_buffer oldest = pool->spares[pool->next];
         pool->spares[pool->next] = (struct spare_buffer){ pixels, bytes };

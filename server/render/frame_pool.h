@@ -11,7 +11,7 @@ struct frame_pool;
 struct frame_pool *frame_pool_create(void); /* never NULL */
 struct frame_pool *frame_pool_ref(struct frame_pool *pool);
 void frame_pool_unref(struct frame_pool **pool);
-/* Returns a buffer with undefined content, which frame_pool_give() takes back; NULL: out of memory. */
+/* Returns a pixel buffer with undefined content; release it with frame_pool_give(). NULL: out of memory. */
 uint8_t *frame_pool_take(struct frame_pool *pool, size_t bytes);
 /* Releases a buffer of frame_pool_take(). pixels may be NULL. */
 void frame_pool_give(struct frame_pool *pool, uint8_t *pixels, size_t bytes);

@@ -11,16 +11,18 @@ enum { FRAME_RECORD_BASELINES = 2 }; /* baselines in a record at most: one for e
 struct frame_record {
     _Atomic int refs;
     struct snapshot *readings;
-    bool *unproven; /* by tag: true if no loop check has proven the tag's wiring, which its marker shows */
+    bool *unproven; /* by tag: true if no loop check has proven the tag's wiring; markers show this */
     struct {
         struct baseline what;
         struct snapshot *readings;
-    } baselines[FRAME_RECORD_BASELINES]; /* baselines from which the frame's differences are computed, each once */
+    /* baselines that the frame's halves subtract from the readings; if both halves use the same baseline, it is stored once */
+    } baselines[FRAME_RECORD_BASELINES];
     int baseline_count;
 };
 
-/* Copies the readings, the baselines from which the view shows differences, and which tags no loop check has proven. baselines NULL: there
-   are no baselines; loop_checks NULL: there are no loop checks. The caller owns the record (frame_record_unref). */
+/* Creates a record: copies the readings and the baselines that the view subtracts from them, and stores which tags no loop check has
+   proven. baselines NULL: there are no baselines; loop_checks NULL: there are no loop checks. The caller owns the record
+   (frame_record_unref). */
 struct frame_record *frame_record_create(const struct view *view, const struct snapshot *readings, struct baselines *baselines,
                                          const struct loop_checks *loop_checks);
 /* Returns a record in which no tag has a reading. The caller fills it in before other threads see it. */

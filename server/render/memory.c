@@ -8,10 +8,10 @@
 
 const char *const render_store_names[RENDER_STORES] = { "shown fields", "light", "still pictures", "targets", "drawing", "models" };
 
-/* Part of the memory limit that each cache gets, after the working memory is subtracted. Half of the fields' part is for main memory, half
-   for the GPU. */
+/* Fractions of the memory limit that the caches get, after the working memory (STORE_ROOM) is subtracted. Half of FIELDS_SHARE is for main
+   memory, half for the GPU. */
 static const double FIELDS_SHARE = 0.35, LIGHT_SHARE = 0.3, REFINED_SHARE = 0.15, PREVIEWS_SHARE = 0.1, TARGETS_SHARE = 0.1;
-/* Part of the memory limit beyond which working memory is freed after each frame and allocated again for the next. */
+/* Working memory (STORE_ROOM) that exceeds this fraction of the memory limit is freed after each frame and allocated again for the next. */
 static const double WORKING_SHARE = 0.4;
 
 static size_t room_bytes(const struct renderer *renderer)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Interface of a render backend: GL or software. renderer.c asks the software backend first, where there is one; GL draws the frames that
-   the software backend cannot. Thread: the one of the GL context. */
+/* Interface of a render backend: GL or software. On machines without a GPU, renderer.c asks the software backend first; GL draws the frames
+   that the software backend cannot. Thread: the one of the GL context. */
 #ifndef RENDER_RENDER_BACKEND_H
 #define RENDER_RENDER_BACKEND_H
 #include <stdbool.h>
@@ -13,7 +13,9 @@ struct renderer;
 
 struct render_backend {
     const char *name;
-    bool draws_from_gpu; /* true: the backend reads fields from GPU memory, so a render job must copy them there; false: in main memory */
+    /* true: the backend reads fields from GPU memory, so a render job copies them in GPU memory; false: the job copies them in main
+       memory */
+    bool draws_from_gpu;
     /* Creates the resources that the backend needs for its first frame; later calls do nothing. Returns false on failure, logged. */
     bool (*init)(struct renderer *renderer);
     void (*finish)(struct renderer *renderer);
@@ -21,15 +23,15 @@ struct render_backend {
     bool (*can)(const struct frame_context *context);
     /* Returns whether the backend draws this frame in about the time of a preview. */
     bool (*is_quick)(struct renderer *renderer, const struct frame_context *context);
-    /* Begins to draw the job's frame. at_once: true: the caller calls end or submit next; false: it may draw other frames in between.
-       Returns false on failure, logged; abandon frees what was begun. */
+    /* Begins to draw the job's frame. at_once true: the caller calls end or submit next; false: the caller may draw other frames in
+       between. Returns false on failure, logged; the caller then calls abandon. */
     bool (*begin)(struct renderer *renderer, struct render_job *job, const struct frame_plan *plan, bool at_once);
-    /* Draws at least one step and continues for about budget_ns. The job's light must be ready. Returns true when only end is left to
-       do. */
+    /* Draws at least one step of the job's frame, and more steps for about budget_ns. The job's light must be ready. Returns true when only
+       end() is left to call. */
     bool (*step)(struct renderer *renderer, struct render_job *job, int64_t budget_ns);
     /* Completes the frame of a job. Returns false on failure, logged. */
     bool (*end)(struct renderer *renderer, struct render_job *job);
-    /* Frees what the backend has stored in the job. */
+    /* Frees the state that the backend has stored in the job (render_job.of). */
     void (*abandon)(struct renderer *renderer, struct render_job *job);
     /* Submits all remaining work to the GPU without waiting; end() waits for the result. Returns false on failure, logged. NULL where there
        is no GPU. */

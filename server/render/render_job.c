@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Render jobs: hold copies of what a frame shows while it is drawn in steps. */
+/* Render jobs: hold copies of a frame's view, fields and visible assets while the frame is drawn in steps. */
 #include "render/render_job.h"
 
 #include <string.h>

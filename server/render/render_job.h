@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A frame being drawn. The job holds everything that the frame shows, from its first step to its last. Thread: the one of the GL
+/* Render job: a frame being drawn in steps. The job holds everything that the frame shows, until its last step. Thread: the one of the GL
    context. */
 #ifndef RENDER_RENDER_JOB_H
 #define RENDER_RENDER_JOB_H
@@ -26,15 +26,17 @@ struct render_job {
     struct fields_entry *copies;
     int *visible;
     struct isoline_points isolines;
-    bool keeps; /* true: after this job, a frame of the same view with other readings is drawn in about the time of a preview */
+    /* true: the backend keeps the job's visibility buffer, so that the same view with other readings is drawn in about the time of a
+       preview */
+    bool keeps;
 };
 
 /* Initialises a job: takes ownership of the frame, and copies view and lists of the frame context. */
 void render_job_init(struct render_job *job, const struct frame_context *context, struct frame *frame);
-/* Copies the fields so that later frames do not change them: buffers on the GPU (on_gpu) or vertex values in main memory. Returns false
-   when out of memory (main or GPU), logged. */
+/* Copies the fields into the job, so that planning later frames does not change them. on_gpu true: copies GPU buffers; false: vertex values
+   in main memory. Returns false when out of memory (main or GPU), logged. */
 bool render_job_hold_fields(struct render_job *job, bool on_gpu);
-/* Frees the job, and its frame if nobody took it, but not the backend's state. */
+/* Frees the job's members, and its frame unless job->frame was set to NULL. Does not free the backend's state. */
 void render_job_finish(struct render_job *job);
 
 #endif

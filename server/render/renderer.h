@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws frames of the scene, each in a single call or as a job in steps. Thread: the one that made the GL context. */
+/* The renderer: draws frames of a plant's scene, each in a single call or in steps (a render job). Thread: the one that made the GL
+   context. */
 #ifndef RENDER_RENDERER_H
 #define RENDER_RENDERER_H
 #include <stdbool.h>
@@ -32,7 +33,7 @@ struct frame *renderer_draw(struct renderer *renderer, const struct frame_plan *
 struct render_job *renderer_begin(struct renderer *renderer, const struct frame_plan *plan);
 /* Returns whether a frame with the same view and other readings will be quick (renderer_is_quick) once this job has ended. */
 bool renderer_keeps(const struct render_job *job);
-/* Draws at least one step and continues for about budget_ns. Returns true when only renderer_end() is left to do. */
+/* Draws at least one step of the job's frame, and more steps for about budget_ns. Returns true when only renderer_end() is left to call. */
 bool renderer_step(struct renderer *renderer, struct render_job *job, int64_t budget_ns);
 /* Completes the frame and destroys the job. The caller owns the frame. NULL on failure, logged. */
 struct frame *renderer_end(struct renderer *renderer, struct render_job **job);
@@ -40,17 +41,18 @@ struct frame *renderer_end(struct renderer *renderer, struct render_job **job);
 void renderer_abandon(struct renderer *renderer, struct render_job **job);
 /* Returns whether there is a GPU, so that renderer_submit() works. */
 bool renderer_submits(const struct renderer *renderer);
-/* Submits the whole frame to the GPU without waiting; renderer_end() waits. A few jobs may be submitted, so that one is drawn while the
-   pixels of another are read back. NULL on failure, logged. */
+/* Submits the whole frame to the GPU without waiting; renderer_end() waits. A few jobs may be submitted at a time: the GPU then draws one
+   frame while the pixels of another are read back. NULL on failure, logged. */
 struct render_job *renderer_submit(struct renderer *renderer, const struct frame_plan *plan);
-/* Returns whether renderer_end() would return without waiting, for a submitted job. */
+/* Returns whether the GPU has finished a job of renderer_submit(), so that renderer_end() returns without waiting. */
 bool renderer_is_complete(const struct render_job *job);
 
-/* Sets for how long each preview bakes light that is not ready yet. Meanwhile previews use the most similar light that is ready; if none is
-   ready, this call bakes a rough light. With 0, the initial value, a preview waits until its light is baked. Refined frames always wait.
-   Returns false when the GPU is out of memory, logged. */
+/* Sets for how long (ns) each preview computes (bakes) the light set of its view if that is not ready yet. Meanwhile previews use the most
+   similar light set that is ready; if none is ready, this call bakes a rough one. With 0, the initial value, a preview waits until its
+   light is baked. Refined frames always wait. Returns false when the GPU is out of memory, logged. */
 bool renderer_set_bake_budget(struct renderer *renderer, int64_t bake_ns);
-/* Bakes the default light for about budget_ns; call while no client wants a frame. Returns true when nothing is left to bake. */
+/* Computes the light set of the default view (renderer_usual_light) for about budget_ns; call while no client waits for a frame. Returns
+   true when it is complete. */
 bool renderer_bake_idle(struct renderer *renderer, int64_t budget_ns);
 
 /* Chooses whether frames that are begun later get depth grids (render/depth_grid.h); initially they do not. */

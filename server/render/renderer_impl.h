@@ -34,16 +34,17 @@ struct renderer {
     struct visibility shown; /* visibility of assets in the last frame that was drawn in one call */
 };
 
-/* Fills in the context that every pass gets. Light, colour map and target are set later. The context points into the plan, which must
-   outlive it. */
+/* Fills in a frame context from the plan. Light, colour map and target are set later. The context points into the plan, which must outlive
+   it. */
 void renderer_init_context(struct renderer *renderer, const struct frame_plan *plan, struct frame_context *context);
-/* Uploads the fields of the context to the GPU. The array context->fields must belong to the caller, because a field that does not fit is
-   replaced in it by one that shows no data; the frame's content hash and age are then updated. */
+/* Uploads the fields of context->fields to the GPU. The array context->fields must belong to the caller, because a field that does not fit
+   is replaced in it by one that shows no data; the frame's content hash and age are then updated. */
 void renderer_upload_fields(struct renderer *renderer, const struct frame_plan *plan, const struct frame_context *context,
                             struct frame *frame);
-/* Finds light and colour map for the context; keeps a light that is set already. Returns false when out of GPU memory, logged. */
+/* Sets the context's colour map and, unless it is set already, its light set. Returns false when out of GPU memory, logged. */
 bool renderer_find_light(struct renderer *renderer, struct frame_context *context);
-/* Finds light and colour map for a job, which holds a reference to the light from then on. Returns false when out of GPU memory, logged. */
+/* Sets the light set and the colour map of a job; the job holds a reference to the light set. Returns false when out of GPU memory,
+   logged. */
 bool renderer_light_job(struct renderer *renderer, struct render_job *job);
 /* Returns the key of the default light, which most views use. */
 struct light_key renderer_usual_light(const struct renderer *renderer);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shaded colour maps: lookup tables of a scale's colours, in memory and as textures. In the default look, shading adds to CIELAB L* and
-   changes neither hue nor chroma, so that shading cannot be read as a value. Thread: the one of the GL context. */
+/* Shaded colour maps: lookup tables of a scale's colours, in memory and as textures. In the default look, shading changes only CIELAB L*
+   and neither hue nor chroma, so that a viewer cannot mistake shading for another value. Thread: the one of the GL context. */
 #ifndef RENDER_SHADED_COLORMAP_H
 #define RENDER_SHADED_COLORMAP_H
 #include <stdint.h>
@@ -32,8 +32,8 @@ struct shaded_colormap {
     GLuint colors, lines; /* colors: texture of `texels`; lines: texture of `nearest`, 0: there are no isolines */
     uint64_t version;     /* number of the colour map, from 1 up, different for every colour map made */
 };
-/* Computes both tables and uploads them as textures. lines: values of isolines; line_count may be 0. The caller checks for GL errors and
-   calls shaded_colormap_finish(). */
+/* Computes the tables `texels` and `nearest`, and uploads them as textures. lines: values of isolines; line_count may be 0. The caller
+   checks for GL errors and calls shaded_colormap_finish(). */
 void shaded_colormap_init(struct shaded_colormap *colormap, const struct scale *scale, const struct colormap_shades *shades,
                           const double *lines, int line_count);
 void shaded_colormap_finish(struct shaded_colormap *colormap);

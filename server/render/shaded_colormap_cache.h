@@ -14,7 +14,8 @@ struct shaded_colormap_cache_entry {
 
 enum { SHADED_COLORMAPS = 16, COLORMAPS_MOST = COLORMAPS_BUILT_IN + PLANT_COLORMAPS };
 struct shaded_colormap_cache { /* zero-initialise */
-    struct colormap_shades *shades[COLORMAPS_MOST + 1]; /* by index of the colour map, then the operator's; NULL: not used yet */
+    /* by index of the colour map; the last one belongs to views that show values relative to alarm limits; NULL: not used yet */
+    struct colormap_shades *shades[COLORMAPS_MOST + 1];
     struct shaded_colormap_cache_entry at[SHADED_COLORMAPS];
     int count;
     uint64_t uses;

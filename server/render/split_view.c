@@ -78,8 +78,8 @@ static void draw_divider(struct frame *frame, int x_px)
             memcpy(frame->bgrx + (size_t)y * (size_t)frame->stride_bytes + (size_t)x * 4, divider_bgrx, 4);
 }
 
-/* Copies a half's markers into the whole frame. x_px: left edge of the half. A marker outside its half is left out, since it would show in
-   the other half. */
+/* Copies a half's markers into the whole frame. x_px: left edge of the half. Markers outside their half are left out, because they would
+   appear in the other half. */
 static void copy_markers(struct frame *whole, const struct frame *part, int half, int x_px)
 {
     size_t capacity = whole->marker_count;

@@ -9,9 +9,9 @@ struct split_plan { /* immutable */
     struct view view;
     int half_count;
     struct frame_plan *halves[2];
-    uint64_t content; /* hash of what all halves show; frames with equal content look the same */
+    uint64_t content; /* hash of the contents of all halves' frame plans; frames with the same hash look the same */
 };
-struct split_view; /* frame being drawn, with one render job for each half of the view */
+struct split_view; /* a frame that is being drawn, with one render job for each half of the view */
 
 /* Plans a frame of this view: one frame plan per half. Computes the field of each half for about budget_ns (INT64_MAX: until it is ready).
    The caller owns the plan (split_plan_destroy). Returns NULL if a field is not ready yet. */
@@ -30,7 +30,7 @@ struct frame *split_view_end(struct renderer *renderer, struct split_view **spli
 /* abandons all jobs and sets *split to NULL; accepts a pointer to NULL */
 void split_view_abandon(struct renderer *renderer, struct split_view **split);
 
-/* Plans and draws a frame and waits for its field. The caller owns the frame. NULL on failure, logged. */
+/* Plans and draws a frame of the view; waits until its fields are computed. The caller owns the frame. NULL on failure, logged. */
 struct frame *split_view_draw_now(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 
 #endif

@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Default sun: late morning, over the viewer's shoulder, so that shapes read well and shadows stay short. One direction per plant, whatever
-   the frame's aspect ratio, so that all sessions share one baked light. */
+/* Default sun: late morning, over the viewer's shoulder, so that shapes read well and shadows stay short. The direction does not depend on
+   the frame's aspect ratio, so that all sessions of a plant share one baked light set. */
 static void default_light(const struct scene *scene, double towards[3])
 {
     int up = scene->plant->up == AXIS_Y ? 1 : 2, a = 0, b = up == 1 ? 2 : 1;
@@ -72,7 +72,7 @@ bool view_is_operator(const struct view *view)
     return view->field.show == SHOW_OPERATOR;
 }
 
-/* Sets all members but the colour map. */
+/* Sets all members of `scale` except the colour map. */
 static void set_scale(const struct view *view, struct scale *scale)
 {
     if (view_is_operator(view)) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The view of one session: everything that it wants to see, in a plain struct that is copied between threads. */
+/* A session's view: everything that its picture depends on except the readings. A plain struct without pointers, which is copied between
+   threads. */
 #ifndef RENDER_VIEW_H
 #define RENDER_VIEW_H
 #include <stdbool.h>
@@ -12,7 +13,8 @@
 #include "scene/visibility.h"
 
 enum look {
-    LOOK_DEFAULT, /* field colours, shaded only by changing L* by up to 7; PBR for assets without a field */
+    /* colours of the field, whose CIELAB L* shading changes by up to 7; PBR (physically based shading) for assets without a field */
+    LOOK_DEFAULT,
     /* PBR with the field as albedo (Fig. 13 of Kim & Suh, Electronics 2025, 14(15), 2938); labelled in the picture, since shading changes
        the colours */
     LOOK_GLOSSY,
@@ -30,7 +32,7 @@ struct color_scale { /* settings of a view's scale besides colour map, range and
     bool log;
     double breaks[SCALE_BREAKS]; /* ascending values that separate bands of uniform colour; used instead of a continuous ramp */
     int break_count;
-    double lines[VIEW_LINES]; /* values of the isolines, ascending; edges of colour bands have lines in any case */
+    double lines[VIEW_LINES]; /* values of the isolines, ascending; the edges of colour bands (breaks) always get lines as well */
     int line_count;
 };
 
@@ -51,12 +53,14 @@ struct view {
     uint32_t camera_seq; /* the client's sequence number of this camera, echoed in the frame */
     uint32_t params_seq; /* the client's sequence number of the parameters, echoed in the frame */
     int64_t input_ns;    /* monotonic time at which the newest input of the user arrived */
-    /* device pixels per CSS pixel of the page, from which the size of the area follows in which a click picks a marker; 0: counts as 1 */
+    /* device pixels per CSS pixel of the page; the area around a marker in which a click picks it is proportional to this; 0: counts as
+       1 */
     double pixel_ratio;
     struct field_params field;
     int colormap;                /* index of the colour map */
     double ramp_interval;        /* width of a colour step in engineering units; 0: continuous */
-    double range_min, range_max; /* values at both ends of the colour map: the group's range unless the client sets other values */
+    /* engineering values at both ends of the colour map: the group's range unless the client sets other values */
+    double range_min, range_max;
     struct color_scale color_scale;
     enum look look;
     enum tier tier;
@@ -79,8 +83,8 @@ void view_default(const struct scene *scene, int width_px, int height_px, struct
 /* Sets the default scale of what the view shows: the group's range, isolines and logarithm, or those of a distance or of a difference from
    a baseline. */
 void view_default_scale(const struct scene *scene, struct view *view);
-/* Returns whether the view shows values relative to their alarm limits (SHOW_OPERATOR). Such a view has colours, lines and a legend of its
-   own, and ignores the view's other settings of these. */
+/* Returns whether the view shows values relative to their alarm limits (SHOW_OPERATOR). Such a view has its own colours, isolines and
+   legend, and ignores colormap and color_scale. */
 bool view_is_operator(const struct view *view);
 void view_scale(const struct plant *plant, const struct view *view, struct scale *scale);
 /* Fills `lines` with the ascending values at which a line is drawn: isolines, and edges of colour bands within the range. Returns the
@@ -99,7 +103,7 @@ void view_set_trial(struct view *view, uint32_t trial);
 int view_left_px(const struct view *view); /* width of the left half, which is the x of the right half; pixels */
 /* Splits the view into two halves. right: a view that is not split, for example one from view_half(); the right half shows its content. */
 void view_split(struct view *view, const struct view *right);
-/* Returns whether both views ask for the same picture, regardless of session and time. A new member that changes the picture must be
+/* Returns whether both views show the same picture; ignores sequence numbers and input time. A new member that changes the picture must be
    compared here. */
 bool view_equal(const struct view *a, const struct view *b);
 
