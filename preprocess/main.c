@@ -67,8 +67,8 @@ struct prep_options {
 
 static atomic_bool interrupted; /* global, because a signal handler gets no argument */
 
-/* At the first signal, the current asset is finished if that takes no longer than GRACE_S, and the next run continues after it. At the
- * second signal, the program ends immediately. Ending is safe at any time, because files get their names only when complete. */
+/* Handles the first signal: the current asset is finished if that takes no longer than GRACE_S, and the next run continues after it. The
+ * second signal ends the program immediately. That is safe at any time, because prepared files get their names only when complete. */
 static void on_signal(int signal)
 {
     (void)signal;
@@ -100,7 +100,7 @@ static int wrong_use(const char *what, const char *about)
     return 2;
 }
 
-/* Parses the options. Returns 0, or the exit status with which the program should end. */
+/* Parses the command line's options. Returns 0, or the exit status with which the program should end. */
 static int read_options(int argc, char **argv, struct prep_options *options)
 {
     static const struct option known[] = { { "output", required_argument, NULL, 'o' },
@@ -188,8 +188,9 @@ static bool run_distances(const struct prep_options *options, struct log *log, s
     return good;
 }
 
-/* Checks models and nodes by their headers and prints errors long before the models are read. Assets without errors are prepared anyway.
- * Errors of assets whose preparation is tried are printed again at the end. Returns false if the plant is too large for the memory. */
+/* Checks the plant's models and nodes by reading only the headers of model files, and prints errors long before the models are read
+ * completely. Assets without errors are prepared anyway. Errors of assets whose preparation is tried are printed again at the end. Returns
+ * false if the plant is too large for the memory. */
 static bool say_early(const struct plant *plant, size_t memory_bytes)
 {
     struct diag diag = { 0 }, errors = { 0 };
@@ -255,7 +256,7 @@ static bool confine_self(const struct plant *plant, const char *folder, char **a
                                  ".tif .tiff .exr .hdr";
     struct child_paths paths = { 0 };
     bool notifies = getenv("NOTIFY_SOCKET") != NULL;
-    mkdir(folder, 0777); /* a failure to create the folder is ignored here: writing the first file will report it */
+    mkdir(folder, 0777); /* a failure to create the folder of prepared files is ignored here: writing the first file will report it */
     child_paths_add(&paths, "/proc/self/exe", CONFINE_EXECUTE);
     child_paths_add_modules(&paths);
     child_paths_add(&paths, folder, CONFINE_WRITE);

@@ -23,18 +23,18 @@ enum build_cache_kind {
     BUILD_CACHE_KINDS
 };
 
-/* Returns the path of an entry's file. The caller frees it (mem_free). */
+/* Returns the path of the file of a cache entry. The caller frees it (mem_free). */
 char *build_cache_path(const char *folder, enum build_cache_kind kind, uint64_t key);
-/* Returns the part of the file name after the key, such as ".surface"; NULL for BUILD_CACHE_MODELS, which has no key. */
+/* Returns the part after the key of a cache file's name, such as ".surface"; NULL for BUILD_CACHE_MODELS, which has no key. */
 const char *build_cache_ending(enum build_cache_kind kind);
-/* Returns whether the key of entries of this kind is the distances key, which depends on sensors; false: the geometry key, which does
- * not. */
+/* Returns whether cache entries of this kind are found by the distances key, which depends on the asset's sensors. False: they are found by
+ * the geometry key, which does not. */
 bool build_cache_needs_sensors(enum build_cache_kind kind);
 
-/* Maps an entry into memory for reading; close it with cache_file_close(). Returns false if there is no valid entry; then it need not be
- * closed. Logs damaged files. */
+/* Maps the file of a cache entry into memory for reading; close it with cache_file_close(). Returns false if there is no valid entry; then
+ * it need not be closed. Logs damaged files. */
 bool build_cache_open(struct cache_file *entry, struct log *log, const char *folder, enum build_cache_kind kind, uint64_t key);
-/* Writes an entry that consists of these parts, in order, and replaces an existing one. Returns 0 or -errno. */
+/* Writes a cache entry whose contents are these parts, one after the other, and replaces an existing entry. Returns 0 or -errno. */
 int build_cache_write(const char *folder, enum build_cache_kind kind, uint64_t key, const struct atomic_file_part *parts,
                       size_t part_count);
 

@@ -17,7 +17,8 @@
 
 struct distance_slot { /* header of a slot (file range for one column); the column's distances follow */
     double place_m[3];
-    /* XXH3-64 of the file's key, the position and the column; wrong if the slot was only partially written or belongs to another key */
+    /* XXH3-64 of the file's key, the sensor's position and the distances; wrong if the slot was only partially written or belongs to
+     * another key */
     uint64_t checksum;
 };
 
@@ -37,8 +38,8 @@ static uint64_t checksum_of(const struct distance_cache *cache, size_t place, co
     return XXH3_64bits_withSeed(codes, cache->length * sizeof(*codes), seed);
 }
 
-/* Finds the slot of each sensor position in the file. A position without a slot gets an unused slot, or a new one at the end of the
- * file. */
+/* Finds the slot (file range with one sensor's distances) of each sensor position in the cache file. A position without a slot gets an
+ * unused slot, or a new one at the end of the file. */
 static void deal_slots(struct distance_cache *cache)
 {
     struct stat st;
@@ -128,7 +129,9 @@ static void keep(void *arg, size_t source, float *distances_m)
     memcpy(slot.place_m, cache->places_m[source], sizeof(slot.place_m));
     if (!cache->may_write || !file_write(cache->fd, &slot, sizeof(slot), at) ||
         !file_write(cache->fd, codes, cache->length * sizeof(*codes), at + (off_t)sizeof(slot)))
-        cache->may_write = false; /* write nothing more; the partially written slot has no valid checksum, so it counts as absent */
+        /* after a failed write, write nothing more to the cache file; the partially written slot has no valid checksum, so it counts as
+         * absent */
+        cache->may_write = false;
     mem_free(codes);
 }
 

@@ -26,13 +26,14 @@ struct distance_cache {
 };
 
 /* Opens or creates FOLDER/KEY.columns and looks up which of the `count` sensor positions places_m (asset frame, metres; must outlive the
- * cache) have an entry there. length: count of distances in a column. Never fails: if the file cannot be opened, the cache is empty. */
+ * cache) have distances there. length: number of distances per sensor. Never fails: if the file cannot be opened, the cache is empty. */
 void distance_cache_open(struct distance_cache *cache, struct log *log, const char *folder, uint64_t key, size_t length,
                          const double (*places_m)[3], size_t count);
-/* Closes the file, logs if columns were damaged, and frees the cache's arrays. A zeroed cache is allowed. */
+/* Closes the cache file, logs how many sensors' distances in it were damaged, and frees the cache's arrays. A zeroed cache is allowed. */
 void distance_cache_close(struct distance_cache *cache);
-/* Returns the cache as callbacks for surface_field_init(), which fetches the columns that the cache contains and stores those it computes.
- * Valid until distance_cache_close(). Thread: the callbacks may run on any thread, each call for a different source (sensor). */
+/* Returns the distance cache as callbacks for surface_field_init(), which fetches the sensors' distances that the cache contains and stores
+ * those it computes. Valid until distance_cache_close(). Thread: the callbacks may run on any thread, each call for a different source
+ * (sensor). */
 struct surface_columns distance_cache_for_surface(struct distance_cache *cache);
 
 #endif

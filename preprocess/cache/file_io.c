@@ -4,7 +4,8 @@
 #include <errno.h>
 #include <unistd.h>
 
-/* Advances the remaining byte range by what one read or write transferred. Returns false on an error, or if no bytes were transferred. */
+/* Advances the byte range that is still to be read or written by the result of one system call. Returns false on an error, or if no bytes
+ * were transferred. */
 static bool went_on(ssize_t done, size_t *bytes, off_t *at)
 {
     if (done < 0)

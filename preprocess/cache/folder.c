@@ -22,7 +22,8 @@
 
 #define KEY_DIGITS 16
 #define MANIFEST "manifest.json"
-#define LOCK "lock" /* name of the lock file; it contains the id of the process that holds the lock, or held it last */
+/* name of the lock file in the folder of prepared files; it contains the id of the process that holds the lock, or held it last */
+#define LOCK "lock"
 #define LOCK_RETRY_DELAY_US 50000
 #define ASSET ".asset"
 #define REPORT ".report.json"
@@ -151,7 +152,7 @@ int folder_draft(struct folder_draft *draft, const char *folder, uint64_t key, s
 
 void folder_draft_send(const struct folder_draft *draft)
 {
-    /* without sync_file_range(), nothing is written early, and folder_put() writes everything */
+    /* on systems without sync_file_range(), nothing is written early: folder_put() writes the whole file */
     sync_file_range(draft->file.fd, 0, (off_t)draft->size, SYNC_FILE_RANGE_WRITE);
 }
 
@@ -175,7 +176,8 @@ void folder_draft_close(struct folder_draft *draft)
     *draft = (struct folder_draft){ 0 };
 }
 
-/* Parses the text of a file. Returns NULL if the text is damaged, which is logged with the loss that this causes. */
+/* Parses the JSON text of a file in the folder of prepared files. Returns NULL if the text is damaged. loss: consequence of the damage, for
+ * the log line. */
 static json_t *parse(struct log *log, const char *path, const char *text, size_t size, const char *loss)
 {
     json_error_t error;
@@ -203,8 +205,8 @@ static void add_surface(json_t *asset, const char *folder, uint64_t key)
     mem_free(path);
 }
 
-/* Adds a bit mask of the levels of detail in which subdivision left no interpolation error of the field. The daemon need not measure the
- * errors of these levels (server/field/drawn_error.h). */
+/* Adds to an asset's manifest entry a bit mask of the levels of detail in which subdivision left no interpolation error of the field. The
+ * daemon need not measure the errors of these levels (server/field/drawn_error.h). */
 static void add_resolved(json_t *asset, struct log *log, const char *folder, uint64_t key)
 {
     json_t *report = folder_report(log, folder, key), *level;
@@ -221,8 +223,8 @@ static void add_resolved(json_t *asset, struct log *log, const char *folder, uin
     json_decref(report);
 }
 
-/* Adds the texts about the model's textures and extensions that are not drawn. If this run did not parse the model, takes them from the
- * asset's entry in the old manifest, if that has the same recipe (hash of model and cutting parameters). */
+/* Adds to an asset's manifest entry the texts about its model's textures and extensions that are not drawn. If this run did not parse the
+ * model, takes the texts from the asset's entry in the old manifest, if that has the same recipe (hash of model and cutting parameters). */
 static void add_left_out(json_t *asset, const struct folder_entry *entry, const json_t *old_assets)
 {
     json_t *texts = entry->left_out ? json_array() : NULL;
@@ -239,7 +241,7 @@ static void add_left_out(json_t *asset, const struct folder_entry *entry, const 
     json_decref(texts);
 }
 
-/* old_root: contents of the old manifest; NULL: there is none. */
+/* Returns the text of the new manifest. old_root: contents of the old manifest; NULL: there is none. */
 static char *manifest_text(struct log *log, const char *folder, const struct folder_entry *entries, size_t count, const json_t *old_root)
 {
     json_t *assets = json_array(), *root = json_pack("{s:i, s:o}", "format", 2, "assets", assets);
@@ -273,8 +275,8 @@ static uint64_t cache_key_of(const struct folder_entry *entry, enum build_cache_
     return build_cache_needs_sensors(kind) ? entry->distances_key : entry->geometry_key;
 }
 
-/* Returns whether a name begins with 16 hexadecimal digits and the ending. *whole: true if the name ends there. If not, it is the temporary
- * file of an interrupted write. */
+/* Returns whether a file name begins with 16 hexadecimal digits and `ending`. *whole: true if the name ends there. If not, it is the
+ * temporary file of an interrupted write. */
 static bool is_name(const char *name, const char *ending, bool *whole)
 {
     if (strspn(name, "0123456789abcdef") != KEY_DIGITS || strncmp(name + KEY_DIGITS, ending, strlen(ending)) != 0)
@@ -284,8 +286,8 @@ static bool is_name(const char *name, const char *ending, bool *whole)
     return *whole || (strlen(rest) > 4 && strcmp(rest + strlen(rest) - 4, ".new") == 0);
 }
 
-/* Returns whether the file can be deleted: no manifest entry has its key, or an interrupted write left it. *is_asset: true if it is a
- * complete asset file. */
+/* Returns whether the file `name` can be deleted: no manifest entry has its key, or an interrupted write left it. *is_asset: true if it is
+ * a complete asset file. */
 static bool is_left_over(const char *name, const struct folder_entry *entries, size_t count, bool *is_asset)
 {
     uint64_t key = strtoull(name, NULL, 16);

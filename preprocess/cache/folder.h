@@ -18,7 +18,7 @@ struct folder_file {
     void *bytes;
     size_t size;
     struct asset_view view;
-    uint16_t *codes; /* distances unpacked from the file; NULL: none, or the file stores them unpacked */
+    uint16_t *codes; /* distances of the asset's vertices, unpacked from the file; NULL: none, or the file stores them unpacked */
 };
 
 /* Returns the file name KEY.asset. The caller frees it (mem_free). */
@@ -47,14 +47,15 @@ struct folder_draft {
     size_t size;
     struct atomic_file file;
 };
-/* Creates an unnamed file of `size` bytes for KEY.asset, with its disk space reserved, and maps it for writing. Returns 0 or -errno. */
+/* Creates an unnamed file of `size` bytes, which will become KEY.asset, reserves its disk space, and maps it for writing. Returns 0 or
+ * -errno. */
 int folder_draft(struct folder_draft *draft, const char *folder, uint64_t key, size_t size);
-/* Starts writing the draft's contents to disk, and returns without waiting; folder_put() waits until all contents are written. */
+/* Starts writing the draft of an asset file to disk, and returns without waiting; folder_put() waits until all contents are written. */
 void folder_draft_send(const struct folder_draft *draft);
 /* Writes KEY.report.json (unless report is NULL), then gives the draft its name KEY.asset, so that every asset file has its report. The
  * draft stays mapped until it is closed. Returns 0 or -errno. */
 int folder_put(struct folder_draft *draft, const char *folder, uint64_t key, const char *report);
-/* Unmaps and closes the draft. The kernel deletes the file unless folder_put() has named it. A zeroed draft is allowed. */
+/* Unmaps and closes the draft of an asset file. The kernel deletes the file unless folder_put() has named it. A zeroed draft is allowed. */
 void folder_draft_close(struct folder_draft *draft);
 /* Returns the contents of KEY.report.json, which the caller frees (json_decref). Returns NULL if the file is missing or damaged, logged. */
 json_t *folder_report(struct log *log, const char *folder, uint64_t key);
@@ -64,7 +65,7 @@ struct folder_entry {
     const char *id;
     uint64_t key, recipe; /* recipe: plant/recipe.h */
     uint64_t geometry_key, distances_key;
-    const char *missing;     /* reason why the asset has no file; NULL: it has one */
+    const char *missing;     /* reason why the asset has no prepared file; NULL: it has one */
     const double *placement; /* matrix of 16 numbers, column-major: transform from the asset frame to the plant frame */
     const char *const *tags; /* tags of the asset's sensors, in the order of the asset file */
     size_t tag_count;
@@ -73,8 +74,8 @@ struct folder_entry {
     const char *const *left_out;
     size_t left_out_count;
 };
-/* Writes manifest.json for these entries, unless it is unchanged. Then deletes files whose key no entry has; *removed receives their number
- * (removed NULL: deletes nothing). Logs a damaged old manifest. Returns 0 or -errno. */
+/* Writes manifest.json for these assets, unless it is unchanged. Then deletes prepared files whose key no asset has; *removed receives
+ * their number (removed NULL: deletes nothing). Logs a damaged old manifest. Returns 0 or -errno. */
 int folder_finish(struct log *log, const char *folder, const struct folder_entry *entries, size_t count, size_t *removed);
 
 #endif

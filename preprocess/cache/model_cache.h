@@ -26,14 +26,15 @@ struct model_cache {
     size_t count, node_count, capacity, node_capacity;
 };
 
-/* Reads the cache from the folder; a missing or damaged file gives an empty cache. Finish with model_cache_finish(). */
+/* Reads the model cache from the folder of prepared files; a missing or damaged file gives an empty cache. Finish with
+ * model_cache_finish(). */
 void model_cache_read(struct model_cache *cache, struct log *log, const char *folder);
-/* Writes the cache to the folder, replacing the file. Returns 0 or -errno. */
+/* Writes the model cache to the folder of prepared files, replacing its file. Returns 0 or -errno. */
 int model_cache_write(const struct model_cache *cache, const char *folder);
-/* Frees the lists and zeroes the cache. */
+/* Frees both lists of the model cache and zeroes it. */
 void model_cache_finish(struct model_cache *cache);
 
-/* Returns whether both caches have equal entries in the same order. */
+/* Returns whether both model caches have equal entries in the same order. */
 bool model_cache_same(const struct model_cache *a, const struct model_cache *b);
 /* Looks up the geometry hash of a recipe (hash of model and cutting parameters). Returns false if the cache does not contain it. */
 bool model_cache_find(const struct model_cache *cache, uint64_t recipe, uint64_t *geometry);
@@ -42,7 +43,7 @@ bool model_cache_find(const struct model_cache *cache, uint64_t recipe, uint64_t
 bool model_cache_find_node(const struct model_cache *cache, uint64_t recipe, uint64_t node_hash, double place_m[3]);
 /* Adds the geometry hash of a recipe (hash of model and cutting parameters), unless the cache already contains the recipe. */
 void model_cache_add(struct model_cache *cache, uint64_t recipe, uint64_t geometry);
-/* Adds a node's position, unless the cache already contains the node. */
+/* Adds the position of a node (by recipe and hash of the node's name), unless the cache already contains the node. */
 void model_cache_add_node(struct model_cache *cache, uint64_t recipe, uint64_t node_hash, const double place_m[3]);
 
 #endif

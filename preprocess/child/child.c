@@ -62,7 +62,7 @@ static void limit_all(const struct child_params *params)
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_NOFILE, MAX_FILES);
     limit(RLIMIT_FSIZE, (rlim_t)8 << 30);
-/* no memory limit with a sanitizer, because the sanitizer's shadow memory would count as data */
+/* set no memory limit in builds with a sanitizer, because the sanitizer's shadow memory would count as data */
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     /* limit data memory and not address space, because WebAssembly reserves far more address space than it uses */
     limit(RLIMIT_DATA, params->memory_bytes);
@@ -135,8 +135,8 @@ error:
     return false;
 }
 
-/* Reads once from the child's pipe and appends the bytes to text, up to MAX_OUTPUT. Returns false at the end of the stream or on an
- * error. */
+/* Reads once from the child's pipe and appends the bytes to `text`, which holds at most MAX_OUTPUT bytes. Returns false at the end of the
+ * stream or on an error. */
 static bool take(int fd, struct text *text)
 {
     char bytes[65536];
@@ -182,7 +182,7 @@ static void wait_for(struct child *child, int timeout_s, struct text *out)
     }
 }
 
-/* Writes the last non-empty line of the error output to why. */
+/* Writes the last non-empty line of the child's error output to `why`. */
 static void last_line(const struct text *errors, char why[CHILD_WHY_BYTES])
 {
     size_t end = errors->length;
@@ -197,7 +197,7 @@ static void last_line(const struct text *errors, char why[CHILD_WHY_BYTES])
             *c = ' ';
 }
 
-/* Returns whether the child probably failed for lack of memory: it used nearly all of its limit, or its error output says so. */
+/* Returns whether the child probably failed for lack of memory: it used nearly all of its memory limit, or its error output says so. */
 static bool ran_out(const struct child *child, const struct child_params *params, const struct rusage *usage)
 {
     static const char *const words[] = { "out of memory", "bad_alloc", "Cannot allocate memory", "allocation failed", "memory exhausted" };

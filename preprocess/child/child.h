@@ -12,7 +12,8 @@
 enum { CHILD_WHY_BYTES = 400 };
 
 struct child_params {
-    const char *const *argv; /* command line, terminated by NULL; argv[0] is a path, or a name that is searched in PATH */
+    /* command line, terminated by NULL; argv[0] is a path, or a program name that is searched in the folders of $PATH */
+    const char *const *argv;
     int (*call)(void *arg);  /* used instead of argv: a function run in a fork of this process; its result is the exit status */
     void *arg;               /* argument of `call` */
     const char *name;        /* name of the child in error messages, such as "the STEP reader" */
@@ -25,8 +26,9 @@ struct child_params {
     /* files and folders that the child may use; this includes the working directory only if it is listed here */
     const struct confine_path *paths;
     size_t path_count;
-    int result; /* descriptor that stays open in the child, besides stdin (/dev/null), stdout and stderr; 0: none */
-    /* receives the child's error output, at most 8 MB; `why` then stays empty if the child exited without a signal; NULL: not wanted */
+    int result; /* file descriptor that stays open in the child, besides stdin (/dev/null), stdout and stderr; 0: none */
+    /* receives the child's error output, at most 8 MB; `why` then stays empty if the child exited without a signal; NULL: the caller does
+     * not want it */
     struct text *errors;
 };
 

@@ -9,14 +9,14 @@ struct child_paths { /* zero-initialise */
     size_t count, capacity;
 };
 
-/* Adds a path with symlinks resolved. Ignores NULL and paths that do not exist. */
+/* Adds a path, after resolving symlinks. Ignores NULL and paths that do not exist. */
 void child_paths_add(struct child_paths *paths, const char *path, enum confine_access access);
-/* Adds the folder that contains a file. */
+/* Adds the folder that contains the file `path`. */
 void child_paths_add_folder_of(struct child_paths *paths, const char *path, enum confine_access access);
 /* Adds, for reading, files with one of these endings (".bin .png", lower case) in the folder of `input` and up to three folder levels
  * below, at most 4096 files. Other files of that folder, such as keys, stay inaccessible. */
 void child_paths_add_beside(struct child_paths *paths, const char *input, const char *endings);
-/* Adds everything a site's shell command needs: installed programs, the folders of PATH, configuration in /etc except Plantcast's, and the
+/* Adds everything a site's shell command needs: installed programs, the folders of $PATH, configuration in /etc except Plantcast's, and the
  * files and folders that the command names by absolute paths. */
 void child_paths_add_command(struct child_paths *paths, const char *command);
 /* Adds the folders with this program's modules (base/system/module.h): its own folder, and ../lib/plantcast. */

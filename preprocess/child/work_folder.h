@@ -8,7 +8,7 @@
 
 struct work_folder {
     char *path;      /* absolute */
-    char *target;    /* folder that will receive the finished files; NULL: none */
+    char *target;    /* folder that will receive the finished files; NULL: the files are not kept */
     bool created;    /* work_folder_begin() created the target */
     sigset_t before; /* signal mask before work_folder_begin() */
 };

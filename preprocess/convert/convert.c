@@ -44,7 +44,8 @@ static bool is_made(const json_t *made, const struct plant_conversion *how, cons
     return same;
 }
 
-/* Runs the command of a model in a temporary folder next to the model, and replaces the model only if the command succeeds. */
+/* Runs the plant file's command that makes a model, in a temporary folder next to the model, and replaces the model only if the command
+ * succeeds. */
 static bool make(const struct plant_conversion *how, char why[CHILD_WHY_BYTES])
 {
     struct work_folder work;

@@ -14,7 +14,8 @@
 #include "surface/mesh/trimesh.h"
 
 #define ISOLINES 20 /* maximum number of isolines */
-#define LIFT 3e-4   /* offset of isolines and open edges from the surface, on both sides, relative to the asset's size */
+/* offset of isolines and open edges above and below the surface, so that the surface does not hide them; relative to the asset's size */
+#define LIFT 3e-4
 /* length of the cross that marks a bridge (connection over a gap), in multiples of the spacing of the surface points */
 #define MARK 0.3
 #define SENSOR 0.012 /* relative to the size */
@@ -36,11 +37,12 @@ struct debug_drawing {
 struct soup { /* a shape being built */
     float (*positions)[3];
     uint16_t (*colors)[4];
-    uint32_t *indices, *vertex_of; /* vertex_of: by surface point, 1 + index of its vertex in this shape; 0: it has no vertex here yet */
+    /* vertex_of: by surface point, 1 + index of its vertex in this shape; 0: the shape has no vertex for the point yet */
+    uint32_t *indices, *vertex_of;
     size_t vertices, indices_used, position_room, color_room, index_room;
 };
 
-/* Adds a vertex, converted from Z up to Y up. Returns its index. */
+/* Adds a vertex to the triangles of a GLB file, converted from Z up to Y up. Returns its index. */
 static uint32_t add_vertex(struct soup *soup, const double p[3])
 {
     mem_grow(&soup->positions, &soup->position_room, soup->vertices + 1, sizeof(*soup->positions));
@@ -179,7 +181,7 @@ static void add_lifted(struct soup *soup, const struct debug_drawing *drawing, s
     }
 }
 
-/* Returns the step between isolines: 1, 2 or 5 times a power of ten. */
+/* Returns the distance in metres between neighbouring isolines: 1, 2 or 5 times a power of ten. */
 static double isoline_step(double range_m)
 {
     double least = range_m / ISOLINES, power = pow(10, floor(log10(least)));

@@ -15,7 +15,7 @@ struct debug_view {
     size_t sensor_count, chosen;
 };
 
-/* Writes the view to `path` as GLB. Returns 0 or -errno. */
+/* Writes the debug view to `path` as a GLB file. Returns 0 or -errno. */
 int debug_view_save(const struct debug_view *view, const char *path);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes the debug views of all wanted assets, one model after the other. */
+/* Writes the debug views (GLB files) of the assets that the parameters select, one model after the other. */
 #include "preprocess/debug/debug_views.h"
 
 #include <ctype.h>
@@ -137,7 +137,7 @@ static bool is_wanted(const struct views *views, const struct plant_asset *asset
     return tag < 0 || views->plant->tags[tag].asset == (int)(asset - views->plant->assets);
 }
 
-/* Writes the debug views of all wanted assets of one model. A model without wanted assets is not parsed. */
+/* Writes the debug views of those assets of one model that the parameters select. A model without such assets is not parsed. */
 static void write_model(struct views *views, struct model_file *model)
 {
     for (size_t i = 0; i < views->plant->asset_count; i++) {

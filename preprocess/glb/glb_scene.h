@@ -31,12 +31,12 @@ void glb_scene_destroy(struct glb_scene **scene);
 int glb_scene_material(struct glb_scene *scene, const double rgba[4]);
 /* Adds a mesh and returns its index. The mesh must have triangles before the scene is written. */
 int glb_scene_add_mesh(struct glb_scene *scene, const char *name);
-/* Adds triangles of one material to a mesh; copies the arrays. */
+/* Adds triangles of one material to a mesh of the scene; copies the arrays. */
 void glb_scene_add_triangles(struct glb_scene *scene, int mesh, const struct glb_scene_triangles *triangles);
 /* Adds a node below the node `parent` (-1: as a root) and returns its index. mesh: index of its mesh; -1: none. matrix: column-major; NULL:
  * identity. */
 int glb_scene_add_node(struct glb_scene *scene, int parent, const char *name, int mesh, const double matrix[16]);
-/* Sets a property of a node in its extras. Text that is not UTF-8 is taken as Latin-1, as for names. */
+/* Sets a property of a node, which the file stores in the node's `extras`. Text that is not UTF-8 is taken as Latin-1, as for names. */
 void glb_scene_set_property(struct glb_scene *scene, int node, const char *key, const char *value);
 
 /* Writes the scene as a GLB file. Returns 0 or -errno (-EFBIG: larger than the 4 GiB limit of GLB). */
