@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares two plants, one asset after the other. */
+/* Compares two revisions of a plant, one asset after the other. */
 #include "preprocess/diff/diff.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@ struct pair_half { /* an asset in one of the two revisions that are compared */
     const struct diff_side_asset *asset;
     struct diff_side_shape shape;
     struct diff_shape *tree;
-    double to_plant[16]; /* transform from the shape's frame to the plant frame */
+    double to_plant[16]; /* transform from the frame of the asset's triangles to the plant frame */
 };
 
 struct asset_pair {
@@ -102,7 +102,8 @@ static double moved_by(const struct asset_pair *pair, const double new_to_old[16
     return diff_shape_moved(pair->old_half.tree, local);
 }
 
-/* Returns whether the shapes are equal after the motion new_to_old, which means that the asset is unchanged or only moved. */
+/* Returns whether the old and the new shape of an asset are equal after the motion new_to_old, which means that the asset is unchanged or
+ * only moved. */
 static bool same_shape(struct asset_pair *pair, const double new_to_old[16], bool equal)
 {
     if (!equal && diff_shape_apart(pair->old_half.tree, pair->new_half.tree, new_to_old, pair->tolerance_m) > pair->tolerance_m)
@@ -137,8 +138,8 @@ static void compare_shapes(struct asset_pair *pair)
 
 /* --- its sensors ------------------------------------------------------------------------------------------------------------------ */
 
-/* Computes the position of a sensor and of the surface point nearest to it, in the plant frame. Returns the distance between them,
- * metres. */
+/* Computes the position of sensor `column` of an asset and of the surface point nearest to it, in the plant frame. Returns the distance
+ * between them, metres. */
 static double place_sensor(const struct pair_half *half, size_t column, double place_m[3], double surface_m[3])
 {
     double nearest_m[3];
@@ -148,9 +149,9 @@ static double place_sensor(const struct pair_half *half, size_t column, double p
     return distance_m;
 }
 
-/* Returns how far the surface at a sensor moved, metres. For a sensor on the axis of a pipe, many surface points are equally near, and
- * rounding decides which one is found. So the surface counts as unmoved if the new surface passes through the old nearest point, and that
- * point is about as near as the new one. */
+/* Returns how far the surface at a sensor moved between the revisions, metres. For a sensor on the axis of a pipe, many surface points are
+ * equally near, and rounding decides which one is found. So the surface counts as unmoved if the new surface passes through the old nearest
+ * point, and that point is about as near as the new one. */
 static double surface_moved(const struct asset_pair *pair, const double place_m[3], const double old_m[3], const double new_m[3])
 {
     double plant_to_new[16], at[3], still_m[3], moved_m = vec_distance(old_m, new_m);
@@ -200,8 +201,8 @@ static void compare_sensors(struct diff *diff, struct asset_pair *pair)
     }
 }
 
-/* Searches the new model for a renamed node: one with the old shape at the old position. If there is one, writes its name to `why`;
- * otherwise `why` stays as it is and suggests a similar name. */
+/* Searches the new model for a node with another name that has the old asset's shape at the old position. If there is one, writes its name
+ * to `why`; otherwise `why` stays as it is and suggests a similar name. */
 static void find_renamed(struct diff *diff, const struct asset_pair *pair, const struct diff_side_asset *asset, double tolerance_m,
                          char *why)
 {

@@ -48,15 +48,16 @@ struct diff {
     size_t asset_room, sensor_room, orphan_room, added_room, removed_room;
 };
 
-/* Reads and compares both plants into *diff. tolerance_m: changes up to this are ignored; 0: 10 mm, or 1 % of the asset's diagonal if that
- * is less. Returns false if a plant cannot be read, with the reason in diag. Call diff_finish() in both cases. */
+/* Reads and compares both plants into *diff. tolerance_m: shapes and positions that differ by at most this count as equal; 0: 10 mm, or 1 %
+ * of the asset's diagonal if that is less. Returns false if a plant cannot be read, with the reason in diag. Call diff_finish() in both
+ * cases. */
 bool diff_run(struct diff *diff, const char *old_path, const char *new_path, double tolerance_m, struct diag *diag);
 /* Frees the result of diff_run(). */
 void diff_finish(struct diff *diff);
 
-/* Prints the comparison as text for users. */
+/* Prints the comparison of the two plants as text for users. */
 void diff_text(const struct diff *diff, FILE *out);
-/* Prints the comparison as one JSON object. Returns false if out of memory. */
+/* Prints the comparison of the two plants as one JSON object. Returns false if out of memory. */
 bool diff_json(const struct diff *diff, FILE *out);
 
 #endif

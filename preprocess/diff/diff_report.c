@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prints the result of a comparison as text and as JSON (REPORT.md). */
+/* Prints the comparison of two plants (diff_run()) as text and as JSON (REPORT.md). */
 #include <jansson.h>
 #include <stdlib.h>
 

@@ -11,8 +11,9 @@
 #include "preprocess/geometry/rigid_fit.h"
 #include "surface/mesh/bvh.h"
 
-#define SPREAD 100.0  /* number of points that are probed along a line as long as the shape's diagonal */
-#define PLACES_MAX 64 /* maximum number of points that are probed along a side of a triangle */
+/* number of points along a line as long as the shape's diagonal at which the distance from the other shape is measured */
+#define SPREAD 100.0
+#define PLACES_MAX 64 /* maximum number of points along a side of a triangle at which the distance from the other shape is measured */
 
 struct diff_shape {
     struct trimesh mesh;
@@ -20,8 +21,8 @@ struct diff_shape {
     double low[3], high[3];
 };
 
-/* Copies the points that the triangles use, in their order. A prepared asset has other points too, which belong to coarser levels and are
- * not on the surface. */
+/* Copies the vertices that the asset's triangles use, in their order. A prepared asset has other vertices too, which belong to coarser
+ * levels of detail and are not on the surface. */
 static void take_points(struct trimesh *mesh, const struct diff_side_shape *from)
 {
     char *used = mem_array(from->vertex_count, 1);
@@ -108,7 +109,7 @@ static bool try_place(struct shape_distance_search *search, const double p[3])
     return search->enough_m > 0 && search->worst_m > search->enough_m;
 }
 
-/* Measures the distance of points in a triangle from the other shape: points in rows parallel to one side. Larger triangles have more
+/* Measures the distance from the other shape at points in a triangle that lie in rows parallel to one side. Larger triangles have more
  * points. Returns true once the distance exceeds enough_m. */
 static bool try_triangle(struct shape_distance_search *search, const double *a, const double *b, const double *c, double spacing_m)
 {

@@ -19,13 +19,13 @@ double diff_shape_diagonal(const struct diff_shape *shape);
 /* Finds the point of the surface nearest to point_m and writes it to place_m. Returns the distance between both in metres. */
 double diff_shape_nearest(const struct diff_shape *shape, const double point_m[3], double place_m[3]);
 
-/* Moves b by the matrix b_to_a. Returns the largest distance in metres between a point of one surface and the other surface, in both
+/* Moves shape b by the matrix b_to_a. Returns the largest distance in metres between a point of one surface and the other surface, in both
  * directions. Measures at corners and at points spread over the triangles. If enough_m is not 0, stops once the distance exceeds
  * enough_m. */
 double diff_shape_apart(const struct diff_shape *a, const struct diff_shape *b, const double b_to_a[16], double enough_m);
 
-/* Finds the rigid motion that maps b's vertices to a's. Returns false if their numbers of vertices differ; assumes the same order of
- * vertices. */
+/* Finds the rigid motion that maps the vertices of shape b to those of shape a. Returns false if their numbers of vertices differ; assumes
+ * the same order of vertices. */
 bool diff_shape_motion(const struct diff_shape *a, const struct diff_shape *b, double b_to_a[16]);
 
 /* Returns the largest distance by which `motion` moves a corner of the shape's bounding box, in metres. */

@@ -95,7 +95,7 @@ static bool cut_shape(const struct gltf_model *model, const struct geometry_para
                                        .index_count = g.index_count,
                                        .own = true };
     memcpy(shape->origin_m, g.origin_m, sizeof(shape->origin_m));
-    g.positions_m = NULL; /* the shape owns this array and the next from here on: geometry_finish() must not free them */
+    g.positions_m = NULL; /* the shape owns the arrays of positions and triangles from here on: geometry_finish() must not free them */
     g.indices = NULL;
     geometry_finish(&g);
     return true;

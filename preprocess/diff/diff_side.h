@@ -9,7 +9,7 @@
 
 struct diff_side_tag {
     const char *name;
-    const char *asset; /* id in the column `asset` of the tag list's row, even if there is no such asset; "": none */
+    const char *asset; /* id in the column `asset` of the tag's row in the tag list, even if the plant has no such asset; "": none */
     size_t column;     /* index of the tag's sensor among the sensors of its asset */
     bool is_sensor;
 };
@@ -37,10 +37,10 @@ struct diff_side {
     void *root;
 };
 
-/* Opens a plant file or a folder of prepared files and lists its assets and tags. Returns false with the reason in diag. Call
- * diff_side_finish() in both cases. */
+/* Opens one of the two plants, a plant file or a folder of prepared files, and lists its assets and tags. Returns false with the reason in
+ * diag. Call diff_side_finish() in both cases. */
 bool diff_side_open(struct diff_side *side, const char *path, struct diag *diag);
-/* Frees the lists and the model in memory. */
+/* Frees the lists of assets and tags, and the model in memory. */
 void diff_side_finish(struct diff_side *side);
 /* Returns the tag with this name, or NULL. The tag belongs to `side`. */
 const struct diff_side_tag *diff_side_find_tag(const struct diff_side *side, const char *name);
@@ -53,7 +53,7 @@ struct diff_side_shape { /* triangles and sensor positions of an asset, relative
     double (*places_m)[3]; /* positions of the asset's sensors; NaN if a sensor's node does not exist */
     char **whys;           /* by sensor: reason why its node is missing or ambiguous; NULL: the sensor's position is known */
     size_t sensor_count;
-    bool own; /* the shape owns the arrays; false: they point into the mapped file */
+    bool own; /* true: the shape owns its arrays; false: they point into the mapped file */
     struct folder_file file;
 };
 /* Reads an asset's triangles and sensor positions into *shape. Returns false with the reason in why if they cannot be read; otherwise call
@@ -71,7 +71,7 @@ bool diff_side_node_in_box(struct diff_side *side, const struct diff_side_asset 
 /* Like diff_side_shape(), but with the triangles of model node `node` instead of the asset's own, and without sensors. */
 bool diff_side_shape_of_node(struct diff_side *side, const struct diff_side_asset *asset, uint32_t node, struct diff_side_shape *shape,
                              char why[MODEL_WHY_BYTES]);
-/* Frees or unmaps the shape's arrays. */
+/* Frees the arrays of the shape, or unmaps the file that they point into. */
 void diff_side_shape_finish(struct diff_side_shape *shape);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cuts an asset out of a model. */
+/* Cuts the mesh of an asset out of a model. */
 #include "preprocess/geometry/geometry.h"
 
 #include <math.h>
@@ -26,7 +26,7 @@
 
 /* --- selecting nodes ----------------------------------------------------------------------------------------------------- */
 
-/* Converts the nodes to the form that patterns are matched against. The caller frees the array with mem_free. */
+/* Converts a model's nodes to the form against which node patterns are matched. The caller frees the array with mem_free. */
 static struct model_node *nodes_of(const struct gltf_model *model)
 {
     struct model_node *nodes = mem_array(model->node_count, sizeof(*nodes));
@@ -139,7 +139,7 @@ static const struct node_box empty_box = { { INFINITY, INFINITY, INFINITY }, { -
 
 static void box_add_primitive(struct node_box *box, const struct gltf_primitive *primitive, const double world[16])
 {
-    /* includes all vertices in the box: the glTF reader has removed the vertices that no triangle uses */
+    /* the bounding box includes all vertices: the glTF reader has already removed those that no triangle uses */
     for (uint32_t i = 0; i < primitive->vertex_count; i++) {
         const float *p = primitive->positions[i];
         double q[3];
@@ -151,7 +151,8 @@ static void box_add_primitive(struct node_box *box, const struct gltf_primitive 
     }
 }
 
-/* Computes the median of the vertices as the origin, so that a stray vertex far away does not cost precision where most of the model is. */
+/* Computes the median of the asset's vertices, which becomes its origin, so that a stray vertex far away does not cost precision where most
+ * of the asset is. */
 static void median_of(const struct node_primitives *parts, const struct geometry_params *params, double median_m[3])
 {
     size_t count = 0, at = 0;
@@ -241,7 +242,7 @@ static bool several_places(const struct gltf_model *model, const char *pattern, 
                  pattern, numbers, count > SHOWN_NODES ? ", ..." : "");
 }
 
-/* Removes from the found nodes those outside the asset, unless all are outside. */
+/* Removes from the nodes found for a sensor those outside its asset, unless all are outside. */
 static size_t prefer_own(const struct gltf_model *model, const struct geometry_params *params, uint32_t *found, size_t count)
 {
     char why[MODEL_WHY_BYTES];

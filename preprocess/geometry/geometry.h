@@ -11,8 +11,8 @@ struct geometry {
     double origin_m[3]; /* centre of the mesh's bounding box; vertex positions are relative to it */
     float (*positions_m)[3];
     float (*normals)[3];
-    float (*texcoords)[2];        /* texture coordinates; NULL: no primitive has any */
-    float (*second_texcoords)[2]; /* second set of texture coordinates; NULL: no primitive has one */
+    float (*texcoords)[2];        /* texture coordinates of the vertices; NULL: no primitive has any */
+    float (*second_texcoords)[2]; /* second set of texture coordinates of the vertices; NULL: no primitive has one */
     uint8_t (*colors)[4];         /* vertex colours; NULL: no primitive has any */
     uint32_t *indices;
     struct asset_primitive *primitives;
@@ -38,18 +38,18 @@ struct geometry_params {
 /* Builds the asset's mesh from the model. Returns false with the reason in why; then geometry_finish() need not be called. */
 bool geometry_cut(struct geometry *geometry, const struct gltf_model *model, const struct geometry_params *params,
                   char why[MODEL_WHY_BYTES]);
-/* Frees the arrays of the mesh. */
+/* Frees the arrays of the asset's mesh. */
 void geometry_finish(struct geometry *geometry);
 
 /* Computes a hash of everything that geometry_cut() takes from the model (not of params): a changed model whose asset is unchanged has the
  * same hash. Returns false with the reason in why if geometry_cut() would fail. */
 bool geometry_hash(uint64_t *out, const struct gltf_model *model, const struct geometry_params *params, char why[MODEL_WHY_BYTES]);
 
-/* Returns the number of triangles that geometry_cut() would read, including those without area; 0 if it would find none. Fast; for
- * estimating work. */
+/* Returns the number of triangles that geometry_cut() would read, including those without area; 0 if it would find none. Fast; used to
+ * estimate the work of preparing the asset. */
 uint64_t geometry_triangles(const struct gltf_model *model, const struct geometry_params *params);
 
-/* Returns whether any triangle of the node's own mesh has an area. geometry_cut() refuses an asset that only has nodes without. */
+/* Returns whether any triangle of the node's own mesh has an area. geometry_cut() refuses an asset whose nodes all have no area. */
 bool geometry_node_has_area(const struct gltf_model *model, uint32_t node);
 
 /* Returns, for each node of the model, the bounding box (low, high) of its subtree's meshes in the asset frame; infinite if it has none.

@@ -79,7 +79,8 @@ bool geometry_hash(uint64_t *out, const struct gltf_model *model, const struct g
     XXH3_INITSTATE(&h.state);
     XXH3_64bits_reset(&h.state);
     h.texture = mem_array(model->texture_count + 1u, sizeof(*h.texture));
-    /* adds the counts of nodes, lines and points to the hash, because the report shows them: if they change, the report is outdated */
+    /* adds the counts of nodes, lines and points to the hash, because the report shows them: if they change, the stored report is
+     * outdated */
     const uint32_t numbers[3] = { counts.node_count, counts.skipped_lines, counts.skipped_points };
     hash_bytes(&h, numbers, sizeof(numbers));
     for (size_t i = 0; good && i < parts.count; i++) {

@@ -12,11 +12,11 @@ struct node_primitive { /* one primitive of one node */
 };
 
 struct node_primitives {
-    struct node_primitive *at; /* primitives sorted by material; those with transparent materials come last */
+    struct node_primitive *at; /* primitives of the asset, sorted by material; those with transparent materials come last */
     size_t count, capacity;
 };
-/* Lists the glTF primitives of the nodes that params select. Adds to geometry the counts of nodes, and of line and point primitives, which
- * are skipped. Returns false with the reason in why. The caller frees parts->at (mem_free) in both cases. */
+/* Lists the glTF primitives of the nodes that params select. Adds to `geometry` the counts of nodes, and of line and point primitives,
+ * which are skipped. Returns false with the reason in why. The caller frees parts->at (mem_free) in both cases. */
 bool node_primitives_find(struct node_primitives *parts, struct geometry *geometry, const struct gltf_model *model,
                           const struct geometry_params *params, char *why);
 
@@ -32,14 +32,14 @@ struct primitive_mesh {
     size_t vertex_count, index_count;
 };
 
-/* Computes the transform from a node's frame to the asset frame: the node's world matrix, then units and up axis. */
+/* Computes the transform from a node's frame to the asset frame: the node's world matrix, then the conversion to metres and Z up. */
 void primitive_world(const struct geometry_params *params, const struct gltf_node *node, double out[16]);
 
-/* Builds the primitive's triangles in the asset frame, relative to the geometry's origin, welded and ordered for the vertex cache. Returns
- * false if out of memory. Call primitive_mesh_finish() in both cases. */
+/* Builds the triangles of one glTF primitive in the asset frame, relative to the geometry's origin, welded and ordered for the GPU's vertex
+ * cache. Returns false if out of memory. Call primitive_mesh_finish() in both cases. */
 bool primitive_mesh(struct primitive_mesh *mesh, const struct node_primitive *part, const struct geometry_params *params,
                     struct geometry *geometry);
-/* Frees the arrays of the mesh. */
+/* Frees the arrays of the primitive's mesh. */
 void primitive_mesh_finish(struct primitive_mesh *mesh);
 
 /* Decodes the textures that the geometry's materials use into geometry->texels, and updates the materials' texture indices. Returns false

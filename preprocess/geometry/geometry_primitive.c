@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds the triangle mesh of one primitive of one node. */
+/* Builds the triangle mesh of one glTF primitive of one node. */
 #include <math.h>
 #include <meshoptimizer.h>
 #include <string.h>
@@ -85,7 +85,9 @@ bool geometry_node_has_area(const struct gltf_model *model, uint32_t number)
     for (uint32_t p = 0; p < count; p++) {
         const struct gltf_primitive *primitive = &model->primitives[model->meshes[node->mesh].first_primitive + p];
         double corners[3][3];
-        float relative[3][3]; /* to the first corner, because geometry_cut() computes areas near the origin, too */
+        /* corners relative to the first one: single precision then loses no digits, as in geometry_cut(), which computes areas near the
+         * origin */
+        float relative[3][3];
         for (uint32_t i = 0; i < primitive->index_count; i++) {
             const float *at = primitive->positions[primitive->indices[i]];
             transform_point(node->world, (const double[3]){ (double)at[0], (double)at[1], (double)at[2] }, corners[i % 3]);
@@ -117,8 +119,8 @@ static size_t take_triangles(const struct gltf_primitive *primitive, const float
     return count;
 }
 
-/* Flips a normal that contradicts the winding, which defines the outside; some exporters write such normals. Normals that only lean towards
- * a neighbouring face are kept. */
+/* Reverses a vertex normal that contradicts the winding of its triangle, which defines the outside; some exporters write such normals.
+ * Normals that only lean towards a neighbouring face are kept. */
 static void turn_outward(const float outward[3], float normal[3])
 {
     if (vecf_dot(normal, outward) < -0.2f)

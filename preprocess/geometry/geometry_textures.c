@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes the textures of an asset. */
+/* Decodes the texture images of an asset. */
 #include <string.h>
 
 #include "base/image/image.h"

@@ -10,9 +10,11 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define MANY 256 /* number of faces at one position up to which all pairs are compared; with more, a tree is searched (normals_half) */
+/* number of faces at one position up to which all pairs of face normals are compared; with more, a tree is searched (normals_half) */
+#define MANY 256
 #define LEAF 16
-/* cosine of the crease angle, 40 degrees: a cylinder with ten sides is shaded round, one with eight sides shows its edges */
+/* cosine of the crease angle, 40 degrees, up to which the normals of neighbouring faces are averaged: a cylinder with ten sides is shaded
+ * round, one with eight sides shows its edges */
 #define CREASE_COSINE 0.766
 
 static void face_normal(const float a[3], const float b[3], const float c[3], double out[3])
@@ -75,7 +77,8 @@ static bool around_init(struct around *a, const float (*positions)[3], size_t ve
 
 /* --- computing the mean normal of the faces at one position ------------------------------------------------------------------ */
 
-/* Adds the normal of the corner's face to the sum, weighted by the corner's angle, if it is within the crease angle of the normal `own`. */
+/* Adds the normal of a corner's face to the sum, weighted by the face's angle at the corner, if it is within the crease angle of the normal
+ * `own`. */
 static void add_face(const struct around *a, uint32_t corner, const double own[3], double sum[3])
 {
     const double *face = a->faces[corner / 3];
@@ -85,7 +88,7 @@ static void add_face(const struct around *a, uint32_t corner, const double own[3
         sum[axis] += a->angles[corner] * face[axis];
 }
 
-/* Writes the unit vector along the sum of normals, or the face's own normal if the sum is zero. */
+/* Writes the unit vector along the sum of face normals, or the face's own normal if the sum is zero. */
 static void take_direction(double sum[3], const double own[3], float out[3])
 {
     if (!(vec_normalize(sum) > 0))

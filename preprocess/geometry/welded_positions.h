@@ -13,9 +13,9 @@ struct welded_positions {
     size_t count;
 };
 
-/* Builds the map. Returns false if out of memory; then welded_finish() need not be called. */
+/* Builds the map from vertices to distinct positions. Returns false if out of memory; then welded_finish() need not be called. */
 bool welded_init(struct welded_positions *welded, const float (*positions_m)[3], size_t vertex_count);
-/* Frees the arrays of the map. */
+/* Frees the arrays of the map from vertices to positions. */
 void welded_finish(struct welded_positions *welded);
 
 #endif

@@ -14,7 +14,7 @@
 struct winding {
     const float (*positions)[3];
     size_t tri_count;
-    uint32_t (*places)[3]; /* by triangle: the position index of each corner */
+    uint32_t (*places)[3]; /* by triangle: the index of each corner's position (vertices at one position share the index) */
     signed char *facing;   /* by triangle: orientation relative to the first triangle of its group, 1 or -1; 0: not known yet */
     uint32_t *joined;
 };
@@ -31,7 +31,7 @@ static void sum_area(const struct winding *w, const uint32_t *indices, size_t co
     }
 }
 
-/* Reverses the triangles of the orientation that covers less area. Returns the number of these triangles. */
+/* Reverses those triangles of a connected group whose orientation covers less area. Returns the number of these triangles. */
 static uint32_t turn_smaller(const struct winding *w, uint32_t *indices, size_t count)
 {
     double area_m2[2];

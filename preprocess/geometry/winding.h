@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds triangles wound against their neighbours, which would look like holes from outside, and reverses them. Thread: any. */
+/* Finds triangles whose winding contradicts that of their neighbours, which would look like holes from outside, and reverses them. Thread:
+ * any. */
 #ifndef PREPROCESS_GEOMETRY_WINDING_H
 #define PREPROCESS_GEOMETRY_WINDING_H
 #include <stdbool.h>

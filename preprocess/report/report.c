@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prints the report as text: possible problems first, then tables. */
+/* Prints the report on preparing a plant as text: possible problems first, then tables. */
 #include "preprocess/report/report.h"
 
 #include <math.h>

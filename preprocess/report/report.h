@@ -16,7 +16,7 @@ struct report_concern *report_concerns(const struct prepare *prepare, size_t *co
 /* Frees a list of report_concerns(). */
 void report_concerns_free(struct report_concern *concerns, size_t count);
 
-/* Prints tables of the results, each limited to ROWS_MAX rows unless `all`. */
+/* Prints the report as tables, each limited to ROWS_MAX rows unless `all`. */
 void report_text(const struct prepare *prepare, bool all, FILE *out);
 /* Prints the report as one JSON object. Returns false if out of memory. */
 bool report_json(const struct prepare *prepare, FILE *out);

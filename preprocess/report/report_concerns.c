@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds possible problems in a report. */
+/* Finds possible problems that the report on preparing a plant lists. */
 #include <stdlib.h>
 
 #include "base/mem.h"
@@ -9,10 +9,11 @@
 #include "preprocess/subdivision/subdivide.h"
 #include "preprocess/report/text_table.h"
 
-/* minimum root mean square difference between two methods' distances that is reported, relative to the largest distance; smaller
- * differences come from the heat method, which smooths distances */
+/* minimum root mean square difference between an asset's distances and those of the heat method that is reported, relative to the largest
+ * distance; smaller differences come from the heat method, which smooths distances */
 #define METHODS_DIFFER 0.05
-/* factor on the error limit of subdivision; an error of the field above the product is reported; allows for single-precision rounding */
+/* factor on the error limit of subdivision; an interpolation error above the product is reported. Above 1 because of single-precision
+ * rounding */
 #define FIELD_SLACK 1.05
 /* share of an asset's surface on which the bend (interpolation error inside triangles) is too large or unknown; reported from this share
  * on */
@@ -76,8 +77,8 @@ static void add_numbers(struct concerns *concerns, const struct prepare_asset *a
                                (double)left->steps, text_table_number(left->edges).text));
 }
 
-/* Reports the bend (interpolation error inside triangles) of harmonic, fin and gp fields: these triangles are not refined for these fields,
- * only for those with distance weights. */
+/* Reports the bend (interpolation error inside triangles) of the fields harmonic, fin and gp. Subdivision does not refine triangles for
+ * these fields, only for fields with distance weights. */
 static void add_bend(struct concerns *concerns, const struct prepare_asset *asset)
 {
     const struct bend_report *bend = &asset->report.bend;
