@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the cells of a depth grid with a compute shader, which writes them to a buffer that the CPU maps. */
+/* Computes the cells of a frame's depth grid with a compute shader, which writes the cells to a buffer that the CPU maps. */
 #include "render/gl/depth_query.h"
 
 #include "gpu/mesh.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the cells of a frame's depth grid on the GPU. Thread: the one of the GL context. */
+/* Computes the cells of a frame's depth grid (depth_grid.h) on the GPU. Thread: the one of the GL context. */
 #ifndef RENDER_GL_DEPTH_QUERY_H
 #define RENDER_GL_DEPTH_QUERY_H
 #include "render/depth_grid.h"
@@ -8,16 +8,17 @@
 struct depth_query {
     GLuint program; /* program of shaders/depth_cells.comp, owned by the caller; zero-initialise all other members */
     GLuint buffer;
-    const struct depth_cell *cells; /* cells that the GPU finds, in GPU memory that is mapped into this process */
+    const struct depth_cell *cells; /* cells that the GPU computes, in GPU memory that is mapped into this process */
     size_t capacity;
     struct depth_lens lens;
     int width_px, height_px; /* size of the frame in pixels; 0: the frame gets no depth grid */
 };
 
-/* Starts to find the cells of the frame's depth grid on the GPU, if the frame gets a grid. Call it after the frame is resolved; the
-   previous frame that used the query must be complete. Returns false on a GL error, logged. */
+/* Starts computing the cells of the frame's depth grid on the GPU, if the frame gets a grid. Call it after the multisampled frame is
+   resolved. The previous frame that used this query must be complete. Returns false on a GL error, logged. */
 bool depth_query_start(struct depth_query *query, const struct frame_context *context, const struct light *light);
-/* Returns the frame's depth grid once the GPU has found its cells; the caller owns it. NULL: the frame gets no grid, or memory ran out. */
+/* Returns the frame's depth grid; call it after the GPU has computed the cells. The caller owns the grid. NULL: the frame gets no grid, or
+   memory ran out. */
 struct depth_grid *depth_query_get(const struct depth_query *query);
 void depth_query_finish(struct depth_query *query);
 

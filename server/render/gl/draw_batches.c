@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Collects draws into batches of equal GL state; draws within a batch keep their order. */
+/* Collects draw commands into batches of equal GL state; commands within a batch keep their order. */
 #include "render/gl/draw_batches.h"
 
 #include <string.h>
@@ -60,7 +60,7 @@ size_t draw_batches_choose(struct draw_batches *batches, const struct draw_batch
     return batches->count++;
 }
 
-/* Adds a draw command. It is merged with the last command if both belong to one asset and their indices are contiguous. */
+/* Adds a draw command. Merges it with the last command if both belong to one asset and their index ranges are contiguous. */
 static void add_command(struct draw_batches *batches, size_t batch, uint32_t instance, uint32_t first_index, uint32_t count, uint32_t shown)
 {
     size_t at = batches->command_count;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Collects the draws of a pass into batches that need the same GL state, so that each batch is one call, however many assets it draws. Data
-   that differ between assets are in buffers: the placement per instance, light and field values per vertex (gpu/pool.h). Order of calls:
-   begin, choose and add, upload, draw. Thread: the one of the GL context. */
+/* Collects the draw commands of a render pass into batches that need the same GL state, so that each batch is one GL call, however many
+   assets it draws. Data that differ between assets are in GPU buffers: the placement per instance, light and field values per vertex
+   (gpu/pool.h). Order of calls to draw_batches_*: begin, choose and add, upload, draw. Thread: the one of the GL context. */
 #ifndef RENDER_GL_DRAW_BATCHES_H
 #define RENDER_GL_DRAW_BATCHES_H
 #include "gpu/mesh.h"
@@ -44,7 +44,7 @@ struct draw_batch {
 struct draw_batches { /* zero-initialise, then set log */
     struct log *log;
     struct draw_batch *at;
-    size_t count, from; /* count: number of batches; from: a new draw may only join a batch with this index or a higher one */
+    size_t count, from; /* count: number of batches; from: a new draw command may only join batches from this index on */
     struct draw_instance *instances;
     struct draw_command *commands, *sorted; /* commands: in the order added; sorted: by batch */
     uint32_t *batch_of, *place_of;          /* by index in `commands`: index of the command's batch, and the command's index in `sorted` */
@@ -59,10 +59,10 @@ struct draw_batches { /* zero-initialise, then set log */
 void draw_batches_finish(struct draw_batches *batches);
 /* Removes all batches, commands and instances at the beginning of a pass. */
 void draw_batches_begin(struct draw_batches *batches, size_t model_count);
-/* Copies an instance into the pass's list and returns its index there. */
+/* Copies an instance (an asset's placement) into the list of instances and returns its index there. */
 uint32_t draw_batches_add_instance(struct draw_batches *batches, const struct draw_instance *instance);
-/* Returns the index of a batch with that state, and makes one if there is none. model: the model's index. in_order: draws must keep the
-   order in which they are added, so only the batch made last may be joined. */
+/* Returns the index of a batch with that state, and makes one if there is none. model: the model's index. in_order: draw commands must keep
+   the order in which they are added, so only the newest batch may be used again. */
 size_t draw_batches_choose(struct draw_batches *batches, const struct draw_batch_state *state, size_t model, bool in_order);
 /* Adds the draw of a whole submesh. shown: 1: the submesh is drawn; 0: it is drawn only if an occlusion test on the GPU enables the draw
    (render/gl/occlusion.h). */
@@ -71,14 +71,14 @@ void draw_batches_add_submesh(struct draw_batches *batches, size_t batch, const 
 /* Adds draws of those clusters of a submesh that culling does not remove. Returns the number of triangles added. */
 int draw_batches_add_seen(struct draw_batches *batches, size_t batch, const struct model_submesh *submesh, uint32_t instance,
                           const struct culling *culling);
-/* Sorts the draw commands by batch, and uploads commands and instances to the GPU. places: also uploads, for each command, its index in
-   `sorted` (place_buffer). Returns false when the GPU is out of memory, logged. */
+/* Sorts the draw commands by batch, and uploads commands and instances to the GPU. places true: also uploads, for each command, its index
+   in `sorted` (place_buffer). Returns false when the GPU is out of memory, logged. */
 bool draw_batches_upload(struct draw_batches *batches, bool places);
 /* Draws one batch. The caller has set the batch's state and bound its mesh. */
 void draw_batches_draw(const struct draw_batches *batches, const struct draw_batch *batch);
 
-/* Writes data into a buffer that changes with every frame; grows the buffer if needed. Returns false when the GPU is out of memory,
-   logged. */
+/* Overwrites a GL buffer with new data of a frame; grows the buffer if needed. *room: size of the buffer in bytes. Returns false when the
+   GPU is out of memory, logged. */
 bool draw_batches_refill(struct log *log, GLuint *buffer, size_t *room, size_t bytes, const void *data);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fills the uniform block that all draws of a frame share. */
+/* Fills the uniform block of shaders/frame.glsl, which all draw calls of a frame share. */
 #include "render/gl/frame_uniforms.h"
 
 #include <math.h>
@@ -43,8 +43,8 @@ static void fill_scale(struct frame_uniforms *block, const struct frame_context 
     block->lines[2] = block->lines[3] = 0;
 }
 
-/* Sets how the brightness of a surface selects a row of the colour map: any row, or always the middle row in views where light must not
-   change colours. */
+/* Sets block->shade: how the brightness of a surface selects a row of the shaded colour map. In looks where light must not change colours,
+   it is always the middle row. */
 static void fill_shade(struct frame_uniforms *block, const struct view *view)
 {
     /* brightness range that the colour map's rows cover; darker or brighter surfaces are clamped */
@@ -72,7 +72,7 @@ static void fill_clip(struct frame_uniforms *block, const struct frame_context *
     }
 }
 
-/* Brightness of assets without a field before a dark backdrop. It is reduced because large pale floors would glare. */
+/* Factor of the brightness of assets without a field before a dark backdrop: there, large pale floors would glare at full brightness. */
 static const float DIM_CONTEXT = 0.55f;
 
 void frame_uniforms_fill(struct frame_uniforms *block, const struct frame_context *context)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A fixed number of slots for frames whose results the GPU has not delivered yet: pixels, visibility of markers and of labels, depth. With
-   several slots one frame is drawn while the pixels of another are read back. Thread: the one of the GL context. */
+   several slots, the GPU draws one frame while the pixels of another are copied to main memory. Thread: the one of the GL context. */
 #ifndef RENDER_GL_FRAMES_IN_FLIGHT_H
 #define RENDER_GL_FRAMES_IN_FLIGHT_H
 #include "gpu/readback.h"

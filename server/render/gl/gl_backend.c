@@ -16,15 +16,15 @@
 #include "render/renderer_impl.h"
 
 enum { REFINED_SAMPLES = 4 };
-/* TILE_NS: target duration of drawing a tile where GL runs on the processor; TRIANGLE_NS: expected time per triangle there; both in
-   nanoseconds. */
+/* TILE_NS: target duration of drawing a tile where GL runs on the processor (no GPU). TRIANGLE_NS: expected time per triangle there. Both
+   in nanoseconds. */
 static const int64_t TILE_NS = 4 * NS_PER_MS;
 static const double TRIANGLE_NS = 36;
 enum { TILE_TRIANGLES = 80000 };
 /* GPU time in nanoseconds of the last refined frame, below which the next one is drawn in one call, like a preview, instead of in steps. */
 static const int64_t MAX_QUICK_NS = 12 * NS_PER_MS;
 /* Minimum number of triangles in a frame for occlusion culling: a slow GPU needs about half a millisecond to draw them. Where GL runs on
-   the processor, testing boxes costs more than it saves. */
+   the processor, testing the bounding boxes of assets costs more than it saves. */
 enum { OCCLUSION_MIN_TRIANGLES = 250000 };
 /* Expected time per pixel and pass of GL on a processor in nanoseconds, until measured. */
 static const double INITIAL_PIXEL_NS[GL_PASSES] = { 200, 20 };
@@ -142,8 +142,8 @@ static void abandon(struct renderer *renderer, struct render_job *job)
 
 /* --- tiles ------------------------------------------------------------------------------------------------------------------ */
 
-/* Draws a part of the tile. Returns the expected time of the triangles drawn, which does not depend on how many pixels they cover. *done:
-   all of the tile is drawn. */
+/* Draws some of the tile's surfaces. Returns TRIANGLE_NS times the number of triangles drawn: the expected part of the time that does not
+   depend on pixels. *done: true once the whole tile is drawn. */
 static double draw_surfaces(struct renderer *renderer, struct render_job *job, const struct tile *tile, bool *done)
 {
     struct gl_job *own = job->of.gl;
@@ -223,7 +223,7 @@ static bool step(struct renderer *renderer, struct render_job *job, int64_t budg
     int cells = count_cells(job);
     unsigned shortages = gl_out_of_memory_count();
     if (own->tiles.next < cells && !take_up(renderer, job))
-        own->tiles.next = cells; /* if take_up() fails, no further steps are made: end() repeats the call and reports the error */
+        own->tiles.next = cells; /* take_up() failed: no further tiles are drawn; end() calls take_up() again and reports the error */
     while (own->tiles.next < cells && (spent_ns == 0 || spent_ns + (last_ns > TILE_NS ? last_ns : TILE_NS) <= budget_ns)) {
         int64_t work_ns = clock_work_ns();
         struct drawn_tile drawn = draw_tile(renderer, job);

@@ -20,12 +20,12 @@ struct gl_backend {
     struct frames_in_flight frames_in_flight;
     GLuint frame_buffer; /* uniform buffer of struct frame_uniforms */
     struct targets targets;
-    double pixel_ns[GL_PASSES]; /* last measured time per pixel, by pass (enum gl_pass) */
+    double pixel_ns[GL_PASSES]; /* last measured drawing time per pixel in nanoseconds, by pass (enum gl_pass) */
     int64_t refined_ns;         /* GPU time of the last refined frame; 0: unknown */
 };
 
-/* Binds light, colour map and uniforms of a frame; needed again after other frames were drawn. Returns false when out of GPU memory,
-   logged. */
+/* Binds the light set, the colour map and the uniforms of a frame in GL. Call it again when the frame is continued after others were drawn.
+   Returns false when out of GPU memory, logged. */
 bool gl_backend_take_up(struct renderer *renderer, struct frame_context *context);
 
 #endif

@@ -28,10 +28,10 @@ const struct model_level *gpu_scene_level(const struct gpu_scene *gpu_scene, con
                                           double error_px);
 
 /* Draws the depth of one asset into the caller's framebuffer and viewport, using the coarsest level of detail with an error of at most
-   error_m. clip: section planes. blended: transparent submeshes are drawn as well. Pixels that alpha masks cut out stay empty. */
+   error_m. clip: section planes. blended true: draws transparent submeshes as well. Holes that a texture's alpha mask cuts stay holes. */
 void gpu_scene_draw_depth(const struct gpu_scene *gpu_scene, const double clip_from_plant[16], const struct clip *clip, int asset,
                           double error_m, bool blended);
-/* Enables and disables the clip distances of the view's section planes around draws with programs that clip. */
+/* Enable and disable GL's clip distances for the view's section planes, before and after draw calls of shader programs that write them. */
 void gpu_scene_clip_begin(const struct clip *clip);
 void gpu_scene_clip_end(const struct clip *clip);
 /* Tells GL which winding of triangles is the front for an asset: a mirrored placement reverses the winding. */

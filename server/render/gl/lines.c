@@ -22,7 +22,7 @@ void lines_finish(struct gl_lines *lines)
     glDeleteVertexArrays(1, &lines->vao);
 }
 
-/* Draws a full-screen triangle over the resolved frame, with blending. */
+/* Runs a line program on every pixel of the resolved frame and blends its output over the picture. */
 static void draw_over(const struct gl_lines *lines, const struct frame_context *context, GLuint program)
 {
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, context->target->over_framebuffer);

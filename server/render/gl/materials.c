@@ -31,7 +31,7 @@ static GLuint upload_texture(const struct asset_view *view, const struct asset_t
     return name;
 }
 
-/* Averages the colours of a texture in linear light, over about 10,000 evenly spaced texels. */
+/* Computes a texture's mean colour in linear light from about 10,000 evenly spaced texels. */
 static void texture_mean(const struct asset_view *view, const struct asset_texture *texture, float mean[3])
 {
     const uint8_t *texels = view->texels + texture->offset;

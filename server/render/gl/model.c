@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Uploads an asset file and groups its triangles by material. */
+/* Uploads an asset file's geometry to the GPU and groups its triangles by material into submeshes. */
 #include "render/gl/model.h"
 
 #include <math.h>
@@ -118,8 +118,8 @@ void model_draw_submesh(const struct model_submesh *submesh)
         glMultiDrawElements(GL_TRIANGLES, submesh->counts, GL_UNSIGNED_INT, submesh->offsets, submesh->draws);
 }
 
-/* Adds a draw of an index range, or extends the last draw if the range follows directly on it. Returns the number of draws in the list
-   afterwards. */
+/* Appends an index range to the list of draws, or extends the last draw if the range directly follows it. Returns the new number of
+   draws. */
 static size_t add_draw(struct model_draws *draws, size_t count, uint32_t first_index, uint32_t index_count)
 {
     const void *offset = (const void *)((uintptr_t)first_index * 4);

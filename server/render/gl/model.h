@@ -46,7 +46,7 @@ struct gl_model {
     GLuint *textures;
     size_t level_count, material_count, texture_count;
     GLuint material_buffer;
-    uint32_t *ramp_texels[MODEL_RAMPS]; /* MODEL_LIGHT_STEPS per material, from ramp_fill() */
+    uint32_t *ramp_texels[MODEL_RAMPS]; /* MODEL_LIGHT_STEPS colours per material, computed by ramp_fill() */
     GLuint ramps[MODEL_RAMPS];          /* textures of the colour ramps, by MODEL_MUTED and MODEL_OWN; one row per material */
 };
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Occlusion culling: bounding boxes, the draw commands that the test of a box enables, and the GPU buffers for boxes and commands. */
+/* Occlusion culling: computes bounding boxes of assets, uploads them with the draw commands that each box's test enables, and runs the
+   tests. */
 #include "render/gl/occlusion.h"
 
 #include <limits.h>
@@ -10,10 +11,10 @@
 #include "render/matrix.h"
 
 enum { BIND_COMMANDS = 1, BIND_PLACES = 2, STRIP_VERTICES = 14 };
-/* Occlusion culling draws assets in rounds, nearest first, and tests the boxes of the next round against the depth so far. The first round
-   draws 1/8 of all triangles untested; each later round draws as many as all rounds before. */
+/* Occlusion culling draws assets in rounds, nearest first, and tests the bounding boxes of the next round's assets against the depth buffer
+   so far. The first round draws 1/8 of all triangles untested; each later round draws as many as all rounds before. */
 enum { FIRST_ROUND_DIVISOR = 8 };
-/* minimum number of triangles of an asset whose box is tested: drawing fewer costs no more than the test */
+/* minimum number of triangles of an asset whose bounding box is tested: drawing fewer triangles costs no more than the test */
 static const int MIN_TESTED_TRIANGLES = 200;
 static const double MARGIN_PART = 1e-3; /* margin around an asset's box, as a part of its size, because positions are 32-bit floats */
 /* additional margin around an asset's box in pixels, at the distance of the box's farthest corner: GPUs round sample coverage */
@@ -82,8 +83,8 @@ static bool make_box(const struct view_constants *constants, const struct scene_
     return true;
 }
 
-/* Adds the occlusion state of an asset. Assets that are shifted towards the viewer (scene_asset.front) may extend beyond their box, so they
-   are drawn without a test. */
+/* Adds the occlusion state of an asset. Assets whose depth is shifted towards the viewer (scene_asset.front) may be in front of their
+   bounding box, so they are drawn without a test. */
 static struct occlusion_asset add_asset(struct occlusion *occlusion, const struct frame_context *context, int index)
 {
     const struct scene_asset *asset = &context->gpu_scene->scene->assets[index];

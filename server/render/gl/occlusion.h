@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Occlusion culling of assets: an asset's bounding box is tested against the depth drawn so far, without writing; a shader that finds a
-   visible fragment enables the asset's draw commands on the GPU, so nothing is read back. Conservative: the box encloses the asset with a
-   margin larger than any rounding, so culling never changes a pixel. Thread: the one of the GL context. */
+/* Occlusion culling of assets: the GPU tests an asset's bounding box against the depth drawn so far, without writing depth. If a fragment
+   of the box is visible, the shader enables the asset's draw commands in the command buffer, so the CPU reads nothing back. Conservative:
+   the box encloses the asset with a margin larger than any rounding, so culling never changes a pixel. Thread: the one of the GL
+   context. */
 #ifndef RENDER_GL_OCCLUSION_H
 #define RENDER_GL_OCCLUSION_H
 #include "render/gl/draw_batches.h"
@@ -31,16 +32,16 @@ struct occlusion { /* culling state of the frame drawn last; zero-initialise, th
 /* Compiles the shader program of the box test. Returns false on failure, logged. */
 bool occlusion_init(struct occlusion *occlusion, struct log *log);
 void occlusion_finish(struct occlusion *occlusion);
-/* Collects the boxes of all visible assets; call before opaque draws are collected. Returns false if the frame has fewer than
+/* Collects the boxes of all visible assets; call before the opaque draw commands are collected. Returns false if the frame has fewer than
    least_triangles triangles: the tests would cost more than they save, so all assets must be drawn. */
 bool occlusion_begin(struct occlusion *occlusion, const struct frame_context *context, int least_triangles);
 /* Returns how many of the visible assets, from index `first` on, the next round should draw before it tests again. The first round draws an
    eighth of all triangles, each later one but the last as many as all rounds before it. Pure. */
 enum { OCCLUSION_ROUNDS = 6 };
 size_t occlusion_round(const struct occlusion *occlusion, size_t first);
-/* Records the range of draw commands that the box test of an asset enables. */
+/* Stores which range of draw commands the test of an asset's bounding box enables. */
 void occlusion_decides(struct occlusion *occlusion, const struct occlusion_asset *asset, size_t first_command, size_t count);
-/* Uploads the boxes. Returns false when the GPU is out of memory, logged. */
+/* Uploads the bounding boxes to the GPU. Returns false when the GPU is out of memory, logged. */
 bool occlusion_upload(struct occlusion *occlusion);
 /* Tests the boxes of visible assets first..end-1 against the depth drawn so far. Changes the program, bindings, face culling and polygon
    offset; all other GL state of the pass (render/gl/surface_pass.c) stays unchanged. */

@@ -7,7 +7,7 @@
 #include "render/matrix.h"
 #include "render/gl/surface_pass.h"
 
-/* maximum number of pixels of a frame that is supersampled; larger frames use one texel per pixel */
+/* maximum number of pixels of a frame whose caps are supersampled (several texels per pixel); larger frames use one texel per pixel */
 enum { MAX_SUPERSAMPLED_PIXELS = 4 * 1024 * 1024 };
 
 bool section_caps_init(struct section_caps *caps, struct log *log)

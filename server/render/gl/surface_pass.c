@@ -11,14 +11,14 @@
 
 /* Uniform locations and texture units; must match the shaders. */
 enum { MATERIAL = 2, TEXTURES = 3 };
-/* Polygon offset factor per step of scene_asset.front (rank of an asset whose faces coincide with another asset's). GPUs round corners to
-   fractions of a pixel, differently for each triangle, so coincident faces differ in depth by a fraction of their slope. */
+/* Polygon offset factor per unit of scene_asset.front, the rank among assets whose faces coincide. GPUs round corners to fractions of a
+   pixel, differently for each triangle, so coincident faces differ in depth by a fraction of their depth slope. */
 static const double FORWARD_SLOPE = 0.05;
 enum { UNIT_COLORMAP = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3, UNIT_LIGHTS = 12, UNIT_SCALARS = 13, UNIT_LINES = 15 };
 
-/* Returns whether a program is compiled at start; others are compiled when first used. Compiled at start are variants that most plants use:
-   in previews, textures are used only for the holes they cut; without SURFACE_FIELD, only the plain program and the textured one of refined
-   frames are frequent. */
+/* Returns whether a variant of the shader program is compiled at start because most plants use it; others are compiled when first used.
+   Previews use textures only for the holes they cut. Without SURFACE_FIELD, only the plain program and the textured one of refined frames
+   are frequent. */
 static bool is_used(int tier, int variant)
 {
     if (variant & SURFACE_CLIP)
@@ -86,8 +86,8 @@ static enum surface_program_kind kind_of(const struct frame_context *context, co
     return context->measured ? picture + SURFACE_MEASURE : picture;
 }
 
-/* Returns the features, of enum surface_variant, with which one material of an asset is drawn. field: NULL: the asset shows none. cut: a
-   section plane cuts the asset. */
+/* Returns the shader features (enum surface_variant) with which one material of an asset is drawn. field NULL: the asset shows no field.
+   cut: a section plane cuts the asset. */
 static int choose_variant(const struct frame_context *context, const struct model_material *material, const struct fields_entry *field,
                           bool cut)
 {
@@ -110,7 +110,7 @@ static int choose_variant(const struct frame_context *context, const struct mode
     return variant | (cut ? SURFACE_CLIP : 0);
 }
 
-/* Returns the program for these features, compiled on first use. 0: compiling failed, logged. */
+/* Returns the shader program with the features `variant`, compiled on first use. 0: compiling failed, logged. */
 static GLuint choose_program(struct surface_pass *pass, const struct frame_context *context, const struct fields_entry *field, int variant)
 {
     enum surface_program_kind kind = kind_of(context, field);
@@ -160,8 +160,8 @@ static void place_instance(const struct frame_context *context, int index, const
     out->normals[2][3] = 0;
 }
 
-/* Collects one asset's surfaces, either the blended or the opaque ones. An asset that shows a field is always opaque, since blending would
-   mix the field's colours. hidden: drawn only if the GPU's occlusion test enables the draw. */
+/* Adds draw commands for one asset's blended or opaque surfaces to `batches`. An asset that shows a field is always opaque, since blending
+   would mix the field's colours. hidden true: the GPU draws the asset only if its occlusion test enables the commands. */
 static void gather(struct surface_pass *pass, struct draw_batches *batches, const struct frame_context *context, int index, bool hidden)
 {
     const struct gpu_scene *gpu_scene = context->gpu_scene;

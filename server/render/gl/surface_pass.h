@@ -6,8 +6,8 @@
 #include "render/gl/occlusion.h"
 #include "render/frame_context.h"
 
-/* Features with which a shader program is compiled, or'ed. Each draw uses the program with the fewest features, since a software GL runs
-   every branch. RICH: isolines and non-linear scales; RICH without FIELD: the surface is grey. */
+/* Features with which a shader program is compiled, or'ed. Each draw call uses the program with the fewest features, since a software GL
+   runs every branch. RICH: isolines and non-linear scales; RICH without FIELD: the surface is grey. */
 enum surface_variant {
     SURFACE_FIELD = 1,
     SURFACE_RICH = 2,
@@ -17,7 +17,8 @@ enum surface_variant {
     SURFACE_VARIANTS = 32
 };
 
-/* Output of a program. All kinds but SURFACE_PICTURE are compiled when first needed. */
+/* Kind of a surface program: whether it writes colours or (MEASURE) field values, and where the field is computed. Programs of all kinds
+   but SURFACE_PICTURE are compiled when first needed. */
 enum surface_program_kind {
     SURFACE_PICTURE,
     SURFACE_PIXEL_FIELD,
@@ -43,7 +44,7 @@ struct surface_pass {
 /* Compiles the programs of SURFACE_PICTURE. Returns false on failure, logged. */
 bool surface_pass_init(struct surface_pass *pass, struct log *log);
 void surface_pass_finish(struct surface_pass *pass);
-/* Draws the assets in slices. surface_pass_draw_some() draws opaque submeshes of the visible assets from index `first` on until about
+/* Draw the visible assets in steps. surface_pass_draw_some() draws opaque submeshes of the visible assets from index `first` on until about
    `triangles` triangles are drawn, and returns the index at which to continue. surface_pass_draw_blended() then draws all transparent
    ones. */
 size_t surface_pass_draw_some(struct surface_pass *pass, const struct frame_context *context, size_t first, int triangles);

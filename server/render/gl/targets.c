@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A cache of render targets: a fixed array, newest first. */
+/* A cache of free render targets (framebuffers): a fixed array, most recently used first. */
 #include "render/gl/targets.h"
 
 #include <string.h>
@@ -32,7 +32,7 @@ size_t targets_bytes(const struct targets *targets)
     return bytes;
 }
 
-/* Frees the oldest render targets until the rest fits the memory limit; the newest target always stays. */
+/* Frees the least recently used render targets until the rest fits the memory limit; the most recently used one always stays. */
 static void keep_bound(struct targets *targets)
 {
     for (int i = TARGETS - 1; i > 0 && targets->bound_bytes && targets_bytes(targets) > targets->bound_bytes; i--)

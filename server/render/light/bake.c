@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bakes light with depth maps and compute shaders, in small steps: one asset drawn into one depth map, a few thousand points, or some rows
-   of the ground. */
+/* Bakes light with depth maps and compute shaders, in small steps. A step draws one asset into one depth map, or computes the light of a
+   few thousand vertices or of some rows of the ground texture. */
 #include "render/light/bake.h"
 
 #include <math.h>
@@ -15,16 +15,17 @@
 enum { SKY_DIRECTIONS = 32, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096 };
 /* openness (0..255) of every point in a rough light set, which is baked without computing openness */
 static const uint8_t ROUGH_OPENNESS = 190;
-/* length, in texels of the sky's depth maps, from which the longest edge of a triangle makes it a large one. Light is also sampled inside
-   large triangles: otherwise one vertex in a dark corner would darken the whole triangle */
+/* A triangle is large if its longest edge is at least this long, in texels of the sky's depth maps. Light is also sampled inside large
+   triangles: otherwise one vertex in a dark corner would darken the whole triangle. */
 static const double LARGE_FACE_TEXELS = 8;
-/* empty border of the sun's shadow map, as a fraction of its width, because a lookup also reads texels around its point */
+/* empty border of the sun's shadow map, as a fraction of its width: a filtered lookup also reads the texels around a point */
 static const double SUN_MARGIN = 0.002;
 /* lower bound of openness (0: no sky is visible from a point, 1: the whole sky) if the hidden assets are as large as the plant;
    proportionally less if they are smaller */
 static const double OPEN_AT_LEAST = 0.6;
-/* Size of one step of the bake where GL runs on a processor. VERTICES: number of vertices, or of sample points in large triangles; ROWS:
-   number of rows of the ground. SKY_: openness is baked, too; SUN_: only sunlight. A GPU bakes everything in one step. */
+/* Size of one step of the bake where GL runs on a processor. _VERTICES: number of vertices, or of sample points in large triangles; _ROWS:
+   number of rows of the ground texture. SKY_: for bakes that include openness; SUN_: for bakes of sunlight only. A GPU bakes everything in
+   one step. */
 enum { SKY_VERTICES = 4096, SUN_VERTICES = 65536, SKY_ROWS = 8, SUN_ROWS = 128 };
 
 /* Must match shaders/bake.comp. */
@@ -38,7 +39,7 @@ struct bake {
     const struct bake_programs *programs;
     const double *plant_from_ground;
     struct light_set set;
-    /* visibility of assets as set in the plant file; the sky's depth maps are drawn with it */
+    /* visibility of assets as set in the plant file; only assets visible in it are drawn into the sky's depth maps */
     struct visibility start;
     bool with_sky;
     struct directions_block *directions;
@@ -112,8 +113,8 @@ static int sun_map_px(const struct gpu_scene *gpu_scene)
     return SUN_MAP_PX < gpu_scene->gl->max_texture_px ? SUN_MAP_PX : gpu_scene->gl->max_texture_px;
 }
 
-/* Draws the depth of one asset into a depth map, if the asset is shown. layer: layer of the map; -1: the map is no array. error_m: largest
-   error of the level of detail. */
+/* Draws the depth of one asset into a depth map, if `shown` includes the asset. layer: layer of the map; -1: the map is no array. error_m:
+   largest geometric error of the level of detail that is drawn. */
 static void draw_on_map(struct bake *bake, GLuint map, int layer, int size_px, const double clip_from_plant[16],
                         const struct visibility *shown, double error_m)
 {
@@ -135,7 +136,7 @@ static void draw_on_map(struct bake *bake, GLuint map, int layer, int size_px, c
 }
 
 /* Returns the i-th of SKY_DIRECTIONS directions evenly distributed over the sphere (Fibonacci lattice). Directions from below have less
-   than half the brightness of the sky: light reflected from the ground. */
+   than half the sky's brightness, because their light is reflected from the ground. */
 static void sky_direction(const struct gpu_scene *gpu_scene, int i, double towards[3], float *brightness)
 {
     double height = 1 - (2 * i + 1.0) / SKY_DIRECTIONS, angle = i * 2.399963229728653, flat = sqrt(1 - height * height);

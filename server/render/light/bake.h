@@ -19,7 +19,7 @@ struct light_key {
 struct light_set {
     uint64_t id; /* unique, never reused; 0: empty */
     struct light_key key;
-    double texture_from_plant[16]; /* matrix from the plant frame to texture coordinates and depth of sun_map */
+    double texture_from_plant[16]; /* matrix from plant coordinates to texture coordinates and depth of sun_map */
     double texel_m, depth_m;       /* side of a texel of sun_map, and difference between the ends of its depth range, in metres */
     GLuint sun_map;
     GLuint ground; /* texture of the ground in the format RG8: visible part of the sun, and openness */
@@ -38,23 +38,23 @@ bool bake_programs_init(struct bake_programs *programs, struct log *log);
 void bake_programs_finish(struct bake_programs *programs);
 
 struct bake;
-/* Returns the lower bound of openness, 0..1, if these assets are visible. The bound keeps surfaces next to hidden assets from staying
-   dark. */
+/* Returns the lower bound of openness (0..1) for a light set in which only the assets in `shown` are visible. The bound keeps surfaces next
+   to hidden assets from staying dark. */
 double bake_least_open(const struct gpu_scene *gpu_scene, const struct visibility *shown);
-/* Begins to bake a light set for `key`. Openness is most of the work, so it is taken from elsewhere if possible. from: a light set to copy
-   openness from, read during the call only. `from` must not be rough, and bake_least_open() of its visibility must not exceed that of the
-   key's. kept: the plant's openness file, used if `from` is NULL; read during the call only. If both are NULL, openness is baked as well,
-   unless the key is rough. The caller ends the bake with bake_end() or bake_abandon(). Returns NULL when the GPU is out of memory,
+/* Begins to bake a light set for `key`. Openness is most of the work, so it is taken from elsewhere if possible. from: a light set whose
+   openness is copied; read during the call only. `from` must not be rough, and bake_least_open() of its visibility must not exceed that of
+   the key's. kept: the plant's openness file, used if `from` is NULL; read during the call only. If both are NULL, openness is baked as
+   well, unless the key is rough. The caller ends the bake with bake_end() or bake_abandon(). Returns NULL when the GPU is out of memory,
    logged. */
 struct bake *bake_begin(const struct gpu_scene *gpu_scene, const struct bake_programs *programs, const double plant_from_ground[16],
                         const struct light_key *key, const struct light_set *from, struct openness *kept);
 /* Returns the key that the bake was begun with. */
 const struct light_key *bake_key(const struct bake *bake);
-/* Issues the next few milliseconds of work; the key's environment must be bound (render/light/environments.h). Returns true once all work
-   is issued. */
+/* Issues GL calls for the next few milliseconds of the bake; the key's environment must be bound (render/light/environments.h). Returns
+   true once all calls of the bake are issued. */
 bool bake_step(struct bake *bake);
-/* Moves the result into *set, except the members `used` and `holds`, and frees *bake. Returns false on a GL error, which is logged; *set is
-   unchanged then. */
+/* Moves the finished light set into *set, except the members `used` and `holds`, and frees *bake. Returns false on a GL error, which is
+   logged; *set is unchanged then. */
 bool bake_end(struct bake **bake, struct light_set *set);
 /* Frees *bake without a result and sets it to NULL. Accepts a pointer to NULL. */
 void bake_abandon(struct bake **bake);

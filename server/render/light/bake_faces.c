@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the large triangles of an asset, inside of which light is sampled too. */
+/* Finds the large triangles of an asset. Light is sampled inside them, too, not only at their vertices. */
 #include "render/light/bake_faces.h"
 
 #include "base/mem.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Convolves environment maps into irradiance and prefiltered reflections, on the workers. */
+/* Convolves environment maps (pictures of the surroundings) into irradiance and prefiltered reflections, on worker threads. */
 #include "render/light/environment.h"
 
 #include <math.h>
@@ -13,21 +13,22 @@
    harmonics */
 enum { SKY_WIDTH = 8, SKY_HEIGHT = 256 };
 enum { BASE_PX = 256, PYRAMID = 6, SAMPLES = 128 };
-/* factor of the mean radiance at which radiance is clipped: brighter spots are sun or lamps, and the renderer adds the sun as a separate
-   light */
+/* Radiance is clipped at this multiple of the environment map's mean radiance: brighter spots are the sun or lamps, and the renderer adds
+   the sun as a separate light. */
 static const double MAX_RADIANCE_FACTOR = 24;
 /* Side in pixels of the reflection map for each roughness layer: rough layers are smooth, so they are computed at low resolution and
    enlarged. */
 static const int layer_px[ENVIRONMENT_LAYERS] = { 128, 128, 128, 64, 64, 32, 32, 32 };
 
-/* an environment map being processed: first an equirectangular image, then a pyramid of octahedral maps (each level half the size) in plant
-   axes */
+/* An environment map being processed. pixels: an equirectangular image. pyramid: octahedral maps in plant axes made from it, each level
+   half the size of the previous one. */
 struct environment_source {
     const float (*pixels)[4];
     int width, height;
     /* y_up: true: +y of the plant is up, false: +z; even: true: radiance depends on elevation only, as in the built-in sky */
     bool y_up, even;
-    /* factor: exposure and white balance, by colour channel; most: upper limit of the brightest channel before the factor is applied */
+    /* factor: exposure and white balance, by colour channel; most: radiance at which the brightest channel is clipped before the factor is
+       applied */
     double factor[3], most;
     float (*pyramid[PYRAMID])[4];
 };
@@ -97,7 +98,7 @@ static float (*make_sky(void))[4]
     return pixels;
 }
 
-/* Returns the direction of a pixel's centre in plant axes. */
+/* Returns the direction, in plant axes, of the centre of a pixel of the equirectangular image. */
 static void pixel_direction(const struct environment_source *source, int x, int y, double towards[3])
 {
     double down = M_PI * (y + 0.5) / source->height, turn = 2 * M_PI * (x + 0.5) / source->width - M_PI;
@@ -209,8 +210,8 @@ struct environment_job {
     const struct lobe *lobe; /* sample rays of the roughness layer; NULL for layer 0, a perfect mirror */
 };
 
-/* Returns the index of the texel that represents texel `i`: texels with equal light are computed once. In a sky that depends on elevation
-   only, the octahedral map repeats in eight equal triangles or, with y up, in two halves. */
+/* Returns the index of the texel whose computed light texel `i` copies: texels with equal light are computed once. In a sky that depends on
+   elevation only, the octahedral map repeats in eight equal triangles or, with y up, in two halves. */
 static size_t twin_of(const struct environment_source *source, int side_px, size_t i)
 {
     int x = (int)(i % (size_t)side_px), y = (int)(i / (size_t)side_px);
@@ -230,7 +231,7 @@ static void copy_to_twins(const struct environment_source *source, int side_px, 
         memcpy(texels[i], texels[twin_of(source, side_px, i)], sizeof(*texels));
 }
 
-/* Fills rows of the pyramid's finest level: each texel is the mean of 4 x 4 points of the environment map. */
+/* Fills rows of the finest level of source->pyramid: each texel is the mean of 4 x 4 points of the environment map. */
 static void base_rows(void *arg, size_t begin, size_t end)
 {
     struct environment_job *job = arg;
@@ -279,8 +280,8 @@ static void frame_of(const double n[3], double t[3], double b[3])
     vec_cross(n, t, b);
 }
 
-/* Returns the pyramid level whose texels cover the solid angle that one sample ray represents. alpha: roughness squared; n_h: cosine
-   between normal and half vector. */
+/* Returns the level of source->pyramid whose texels cover about the solid angle that one sample ray represents. alpha: roughness squared;
+   n_h: cosine between normal and half vector. */
 static int level_of(double alpha, double n_h)
 {
     double d = n_h * n_h * (alpha * alpha - 1) + 1, density = alpha * alpha / (M_PI * d * d) / 4;
@@ -289,7 +290,7 @@ static int level_of(double alpha, double n_h)
     return level < PYRAMID - 1 ? level : PYRAMID - 1;
 }
 
-struct lobe { /* sample rays around a normal, which all texels of one roughness layer share */
+struct lobe { /* sample rays relative to the surface normal; the same for all texels of one roughness layer */
     int count, level[SAMPLES];
     double n_l[SAMPLES], flat[SAMPLES], cosine[SAMPLES], sine[SAMPLES];
 };

@@ -27,9 +27,9 @@ struct environment {
 bool environment_init(struct environment *environment, const struct image_float *image, bool y_up, struct workers *workers);
 void environment_finish(struct environment *environment);
 
-/* Writes a table of scale and bias of F0 (reflectance at normal incidence), with which a uniform environment is reflected (split-sum
-   approximation). The table has side x side texels: cosine to the viewer from left to right, roughness from top to bottom, both at texel
-   centres of (0, 1). */
+/* Writes the table of the split-sum approximation: a surface with the reflectance F0 at normal incidence reflects F0 * scale + bias of a
+   uniform environment's light. The table has side x side texels: cosine to the viewer from left to right, roughness from top to bottom,
+   both at texel centres of (0, 1). */
 void environment_brdf(int side, float (*scale_bias)[2]);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes which fraction of a uniform environment's light a surface reflects: GGX with height-correlated Smith masking, as glTF
-   specifies. */
+/* Computes which fraction of the light of a uniform environment a surface reflects, by roughness and viewing angle: GGX with
+   height-correlated Smith masking, as glTF specifies. */
 #include "render/light/environment.h"
 #include "render/light/ggx.h"
 

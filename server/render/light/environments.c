@@ -13,7 +13,7 @@
 
 enum { SOURCE_MAX_PX = 1024, BLOCK_BINDING = 1, UNIT_MIRRORED = 8, UNIT_BRDF = 9 };
 
-/* Task of loading one environment map, shared by a worker and the renderer. It is freed when both have released it. */
+/* Task of loading one environment map, shared by a worker thread and the renderer. It is freed when both have released it. */
 struct environment_task {
     atomic_int refs;
     struct log *log;
@@ -99,7 +99,7 @@ static bool upload(const struct environments *environments, struct environment_s
     return slot->irradiance && gl_no_errors();
 }
 
-/* protects the tables that are the same for every renderer; they are computed once and kept until the process ends */
+/* protects the BRDF table and the built-in skies, which all renderers share; they are computed once and kept until the process ends */
 static pthread_mutex_t lock_built_in = PTHREAD_MUTEX_INITIALIZER;
 
 static const float (*built_in_brdf(void))[2]

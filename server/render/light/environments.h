@@ -27,7 +27,7 @@ struct environments {
 };
 enum { ENVIRONMENT_BRDF_PX = 48 };
 
-struct environment_light { /* image-based light for shading */
+struct environment_light { /* image-based light that shading code reads: the environment and the BRDF table (environment_brdf()) */
     const struct environment *of;
     const float (*brdf)[2];
 };
@@ -41,7 +41,7 @@ void environments_finish(struct environments *environments);
 bool environments_wait(struct environments *environments, int number, int64_t timeout_ns);
 /* Returns an environment's light, or the built-in sky's until the environment is loaded. Valid until environments_finish(). */
 struct environment_light environments_get(const struct environments *environments, int number);
-/* Binds an environment for all programs that include shaders/environment.glsl. */
+/* Binds an environment's uniform buffer and textures for all programs that include shaders/environment.glsl. */
 void environments_bind(const struct environments *environments, int number);
 
 #endif

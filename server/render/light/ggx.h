@@ -15,7 +15,8 @@ static inline double ggx_turn(unsigned i)
     return i * 2.3283064365386963e-10;
 }
 
-/* Returns the cosine between normal and half vector at the quantile `part`, 0..1, of the GGX distribution. alpha: roughness squared. */
+/* Samples the GGX distribution: returns the cosine between normal and half vector for the uniform random number `part` (0..1). alpha:
+   roughness squared. */
 static inline double ggx_cosine(double alpha, double part)
 {
     return sqrt((1 - part) / (1 + (alpha * alpha - 1) * part));

@@ -126,7 +126,7 @@ static struct light_set *make_room(struct light *light, size_t bytes)
     }
 }
 
-/* Returns a light set (baked light) from which the openness of a new set for `key` can be copied. NULL: the cache has none. */
+/* Returns a cached light set (baked light) whose openness a new set for `key` can copy. NULL: the cache has none. */
 static const struct light_set *find_open(const struct light *light, const struct light_key *key)
 {
     double most = bake_least_open(light->gpu_scene, &key->shown);
@@ -149,8 +149,8 @@ static bool begin(struct light *light, const struct light_key *key)
     return light->bake != NULL;
 }
 
-/* Starts to write openness to its file, unless that was done already. Openness of a set that was baked while assets were hidden is never
-   written, because it was raised to a lower bound. */
+/* Starts to write the set's openness to the openness file, unless that was done already. Openness of a set that was baked while assets were
+   hidden is never written, because it was raised to a lower bound. */
 static void keep_openness(struct light *light, const struct light_set *set)
 {
     if (light->kept || set->key.rough || bake_least_open(light->gpu_scene, &set->key.shown) > 0)
@@ -166,7 +166,8 @@ static void drop_rough(struct light *light)
             drop(light, &light->sets[i]);
 }
 
-/* Ends a bake, whose work must all be issued, and puts its light set (baked light) into the cache. Returns NULL on failure, logged. */
+/* Ends the bake, all of whose GL calls must be issued, and puts its light set (baked light) into the cache. Returns NULL on failure,
+   logged. */
 static struct light_set *end(struct light *light)
 {
     struct light_set baked, *set;

@@ -11,10 +11,11 @@ struct light {
     const struct gpu_scene *gpu_scene;
     struct environments *environments;
     struct bake_programs programs;
-    /* matrix to the plant frame, from the ground's texture coordinates (x, y) and the height above the ground (z) */
+    /* matrix to plant coordinates from the ground's texture coordinates (x, y) and the height above the ground (z) */
     double plant_from_ground[16];
     double ground_height_m; /* height of the ground: its coordinate along the up axis */
-    /* bytes of GPU memory: limit, and sum over all light sets; a set that is held is never dropped, even above the limit */
+    /* bytes of GPU memory: limit, and sum over all light sets. A set that a job holds (light_hold) is never dropped, even above the
+       limit */
     size_t bound_bytes, bytes;
     struct light_set sets[LIGHT_SETS];
     struct bake *bake; /* in progress; NULL: none */
@@ -26,8 +27,8 @@ struct light {
 /* Compiles the programs; bakes nothing yet. Returns false on failure, logged. */
 bool light_init(struct light *light, const struct gpu_scene *gpu_scene, struct environments *environments);
 void light_finish(struct light *light);
-/* Returns the light set (baked light) for `key`; if it is not cached, bakes it and waits. A key with `rough` set takes a fraction of the
-   time; such a set is shown until the first full set is ready. Returns NULL when the GPU is out of memory, logged. */
+/* Returns the light set (baked light) for `key`; if it is not cached, bakes it and waits. With key->rough, the bake takes a fraction of the
+   time; frames show such a rough set until the first full set is ready. Returns NULL when the GPU is out of memory, logged. */
 struct light_set *light_get(struct light *light, const struct light_key *key);
 /* Returns the cached light set (baked light) most similar to `key`: sets of the same environment come first, among them sets with the same
    visible assets, then the nearest direction of the sun. NULL: none is cached. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes the openness file. Its key hashes everything that openness depends on: assets, their placement and files, GL driver and
-   program. */
+/* Reads and writes the openness file. The file stores a hash of everything that openness depends on, to recognise an outdated file: assets,
+   their placement and files, GL driver and program version. */
 #include "render/light/openness.h"
 
 #include <string.h>

@@ -4,8 +4,8 @@
 #define RENDER_SKY_H
 #include "render/frame_context.h"
 
-/* Size of the backdrop texture. Columns: elevation above the horizon. Rows: dither offset in a 4x4 tile, for the light theme, then the
-   dark one. */
+/* Size of the backdrop texture. Columns: elevation above the horizon. Rows: dither offset of the pixel in its 4x4 square, for the light
+   theme, then for the dark one. */
 enum { SKY_BACKDROPS = 2048, SKY_ROUNDINGS = 16, SKY_ROWS = 2 * SKY_ROUNDINGS };
 struct sky {
     GLuint sky_program, ground_programs[2]; /* ground_programs: by enum tier */
@@ -20,7 +20,7 @@ void sky_finish(struct sky *sky);
 /* Returns whether the ground is drawn: the camera is above it, and no asset is cut, hidden or ghosted, since the ground's shadow is that of
    the whole plant. Pure. */
 bool sky_sees_ground(const struct frame_context *context, const struct light *light);
-/* Draws backdrop and ground behind everything drawn so far. */
+/* Draws backdrop and ground shadow at all pixels that no surface covers. */
 void sky_draw(const struct sky *sky, const struct frame_context *context, const struct light *light);
 
 #endif

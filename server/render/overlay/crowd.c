@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Thins out overlapping markers. A hashed grid of the markers drawn so far spares comparing each marker with all others. */
+/* Chooses which of several overlapping sensor markers are drawn. A hashed grid of the markers chosen so far avoids comparing each marker
+   with all others. */
 #include "render/overlay/crowd.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Records which boxes of a frame are occupied by labels, markers and blocked areas, in a grid for fast queries. */
+/* Records in a grid which areas of a frame labels, markers and blocked boxes occupy, so that label placement can query free space fast. */
 #include "base/mem.h"
 #include "render/overlay/labels_impl.h"
 

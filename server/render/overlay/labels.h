@@ -10,9 +10,12 @@ struct label_box {
 };
 
 enum { LABEL_NONE = -1, LABEL_SLOTS = 16, LABEL_FIRST_FAR = 8, LABEL_MOST_BAD = 12 };
-enum { LABEL_MOST_LEADS = 4 }; /* leader lines of a call-out; if more rings are within LABEL_FARTHEST, only the nearest has one */
-enum { LABEL_FARTHEST = 60 }; /* u: largest distance of a label from the box around its rings, if other labels
-                                  remain; longest leader line of a call-out, if it has a ring as near */
+/* maximum number of leader lines of a call-out (a label shared by several alarm rings); if more rings are within LABEL_FARTHEST, only the
+   nearest ring gets a line */
+enum { LABEL_MOST_LEADS = 4 };
+/* largest distance between a label and the bounding box of its alarm rings, unless it is the only label; also the longest leader line,
+   unless all rings are farther. In units (pixels at 1280x720) */
+enum { LABEL_FARTHEST = 60 };
 enum label_rank { LABEL_NOT_WANTED = -1, LABEL_PLAIN, LABEL_DOUBTFUL, LABEL_BAD, LABEL_BEYOND };
 
 struct label_item {             /* one per visible marker */
@@ -40,7 +43,7 @@ struct label_place {
     int callout;
 };
 
-/* Sets places[i] for items[i]. */
+/* Chooses the label positions of all markers: sets places[i] for items[i]. */
 void labels_place(const struct label_item *items, size_t count, const struct label_area *area, struct label_place *places);
 
 /* Returns whether a leader line connects item i with its label. places: from labels_place(). A call-out has leader lines to the rings near

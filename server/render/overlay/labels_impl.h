@@ -6,8 +6,8 @@
 
 #define LABEL_CLEARANCE 3.0 /* free space required around a label that was not in the previous frame, in units (pixels at 1280x720) */
 
-/* Kinds of occupied boxes that a label may cover; each value includes the ones before. take() stores with each occupied box the smallest
-   value that allows a label to cover the box. */
+/* Which occupied boxes a label may cover; each value includes the previous ones. Each box is stored with the smallest value that allows a
+   label to cover it. */
 enum label_over {
     OVER_NOTHING,
     OVER_MARKS, /* markers without an alarm ring */

@@ -12,8 +12,8 @@
 static const double CLOSE = 26, STILL_CLOSE = 34;
 static const double GROWTH = 1.25; /* factor by which CLOSE and STILL_CLOSE grow, repeatedly, until at most MAX_GROUPS labels remain */
 enum { MAX_GROUPS = 24 }; /* more alarm rings are a flood */
-/* Grid of further label positions around the centre of the rings, tried nearest first. STEP_X, STEP_Y: spacing in units; STEPS: number of
-   steps to each side of the centre. */
+/* Grid of further label positions around the centre of a group of alarm rings, tried nearest first. STEP_X, STEP_Y: spacing in units;
+   STEPS: number of steps to each side of the centre. */
 enum { STEP_X = 24, STEP_Y = 15, STEPS = 60, SIDE = 2 * STEPS + 1, OFFSETS = SIDE * SIDE, NOWHERE = -2, FORCED = 1000000 };
 
 struct offset {
@@ -36,7 +36,8 @@ struct rings {
     size_t count, group_count;
     double least; /* pixels per unit of CLOSE and STILL_CLOSE; more than the size of a unit if that would leave too many labels */
     struct ring_group *groups;
-    double (*anchors)[2];   /* by index in `order`: position by which the ring is grouped */
+    /* by index in `order`: position in pixels from which the ring's distance to other rings is measured for grouping */
+    double (*anchors)[2];
     int *group_of;          /* by index in `order`: index of the group that contains the item's alarm ring */
     int *members;           /* indices of the items (markers) of all groups of alarm rings, group after group */
     struct offset *offsets; /* sorted by distance */
@@ -66,8 +67,8 @@ static const struct label_item *ring_at(const struct rings *rings, size_t i)
     return &rings->layout->items[rings->order[i]];
 }
 
-/* Sets the position by which each ring is grouped: its own, or in a flood the centre of all rings of its equipment, so that they share a
-   call-out. */
+/* Sets the position that represents each alarm ring when rings are grouped: its own, or in a flood the centre of all rings of its
+   equipment, so that they share a call-out. */
 static void set_anchors(const struct rings *rings)
 {
     for (size_t i = 0; i < rings->count; i++) {
@@ -153,7 +154,7 @@ static void measure(struct rings *rings, struct ring_group *group)
     group->down = (bottom - top) / 2;
 }
 
-/* Makes the groups of alarm rings that share a label. first: union-find forest, indexed like `order`. */
+/* Makes one group from each set of alarm rings that share a label. first: union-find forest from join_close(), indexed like `order`. */
 static void make_groups(struct rings *rings, int *first)
 {
     int *next = rings->members;
@@ -229,7 +230,7 @@ static int find_slot(const struct rings *rings, const struct ring_group *group)
     for (int i = 0; i < 2 * LABEL_SLOTS; i++)
         if (is_free(rings, group, i % LABEL_SLOTS, clearance, i < LABEL_SLOTS ? OVER_NOTHING : OVER_MARKS))
             return i % LABEL_SLOTS;
-    /* if only one group is left, OVER_RINGS finally allows its label to cover alarm rings */
+    /* if there is only one group, its label may at last cover alarm rings (OVER_RINGS) */
     for (int over = OVER_MARKS; over <= (alone ? OVER_RINGS : OVER_MARKS); over++)
         for (int slot = LABEL_SLOTS; slot < LABEL_SLOTS + OFFSETS; slot++)
             if (is_free(rings, group, slot, clearance, (enum label_over)over))

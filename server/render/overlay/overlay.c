@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws the overlay's header and banners, and calls the parts that the other overlay files draw. */
+/* Draws the overlay's header and banners, and calls the other overlay files to draw legend, markers and alarms. */
 #include "render/overlay/overlay.h"
 
 #include <math.h>
@@ -67,7 +67,8 @@ static void draw_header(struct pen *pen)
     else
         snprintf(age, sizeof(age), "%s", pen_word(pen, WORD_NO_VALUES));
     const struct view *view = &pen->frame->view;
-    bool has_age = view->split || (view->field.show != SHOW_DISTANCE && view->look != LOOK_MATERIALS); /* otherwise no reading is used */
+    /* otherwise the picture shows no reading, so there is no age */
+    bool has_age = view->split || (view->field.show != SHOW_DISTANCE && view->look != LOOK_MATERIALS);
     bool unset = pen->frame->clock_unset, simulated = has_age && shows_simulated(pen);
     snprintf(lines[0], sizeof(lines[0]), "%s%s%s", clock, has_age ? "  ·  " : "", has_age ? age : "");
     snprintf(lines[1], sizeof(lines[1]), "%s%s%s", unset ? pen_word(pen, WORD_CLOCK_UNSET) : "", unset && simulated ? "  ·  " : "",
@@ -119,8 +120,8 @@ static void draw_banner(struct pen *pen, const char *text, const double rgb[3])
 
 static const double NO_DATA_RGB[3] = { 0.66, 0.12, 0.10 }, PAST_RGB[3] = { 0.36, 0.18, 0.56 };
 
-/* Draws a border around the frame and a banner, which mark a picture of the past. The border is recognised even where the banner is
-   cropped. */
+/* Draws a border around the frame and a banner, which mark a picture of the past. The border stays recognisable if a user crops the banner
+   off the picture. */
 static void draw_past(struct pen *pen)
 {
     char text[CLOCK_BYTES + 80], clock[CLOCK_BYTES];
@@ -180,7 +181,8 @@ static void draw(struct frame *frame, const struct scene *scene, const struct sn
         draw_banner(pen, pen_word(pen, WORD_NO_LIVE_DATA), NO_DATA_RGB);
     draw_rest(pen);
     cairo_surface_flush(surface);
-    if (frame->view.strip && frame->view.look != LOOK_MATERIALS) { /* material colours show no values */
+    /* in LOOK_MATERIALS colours show no values, so the frame gets no legend strip */
+    if (frame->view.strip && frame->view.look != LOOK_MATERIALS) {
         pen_choose_half(pen, 0);
         overlay_strip(pen, frame->bgrx, frame->stride_bytes);
     }

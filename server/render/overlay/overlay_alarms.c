@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lists alarms that no visible marker shows: of hidden or off-screen sensors, of other groups, or of tags without a position. */
+/* Draws a list of active alarms that no visible marker shows: of hidden or off-screen sensors, of other groups, or of tags without a
+   position. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

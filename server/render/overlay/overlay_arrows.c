@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws arrows of a field with directions: length shows the value, a cross an unknown direction. */
+/* Draws the arrows of a field that has directions, such as flow. An arrow's length shows the value; a cross marks an unknown direction. */
 #include <math.h>
 #include <stdio.h>
 

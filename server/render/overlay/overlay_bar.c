@@ -36,7 +36,7 @@ static void round_ticks(struct ticks *ticks, const struct scale *scale, double m
         add_tick(ticks, scale, n * step);
 }
 
-/* Adds ticks at 1, 2 and 5 of each decade, or only at 1 if there are many decades. */
+/* Adds ticks of a logarithmic scale: at 1, 2 and 5 times each power of ten, or only at powers of ten if the range spans many. */
 static void log_ticks(struct ticks *ticks, const struct scale *scale, double most)
 {
     static const double leads[3] = { 1, 2, 5 };
@@ -77,7 +77,7 @@ static void choose_ticks(struct ticks *ticks, const struct pen *pen, double most
     }
 }
 
-/* Moves the tick labels apart until they do not overlap; all stay within the bar. */
+/* Moves the positions of tick labels apart until no labels overlap; all labels stay within the colour bar. */
 static void spread(double *places, int count, double gap)
 {
     for (int i = 1; i < count; i++)

@@ -25,7 +25,7 @@ static void add_number(struct caption *caption, const struct pen *pen, enum over
     add_line(caption, pen, word, number);
 }
 
-/* Lists the parameters of `own` that differ from `other`, in the words of the page's options. */
+/* Lists the field parameters of the view `own` that differ from those of `other`, in the words of the page's options. */
 static void write_caption(struct caption *caption, const struct pen *pen, const struct view *own, const struct view *other)
 {
     const struct field_params *a = &own->field, *b = &other->field;
@@ -52,7 +52,7 @@ static void write_caption(struct caption *caption, const struct pen *pen, const 
         add_number(caption, pen, isfinite(a->reach_m) ? WORD_REACH : WORD_REACH_UNLIMITED, a->reach_m);
     if (a->fill != b->fill)
         add_line(caption, pen, a->fill == FILL_NONE ? WORD_NOT_FILLED : WORD_FILLED, NULL);
-    bool same_sensors = a->override_count == b->override_count && /* as in field_params_equal() */
+    bool same_sensors = a->override_count == b->override_count && /* the same comparison as in field_params_equal() */
                         !memcmp(a->overrides, b->overrides, a->override_count * sizeof(*a->overrides));
     if (!same_sensors && a->override_count > 0)
         add_number(caption, pen, WORD_WEIGHTED, (double)a->override_count);
@@ -60,7 +60,7 @@ static void write_caption(struct caption *caption, const struct pen *pen, const 
         add_line(caption, pen, WORD_AS_CONFIGURED, NULL);
 }
 
-/* Draws the caption in the upper left corner, below anything already there. */
+/* Draws the caption in the upper left corner of its half, below what the overlay has already drawn there. */
 static void draw_caption(struct pen *pen, const struct caption *caption)
 {
     double pad = 8 * pen->unit, width = 0, line_px = 1.35 * pen->text_px;

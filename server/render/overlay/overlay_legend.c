@@ -55,8 +55,8 @@ static void write_title(const struct pen *pen, struct legend *legend)
     snprintf(legend->title, sizeof(legend->title), *unit ? "%s [%s]" : "%s", what, unit);
 }
 
-/* Returns the priorities of all active alarms as bits (1 << priority). Alarms of hidden sensors count, because they are listed. Without
-   readings one priority is returned, so that the legend is as wide as with readings. */
+/* Returns the priorities of all active alarms as bits (1 << priority). Alarms of hidden sensors count, because they are listed. Without a
+   snapshot of readings it returns one priority, so that the computed width of the legend suffices later. */
 static unsigned priorities_shown(const struct pen *pen)
 {
     const struct plant *plant = pen->scene->plant;
@@ -98,8 +98,8 @@ static bool shows_unknown_direction(const struct pen *pen)
     return false;
 }
 
-/* Chooses the rows of the legend below the colour bar. Distances, and quantities computed without readings, have no row "uncertain", and a
-   row "below range" only if the view's range does not begin at their minimum. */
+/* Chooses the rows of the legend below the colour bar. Distances, and quantities that are computed without readings, have no row
+   "uncertain". They have a row "below range" only if the view's range begins above their minimum. */
 static void choose_rows(const struct pen *pen, struct legend *legend)
 {
     const struct view *view = &pen->view;
@@ -131,7 +131,7 @@ static void choose_rows(const struct pen *pen, struct legend *legend)
             legend->rows[legend->row_count++] = (enum row)(ROW_ALARM + i - 1);
 }
 
-/* Writes the reference of a difference: the baseline's name, or its time on the plant's clock. */
+/* Writes the baseline that the view subtracts: its name, or its time in the plant's time zone. */
 static void write_baseline(const struct pen *pen, struct legend *legend)
 {
     const struct baseline *baseline = &pen->frame->baseline;
@@ -157,7 +157,7 @@ static void write_hot_spot(const struct pen *pen, struct legend *legend)
     add_note(legend, legend->since);
 }
 
-/* Adds the error bound of places that are marked with dots: how far values interpolated over a triangle may deviate from the exact
+/* Writes the error bound of areas that the frame marks with dots: how far values interpolated over a triangle may deviate from the exact
    field. */
 static void write_drawn_error(const struct pen *pen, struct legend *legend)
 {
@@ -243,8 +243,8 @@ static void lay_out(struct pen *pen, struct legend *legend)
         width = fmax(width, beside + pen_text_width(pen, row_text(pen, legend, legend->rows[i])));
     for (int i = 0; i < legend->note_count; i++)
         width = fmax(width, pen_text_width(pen, legend->notes[i]));
-    /* the card is wide enough for the row "unknown direction" even if the row is not listed: the space next to the card is computed before
-       it is known whether the frame has crosses */
+    /* the legend is always wide enough for the row "unknown direction": the space next to the legend is computed before it is known whether
+       the frame shows that row */
     if (overlay_has_arrows(pen))
         width = fmax(width, beside + pen_text_width(pen, row_text(pen, legend, ROW_NOWHERE)));
     width = fmax(width, overlay_bar_width(pen));
@@ -273,7 +273,8 @@ static void fill_box(struct pen *pen, const struct label_box *box, const uint8_t
     cairo_rectangle(pen->cairo, box->x, box->y, box->width, box->height);
     pen_rgb(pen, rgb);
     cairo_fill_preserve(pen->cairo);
-    if (pen->frame->view.dark) { /* before a dark backdrop a swatch gets an outline, because some colours are as dark as the card */
+    /* before a dark backdrop the colour sample gets an outline, because some colours are as dark as the legend's background */
+    if (pen->frame->view.dark) {
         pen_ink(pen, 0.5);
         cairo_set_line_width(pen->cairo, fmax(1, pen->unit));
         cairo_stroke(pen->cairo);
@@ -336,7 +337,7 @@ static void draw_swatch(struct pen *pen, const struct label_box *box, enum row r
         overlay_outline(pen, box->x + box->width / 2, box->y + box->height / 2, 0.27 * box->height, false);
         overlay_outline(pen, box->x + box->width / 2, box->y + box->height / 2, 0.47 * box->height, false);
         break;
-    case ROW_ARROW: /* left to draw_longest(), which draws an arrow next to the row's text */ break;
+    case ROW_ARROW: /* draw_longest() draws the arrow, next to the row's text */ break;
     case ROW_NOWHERE: overlay_unknown_direction(pen, box->x + box->width / 2, box->y + box->height / 2); break;
     default:
         overlay_ring(pen, box->x + box->width / 2, box->y + box->height / 2, 0.5 * box->height, (int)row - ROW_ALARM + 1, ALARM_ACTIVE);
@@ -350,7 +351,7 @@ static void draw_text(struct pen *pen, const struct legend *legend, double y, co
     pen_text(pen, legend->bar.x + legend->bar.width + 0.55 * pen->text_px, y + 0.92 * pen->text_px, text);
 }
 
-/* Draws an arrow of the longest length, and the value that this length means. */
+/* Draws the legend's arrow of the longest length, and the value that an arrow of this length shows. */
 static void draw_longest(struct pen *pen, const struct legend *legend, double y)
 {
     double left = legend->card.x + legend->pad, long_px = overlay_arrow_px(pen);

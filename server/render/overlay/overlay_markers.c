@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws sensor markers, and labels wherever they cover nothing else. */
+/* Draws the sensor markers of a frame and their labels. */
 #include <math.h>
 #include <stdio.h>
 #include <time.h>
@@ -101,15 +101,15 @@ static void draw_alarm(struct pen *pen, const struct frame_marker *marker)
     overlay_ring(pen, marker->x_px, marker->y_px, 9.5 * pen->unit, priority, (enum alarm_status)reading->alarm_status);
 }
 
-/* Returns true if the view shows distances from a sensor and no distance is known on the marker's asset. For such a marker only the alarm
-   is drawn. */
+/* Returns true if the view shows distances from a sensor and no distance is known on the marker's asset. Of such a marker only the alarm
+   ring and its label are drawn. */
 static bool is_elsewhere(const struct pen *pen, const struct frame_marker *marker)
 {
     return pen->view.field.show == SHOW_DISTANCE && isnan(marker->value);
 }
 
-/* Formats the label of a tag whose reading is Bad: the alarm that the last usable value raised, and the time of that value, with the date
-   if more than a day old. */
+/* Formats the label of a tag whose reading is Bad: the alarm that the tag's last usable value raised, and the time of that value (with the
+   date if older than a day). */
 static void format_bad(const struct pen *pen, const struct reading *reading, char out[64])
 {
     enum alarm_kind alarm = (enum alarm_kind)reading->alarm;
@@ -206,7 +206,7 @@ static bool is_inside(const struct pen *pen, const struct frame_marker *marker)
            marker->y_px < area->height;
 }
 
-/* Makes a label item for every visible marker that no card (box of the overlay such as the legend) covers. The caller owns both arrays. */
+/* The labels to be placed: one item for every visible marker that no card (a box of the overlay such as the legend) covers. */
 struct marker_labels {
     struct label_item *items;
     struct label_text *texts;
@@ -258,7 +258,7 @@ static void write_callout(const struct marker_labels *wanted, const int *members
     int *counts = mem_array(plant->asset_count, sizeof(*counts)); /* number of alarms by asset */
     for (size_t i = 0; i < count; i++) {
         int tag = wanted->tags[members[i]], word = (int)readings[tag].alarm_status;
-        /* in a call-out, alarms that have returned to normal or are latched rank behind all others */
+        /* in a call-out, alarms that have returned to normal or are latched are less important than all others */
         bool gone = word == ALARM_RETURNED || word == ALARM_LATCHED;
         int grave = alarm_priority(&plant->tags[tag], (enum alarm_kind)readings[tag].alarm) + (gone ? ALARM_PRIORITIES : 0);
         if (worst < 0 || grave < least || (grave == least && tag < worst)) {
@@ -353,8 +353,8 @@ static bool is_under(const struct pen *pen, int cards, const struct label_box *m
     return false;
 }
 
-/* Draws the values of isolines at those label points where there is room; labels of the same value keep a large distance from each
-   other. */
+/* Draws the values of isolines at those points of frame->labels where there is room. Labels of the same value keep a large distance from
+   each other. */
 static void label_isolines(struct pen *pen)
 {
     const struct frame *frame = pen->frame;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Drawing functions that all parts of the overlay use: text, colours, cards, and the list of occupied areas. */
+/* Drawing functions that all overlay files use: text, colours, cards (backgrounds of text), and the list of occupied areas. */
 #include "render/overlay/overlay_pen.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The drawing context shared by the parts of the overlay. Sizes scale with the frame: `unit` is one pixel at 1280x720. Thread: any; one pen
-   belongs to one thread. */
+/* The pen: the drawing context shared by all overlay files. Sizes scale with the frame: `unit` is one pixel at 1280x720. Thread: any; one
+   pen belongs to one thread. */
 #ifndef RENDER_OVERLAY_PEN_H
 #define RENDER_OVERLAY_PEN_H
 #include <stdbool.h>
@@ -57,16 +57,17 @@ void pen_text(struct pen *pen, double x, double y, const char *text);
 const char *pen_word(const struct pen *pen, enum overlay_word word);
 void pen_say(const struct pen *pen, enum overlay_word word, const char *a, const char *b, char *out, size_t size);
 
-/* Formats a value with as few decimals as suffice to distinguish a 5000th of the range. */
+/* Formats a value with the fewest decimals that show differences of 1/5000 of the range. */
 void pen_number(double value, double range, char out[40]);
-/* Returns how many decimals suffice to distinguish a 500th of the range. */
+/* Returns the number of decimals needed to show differences of 1/500 of the range. */
 int pen_decimals(double range);
 /* Returns the value rounded to this many decimals, and 0 instead of -0. */
 double pen_rounded(double value, int decimals);
 
 /* Draws the colour bar of pen->view: MIN at the bottom, MAX at the top, ticks on the right, the group's limits on the left. */
 void overlay_bar(struct pen *pen, const struct label_box *bar);
-/* overlay_bar_width returns the width of the colour bar with all text, overlay_bar_left the width of the text to the left of the bar. */
+/* overlay_bar_width returns the width of the colour bar with the texts on both sides, overlay_bar_left the width of the text to its
+   left. */
 double overlay_bar_width(struct pen *pen);
 double overlay_bar_left(struct pen *pen);
 /* Returns the height in pixels of the legend strip of a frame of that size; 0: the frame is too small for one. */
@@ -79,8 +80,8 @@ void overlay_legend(struct pen *pen);
 bool overlay_legend_is_shared(struct pen *pen);
 /* Returns the width of the legend with its margins. */
 double overlay_legend_width(struct pen *pen);
-/* Draws a caption in each half of a split view: how it differs from the other half, as far as no legend shows that. The view must be split.
-   Afterwards the pen draws on the right half (pen_choose_half). */
+/* Draws a caption in each half of a split view: the caption lists how the half differs from the other, except what the legends show. The
+   view must be split. Afterwards the pen draws on the right half (pen_choose_half). */
 void overlay_halves(struct pen *pen);
 /* Draws the outline of a marker. broken: dashed, for a tag that no loop check has proven. */
 void overlay_outline(struct pen *pen, double x, double y, double radius, bool broken);

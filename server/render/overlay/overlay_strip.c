@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws the legend strip (protocol/strip_format.h) pixel by pixel, without smoothing the cells' edges. */
+/* Draws the machine-readable legend strip (protocol/strip_format.h) pixel by pixel, without smoothing the edges of its cells. */
 #include <stdio.h>
 #include <string.h>
 

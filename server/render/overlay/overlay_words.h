@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Words of the overlay in English, Korean or German (clients/web/words/overlay.*.js). */
+/* Texts of the overlay in English, Korean or German. They are the same as the page's (clients/web/words/overlay.*.js). */
 #ifndef RENDER_OVERLAY_WORDS_H
 #define RENDER_OVERLAY_WORDS_H
 #include <stdbool.h>
@@ -11,7 +11,7 @@
 #define OVERLAY_MEMBER(name, ...) WORD_##name,
 enum overlay_word {
     OVERLAY_WORDS(OVERLAY_MEMBER) OVERLAY_WORDS,
-    WORD_LOOKS = WORD_LOOK_DEFAULT, /* index of the word for the first look; adding an enum look gives the words for the others */
+    WORD_LOOKS = WORD_LOOK_DEFAULT, /* index of the word for the first look; the word for another look is at WORD_LOOKS + its enum look */
     WORD_INTERPOLATIONS = WORD_INTERPOLATION_SHEPARD,
     WORD_DISTANCES = WORD_DISTANCE_GEODESIC,
 };

@@ -15,7 +15,7 @@ struct found_face {
     FcCharSet *letters; /* NULL: no search yet */
     cairo_font_face_t *face;
 };
-/* key under which a drawing context keeps the last fonts found, an array of two: [0] regular, [1] bold */
+/* key under which a cairo drawing context stores the fonts found last: an array of two, [0] regular, [1] bold */
 static const cairo_user_data_key_t found_key;
 
 static void drop(struct found_face *found)
@@ -57,7 +57,8 @@ static FcCharSet *letters_beyond(const char *text)
     FcChar32 letter;
     for (int count = (int)strlen(text), n; count > 0 && (n = FcUtf8ToUcs4(at, &letter, count)) > 0; at += n, count -= n) {
         FcCharSetAddChar(letters, letter);
-        beyond |= letter >= FIRST_UNCOVERED && !(letter >= 0x2000 && letter < 0x2c00); /* ignored: punctuation, arrows and symbols */
+        /* DejaVu Sans has the punctuation, arrows and symbols from 0x2000 to 0x2bff */
+        beyond |= letter >= FIRST_UNCOVERED && !(letter >= 0x2000 && letter < 0x2c00);
     }
     if (beyond)
         return letters;

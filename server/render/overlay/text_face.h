@@ -5,8 +5,8 @@
 #include <cairo.h>
 #include <stdbool.h>
 
-/* If the text has letters beyond Latin, Greek and Cyrillic, sets the installed font that covers them best, in the weight set before by
-   cairo_select_font_face(). Otherwise changes nothing. The drawing context keeps the last fonts found. */
+/* If the text has letters beyond Latin, Greek and Cyrillic, sets the installed font that has most of these letters, in the weight set
+   before by cairo_select_font_face(). Otherwise keeps the font. The drawing context caches the fonts found last. */
 void text_face_choose(cairo_t *cairo, const char *text);
 
 /* Returns whether an installed font has all letters of the text. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Spreads arrow positions over the triangles of an asset, and finds the direction at each. */
+/* Spreads positions of direction arrows evenly over an asset's triangles, and computes the direction of the field at each position. */
 #include "render/pick/arrows.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Positions of arrows, spread evenly over an asset whose field has directions. Their visibility is tested together with the isolines'
-   points; the overlay or the client draws them. Thread: the one of the GL context. */
+/* Positions of arrows, spread evenly over an asset whose field has directions. The visibility of arrows is tested together with that of
+   isoline labels (isolines.h); the overlay or the client draws the arrows. Thread: the one of the GL context. */
 #ifndef RENDER_PICK_ARROWS_H
 #define RENDER_PICK_ARROWS_H
 #include "field/directions.h"
@@ -16,7 +16,7 @@ struct arrow_set {                  /* arrows of one asset; zero-initialise, fre
     uint64_t content; /* hash of the sensor directions from which the directions in `found` were computed */
 };
 
-/* Returns n: the first n vertices of the asset must have current field values, because arrows read them. Pure. */
+/* Returns how many of the asset's vertices, from the first on, must have current field values, because arrows read them. Pure. */
 size_t arrows_vertex_count(const struct scene_asset *asset);
 /* Updates the directions of the arrows from the asset's field entry. */
 void arrows_update(struct arrow_set *set, const struct scene *scene, int asset, const struct fields_entry *field);
@@ -24,9 +24,9 @@ void arrows_update(struct arrow_set *set, const struct scene *scene, int asset, 
 double arrows_value(const struct arrow_set *set, size_t place, const struct asset_view *file, const struct fields_entry *field);
 /* Returns the field's value at any surface position, given as triangle and corner weights; NaN where there is no data. */
 double arrows_value_at(const struct direction_place *at, const struct asset_view *file, const struct fields_entry *field);
-/* Writes a position and the arrow's direction there, in the plant frame. */
+/* Writes the position with index `place` and the arrow's direction there, both in the plant frame. */
 void arrows_place(const struct arrow_set *set, size_t place, const struct scene_asset *asset, double place_m[3], double along[3]);
-/* Transforms any position and direction of the asset's file to the plant frame. */
+/* Transforms a position and a direction from the coordinates of the asset's file to the plant frame. */
 void arrows_place_at(const struct direction_place *at, const struct direction *to, const struct scene_asset *asset, double place_m[3],
                      double along[3]);
 void arrows_finish(struct arrow_set *set);

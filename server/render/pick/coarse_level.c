@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Chooses a coarse level of detail. Levels are sorted from fine to coarse. */
+/* Chooses a coarse level of detail of an asset, for isoline points and arrows. */
 #include "render/pick/coarse_level.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds where triangle edges cross isolines, thins the points out, and tests their visibility. */
+/* Finds the points where triangle edges cross isolines, selects some of these points for labels, and tests their visibility. */
 #include "render/pick/isolines.h"
 
 #include <math.h>
@@ -40,7 +40,7 @@ void isolines_finish(struct isolines *isolines)
 
 /* --- points on lines --------------------------------------------------------------------------------------------------------- */
 
-/* State of the search for isoline points in one asset. */
+/* State while the isoline points of one asset are searched. */
 struct isoline_search {
     const struct scene_asset *asset;
     const struct fields_entry *field;
@@ -76,8 +76,8 @@ static void between_ends(const struct edge_piece *piece, double part, float out_
         out_m[c] = (float)((double)piece->ends_m[0][c] + part * ((double)piece->ends_m[1][c] - (double)piece->ends_m[0][c]));
 }
 
-/* Returns where on a piece of an edge the field has this value: 0 at the first end, 1 at the second. The value must lie between those at
-   the ends. A field that is evaluated at pixels is not linear along the piece, so it is searched by bisection. */
+/* Returns where on a piece of a triangle's edge the field has this value: 0 at the first end, 1 at the second. The value must lie between
+   the values at both ends. A field that is evaluated at pixels is not linear along the piece, so it is searched by bisection. */
 static double part_of_value(const struct isoline_search *search, const struct edge_piece *piece, double value)
 {
     double low = 0, high = 1;
@@ -119,8 +119,8 @@ static void search_piece(struct isoline_search *search, const struct edge_piece 
             add_point(search, i, piece);
 }
 
-/* Searches the edges of triangles for isolines, for a field that is evaluated at pixels. An isoline may cross a long edge more than once,
-   so each edge is searched piece by piece. */
+/* Searches a triangle's edge for crossings with isolines, for a field that is evaluated at pixels. An isoline may cross a long edge more
+   than once, so the edge is searched piece by piece. */
 static void search_evaluated(struct isoline_search *search, const struct edge_piece *edge)
 {
     double length_m = (double)vecf_distance(edge->ends_m[0], edge->ends_m[1]);
@@ -257,8 +257,8 @@ static void add_stroke(const struct isolines *isolines, size_t place, const stru
     }
 }
 
-/* Collects arrow positions of all assets up to a limit: first the first position of each asset, then the second of each, and so on. Each
-   asset thus gets a share, which is evenly spread over it, because any first n positions of an asset are. */
+/* Collects up to MAX_ARROWS arrow positions: first the first position of each asset, then the second of each, and so on. The first n
+   positions of an asset are evenly spread for any n (arrows.h), so arrows are spread over every asset. */
 static void collect_arrows(struct isolines *isolines, const struct frame_context *context, struct isoline_points *out)
 {
     const struct scene *scene = context->gpu_scene->scene;
@@ -323,8 +323,8 @@ bool isolines_start(struct point_visibility *queries, const struct frame_context
     return point_visibility_start(queries, context, count);
 }
 
-/* Returns whether the frame may get another label at this point. Labels are sent with each frame, so the frame's size limits how many
-   labels it has, and how near each other those of one isoline are. */
+/* Returns whether the frame may get another label at this point. Labels are sent with each frame, so their number is limited: labels must
+   have a minimum distance from each other, which is larger between labels of one isoline. */
 static bool has_room(const struct frame *frame, const float place[4], const struct isoline_point *point)
 {
     double lines_px = fmax(40, frame->width_px / 32.0), arrows_px = FRAME_ARROW_PX(frame->width_px);
@@ -366,7 +366,7 @@ static void project_arrow(const struct frame_context *context, const struct isol
         label->dx = dx < 0 ? -0.01f : 0.01f;
 }
 
-/* The stroke (short streamline) whose points are being added to the frame. Only the first sequence of visible points of a stroke is
+/* State while the points of one stroke (short streamline) are added to the frame. Only the first sequence of consecutive visible points is
    drawn. */
 struct emitted_stroke {
     uint16_t stroke;
@@ -374,8 +374,8 @@ struct emitted_stroke {
     int count;
 };
 
-/* Returns whether a point of a stroke (short streamline) is drawn. The starts of strokes keep the same minimum distance from each other as
-   arrows. */
+/* Returns whether this point of a stroke (short streamline) is added to the frame. The first points of strokes keep the same minimum
+   distance from each other as arrows. */
 static bool on_stroke(struct emitted_stroke *stroke, const struct frame *frame, const float place[4], const struct isoline_point *point)
 {
     if (point->stroke != stroke->stroke)

@@ -40,17 +40,19 @@ struct isoline_points { /* isoline points of one frame; zero-initialise, free `a
 bool isolines_has_arrows(const struct scene *scene, const struct view *view);
 void isolines_init(struct isolines *isolines, size_t asset_count);
 void isolines_finish(struct isolines *isolines);
-/* Returns n: the first n vertices of the asset must have current field values, because isolines_collect() reads them. Pure. */
+/* Returns how many of the asset's vertices, from the first on, must have current field values, because isolines_collect() reads them.
+   Pure. */
 size_t isolines_vertex_count(const struct scene_asset *asset);
-/* Collects the candidate points of all visible assets. context->fields must hold the fields shown. */
+/* Collects the points of all visible assets at which a label or an arrow may be drawn; their visibility is tested later. context->fields
+   must hold the fields shown. */
 void isolines_collect(struct isolines *isolines, const struct frame_context *context, struct isoline_points *out);
-/* isolines_start() begins the visibility test of the points on the GPU; call it after the frame is resolved. It returns false when the GPU
-   is out of memory, logged. isolines_get() stores the result in the frame once the GPU is done. */
+/* isolines_start() begins the visibility test of isoline points and arrows on the GPU; call it after the multisampled frame is resolved. It
+   returns false when the GPU is out of memory, logged. isolines_get() stores the result in the frame once the GPU is done. */
 bool isolines_start(struct point_visibility *queries, const struct frame_context *context, const struct isoline_points *points);
 void isolines_get(const struct point_visibility *queries, const struct frame_context *context, const struct isoline_points *points,
                   struct frame *frame);
-/* Tests the visibility of the points on the CPU and stores the result in the frame. Uses the frame's depth buffer: rows from the top,
-   pitch_px floats apart. */
+/* Tests the visibility of isoline points and arrows on the CPU and adds the visible ones to the frame. Uses the frame's depth buffer: rows
+   from the top, pitch_px floats apart. */
 void isolines_find(const struct frame_context *context, const struct isoline_points *points, const float *depth, size_t pitch_px,
                    struct frame *frame);
 

@@ -37,7 +37,7 @@ static struct marker_iterator iterator_of(const struct frame_context *context, c
     return (struct marker_iterator){ .scene = context->gpu_scene->scene, .trial = *trial };
 }
 
-/* Advances the iterator to the next sensor whose marker is shown. Returns false at the end. */
+/* Advances the iterator to the next sensor whose marker is shown. Returns false after the last one. */
 static bool next_shown(struct marker_iterator *iterator, const struct frame_context *context, struct marker_place *place)
 {
     while (marker_next(iterator, place))
@@ -157,15 +157,15 @@ void markers_measure(const struct frame_context *context, struct frame *frame)
 void markers_get(const struct point_visibility *queries, const struct frame_context *context, struct frame *frame)
 {
     size_t count = count_shown(context);
-    /* ignores the test's results if more markers are shown now than its buffer holds, because a trial (sensors moved on the model) has
-       ended since the test began */
+    /* ignores the visibility test if more markers are shown now than its buffer holds: a trial (sensors moved on the model) has ended since
+       the test began */
     if (count > 0 && count <= queries->capacity)
         emit_markers(context, queries->places, count, frame);
 }
 
 /* --- without GL ------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the farthest depth in the 3x3 pixels around a pixel. */
+/* Returns the farthest depth in the depth buffer among the 3x3 pixels around a pixel. */
 static float farthest_near(const float *depth, size_t pitch_px, int width_px, int height_px, int x, int y)
 {
     float farthest = 1;

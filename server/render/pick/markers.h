@@ -15,7 +15,7 @@ struct marker_place {
     int tag, asset;
     const double *surface_m; /* position of the sensor on the surface, in the plant frame */
 };
-/* Gives the next sensor. Returns false at the end. */
+/* Writes the next sensor and its position to `out`. Returns false after the last one. */
 bool marker_next(struct marker_iterator *iterator, struct marker_place *out);
 /* Returns whether the view shows a marker for this sensor: the view shows the sensor's group, and the sensor's asset is neither hidden nor
    cut away by a section plane at the sensor. */
@@ -23,11 +23,11 @@ bool marker_is_shown(const struct scene *scene, const struct view *view, const s
 
 /* Returns the depth tolerance of an asset's markers: how far the drawn surface may lie in front of the position of a sensor on it. */
 double markers_slack_m(const struct scene_asset *asset);
-/* markers_start() begins the visibility test of the markers on the GPU; call it after the frame is resolved. It returns false when the GPU
-   is out of memory, logged. markers_get() stores the result in the frame once the GPU is done. */
+/* markers_start() begins the visibility test of the sensors' markers on the GPU; call it after the multisampled frame is resolved. It
+   returns false when the GPU is out of memory, logged. markers_get() stores the result in the frame once the GPU is done. */
 bool markers_start(struct point_visibility *queries, const struct frame_context *context);
 void markers_get(const struct point_visibility *queries, const struct frame_context *context, struct frame *frame);
-/* Recomputes the distances that a frame's markers show, and leaves the markers' positions unchanged. */
+/* Recomputes the values of a frame's markers in a view of distances from a sensor; their positions stay unchanged. */
 void markers_measure(const struct frame_context *context, struct frame *frame);
 /* Tests the visibility of the markers on the CPU and stores the result in the frame. Uses the frame's depth buffer: rows from the top,
    pitch_px floats apart. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Picks by casting a ray and interpolating the field in the triangle hit. */
+/* Picks the asset and the field's value at a pixel: casts a ray from the eye and interpolates the field in the triangle that the ray
+   hits. */
 #include "render/pick/pick.h"
 
 #include <math.h>
@@ -27,7 +28,7 @@ struct pick_spot { /* state of one pick */
 /* --- which sensor's marker --------------------------------------------------------------------------------------------------- */
 
 struct lens {
-    /* unit vectors of the camera; pixel_per_unit: pixels per metre, with perspective at a distance of 1 m from the eye */
+    /* right, up, forward: unit vectors of the camera. pixel_per_unit: pixels per metre; in a perspective view, at 1 m from the eye */
     double right[3], up[3], forward[3], pixel_per_unit;
 };
 

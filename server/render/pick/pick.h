@@ -17,7 +17,7 @@ enum pick_state {
 enum { PICK_NEAREST = 4 };
 
 struct pick {
-    int asset; /* asset at the pixel; -1: no asset; of the members below, only `sensor` and the times are then set */
+    int asset; /* asset at the pixel; -1: none, and of the members below only `sensor`, `sensor_occluded` and `data_utc_ns` are set */
     double position_m[3], normal[3];
     enum pick_state state;
     bool uncertain, inside;

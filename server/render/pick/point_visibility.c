@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tests points with a compute shader, in a buffer mapped by CPU and GPU. */
+/* Tests the visibility of points with a compute shader. Points and results are in a buffer that CPU and GPU share. */
 #include "render/pick/point_visibility.h"
 
 #include "gpu/mesh.h"

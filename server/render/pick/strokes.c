@@ -13,7 +13,7 @@
 
 #define STROKE_NONE UINT32_MAX
 enum { MAX_CROSSINGS = 64 };          /* edges crossed within one step */
-static const double STEP_PART = 0.35; /* length of a step along a stroke, as a part of the distance between arrows */
+static const double STEP_PART = 0.35; /* length of a step along a stroke, as a fraction of the distance between arrows */
 /* smallest cosine between directions of consecutive steps (120 degrees): a faster turn is a vortex too small to follow */
 static const double MIN_DOT = -0.5;
 
@@ -84,8 +84,8 @@ static void corners_of(const struct tracing *tracing, uint32_t tri, double out[3
     vec_normal(out[0], out[1], out[2], normal);
 }
 
-/* Computes the change of the three corner weights per metre of movement along v (unit vector). Returns false for a triangle without an
-   area. */
+/* Computes by how much a position's three barycentric weights in a triangle change per metre of movement along the unit vector v. Returns
+   false for a triangle without an area. */
 static bool rates_of(const double at[3][3], const double normal[3], const double v[3], double rates[3])
 {
     const double square = vec_dot(normal, normal);
@@ -100,7 +100,8 @@ static bool rates_of(const double at[3][3], const double normal[3], const double
     return true;
 }
 
-/* Moves a position by step_m along `along` (unit vector), continuing straight across edges. Returns false where the surface ends. */
+/* Moves a position on the surface by step_m along the unit vector `along`, continuing straight across triangle edges. Returns false where
+   the surface ends. */
 static bool step(const struct tracing *tracing, struct direction_place *place, const float along[3], double step_m)
 {
     double weights[3], v[3], at[3][3], normal[3], rates[3];
@@ -120,7 +121,7 @@ static bool step(const struct tracing *tracing, struct direction_place *place, c
         if (!(vec_normalize(v) > 0) || !rates_of(at, normal, v, rates))
             return false;
         double most_m = step_m;
-        /* edge at which the step leaves the triangle, from corner `edge` to the next one; the third corner's weight reaches 0 there */
+        /* edge at which the step leaves the triangle: from corner `edge` to the next corner; the third corner's weight is 0 on it */
         int edge = -1;
         for (int i = 0; i < 3; i++) {
             double room_m = rates[(i + 2) % 3] < 0 ? max_of(weights[(i + 2) % 3], 0) / -rates[(i + 2) % 3] : INFINITY;
@@ -145,7 +146,7 @@ static bool step(const struct tracing *tracing, struct direction_place *place, c
         const uint32_t next = tracing->set->across[tri][edge];
         if (next == STROKE_NONE)
             return false;
-        /* The side is found in the neighbour by its corners: they run in the opposite direction there, or in the same direction if the
+        /* Finds the crossed edge in the neighbouring triangle: its corners are in the opposite order there, or in the same order if the
            triangles are wound inconsistently. */
         double mirror[3], there[3][3], turned[3], share = weights[(edge + 1) % 3] / max_of(weights[edge] + weights[(edge + 1) % 3], 1e-30);
         from = (int)(next % 3);

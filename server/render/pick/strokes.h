@@ -23,7 +23,7 @@ struct stroke_set { /* strokes of one asset; zero-initialise, free with strokes_
     uint64_t content; /* hash of the sensor directions that the strokes follow */
 };
 
-/* Updates the strokes (short streamlines) from the arrows, which must be up to date. */
+/* Traces the asset's strokes (short streamlines) again if the directions of its arrows changed; `arrows` must be up to date. */
 void strokes_update(struct stroke_set *set, const struct arrow_set *arrows, const struct scene *scene, int asset,
                     const struct fields_entry *field);
 void strokes_finish(struct stroke_set *set);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hashes a view member by member, because structs have padding. */
+/* Hashes what a frame shows (content_hash.h). Views are hashed member by member, because structs have padding bytes. */
 #include "render/plan/content_hash.h"
 
 #define XXH_INLINE_ALL
@@ -41,7 +41,7 @@ static void add_visibility(XXH3_state_t *state, const struct frame_plan *plan)
     hash_bytes(state, visibility->clip.planes, planes * sizeof(visibility->clip.planes[0]));
 }
 
-/* Hashes everything that a frame shows except the field and its colours. */
+/* Hashes everything that a frame shows except the field's values and colours: camera, visible assets and light. */
 static void add_shape(XXH3_state_t *state, const struct frame_plan *plan)
 {
     const struct view *view = &plan->view;

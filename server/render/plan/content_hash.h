@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hashes of what a frame shows: equal for equal frames. Pure. Thread: any. */
+/* Hashes of what a frame plan shows. Plans with equal hashes give equal frames. Pure. Thread: any. */
 #ifndef RENDER_PLAN_CONTENT_HASH_H
 #define RENDER_PLAN_CONTENT_HASH_H
 #include "render/plan/frame_plan.h"
 
-/* Returns the hash of the view without its sequence numbers and times, and of all visible fields. */
+/* Returns the hash of the plan's view and of the fields of its visible assets. Sequence numbers and the time of input do not count. */
 uint64_t content_hash(const struct frame_plan *plan);
 /* Returns the hash of everything that decides which triangle each pixel shows and in what light: equal for frames that differ only in
    values and colours. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tests cluster boxes against frustum planes, and normal cones against the eye. */
+/* Culls triangle clusters: tests their bounding boxes against the frustum planes, and their normal cones against the eye position. */
 #include "render/plan/culling.h"
 
 #include "render/matrix.h"

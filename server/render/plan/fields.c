@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Keeps vertex values of fields on the GPU up to date, uploading only changes that are visible. */
+/* Keeps the fields' vertex values on the GPU up to date. Uploads only changes that are large enough to be visible. */
 #include "render/plan/fields.h"
 
 #include <math.h>
@@ -14,7 +14,7 @@
 
 /* content hash of fields->lost, the placeholder for fields without memory; no other entry has this hash */
 static const uint64_t LOST = 0x6c6f7374;
-/* default bound of the cache, once for main memory and once for the GPU: enough for about 700 assets of 66,000 vertices */
+/* default size limit of the cache, applied separately to main memory and to GPU memory: enough for about 700 assets of 66,000 vertices */
 static const size_t BOUND_BYTES = (size_t)384 << 20;
 
 void fields_init(struct fields *fields, struct log *log, struct field *field)
@@ -105,8 +105,8 @@ static double error_of(const struct fields_entry *entry, const struct scalars *n
     return most;
 }
 
-/* Returns whether the change since the shown values is at least half a colour step. An upper bound of the change usually decides; if not,
-   all vertices are compared. */
+/* Returns whether the newest values differ from the shown ones by at least half a colour step. An upper bound of the difference usually
+   decides; otherwise all vertices are compared. */
 static bool can_be_seen(struct fields_entry *entry, const struct scalars *now, const struct pixel_field *pixels)
 {
     double half = 0.5 * entry->step;
@@ -184,7 +184,7 @@ size_t fields_vertices(const struct fields *fields, int asset, const struct fiel
     return fields->reference ? count : field_vertices(fields->field, asset, params, count);
 }
 
-/* Finds or creates the entry of one asset and notes whether its values are out of date. NULL: the asset has nothing to show. */
+/* Finds or creates the cache entry of one asset, and sets entry->behind if its values are out of date. NULL: the asset shows no field. */
 static struct fields_entry *look(struct fields *fields, const struct fields_ask *ask, int asset, size_t all)
 {
     struct field_params room;
@@ -205,7 +205,7 @@ static struct fields_entry *look(struct fields *fields, const struct fields_ask 
         return &fields->lost;
     struct pixel_field pixels;
     field_pixels(fields->field, asset, params, &pixels);
-    /* at most one sensor is left, so the field is not evaluated at pixels, and all vertices need values */
+    /* at most one sensor is usable, so the field is not evaluated at pixels, and all vertices need values */
     if (pixels.count == 0 && count < all) {
         count = all;
         scalars = field_scalars_of(fields->field, asset, params, ask->snapshot, count);
@@ -260,8 +260,8 @@ static void show_some(void *arg, size_t begin, size_t end)
         show(showing->entries[i]);
 }
 
-/* Uploads the sensors for shaders that compute the field at each fragment. Does nothing for kinds of interpolation and distance that the
-   shaders do not implement. */
+/* Uploads the entry's sensors for shaders that compute the field at each fragment. Does nothing for kinds of interpolation and distance
+   that the shaders do not implement. */
 static void take_sensors(const struct fields *fields, struct fields_entry *entry)
 {
     if (fields->reference && !entry->sensors && !interpolation_is_prepared(entry->params.interpolation) &&
@@ -316,8 +316,7 @@ bool fields_upload(struct fields *fields, const int *assets, size_t count, const
     return good;
 }
 
-/* Entries that the last frame used are kept even beyond the memory bound: the next frame mostly shows the same, and would have to compute
-   them again. */
+/* Keeps entries that the last frame used, even beyond the memory limit: the next frame mostly shows the same fields. */
 void fields_trim(struct fields *fields)
 {
     while (fields->bytes > fields->bound_bytes && fields->count > 0) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cache of assets' scalars on the GPU, per asset and field parameters. An entry is uploaded when it differs from the GPU's copy by half a
-   colour step or more. Beyond the bound the least recently used entries are evicted, except those of the last frame. Thread: the one of the
-   GL context. */
+/* Cache of field values (scalars) on the GPU, per asset and field parameters. An entry is uploaded when its values differ from the GPU's
+   copy by half a colour step or more. Beyond the bound the least recently used entries are evicted, except those of the last frame. Thread:
+   the one of the GL context. */
 #ifndef RENDER_PLAN_FIELDS_H
 #define RENDER_PLAN_FIELDS_H
 #include "field/directions.h"
@@ -11,7 +11,7 @@
 #include "gpu/gl.h"
 #include "gpu/pool.h"
 
-/* field of one asset. An entry without a slice (range of a GPU buffer) could not be computed or had no room, and is drawn as no data */
+/* Field of one asset. An entry without a slice (range of a GPU buffer), for lack of memory or of values, is drawn as no data. */
 struct fields_entry {
     int asset;
     struct field_params params;
@@ -20,7 +20,7 @@ struct fields_entry {
     /* value of scalars->travel (sum of all changes so far) when the shown values were computed, less the error known then. `scalars->travel
        - travel` is an upper bound of the error of any shown value */
     double travel;
-    uint64_t content; /* hash of the first `hashed` shown scalars, as many as the last request needed */
+    uint64_t content; /* hash of the first `hashed` values in `shown`, as many as the last request needed */
     size_t hashed;    /* number of shown scalars that `content` covers; SIZE_MAX: `content` is out of date */
     /* sensors of a field that is evaluated at pixels; count 0: the field is interpolated between vertices, from `shown` */
     struct pixel_field pixels;
@@ -63,7 +63,8 @@ struct fields_ask {
 /* Writes the entry of each requested asset into `entries` (indexed by asset). NULL: the asset shows no field. If memory does not suffice
    for an asset, it gets an entry that shows no data; logged. The entries are valid until the next fields_trim(). */
 void fields_get(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries);
-/* Returns how many of `count` vertices of an asset need values for fields_get(). */
+/* Returns how many of an asset's first `count` vertices need computed values for fields_get(): fewer if the field is evaluated at
+   pixels. */
 size_t fields_vertices(const struct fields *fields, int asset, const struct field_params *params, size_t count);
 /* Uploads the entries of these assets; call before the GPU draws with them. Returns false if an entry did not fit, which is logged: its
    element of `entries` then points to an entry that shows no data. */

@@ -16,13 +16,14 @@ struct frame_plan {
     double error_px; /* largest error of a level of detail's surface, in pixels of the frame (lod_selection.h); 0: finest levels only */
     int *visible;    /* indices of the visible assets, the nearest asset first */
     size_t visible_count;
-    /* by index in `visible`: number of the asset's vertices, from the first in the file on, that drawing and labelling read */
+    /* by index in `visible`: number of the asset's vertices, from the first in the file on, whose field values drawing and labelling
+       read */
     size_t *vertex_counts;
     /* --- set by frame_plan_complete() --- */
     /* field of each asset; NULL: the asset shows no field. Valid until a plan with newer readings is completed */
     const struct fields_entry **fields;
     int64_t data_utc_ns;     /* time of the snapshot */
-    uint64_t content, shape; /* hashes of the frame and of its geometry and light (content_hash.h) */
+    uint64_t content, shape; /* content: hash of all that the frame shows; shape: hash of its geometry and light only (content_hash.h) */
     int64_t field_ns;        /* time spent on computing the fields, ns */
 };
 

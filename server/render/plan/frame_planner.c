@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Makes a frame plan: first culling, light and levels of detail, then the fields of as many vertices as those levels need. */
+/* Makes a frame plan: first culls assets and chooses the light set and levels of detail, then computes the fields at as many vertices as
+   those levels need. */
 #include "render/plan/frame_planner.h"
 
 #include <math.h>
@@ -62,7 +63,8 @@ static struct light_key choose_light(const struct frame_planner *planner, const 
     return near ? near->key : key;
 }
 
-/* Returns how many vertices of the asset, from the first in the file on, its level of detail, its labels and its arrows need. */
+/* Returns at how many vertices of the asset, from the first in the file on, its level of detail, isoline labels and arrows need field
+   values. */
 static size_t count_vertices(const struct frame_plan *plan, int asset)
 {
     double lines[VIEW_ALL_LINES];

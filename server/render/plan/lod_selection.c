@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Chooses levels of detail with the error bound under which a frame has few enough triangles. */
+/* Chooses the error bound of a frame's levels of detail such that the frame stays within its triangle budget. */
 #include "render/plan/lod_selection.h"
 
 /* Upper limit, by tier (preview or refined), of the error bound of levels of detail, in pixels: silhouettes may be displaced by this

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fills the GPU buffers that shaders/reference.glsl reads. */
+/* Fills the GPU buffers that shaders/reference.glsl reads: positions, readings and distances of an asset's sensors. */
 #include "render/reference/reference.h"
 
 #include <string.h>

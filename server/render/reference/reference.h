@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reference computation of the field: at each fragment, over all sensors, from the finest level's distances. Slow, and independent of the
-   production code except for the readings; tests compare with it (`--field per-fragment`). Thread: the one of the GL context. */
+/* Reference computation of the field at each fragment, over all sensors, from the distances of the finest level of detail. It is slow, and
+   shares no code with the normal computation of fields; tests compare pictures with it (`--field per-fragment`). Thread: the one of the GL
+   context. */
 #ifndef RENDER_REFERENCE_H
 #define RENDER_REFERENCE_H
 #include "field/field.h"
@@ -31,7 +32,7 @@ void reference_bind_pixel_sensors(GLuint sensors);
 /* Binds the asset's distances and a buffer of reference_sensors() for the next draws of that asset. Returns false when out of GPU memory,
    logged. */
 bool reference_bind(struct reference *reference, int asset, GLuint sensors);
-/* draws the given commands with per-fragment field values; the current program must be compiled with PER_FRAGMENT */
+/* issues the draw commands with a field value computed at each fragment; the current program must be compiled with PER_FRAGMENT */
 void reference_draw(const struct draw_command *commands, size_t count);
 
 #endif

@@ -13,7 +13,8 @@ enum { NEAR_PLANES = 5, NEAR_CORNERS = 3 + NEAR_PLANES + CLIP_MAX_PLANES, NEAR_T
    in struct soft_vertex */
 struct near_corner {
     float at[4], a, b;
-    /* part, 0..1, of each pattern (field/scalars.h) at the corner, from the vertex's flags; interpolated linearly between corners */
+    /* 0..1 for each pattern (no data, uncertain, no limits): how far it applies at the corner; from the vertex's flags, interpolated
+       linearly between corners */
     struct near_patterns {
         float no_data, uncertain, no_limits;
     } patterns;

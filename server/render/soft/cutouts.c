@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangles that do not simply hide surfaces behind them: triangles with holes from an alpha mask, and blended (transparent) triangles. */
+/* Triangles with holes from a texture's alpha mask, and blended (transparent) triangles: both let surfaces behind show through. */
 #include "base/mem.h"
 #include "render/soft/tile.h"
 

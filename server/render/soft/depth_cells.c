@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds nearest and farthest depth of each cell, and the pixels on both sides of a step. */
+/* Computes the cells of a depth grid (depth_grid.h): nearest and farthest depth, and which pixels lie on which side of a depth step. */
 #include "render/soft/depth_cells.h"
 
 #include <math.h>
 
 #include "render/soft/lanes.h"
 
-/* Smallest gap between the two sides of a depth step within a cell, as a part of the range of the cell's depths; with a smaller gap the
+/* Smallest gap between the two sides of a depth step within a cell, as a fraction of the range of the cell's depths; with a smaller gap the
    cell is not divided. In a single tilted plane, depths are closer together than that. */
 static const float LEAST_GAP = 0.25f;
 
@@ -27,8 +27,8 @@ SOFT_INLINE lanes row_at(const float *depth, size_t pitch_px, int row)
     return *(const lanes *)(depth + (size_t)row * pitch_px);
 }
 
-/* Divides a cell into pixels nearer than the depth `border` and pixels behind. low: least depth of the pixels behind; 0: only background is
-   behind. high: largest depth of the cell. Returns false if the gap between both sides is too small (LEAST_GAP). */
+/* Divides a cell into pixels nearer than the depth `border` and pixels farther away. low: least depth of the farther pixels; 0: they show
+   only background. high: largest depth of the cell. Returns false if the gap between both sides is too small (LEAST_GAP). */
 SOFT_INLINE bool divide(const float *depth, size_t pitch_px, float low, float border, float high, struct depth_cell *cell)
 {
     lanes zero = { 0 }, nearest_behind = zero, farthest_before = zero + high;
@@ -80,7 +80,7 @@ SOFT_INLINE void find_cell(const struct depth_lens *lens, const float *depth, si
         divide(depth, pitch_px, 0, 0, high, cell);
 }
 
-/* Finds the depths of a cell that reaches beyond the frame: there the pixels at the frame's edge are repeated. */
+/* Computes a cell that extends beyond the frame. Outside the frame, it repeats the pixels at the frame's edge. */
 static void find_edge_cell(const struct depth_source *source, int row, int column, struct depth_cell *cell)
 {
     float depth[DEPTH_CELL_PX * DEPTH_CELL_PX];

@@ -13,8 +13,8 @@ struct raster_edge {
     int32_t negative;   /* -1: pixels inside the triangle have negative values of the edge function; 0: they have non-negative values */
 };
 
-/* value that is linear over the frame. at: value at the triangle's first corner; dx, dy: change per pixel; low, high: smallest and largest
-   value at the corners */
+/* A quantity (such as depth) that is a linear function of the pixel position. at: its value at the triangle's first corner; dx, dy: change
+   per pixel; low, high: smallest and largest value at the corners */
 struct plane {
     float at, dx, dy, low, high;
 };
@@ -44,8 +44,8 @@ SOFT_INLINE float edge_row(const struct raster_edge *edge, float y)
     return edge->dx * (y - edge->y) + edge->dy * edge->x;
 }
 
-/* Returns a negative lane for each pixel outside the edge. Only the sign bit counts, so a pixel whose value is -0 is on exactly one side,
-   too. x: x of the pixel centres. */
+/* Returns a negative lane for each pixel on the outer side of the edge. Only the sign bit counts, so a pixel with the edge function -0 is
+   also on exactly one side. x: x of the pixel centres. */
 SOFT_INLINE lanes_int edge_side(const struct raster_edge *edge, float row, lanes x)
 {
     return (lanes_int)(row - edge->dy * x) ^ edge->negative;

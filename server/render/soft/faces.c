@@ -5,12 +5,11 @@
 
 #include "render/soft/kernels.h"
 
-#define FARTHEST 1e6f /* maximum absolute value of a colour map column; larger values, which are far outside the scale, are clamped */
+#define FARTHEST 1e6f /* colour map columns are clamped to this absolute value, which is far outside the scale */
 
 /* --- vertices --------------------------------------------------------------------------------------------------------------- */
 
-/* Prefetches field values and light of eight vertices into the cache. The caller uses them only after it has projected the vertices and
-   found the faces. */
+/* Prefetches the field values and light of eight vertices into the CPU cache; carry_part() needs the data later. */
 SOFT_INLINE void fetch_carried(const struct soft_mesh *mesh, const uint32_t vertices[LANES])
 {
     for (int l = 0; l < LANES && mesh->scalars && mesh->pixels < 0; l++)
@@ -54,8 +53,8 @@ void soft_place_part(struct soft_tile *tile, const struct soft_mesh *mesh, const
     corners->flat = most <= SOFT_LITTLE * least;
 }
 
-/* Computes a and b of vertices with a field: column and row of the colour map, as colormap_column() and colormap_row() in
-   shaders/field.glsl. numbers: indices of the vertices, padded to a multiple of LANES. */
+/* Computes a and b (struct soft_vertex) of vertices with a field: column and row of the colour map, as colormap_column() and colormap_row()
+   in shaders/field.glsl. numbers: indices of the vertices, padded to a multiple of LANES. */
 SOFT_INLINE void carry_field(const struct raster *raster, const struct soft_mesh *mesh, const uint32_t *vertices, const uint8_t *numbers,
                              int count, struct soft_corners *corners)
 {
@@ -97,8 +96,8 @@ SOFT_INLINE void carry_nothing(const struct raster *raster, const struct soft_me
     corners->all_flags = SOFT_NO_DATA;
 }
 
-/* Sets a and b of vertices whose field is evaluated at pixels, so that pixels of their triangles get a MARK_PIXELS mark (soft_impl.h).
-   a: bits 0 to 7 of the field's index in raster->pixels; b: row of the colour map, plus raster->row_bias. */
+/* Sets a and b (struct soft_vertex) of vertices whose field is evaluated at pixels, so that pixels of their triangles get a MARK_PIXELS
+   mark (soft_impl.h). a: bits 0 to 7 of the field's index in raster->pixels; b: row of the colour map, plus raster->row_bias. */
 SOFT_INLINE void carry_pixels(const struct raster *raster, const struct soft_mesh *mesh, const uint32_t *vertices, const uint8_t *numbers,
                               int count, struct soft_corners *corners)
 {
@@ -188,8 +187,8 @@ SOFT_INLINE lanes_int last_pixel(lanes x, int high)
     return lanes_whole(lanes_clamp(x + 0.5f, 0, (float)high + 1)) - 1;
 }
 
-/* Returns whether the face is hidden: in every 8 x 8 pixel block that it touches, its nearest depth is behind the block's farthest
-   depth. */
+/* Returns whether surfaces drawn earlier hide the face: its nearest depth is behind the farthest depth of every 8 x 8 pixel block that it
+   touches. */
 SOFT_INLINE bool is_hidden(const struct soft_tile *tile, const struct soft_face *face, float nearest)
 {
     unsigned top = (unsigned)(face->top - tile->rect.top) / BLOCK_PX, bottom = (unsigned)(face->bottom - tile->rect.top) / BLOCK_PX;
@@ -204,8 +203,8 @@ SOFT_INLINE bool is_hidden(const struct soft_tile *tile, const struct soft_face 
 struct eight { /* eight triangles */
     lanes_int corners[3];
     lanes_int left, right, top, bottom;
-    /* flags of each triangle, -1: true. kept: the triangle is drawn. doubtful: the depth blocks at the four corners of its rectangle hide
-       the triangle, but the rectangle has more blocks, which are not tested yet */
+    /* per triangle, -1: true. kept: the triangle will be drawn. doubtful: the depth blocks at the four corners of its rectangle hide the
+       triangle, but the rectangle has more blocks, which are not tested yet */
     lanes_int kept, doubtful;
     lanes nearest;
 };
@@ -230,8 +229,8 @@ SOFT_INLINE void hide(const struct soft_tile *tile, struct eight *eight)
     eight->doubtful = hidden & wide;
 }
 
-/* Returns a mask of those of eight triangles that may face the eye, because eye_m is on the outer side of their plane. A tolerance keeps
-   rounding errors from dropping a front face. */
+/* Returns a mask of eight triangles: set for those that may face the eye, because eye_m is on the outer side of their plane. A tolerance
+   keeps rounding errors from dropping a front face. */
 SOFT_INLINE lanes_int may_face(const float *planes, int rounded, const float eye_m[3])
 {
     float slack_m = 1e-5f * (1 + __builtin_fabsf(eye_m[0]) + __builtin_fabsf(eye_m[1]) + __builtin_fabsf(eye_m[2]));
@@ -239,8 +238,8 @@ SOFT_INLINE lanes_int may_face(const float *planes, int rounded, const float eye
     return x * eye_m[0] + y * eye_m[1] + z * eye_m[2] + slack_m >= *(const lanes *)(planes + 3 * rounded);
 }
 
-/* Appends those of eight triangles that are kept to the tile's list of faces. first: index of the first of the eight within the part. back:
-   FACE_BACK for triangles that look away from the eye, else 0. */
+/* Appends the triangles marked in eight->kept to the tile's list of faces. first: index, within the part, of the first of the eight
+   triangles. back: FACE_BACK for triangles that look away from the eye, else 0. */
 SOFT_INLINE void keep_faces(struct soft_tile *tile, const struct eight *eight, int first, lanes_int back)
 {
     /* eight elements of struct soft_face, transposed: 32-bit word i of face l is words[i][l] */

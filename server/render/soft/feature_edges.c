@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Feature edges: thin dark lines around shapes, found in depth; ports shaders/edges.frag. */
+/* Draws feature edges: thin dark lines where the depth buffer shows the rim of a shape; a C version of shaders/edges.frag. */
 #include <math.h>
 
 #include "render/soft/kernels.h"
@@ -42,7 +42,8 @@ SOFT_INLINE lanes line(lanes rise)
     return t * t * (3.0f - 2.0f * t);
 }
 
-/* Returns line coverage, 0..1, at eight pixels, where the neighbouring pixel at (dx, dy) is much nearer to the eye. */
+/* Returns by how much a feature edge covers each of eight pixels, 0..1: above 0 where the pixel at the offset (dx, dy) is much nearer to
+   the eye. */
 SOFT_INLINE lanes edge(const struct view_of_depth *view, int x, int y, lanes here, int dx, int dy)
 {
     lanes next = at(view, x + dx, y + dy), zero = { 0 }, lines = zero;

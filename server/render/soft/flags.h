@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Flags of the field's value at a vertex: no data, uncertain, no limits; each selects a pattern. Private to soft/. */
+/* Flags of the field's value at a vertex: no data, uncertain, no alarm limits. Each flag selects a pattern (hatch, dots, lines) that pixels
+   show. Private to soft/. */
 #ifndef RENDER_SOFT_FLAGS_H
 #define RENDER_SOFT_FLAGS_H
 #include "field/scalars.h"

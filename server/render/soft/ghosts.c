@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws ghosted assets: lines where their depth has edges or creases, and a thin horizontal line every ten pixels; ports
+/* Draws ghosted assets: lines where their depth has edges or creases, and a thin horizontal line every ten pixels; a C version of
    shaders/ghost.frag. */
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads baked light back from the GPU. */
+/* Copies a baked light set from the GPU to main memory, for the software renderer. */
 #include <math.h>
 #include <string.h>
 
@@ -7,7 +7,7 @@
 #include "base/system/huge_pages.h"
 #include "render/soft/soft_impl.h"
 
-/* height of one band of the sun's shadow map, which is read at once (2 MB): in tiles, and in texels */
+/* The sun's shadow map is read from the GPU in bands of 2 MB. Height of a band: SUN_BAND_TILES in tiles, SUN_BAND_ROWS in texels. */
 enum { SUN_BAND_TILES = 32, SUN_BAND_ROWS = SUN_BAND_TILES * SUN_TILE_STEP_PX + 1 };
 
 static bool fail(const struct soft *soft, const char *what)
@@ -67,7 +67,7 @@ static uint32_t fill_sun_tile(const struct sun_band *band, int u, int v, uint16_
                 out[x] = row[u + x < last_u ? u + x : last_u];
     }
     if (memcmp(texels, nothing, sizeof(texels)) == 0)
-        return 0; /* an empty tile stays unwritten, and both of its bounds (smallest and largest depth) are 0 */
+        return 0; /* a tile without surfaces is not written; both of its bounds (smallest and largest depth) are 0 */
     memcpy(to, texels, sizeof(texels));
     return soft_sun_bounds(texels);
 }

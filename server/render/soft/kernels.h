@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Table of kernels: the loops that take most of a frame's time. Their files are compiled once for any machine and, for x86, again for AVX2
-   and AVX-512 (Makefile): the suffixes are _plain, _wide and _widest. All three give identical bits. Private to soft/. */
+/* Table of kernels: the loops that take most of a frame's time. The Makefile compiles their source files for any machine (suffix _plain)
+   and, on x86, also for AVX2 (_wide) and AVX-512 (_widest). All three give identical bits. Private to soft/. */
 #ifndef RENDER_SOFT_KERNELS_H
 #define RENDER_SOFT_KERNELS_H
 #include "render/soft/tile.h"
@@ -11,25 +11,25 @@ struct shaded_items;
 struct visibility_band;
 
 struct soft_kernels {
-    /* place_part projects the vertices of a part (soft/parts.h). carry_part then computes field and light for the vertices of the part's
-       listed faces. If some faces are clipped, it does so for all vertices of the part. */
+    /* place_part projects the vertices of a part (soft/parts.h). carry_part then computes field value and light of the vertices of the
+       faces that find_faces listed, or of all vertices of the part if some faces are clipped. */
     void (*place_part)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
     void (*carry_part)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
     /* Lists the faces (front-facing triangles) of a part (group of triangles) that need no clipping and whose corners are all projected. */
     void (*find_faces)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_found *found, const struct soft_part *part);
     /* Draws depth and marks (contents of pixels, soft_impl.h) of all listed faces. */
     void (*raster_faces)(const struct soft_tile *tile, uint32_t mark);
-    /* Counts closed bodies along the view ray of each pixel, in the pixels' marks: a listed face that looks away from the eye adds 1, a
-       face that faces the eye subtracts 1. */
+    /* Counts closed bodies along the view ray of each pixel, for section caps, and stores the count as the pixel's mark: a listed face that
+       looks away from the eye adds 1, a face towards the eye subtracts 1. */
     void (*count_faces)(const struct soft_tile *tile);
-    /* Recomputes tile->farthest, the farthest depth in a block of 8 x 8 pixels, for these blocks of the tile. */
+    /* Recomputes tile->farthest, the farthest depth in each block of 8 x 8 pixels, for the given blocks of the tile. */
     void (*look_again)(struct soft_tile *tile, const struct soft_rect *blocks);
     /* Turns the marks (contents of pixels, soft_impl.h) in a rectangle into colours. The rectangle begins at a multiple of
        SOFT_STRETCH_MOST pixels. */
     void (*color)(const struct raster *raster, const struct soft_rect *rect);
     /* --- of refined frames */
-    /* Shades surfaces that show the field. For each item (surface to shade), writes triangle, corner weights and colour map row to
-       `out`. */
+    /* Shades surfaces that show the field. For each item (surface to shade), writes to `out` its triangle, its corner weights in the
+       triangle, and its row of the colour map (brightness). */
     void (*shade_field)(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                         const struct shaded_items *out);
     /* Shades surfaces that show the field in the glossy look. Works like shade_field, and also writes reflected light to out->gloss. */
@@ -38,7 +38,7 @@ struct soft_kernels {
     /* Shades the surfaces that show no field and writes their colours. alphas: receives their opacity, 0..1; NULL: not needed. */
     void (*shade_surfaces)(const struct refined *refined, const struct refined_item *items, size_t count, uint32_t *colors, float *alphas);
     void (*shade_sky)(const struct refined *refined, int row, const uint8_t *wanted, uint32_t *colors);
-    /* Draws the feature edges of a band (group of pixel rows) into the visibility buffer's ink (lines drawn over pixels). */
+    /* Draws the feature edges of a band (group of pixel rows) into the visibility buffer's `ink`: how much dark lines cover each pixel. */
     void (*ink_band)(const struct refined *refined, int band);
     /* Colours bands of a visibility buffer: a task of workers_for(). arg: struct resolve_job */
     void (*color_bands)(void *arg, size_t begin, size_t end);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Vectors of eight numbers, by the compiler's vector extensions, and by intrinsics where the compiler would not find the right instruction.
-   Results are bit-identical on every machine. Private to soft/. */
+/* Vectors of eight numbers (lanes). They use the compiler's vector extensions, and intrinsics where the compiler would not choose the right
+   instruction. Results are bit-identical on every machine. Private to soft/. */
 #ifndef RENDER_SOFT_LANES_H
 #define RENDER_SOFT_LANES_H
 #include <stdint.h>
@@ -18,7 +18,7 @@
 #define SOFT_JOIN(name, set) name##set
 #define SOFT_IN_SET(name, set) SOFT_JOIN(name, set)
 
-enum { LANES = 8 }; /* number of elements per vector; must be at most SOFT_STRETCH_LEAST */
+enum { LANES = 8 }; /* number of elements per vector; at most SOFT_STRETCH_LEAST (soft_impl.h), so that eight pixels lie in one stretch */
 typedef float lanes __attribute__((vector_size(32), aligned(4)));
 typedef int32_t lanes_int __attribute__((vector_size(32), aligned(4)));
 typedef uint32_t lanes_uint __attribute__((vector_size(32), aligned(4)));

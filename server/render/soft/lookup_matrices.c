@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the matrices with which pixels look up the sun's shadow map, the ground and the sky. */
+/* Computes the matrices that convert a pixel's position and depth to coordinates in the sun's shadow map, the ground texture and the
+   sky. */
 #include <math.h>
 #include <string.h>
 

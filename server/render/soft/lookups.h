@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Texture lookups of shadow map and backdrop, for eight pixels at a time. Private to soft/. */
+/* Lookups in the sun's shadow map and in the backdrop texture, for eight pixels at a time. Private to soft/. */
 #ifndef RENDER_SOFT_LOOKUPS_H
 #define RENDER_SOFT_LOOKUPS_H
 #include <math.h>
@@ -35,7 +35,8 @@ SOFT_INLINE lanes byte_of(lanes_int packed, int number)
    reading texels, whether they are lit. The lookup has three steps, sun_aim, sun_bound and sun_look. Each step prefetches the memory that
    the next one reads, so the caller does other work in between. */
 struct sun_aim {
-    lanes u_part, v_part, place; /* u_part, v_part: position between the four texels, 0..1; place: depth in units of the map */
+    /* u_part, v_part: position between the four nearest texels, 0..1; place: depth of the point, in the integer unit of the shadow map */
+    lanes u_part, v_part, place;
     lanes_int tile, at;          /* tile: index of the tile of the map; at: index of the upper left of the four texels */
     lanes_int open; /* mask of lanes whose texels must still be read; for the others `lit` is final: the visible part of the sun, 0..1 */
     lanes lit;
@@ -67,8 +68,8 @@ SOFT_INLINE void sun_prefetch_bounds(const struct soft_light *light, const struc
         __builtin_prefetch(light->sun_bounds + tile[i]);
 }
 
-/* Decides whether points are lit, where the smallest and largest depth of their tile of the map suffice. Lanes that stay undecided remain
-   in `open`. */
+/* Decides whether points are lit, as far as the smallest and largest depth of the point's shadow map tile suffice for that. Undecided
+   points remain in aim->open. */
 SOFT_INLINE void sun_bound(const struct soft_light *light, struct sun_aim *aim)
 {
     lanes_int bounds = gather(light->sun_bounds, aim->tile & aim->open);
@@ -105,7 +106,8 @@ SOFT_INLINE lanes sun_compare(const struct soft_light *light, const struct sun_a
     return upper + aim->v_part * (lower - upper);
 }
 
-/* Reads texels for the lanes that are still open. Returns, for all lanes, the visible part of the sun, 0..1. */
+/* Reads shadow map texels for the points that sun_bound() left undecided (aim->open). Returns, for all lanes, the visible part of the sun,
+   0..1. */
 SOFT_INLINE lanes sun_look(const struct soft_light *light, const struct sun_aim *aim)
 {
     if (!lanes_any(aim->open))
@@ -113,8 +115,8 @@ SOFT_INLINE lanes sun_look(const struct soft_light *light, const struct sun_aim 
     return lanes_choose(aim->open, sun_compare(light, aim, aim->at & aim->open), aim->lit);
 }
 
-/* Looks up a shadow in a single step, without using the depth bounds of tiles. For refined frames: their four neighbouring lookups per
-   point do not profit from the bounds. */
+/* Looks up a shadow in a single step, without using the depth bounds of tiles. Refined frames use this function, because the bounds would
+   not speed up their four neighbouring lookups per point. */
 SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lanes depth)
 {
     struct sun_aim aim;
@@ -162,7 +164,7 @@ SOFT_INLINE lanes_int backdrop_at(const struct raster *raster, const struct heig
 SOFT_INLINE lanes_int darkened(lanes_int color, lanes_int factor)
 {
     lanes_uint by = (lanes_uint)factor, bgrx = (lanes_uint)color;
-    lanes_uint blue_red = ((bgrx & 0xff00ff) * by + 0x800080) >> 8 & 0xff00ff; /* two channels in one multiplication */
+    lanes_uint blue_red = ((bgrx & 0xff00ff) * by + 0x800080) >> 8 & 0xff00ff; /* multiplies blue and red in one multiplication */
     lanes_uint green = ((bgrx & 0xff00) * by + 0x8000) >> 8 & 0xff00;
     return (lanes_int)(blue_red | green | 0xff000000);
 }

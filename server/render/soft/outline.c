@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Outlines the rim of one asset with a dark line inside a light one, as shaders/outline.frag. */
+/* Draws the outline of one asset: a dark line with a light line outside; a C version of shaders/outline.frag. */
 #include <math.h>
 #include <string.h>
 
@@ -10,7 +10,7 @@
 enum { MAX_REACH_PX = 32 };
 static const double dark_rgb[3] = { RIM_RGB };
 
-struct brush { /* brush drawn around each pixel on the rim of the outlined asset; reach_px: half the brush's width */
+struct brush { /* square brush that is stamped at each pixel on the rim of the outlined asset; reach_px: half its width */
     int reach_px;
     uint8_t rim[2 * MAX_REACH_PX + 1][2 * MAX_REACH_PX + 1];
 };
@@ -63,7 +63,7 @@ static void paint(const struct raster *raster, const uint8_t *rim)
 const uint8_t *raster_rim(const struct raster *raster)
 {
     struct brush brush;
-    uint8_t *rim = (uint8_t *)raster->depth; /* depth is no longer needed */
+    uint8_t *rim = (uint8_t *)raster->depth; /* reuses the memory of the depth buffer, which is no longer needed */
     brush_init(&brush, lines_outline_px(raster->context->view));
     memset(rim, 0, (size_t)raster->pitch_px * (size_t)raster->height_px);
     for (int y = 0; y < raster->height_px; y++)

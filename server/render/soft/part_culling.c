@@ -10,8 +10,8 @@
 #include "render/matrix.h"
 #include "render/gl/ghosts.h"
 
-#define SLACK_PX 0.02f    /* boxes and vertices round differently */
-#define SLACK_DEPTH 1e-5f /* tolerance for rounding errors in a depth, as a part of the depth */
+#define SLACK_PX 0.02f    /* tolerance in pixels, because projected boxes and projected vertices round differently */
+#define SLACK_DEPTH 1e-5f /* tolerance for rounding errors in a depth, as a fraction of the depth */
 /* depth used for points in front of the near plane; larger than any real depth, so that they count as nearest */
 #define IN_FRONT_OF_NEAR 2.0f
 
@@ -118,8 +118,8 @@ static const struct soft_parts *parts_of(struct raster *raster, const struct gl_
     return parts;
 }
 
-/* Computes the eye position that decides which side of a surface is visible. Orthographic rays are parallel: the eye is put so far away
-   that rays differ by less than a float can represent. */
+/* Computes the eye position from which front and back faces are told apart. In an orthographic view rays are parallel, so the eye is put so
+   far away that its rays are parallel within the precision of a float. */
 static void find_eye(const struct raster *raster, double eye_m[3])
 {
     const struct view_constants *constants = &raster->context->constants;

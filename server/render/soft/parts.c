@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Makes parts (soft/parts.h) from the clusters of an asset file: within a part, vertices have indices of their own that fit a byte. */
+/* Makes parts (groups of triangles, soft/parts.h) from the clusters of an asset file. Within a part, a vertex has a local index that fits
+   in a byte. */
 #include "render/soft/parts.h"
 
 #include <math.h>
@@ -49,8 +50,8 @@ static bool add_triangle(struct parts_maker *maker, struct soft_part *part, cons
 
 /* --- sorting by direction of the normal ----------------------------------------------------------------------------------- */
 
-/* Normals are sorted by direction: an octahedron around the origin is unfolded into a square (octahedral mapping), and the index of a cell
-   of this square is the direction. */
+/* Triangles are sorted by the direction of their normals: octahedral mapping unfolds all directions into a square, and the index of a cell
+   of this square is the sort key. */
 enum { DIRECTION_CELLS = 8, DIRECTION_COUNT = DIRECTION_CELLS * DIRECTION_CELLS };
 
 struct plane_of_triangle {
@@ -83,7 +84,8 @@ static int step_of(float x)
     return step < DIRECTION_CELLS ? step : DIRECTION_CELLS - 1;
 }
 
-/* Returns the direction of a normal as the index of a cell. Normals with close indices mostly point in similar directions. */
+/* Returns the direction of a normal as the index of a cell (0 to DIRECTION_COUNT - 1). Normals with close indices mostly point in similar
+   directions. */
 static int direction_of(const float n[3])
 {
     float sum = fabsf(n[0]) + fabsf(n[1]) + fabsf(n[2]);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Physically based shading (PBR) of eight surfaces at a time; ports shaders/environment.glsl, pbr.glsl and light.glsl. Private to soft/. */
+/* Physically based shading (PBR) of eight surfaces at a time; a C version of shaders/environment.glsl, pbr.glsl and light.glsl. Private to
+   soft/. */
 #ifndef RENDER_SOFT_PBR_H
 #define RENDER_SOFT_PBR_H
 #include "render/light/environments.h"
@@ -54,7 +55,8 @@ SOFT_INLINE four texel_between(const float (*texels)[4], float x, float y)
     return upper + (lower - upper) * b;
 }
 
-/* Returns the light that the environment reflects towards the viewer at this roughness. r: the mirrored view direction. */
+/* Returns the environment's light around the direction r, averaged for a surface of this roughness. r: the view direction mirrored at the
+   surface. */
 SOFT_INLINE vec mirrored(const struct environment_light *surroundings, vec r, lanes roughness)
 {
     const float(*texels)[4] = (const float(*)[4])surroundings->of->mirrored;

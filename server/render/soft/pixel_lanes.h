@@ -77,15 +77,16 @@ SOFT_INLINE lanes pixel_fade(const struct pixel_field *field, lanes square, lane
     return lanes_choose(nearest, one, lanes_choose(within, left * left, none));
 }
 
-/* Returns a list's polynomial at eight points. u: vectors from the list's centre to the points, metres. */
+/* Returns the value of a list's polynomial `of` (struct pixel_list) at eight points. u: vectors from the list's centre to the points, in
+   metres. */
 SOFT_INLINE lanes pixel_polynomial(const float of[PIXEL_TERMS], const lanes u[3])
 {
     lanes x = u[0] * (of[1] + u[0] * of[4] + u[1] * of[5] + u[2] * of[6]);
     return of[0] + x + u[1] * (of[2] + u[1] * of[7] + u[2] * of[8]) + u[2] * (of[3] + u[2] * of[9]);
 }
 
-/* Adds the polynomials of a list's far sensors to the sums. part: for each point, the factor that converts the polynomials to the unit of
-   the weights at that point (2^top / unit). */
+/* Adds the polynomials that replace a list's far sensors to the sums of weights and values. part: for each point, the factor that converts
+   the polynomials to the unit of the weights at that point (2^top / unit). */
 SOFT_INLINE void pixel_add_far(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3], lanes near2, lanes part,
                                struct eight_sums *sums)
 {
@@ -121,8 +122,8 @@ SOFT_INLINE void pixel_sum_shepard(const struct pixel_field *field, const struct
         pixel_add_far(field, list, at, near2, lanes_exp2(0.5f * field->power * near_log2 + list->top), sums);
 }
 
-/* Sums the weights 1 / distance^2 of a list whose sensors are all used. Other weights are computed relative to the nearest sensor; these
-   need not be, because they fit into a float even at a sensor. */
+/* Sums the weights 1 / distance^2 of a list whose sensors are all used. Unlike other kinds of weights, these need not be scaled by the
+   nearest sensor's weight: they fit into a float even at a sensor. */
 SOFT_INLINE void pixel_sum_inverse_square(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3],
                                           struct eight_sums *sums)
 {

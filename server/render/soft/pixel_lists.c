@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides for squares of pixels which sensors are near. The surface points of a square lie in a box. A sensor is far if its weight is so
-   smooth in the box that a quadratic Taylor polynomial or a constant can replace it. The error bounds of all far sensors together stay
-   below an allowed share of the least sum of all weights. Sensors that may be the nearest somewhere in the box are always near. */
+/* Makes lists of near sensors (pixel_lists.h): decides for each square of pixels which sensors are near and which are far. The surface
+   points that a square shows lie in a box. A sensor is far if its weight is so smooth in the box that a quadratic Taylor polynomial or a
+   constant can replace it. The sum of the error bounds of all far sensors stays below an allowed fraction of the smallest possible sum of
+   all weights. Sensors that may be the nearest somewhere in the box are always near. */
 #include "render/soft/pixel_lists.h"
 
 #include <math.h>
@@ -23,7 +24,7 @@ struct node {
     int count;
     struct pixel_list far; /* polynomials that replace the far sensors; its member `sensors` is not set */
     float least;           /* lower bound of the sum of the weights of the far sensors */
-    float left;            /* error budget that is left: part of the sum of all weights by which polynomials may still deviate */
+    float left;            /* remaining error budget: fraction of the sum of all weights by which the polynomials may still deviate */
 };
 
 struct building {
@@ -51,7 +52,7 @@ float pixel_lists_step(const float *scale)
 
 struct eight_sensors {
     lanes at[3], value, strength, decay;
-    /* masks of the sensors in each state; counts: mask of the lanes that hold a sensor (lanes beyond the list's end hold none) */
+    /* masks of the sensors in each state. counts: mask of the lanes that hold a sensor; lanes beyond the end of the list hold none */
     lanes_int used, lost, no_limits, uncertain, counts;
 };
 
@@ -75,8 +76,8 @@ SOFT_INLINE lanes all(float x)
     return (lanes){ 0 } + x;
 }
 
-/* Returns the weight of a sensor at a distance, times 2^-top so that it fits in a float. term: true (paper only): returns the weight times
-   nearness^decay, also times 2^-top. */
+/* Returns the interpolation weights of eight sensors at the given distances, times 2^-top so that they fit in floats. term true
+   (interpolation `paper` only): multiplies them by nearness^decay. */
 SOFT_INLINE lanes weight_at(const struct pixel_field *field, const struct eight_sensors *of, lanes distance, bool term, float top)
 {
     lanes log, zero = { 0 };
@@ -122,7 +123,8 @@ SOFT_INLINE void inverse_square_jet(const struct eight_sensors *of, lanes distan
     out->least = strength * last * last;
 }
 
-/* First, second and third derivative of a weight's logarithm by the distance. Each is a sum of terms of one sign. */
+/* First, second and third derivative of the logarithm of a sensor's weight with respect to distance. Each is a sum of terms of equal
+   sign. */
 struct logarithm {
     lanes first, second, third;
 };
@@ -165,8 +167,8 @@ SOFT_INLINE struct logarithm logarithm_of(const struct pixel_field *field, const
     return out;
 }
 
-/* Fills *out with the weights of eight sensors as functions of the place in the box. distance: from each sensor to the box's centre.
-   Correct only because all weights fall with distance. */
+/* Fills *out with approximations of the weights of eight sensors as functions of the position in the box. distance: from each sensor to the
+   box's centre. Correct only for weights that fall with distance, as all do. */
 SOFT_INLINE void jet_of(const struct pixel_field *field, const struct eight_sensors *of, lanes distance, float radius, bool term, float top,
                         struct jet *out)
 {
@@ -256,7 +258,8 @@ SOFT_INLINE lanes distances_of(const struct eight_sensors *of, const struct box 
     return distance;
 }
 
-/* upper bounds, for any place in the box, of the distance to the nearest sensor of each state; FAR_M: there is no sensor of that state */
+/* upper bounds of the distance from any point of the box to the nearest sensor of each state (used, lost, no limits); FAR_M: there is no
+   sensor of that state */
 struct nearest_bounds {
     float used, lost, no_limits;
     float top; /* base-2 logarithm of a number close to the largest weight in the box */
@@ -288,8 +291,7 @@ struct centre_sums {
     lanes weights, by_distance, along[3];
 };
 
-/* For weights that are strength / distance^2: adds eight sensors to the sums from which least_by_centre() bounds the sum of all weights in
-   the box. */
+/* For weights of the form strength / distance^2: adds eight sensors to the sums from which least_by_centre() computes its bound. */
 SOFT_INLINE void add_at_centre(const struct eight_sensors *of, lanes distance, float radius, float top, const lanes away[3],
                                struct centre_sums *sums)
 {
@@ -312,8 +314,8 @@ SOFT_INLINE float least_by_centre(const struct centre_sums *sums)
     return weights > 0 ? weights * weights / (weights + 2 * sqrtf(along) + sum_of(sums->by_distance)) : 0;
 }
 
-/* Fills building->errors: for each sensor, the change of a value if a polynomial replaces the sensor. Returns a lower bound, in the box, of
-   the sum of the weights of the list's sensors. */
+/* Fills building->errors: for each sensor, a bound of the change of a field value if a polynomial replaces the sensor. Returns a lower
+   bound, in the box, of the sum of the weights of the list's sensors. */
 SOFT_INLINE float bound_errors(const struct building *building, const struct node *from, const struct box *box,
                                const struct nearest_bounds *nearest)
 {
@@ -384,7 +386,8 @@ SOFT_INLINE void keep(const struct node *from, int sensor, struct node *to)
     to->count++;
 }
 
-/* Splits the parent's list: sensors with an error up to `most` become far and are added to the polynomials; the others stay listed. */
+/* Splits the parent node's list: sensors with an error of at most `most` become far and are added to the polynomials; the others stay in
+   the list. */
 SOFT_INLINE void split(const struct building *building, const struct node *from, const struct box *box, float most, float top,
                        struct node *to)
 {
@@ -418,8 +421,8 @@ SOFT_INLINE void split(const struct building *building, const struct node *from,
     to->least = from->least * times + sum_of(sums.least);
 }
 
-/* Makes the node of a smaller square from its parent's. last: true: the node may use all of the error budget that is left; false: it leaves
-   a part for its children. */
+/* Makes the node of a smaller square from the node of the square around it. last true: the node may use all of the remaining error budget;
+   false: it leaves a part for smaller squares. */
 static void make_node(const struct building *building, const struct node *from, const struct box *box, bool last,
                                   struct node *to)
 {
@@ -439,7 +442,7 @@ static void make_node(const struct building *building, const struct node *from, 
 
 /* --- squares of cells ------------------------------------------------------------------------------------------------------------ */
 
-/* Computes the box around cells[first] and the cells after it that are in the same square of this level. */
+/* Computes the box that encloses cells[first] and all following cells in the same square of this level. */
 static void bound_cells(const struct pixel_cell *cells, size_t count, size_t first, int level, struct box *out)
 {
     const int shift = 2 * (DEPTH - level);
@@ -458,8 +461,7 @@ static void bound_cells(const struct pixel_cell *cells, size_t count, size_t fir
     out->radius = sqrtf(square) * 1.0001f + 1e-6f;
 }
 
-/* Returns the first level at which two cells are in different squares. The cells must follow each other on the curve of
-   pixel_cells_order(). */
+/* Returns the first level at which two cells are in different squares. The cells must be neighbours in the order of pixel_cells_order(). */
 static int level_apart(const struct pixel_cell *a, const struct pixel_cell *b)
 {
     uint32_t differ = pixel_cells_order(a->column, a->row) ^ pixel_cells_order(b->column, b->row);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lists of the sensors that matter to a small square of pixels, for fields of many sensors (field/pixel_field.h). A list's sensors are
-   summed at each pixel, the sums over all others are polynomials of the place. Lists are made for squares of
-   128, 64, 32 and 16 pixels, each from the one around, until they are short. They are made for each picture, so
-   nothing is kept when sensors or readings change. Private to soft/. */
+/* Lists of the sensors that matter to a small square of pixels, for fields of many sensors (field/pixel_field.h). The contributions of a
+   list's sensors are summed at each pixel; polynomials of the position approximate the sums over all other sensors. Lists are made for
+   squares of 128, 64, 32 and 16 pixels, each from the list of the larger square around, until they are short. They are made again for each
+   picture, so they need no update when readings change. Private to soft/. */
 #ifndef RENDER_SOFT_PIXEL_LISTS_H
 #define RENDER_SOFT_PIXEL_LISTS_H
 #include <math.h>
@@ -10,10 +10,10 @@
 #include "field/pixel_field.h"
 #include "render/soft/lanes.h"
 
-/* PIXEL_FEW: largest number of sensors of a field that are all summed at each pixel, without lists. */
+/* PIXEL_FEW: fields with at most this many sensors need no lists: all sensors are summed at each pixel. */
 enum { PIXEL_FEW = 8, CELL_SHIFT = 4, CELL_PX = 1 << CELL_SHIFT, SQUARE_CELLS = 8, PIXEL_TERMS = 10 };
 
-struct pixel_cell {        /* one cell (a square of CELL_PX pixels), as far as its pixels show one mesh */
+struct pixel_cell {        /* the pixels of one cell (a square with sides of CELL_PX pixels) that show one mesh */
     float low[3], high[3]; /* box in metres around the surface points that the cell's pixels show */
     uint16_t column, row;  /* position of the cell in the frame, in cells from the top left */
     uint32_t mesh;
@@ -51,8 +51,8 @@ struct pixel_lists {
 /* Returns the largest error that a list may cause in the field's values: three quarters of a step of 1/255 of the range. scale: from struct
    frame_uniforms. */
 float pixel_lists_step(const float *scale);
-/* Makes a list of sensors for each cell and appends it. cells: cells of one square of SQUARE_CELLS x SQUARE_CELLS cells, in the order of
-   pixel_cells_order(). */
+/* Makes a list of sensors for each cell and appends it to `lists`. cells: cells of one square of SQUARE_CELLS x SQUARE_CELLS cells, in the
+   order of pixel_cells_order(). */
 void pixel_lists_add(struct pixel_lists *lists, const struct pixel_field *field, float step, const struct pixel_cell *cells, size_t count);
 /* Sets the pointer `sensors` of all lists. Call it after the last pixel_lists_add(), which may move the array. */
 void pixel_lists_settle(struct pixel_lists *lists);

@@ -102,8 +102,8 @@ SOFT_INLINE bool rule(float y, float pattern_px)
     return phase < (float)-RULE_EDGE || phase > (float)RULE_EDGE;
 }
 
-/* Adds the patterns for no data, uncertain and no limits to the marks of eight pixels. Called for faces whose corners have different flags,
-   or a flag that shows a pattern. */
+/* Replaces the marks of pixels (of eight) that show a pattern: no data, uncertain or no limits. Called for faces whose corners have
+   different flags, or a flag that shows a pattern. */
 SOFT_INLINE lanes_int pattern_marks(lanes_int marks, lanes_int no_data, lanes_int uncertain, lanes_int no_limits, lanes row, lanes x,
                                     float y, const struct mark_ink *ink)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws a software preview step by step. */
+/* Draws a preview with the software renderer: finds parts, draws tiles, then edges, outline and labels. */
 #include "render/soft/soft.h"
 
 #include <string.h>
@@ -10,14 +10,14 @@
 #include "render/gl/ghosts.h"
 #include "render/pick/markers.h"
 
-/* Returns whether isolines are drawn. Isolines are computed while triangles are drawn, so a preview with isolines is drawn again, and not
-   only recoloured, when readings change. */
+/* Returns whether the frame shows isolines. Isolines are computed while triangles are drawn, so a preview with isolines is drawn again, and
+   not only recoloured, when readings change. */
 static bool has_lines(const struct frame_context *context)
 {
     return context->colormap.lines || view_is_operator(context->view);
 }
 
-/* Allocates the raster's buffers; rows are padded to whole lanes. */
+/* Allocates the raster's buffers for a frame of this size. Rows are padded to a multiple of LANES pixels. */
 bool raster_make_room(struct raster *raster, const struct frame *frame)
 {
     raster->width_px = frame->width_px;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fills the visibility buffer of a preview whose camera stands still, so that it can be recoloured (render/soft/visibility_buffer.h). */
+/* Fills the visibility buffer of a preview whose camera stands still, so that new readings only need new colours
+   (render/soft/visibility_buffer.h). */
 #include <string.h>
 
 #include "base/mem.h"
@@ -13,10 +14,11 @@ struct keeping {
     struct visibility_buffer *buffer;
 };
 
-struct preview_triangle { /* a triangle projected into the frame, as cached while the buffer is filled */
+struct preview_triangle { /* a triangle projected into the frame; cached while the visibility buffer is filled */
     uint32_t id;
     uint32_t number; /* index of the triangle in the band's list of triangles */
-    /* factors of x, y and 1 that give the weight of each corner at the point (x, y), up to a common factor (soft_weights) */
+    /* coefficients from soft_weights(): the weight of corner i at the point (x, y) is weights[i][0] x + weights[i][1] y + weights[i][2], up
+       to a common factor */
     double weights[3][3];
 };
 
@@ -64,7 +66,7 @@ static uint32_t weights_at(const struct preview_triangle *spot, double x, double
         double part = sum != 0 ? w[i + 1] / sum : 0;
         out[i] = part <= 0 ? 0 : part >= 1 ? 65535 : (uint32_t)(part * 65535 + 0.5);
     }
-    if (out[0] + out[1] > 65535) /* rounding may exceed the sum */
+    if (out[0] + out[1] > 65535) /* the two weights may exceed 65535 in sum because of rounding */
         out[1] = 65535 - out[0];
     return out[0] | out[1] << 16;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds equal colour ramps by sorting their rows; of equal rows the first is kept. */
+/* Finds materials with equal colour ramps by sorting the rows of the ramp tables; keeps the first of equal rows. */
 #include "render/soft/ramp_rows.h"
 
 #include <stdbool.h>
@@ -13,7 +13,9 @@ enum { WHOLE = 8 }; /* bits of a colour channel */
 struct ramp_search {
     const uint32_t *muted, *own;
     size_t steps;
-    int bits; /* how rows are compared: WHOLE: by all their colours; a smaller number: by this many bits of each row's brightest colour */
+    /* how ramp rows are compared: WHOLE: by all their colours; a smaller number: by this many bits per channel of each row's brightest
+       colour */
+    int bits;
 };
 
 static int by_number(uint32_t a, uint32_t b)
@@ -65,7 +67,7 @@ size_t ramp_rows_pack(uint32_t *muted, uint32_t *own, size_t count, size_t steps
         rows.bits--;
     size_t packed = 0;
     for (size_t i = 0; i < count; i++) {
-        if (first[i] != i) { /* that row was packed before */
+        if (first[i] != i) { /* this material's ramp equals that of an earlier material, whose row is already packed */
             row_of_material[i] = row_of_material[first[i]];
             continue;
         }

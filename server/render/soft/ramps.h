@@ -13,7 +13,7 @@ struct ramp_material {
     float metallic, roughness, emissive[3];
 };
 /* Fills `steps` colours (a multiple of 8) from dark to bright: blue | green << 8 | red << 16 | 0xff000000. up: the plant's up direction.
-   muted: greyed as context. */
+   muted true: greyed, for assets without a field. */
 void ramp_fill(const struct environment_light *sky, const double up[3], const struct ramp_material *material, bool muted, int steps,
                uint32_t *colors);
 /* Fills `steps` elements, `stride` elements apart, with `color` (sRGB, 0xRRGGBB) as shaded surfaces show it, from the darkest to the

@@ -7,7 +7,7 @@
 #include "render/soft/section_colors.h"
 #include "render/soft/sixteen.h"
 
-/* Stores the id of the triangle that a pixel shows, if the sample has ids. */
+/* Stores the triangle's id at those of eight pixels that show the triangle (mask `seen`), if ids are wanted. */
 SOFT_INLINE void keep_id(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face, size_t at,
                          lanes_int seen)
 {
@@ -23,7 +23,7 @@ struct setup {
     float x, y; /* position of the first corner in pixels, from which all linear functions below count x and y */
     struct raster_edge edges[3];
     struct plane depth, a, b, inverse_w;
-    /* part, 0..1, of each pattern at a pixel, as linear functions over the frame; only set if the face has flags */
+    /* share of each pattern at a pixel, 0..1, as linear functions of the position; set only if the face has flags */
     struct plane no_data, uncertain, no_limits;
     uint32_t mark, flags;
     bool flat; /* perspective is negligible */
@@ -36,7 +36,7 @@ SOFT_INLINE struct soft_vertex vertex_of(const struct soft_corners *corners, int
                                  corners->a[i], corners->b[i], corners->flags[i] };
 }
 
-/* Returns the linear function over the face that has the value part[i] at corner i. */
+/* Returns the linear function of the pixel position that has the value part[i] at corner i of the face. */
 SOFT_INLINE struct plane part_plane(const struct slopes *slopes, const struct soft_vertex v[3], const float part[3], bool flat)
 {
     float at[3];
@@ -129,7 +129,7 @@ SOFT_INLINE lanes_int marks_at(const struct setup *setup, const struct mark_ink 
     return pattern_marks(marks, none > 0.5f, little > 0.5f, (free > 0.5f) & -(int32_t)ink->rich, b, x, y, ink);
 }
 
-/* Narrows the range left..right of a row's columns to those inside all edges of the face, plus one column at each end. */
+/* Narrows the range left..right of a pixel row's columns to those inside the face, plus one column at each end. */
 SOFT_INLINE void narrow(const struct setup *setup, float y, int *left, int *right)
 {
     for (int e = 0; e < 3; e++) {
@@ -155,7 +155,8 @@ SOFT_INLINE lanes_int leave_out_holes(const struct soft_cutout *cutout, lanes x,
     return seen;
 }
 
-/* Draws one face, stamp by stamp (blocks of eight pixels). cutout: alpha mask of the face; NULL: the face has no holes. */
+/* Draws one face in stamps (blocks of eight pixels that are drawn together). cutout: alpha mask of the face; NULL: the face has no
+   holes. */
 SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                            const struct setup *setup, const struct soft_cutout *cutout, const struct mark_ink *ink)
 {
@@ -212,8 +213,8 @@ SOFT_INLINE void draw_by_one(const struct soft_tile *tile, const struct soft_sam
     draw_stamp(tile, sample, face, small, l, left, top < last_top ? top : last_top, mark, ink, true, true);
 }
 
-/* Draws the faces grouped by size, so that branches are well predicted. The order must be the same on every machine, because of two
-   faces at equal depth the one drawn last is visible. */
+/* Draws up to eight faces grouped by size class, so that the CPU predicts branches well. The order must be the same on every machine,
+   because of two faces at equal depth the one drawn last is visible. */
 SOFT_INLINE void draw_kinds(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *const faces[LANES],
                             const struct small *small, const struct kinds *kinds, uint32_t rows, uint32_t mark, const struct mark_ink *ink)
 {
@@ -320,7 +321,8 @@ static void count_face(const struct soft_tile *tile, const struct soft_face *fac
         float sides[3];
         for (int e = 0; e < 3; e++)
             sides[e] = edge_row(&edges[e], (float)row + 0.5f);
-        for (int column = face->left / LANES * LANES; column <= face->right; column += LANES) { /* counts each pixel once */
+        /* begins at a multiple of LANES, so that each pixel is counted once */
+        for (int column = face->left / LANES * LANES; column <= face->right; column += LANES) {
             lanes x = LANES_IOTA + ((float)column + 0.5f);
             lanes_int side = edge_side(&edges[0], sides[0], x) | edge_side(&edges[1], sides[1], x) | edge_side(&edges[2], sides[2], x);
             *(lanes_int *)(counts + column) += (side >= 0) & by;

@@ -12,10 +12,12 @@
 #include "render/soft/refined_impl.h"
 #include "render/gl/ghosts.h"
 
-/* bands (groups of pixel rows) that one step of a refined frame processes per core, in a few milliseconds. SHADED_BANDS: when shading;
-   BANDS: in other work */
+/* number of bands (groups of pixel rows) that one step of a refined frame processes per core, which takes a few milliseconds. SHADED_BANDS:
+   when shading; BANDS: in other work */
 enum { SHADED_BANDS = 1, BANDS = 8 };
-static const double OFF_SURFACE_TEXELS = 1 + SUN_SPREAD; /* as sun_visibility() in shaders/shadow.glsl */
+/* distance, in texels of the shadow map, by which surface points are lifted along their normal; as sun_visibility() in
+   shaders/shadow.glsl */
+static const double OFF_SURFACE_TEXELS = 1 + SUN_SPREAD;
 
 /* --- life -------------------------------------------------------------------------------------------------------------------- */
 
@@ -114,7 +116,7 @@ static bool take_up(struct refined *refined, const struct frame_context *context
     raster_aim_cuts(raster);
     raster->out = frame->bgrx;
     raster->out_stride_bytes = (size_t)frame->stride_bytes;
-    /* the copy of the light may be another one than in the last step, so the meshes' pointers into it are set again */
+    /* the light set may have been copied again since the last step, so the meshes' pointers into its copy are set again */
     if (refined->step > REFINED_FIND && refined->step < REFINED_INK)
         for (size_t m = 0; m < raster->mesh_count; m++)
             raster->meshes[m].baked = (const uint8_t(*)[4])raster->light->baked[raster->meshes[m].asset];
@@ -243,8 +245,8 @@ static void ink_some(void *arg, size_t begin, size_t end)
         piece->refined->raster.soft->kernels->ink_band(piece->refined, (int)(piece->first + band));
 }
 
-/* Chooses the range of work items (bands or rows) that this step processes: `some` per core, from a total of `all`. Returns true if the
-   range includes the last item. */
+/* Chooses the range of work items (bands or rows) that this step processes: `some` items per core, of `all` items in total. Returns true if
+   the range includes the last item. */
 static bool advance(struct refined *refined, size_t all, size_t some, size_t *begin, size_t *end)
 {
     some *= (size_t)workers_count(refined->raster.soft->workers);

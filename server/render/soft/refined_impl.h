@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Data that the steps of a refined frame pass on. Private to soft/. */
+/* State of a refined frame (camera at rest, four samples per pixel) between the steps in which it is drawn. Private to soft/. */
 #ifndef RENDER_SOFT_REFINED_IMPL_H
 #define RENDER_SOFT_REFINED_IMPL_H
 #include "render/soft/soft_impl.h"
@@ -9,7 +9,8 @@
 #include "render/soft/tones.h"
 
 enum { REFINED_ROWS = 16, SAMPLES = VISIBILITY_MOST_PARTS };
-/* Sample positions relative to the pixel's centre: a rotated square, so that edges of any slope cross the samples one by one. */
+/* Sample positions relative to the pixel's centre: a rotated square, so that an edge of almost any slope passes the samples one at a time,
+   which smooths it. */
 extern const float refined_samples[SAMPLES][2];
 
 /* Special ids of samples that show no triangle; other values are triangle ids (render/soft/tile.h). */
@@ -39,7 +40,7 @@ struct refined {
     size_t mesh_capacity;
     uint8_t *caps; /* section caps: one bit per sample of each pixel, rows of pitch_px. NULL: no section plane cuts the scene */
     struct visibility_buffer *buffer;
-    /* --- members for the frame being drawn, computed again at each step --- */
+    /* --- members that are computed again at each step --- */
     const struct frame_context *context;
     struct environment_light surroundings;
     float sun_from_pixel[4][4], sun_from_ground[4][4]; /* matrices, as columns */
@@ -66,8 +67,8 @@ struct shaded_items { /* results of shading, by index of the refined_item (surfa
 void refined_raster_band(const struct refined *refined, int band, const struct soft_sample samples[SAMPLES],
                          struct soft_fragments *fragments);
 bool refined_shade_band(const struct refined *refined, int band); /* false: out of memory */
-/* Adds the triangle of an item (surface to shade) to the band's list of triangles. Writes the index of the triangle in the list, and its
-   corner weights w1 and w2, to element `at` of `out`. */
+/* Adds the triangle of an item (surface to shade) to the band's list of triangles. Writes the triangle's index in that list, and the
+   point's corner weights w1 and w2, to element `at` of `out`. */
 void refined_keep_place(const struct refined *refined, struct visibility_band *band, const struct refined_item *item, float w1, float w2,
                         const struct shaded_items *out, size_t at);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colours pixels of a visibility buffer from the field's values at the vertices. */
+/* Resolve: computes the colours of a visibility buffer's pixels from the newest field values. */
 #include <math.h>
 #include <string.h>
 
@@ -13,10 +13,11 @@ struct coloring {
     const struct visibility_buffer *buffer;
     const float *scale;
     struct resolve_paint paint;
-    /* log: the scale is logarithmic; rich: there are isolines, or the scale is logarithmic, so the slower code path is used */
+    /* log: the colour scale is logarithmic; rich: the slower code path is needed, for isolines or a logarithmic scale */
     bool log, rich;
     struct frame *frame;
-    const struct band_lists *lists; /* lists of near sensors for the cells of the band that is being coloured */
+    /* lists of near sensors (pixel_lists.h) for the cells of the band of pixel rows that is being coloured */
+    const struct band_lists *lists;
 };
 
 /* Returns the index, within the band, of the cell (square of pixels) that contains a pixel. */
@@ -59,8 +60,8 @@ static float rule(float y, float pattern_px)
 
 static const float MIN_SLOPE = 1e-7f, MAX_LINE_COVERAGE = (float)ISOLINE_MOST;
 
-/* Returns how much the position on the scale (0..1) changes per pixel. here: value at the pixel, as a colour map column, or, on a
-   logarithmic scale, as the field's value; by_x, by_y: change of that value per pixel. */
+/* Returns how much the position of the field's value on the colour scale (0..1) changes per pixel. here: value at the pixel, as a colour
+   map column, or, on a logarithmic scale, as the field's value; by_x, by_y: change of that value per pixel. */
 static float slope_of(const struct coloring *coloring, float by_x, float by_y, float here)
 {
     float slope = hypotf(by_x, by_y);
@@ -69,7 +70,8 @@ static float slope_of(const struct coloring *coloring, float by_x, float by_y, f
     return slope * (1 / COLUMNS_OF_RANGE);
 }
 
-/* Writes by how much the weights of the second and third corner change per pixel, in x and y. w1, w2: these weights at the point (x, y). */
+/* Writes by how much the weights of a triangle's second and third corner change per pixel in x and y. w1, w2: these weights at the point
+   (x, y). */
 static void weight_steps(const struct visibility_slopes *slopes, float w1, float w2, float x, float y, float steps[2][2])
 {
     float over = 1 / (slopes->sum_x * x + slopes->sum_y * y + slopes->sum);
@@ -169,7 +171,8 @@ static void evaluate_place(const struct coloring *coloring, const struct visibil
     out->slope = slope_of(coloring, carried[1] - carried[0], carried[2] - carried[0], carried[0]);
 }
 
-/* Colours one pixel by the slower code path: a corner has flags (field/scalars.h), or an isoline may cross the pixel. */
+/* Returns the colour of one pixel by the slower code path, because a corner of its triangle has flags (flags.h) or an isoline may cross the
+   pixel. */
 static uint32_t flagged_color(const struct coloring *coloring, const struct visibility_band *band, uint32_t triangle, uint32_t weights,
                               uint8_t row, float x, float y)
 {
@@ -203,7 +206,7 @@ struct eight_shown {
     struct eight_places places; /* surface points of the eight pixels, at which fields are evaluated from their sensors */
 };
 
-/* Computes the interpolated values of eight pixels: colour map columns or, on a logarithmic scale, field values. Works as field_color() in
+/* Computes the field values of eight pixels: colour map columns or, on a logarithmic scale, field values. Works as field_color() in
    shaders/field.glsl. wanted: mask of pixels; others receive arbitrary values. cells: index of each pixel's cell in the band. */
 SOFT_INLINE void carry(const struct coloring *coloring, const struct visibility_band *band, lanes_int triangles, lanes_int weights,
                        lanes_int wanted, lanes_int cells, struct eight_shown *out)
@@ -241,7 +244,7 @@ SOFT_INLINE lanes columns_of_logs(lanes values, const float *scale)
     return (lanes_log2(values) - scale[0]) * scale[1] * COLUMNS_OF_RANGE + (1 + SLACK * COLUMNS_OF_RANGE);
 }
 
-/* Returns which of eight pixels an isoline may touch, judged by the field's slope there. */
+/* Returns a mask of those of eight pixels that an isoline may touch, judged by the field's change per pixel. */
 SOFT_INLINE lanes_int may_be_lined(const struct coloring *coloring, const struct visibility_band *band, lanes_int triangles,
                                    const struct eight_shown *shown, lanes_int cells, int x, int y)
 {
@@ -305,12 +308,12 @@ SOFT_INLINE lanes_int field_colors(const struct coloring *coloring, const struct
 /* 64-bit colour sums: blue from bit 0, red from bit 16, green from bit 32 */
 typedef uint64_t sums __attribute__((vector_size(32), aligned(8)));
 
-/* Colours of surfaces, for pixels that show several surfaces. They are computed in advance, eight at a time, in the order in which the
-   surfaces are stored and used. */
+/* Colours of the next surfaces of pixels that show several surfaces. They are computed in advance, eight at a time, in the order in which
+   color_mixed() uses them. */
 enum { PARTS_AHEAD = 64 };
 struct ahead {
     size_t first, end;
-    /* true: no corner of the surfaces first..end-1 has flags, and there are no isolines */
+    /* true: no corner of the surfaces first..end-1 has flags, and the frame has no isolines */
     bool all_known;
     uint32_t known[PARTS_AHEAD];                          /* 0: a corner has flags */
     uint64_t colors[PARTS_AHEAD + VISIBILITY_MOST_PARTS]; /* colour times share */
@@ -321,7 +324,7 @@ static inline uint64_t spread(uint32_t color)
     return (color & 0xff00ff) | (uint64_t)(color >> 8 & 0xff) << 32;
 }
 
-/* Colours up to PARTS_AHEAD next surfaces of pixels that show several surfaces, and stores the colours in *ahead. pixel: index in
+/* Computes the colours of up to PARTS_AHEAD next surfaces of pixels that show several surfaces, and stores them in *ahead. pixel: index in
    band->mixed of the pixel to which the first of these surfaces belongs. */
 SOFT_INLINE void color_parts(const struct coloring *coloring, const struct visibility_band *band, size_t pixel, struct ahead *ahead)
 {
@@ -367,7 +370,8 @@ SOFT_INLINE void color_parts(const struct coloring *coloring, const struct visib
     ahead->all_known = !lanes_any(~all_known) && !(coloring->paint.line_px > 0);
 }
 
-/* Adds glossy light to a colour. gloss NULL: returns the colour unchanged. */
+/* Converts the colour of a field to that of a glossy surface, by the light `gloss` that falls on the pixel. gloss NULL: returns the colour
+   unchanged. */
 SOFT_INLINE uint32_t glossed(const struct coloring *coloring, uint32_t color, const struct visibility_gloss *gloss)
 {
     struct visibility_gloss all_of[LANES];
@@ -392,7 +396,7 @@ static uint64_t flagged_sum(const struct coloring *coloring, const struct visibi
     return sum;
 }
 
-/* Colours the pixels that show several surfaces. color_lanes() has written arbitrary values to them. */
+/* Colours the pixels that show several surfaces, and overwrites the arbitrary colours that color_lanes() gave these pixels. */
 SOFT_INLINE void color_mixed(const struct coloring *coloring, const struct visibility_band *band, int top)
 {
     static const sums wanted[] = { { 0 }, { -1ull }, { -1ull, -1ull }, { -1ull, -1ull, -1ull }, { -1ull, -1ull, -1ull, -1ull } };
@@ -460,8 +464,8 @@ SOFT_INLINE lanes_int color_lanes(const struct coloring *coloring, const struct 
     return colors;
 }
 
-/* Colours one band (group of pixel rows). Where the width is no multiple of eight, the last eight pixels of a row overlap the eight
-   before. */
+/* Colours one band (group of pixel rows), eight pixels at a time. If the frame's width is no multiple of eight, the last eight pixels of a
+   row overlap the eight before. */
 static void color_band(const struct coloring *coloring, int number)
 {
     const struct visibility_buffer *buffer = coloring->buffer;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shades field surfaces, sky and ground of refined frames, eight pixels at a time; ports shaders/refined.frag, shadow.glsl, sky.frag and
-   ground.frag. */
+/* Shades field surfaces, sky and ground of refined frames, eight pixels at a time; a C version of shaders/refined.frag, shadow.glsl,
+   sky.frag and ground.frag. */
 #include "render/soft/kernels.h"
 #include "render/soft/surface_points.h"
 
@@ -51,7 +51,7 @@ SOFT_INLINE lanes open_at(const struct refined *refined, lanes u, lanes v)
     return out * (1 / 255.0f);
 }
 
-/* Returns the brightness of the ground after the shadow on it, 0..256; ports shaders/ground.frag. */
+/* Returns the brightness of the ground with the shadow on it, 0..256; a C version of shaders/ground.frag. */
 SOFT_INLINE lanes_int ground_at(const struct refined *refined, lanes x, float y)
 {
     const float(*g)[3] = refined->raster.ground_from_pixel;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colours a rectangle of a preview picture. The rasterizer has written a mark into each pixel: what it shows (soft_impl.h). Shadows are
-   looked up only for pixels that show a surface. */
+/* Colours a rectangle of a preview. The rasterizer has stored in each pixel's mark (soft_impl.h) which material or field value the pixel
+   shows. Shadows are looked up only for pixels that show a surface. */
 #include <string.h>
 
 #include "render/soft/kernels.h"
@@ -64,7 +64,7 @@ SOFT_INLINE lanes_int context_color(const struct raster *raster, lanes_int marks
     return lanes_whole((float)GREY_BLUE * blue + (float)GREY_GREEN * green + (float)GREY_RED * red + 0.5f) * 0x010101 | (int32_t)0xff000000;
 }
 
-/* Draws isolines over eight colours, as field_color() in shaders/field.glsl. */
+/* Darkens the colours of those of eight pixels that an isoline covers, as field_color() in shaders/field.glsl. */
 static void draw_lines(const uint32_t marks[LANES], uint32_t colors[LANES])
 {
     static const float grey_parts[3] = { (float)GREY_BLUE, (float)GREY_GREEN, (float)GREY_RED };
@@ -94,7 +94,7 @@ SOFT_INLINE lanes_int lined(const uint32_t *marks, lanes_int color)
     return color;
 }
 
-/* Returns the brightness of the ground after the shadow on it, 0..256. */
+/* Returns the brightness of the ground with the shadow on it, 0..256. */
 SOFT_INLINE lanes_int ground_at(const struct raster *raster, lanes x, float y)
 {
     const float(*m)[3] = raster->ground_from_pixel;
@@ -205,9 +205,9 @@ SOFT_INLINE lanes carried_of(const struct pixel_row *row, lanes value)
     return row->ink->log ? value : lanes_clamp((value - scale[0]) * scale[1] * columns + (1 + slack * columns), -farthest, farthest);
 }
 
-/* Returns the change of depth from a pixel to the next one. Of the changes to the next and from the previous pixel, takes the smaller: the
-   larger one may lead to another surface. step: distance between the pixels in `at`. before, after: whether the previous and next pixel
-   exist. */
+/* Returns the change of depth from a pixel to the next one. Of the differences to the next and to the previous pixel, returns the smaller:
+   the larger one may lead to another surface. step: distance between the pixels in the array. before, after: whether the previous and the
+   next pixel exist. */
 static float depth_step(const float *at, ptrdiff_t step, bool before, bool after)
 {
     float ahead = after ? at[step] - at[0] : 1, behind = before ? at[0] - at[-step] : 1;
@@ -291,7 +291,8 @@ SOFT_INLINE lanes_int is_of_many(const struct many *many, lanes_int marks)
     return (marks & ~0xff) == (int32_t)many->mark;
 }
 
-/* Fills the box of *cell around the surface points that show the field. Returns false if no pixel of the cell shows the field. */
+/* Sets the box of *cell so that it encloses the surface points of all its pixels that show the field. Returns false if no pixel of the cell
+   shows the field. */
 SOFT_INLINE bool bound_cell(const struct many *many, int column, int top, struct pixel_cell *cell)
 {
     const struct raster *raster = many->raster;
@@ -388,7 +389,7 @@ SOFT_INLINE void evaluate_fields(const struct raster *raster, const struct soft_
             evaluate_eight(raster, rect, &ink, column, row);
 }
 
-/* Colours the pixels left..right of a row. out: pixel at column 0 of the row. */
+/* Writes the colours of the pixels left..right of a row. out: address of the pixel at column 0 of the row. */
 SOFT_INLINE void color_row(const struct raster *raster, int left, int right, int row, uint8_t *out)
 {
     struct heights heights = { 0 };

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Resolves one band of a refined frame: from samples to what each pixel shows. Triangles that share an edge count as one surface; a pixel
-   that shows a single surface is shaded once. Blended triangles are shaded one by one and composited per sample. */
+/* Resolves one band (group of pixel rows) of a refined frame: finds from the four samples of each pixel which surfaces it shows, and shades
+   them. Triangles that share an edge count as one surface; a pixel that shows a single surface is shaded once. Blended triangles are shaded
+   one by one and composited per sample. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,7 +10,7 @@
 #include "render/soft/refined_impl.h"
 #include "render/soft/section_colors.h"
 
-struct sample_group { /* samples of a pixel that show the same surface */
+struct sample_group { /* the samples of one pixel that show the same surface */
     const struct soft_triangle *triangle;
     float x, y; /* sums of the sample positions */
     int count;
@@ -97,8 +98,8 @@ static bool share_edge(const struct soft_triangle *a, const struct soft_triangle
     return a->mesh == b->mesh && shared >= 2;
 }
 
-/* Groups the samples of a pixel by the surface that they show. under: by sample: area of the pixel that the sample represents. triangles:
-   receives a triangle of each group. Returns the number of groups. */
+/* Groups the samples of a pixel by the surface that they show. under: by sample: area of the pixel that the sample represents, less where
+   blended triangles cover it. triangles: receives a triangle of each group. Returns the number of groups. */
 static int group_samples(struct recent *recent, const struct soft_sample samples[SAMPLES], size_t at, const uint16_t under[SAMPLES],
                          struct soft_triangle triangles[SAMPLES], struct sample_group groups[SAMPLES])
 {
@@ -148,8 +149,8 @@ static int by_depth(const void *a, const void *b)
     return x->depth != y->depth ? (x->depth < y->depth ? 1 : -1) : (x->layer > y->layer) - (x->layer < y->layer);
 }
 
-/* Shades the blended triangles. Their depth replaces the depth of surfaces behind, so that feature edges of those surfaces are hidden,
-   too. */
+/* Shades the blended triangles. Then replaces the depth of the surfaces behind by theirs, so that blended triangles also hide feature edges
+   of those surfaces. */
 static void shade_layers(struct recent *recent, struct layers *layers, int top, const struct soft_sample samples[SAMPLES])
 {
     const struct refined *refined = recent->refined;
@@ -247,7 +248,7 @@ static void add_mixed(struct recent *recent, struct refined_row *row, const stru
         float over = 1.0f / (float)groups[g].count;
         float at_x = (float)column + 0.5f + groups[g].x * over, at_y = (float)y + 0.5f + groups[g].y * over;
         struct refined_item item = { *groups[g].triangle, at_x, at_y, groups[g].share };
-        if (item.share == VISIBILITY_SHARES) { /* a single surface after all */
+        if (item.share == VISIBILITY_SHARES) { /* one surface covers the whole pixel */
             row->mixed_count--;
             add_item(recent->refined, row, &item, column);
             return;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shades surfaces of refined frames, eight at a time; ports shaders/refined.frag, light.glsl, pbr.glsl and environment.glsl. Fields whose
-   light is a row of the colour map are shaded in resolve_field.c. */
+/* Shades surfaces of refined frames, eight at a time; a C version of shaders/refined.frag, light.glsl, pbr.glsl and environment.glsl.
+   resolve_field.c shades fields in all looks but the glossy one. */
 #include "render/soft/kernels.h"
 #include "render/soft/pbr.h"
 #include "render/soft/section_colors.h"
@@ -8,8 +8,8 @@
 
 /* --- textures ------------------------------------------------------------------------------------------------------------------ */
 
-/* Writes how far the surface point moves from one pixel to the next, in plant coordinates. by: change of the three corner weights per
-   pixel. */
+/* Writes the vector, in plant coordinates, from the surface point at one pixel to that at the next pixel. by: change of the three corner
+   weights per pixel. */
 static void place_slopes(const struct refined *refined, const struct soft_triangle *triangle, const float by[3], float out[3])
 {
     const struct soft_mesh *mesh = &refined->raster.meshes[triangle->mesh];
@@ -151,7 +151,7 @@ SOFT_INLINE void see(const struct refined *refined, const struct refined_item *i
 void refined_shade_surfaces(const struct refined *refined, const struct refined_item *items, size_t count, uint32_t *colors, float *alphas)
 {
     const struct soft_tones *tones = refined->raster.soft->tones;
-    float bright = refined->raster.block.up[3]; /* context's brightness; 0: unchanged */
+    float bright = refined->raster.block.up[3]; /* brightness factor of assets without a field; 0: unchanged */
     bool greys = view_is_operator(refined->context->view);
     for (size_t first = 0; first < count; first += LANES) {
         struct lit lit;

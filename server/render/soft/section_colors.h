@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colours of section cuts, for eight pixels at a time; ports shaders/section.glsl. Private to soft/. */
+/* Colours of surfaces cut by section planes, for eight pixels at a time; a C version of shaders/section.glsl. Private to soft/. */
 #ifndef RENDER_SOFT_SECTION_COLORS_H
 #define RENDER_SOFT_SECTION_COLORS_H
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws small faces in stamps (blocks of pixels drawn as a unit) of 16 pixels, on machines with 512-bit registers. Results are
-   bit-identical to stamps of eight. Private to raster.c. */
+/* Draws small faces in stamps (blocks of pixels drawn as a unit) of 16 pixels, on CPUs with AVX-512. Results are bit-identical to stamps of
+   eight. Private to raster.c. */
 #ifndef RENDER_SOFT_SIXTEEN_H
 #define RENDER_SOFT_SIXTEEN_H
 #include "render/soft/small.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Small faces without flags and perspective are set up eight at a time and drawn in stamps (blocks of 8 or 16 pixels drawn as a unit).
-   Private to raster.c. */
+/* Small faces that need neither patterns nor perspective correction are set up eight at a time and drawn in stamps (blocks of 8 or 16
+   pixels drawn as a unit). Private to raster.c. */
 #ifndef RENDER_SOFT_SMALL_H
 #define RENDER_SOFT_SMALL_H
 #include "render/soft/pixel_marks.h"
@@ -31,7 +31,7 @@ SOFT_INLINE bool is_plain(const struct soft_corners *corners, const struct soft_
 
 struct small { /* eight faces, as structure of arrays: lane i belongs to face i */
     lanes x, y;
-    /* edge functions of the faces; members as in struct raster_edge, and edge_row: edge_dy * x of the edge's upper end */
+    /* edge functions of the faces, with members as in struct raster_edge; edge_row: edge_dy times x of the edge's upper end */
     lanes edge_y[3], edge_dx[3], edge_dy[3], edge_row[3];
     lanes_int negative[3];
     /* functions that are linear over the face: [0] depth, [1] a, [2] b of struct soft_vertex. at: value at (x, y); dx, dy: change per

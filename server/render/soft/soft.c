@@ -32,7 +32,7 @@ static lanes shading_of(const struct asset_material *material)
                     material->roughness,     material->emissive[0],   material->emissive[1],   material->emissive[2] };
 }
 
-/* Copies the materials of all models. Materials with equal colour ramps share one. */
+/* Copies the materials of all models, and their colour ramps. Materials with equal ramps share one row of the ramp table. */
 static void copy_materials(struct soft *soft)
 {
     const struct gpu_scene *gpu_scene = soft->gpu_scene;

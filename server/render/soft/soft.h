@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Software renderer for machines without a GPU: rasterizes on all cores with SIMD, where a software GL would process triangles on one
-   thread. Previews look like shaders/preview.*, refined frames like shaders/refined.frag, within rounding.
-   Visible parts of models are drawn into tiles, nearest first; pixels are then coloured by the triangles they show, so that hidden surfaces
-   are never shaded. The result does not depend on the order of tiles and threads.
-   Thread: the one of the GL context; work is spread over `workers`. */
+/* Software renderer for machines without a GPU: rasterizes on all cores with SIMD, whereas a software GL would process triangles on one
+   thread. Previews look like shaders/preview.*, refined frames like shaders/refined.frag, within rounding. Visible parts of models are
+   drawn into tiles, nearest first; pixels are then coloured by the triangles they show, so that hidden surfaces are never shaded. The
+   result does not depend on the order of tiles and threads. Thread: the one of the GL context; work is spread over `workers`. */
 #ifndef RENDER_SOFT_H
 #define RENDER_SOFT_H
 #include "base/workers.h"
@@ -29,13 +28,13 @@ size_t soft_light_bytes(const struct soft *soft); /* bytes of baked light copied
 void soft_drop_spare(struct soft *soft);          /* frees the working memory that finished refined frames left for reuse */
 void soft_rest(struct soft *soft);                /* frees working memory, copied light and kept visibility buffers */
 
-/* Draws a preview: pixels, markers and labels. Returns false when out of memory; logged. */
+/* Draws a whole preview frame: pixels, visibility of markers, and points for isoline labels. Returns false when out of memory; logged. */
 bool preview_draw(struct soft *soft, const struct frame_context *context, const struct light *light, const struct isoline_points *points,
                   struct frame *frame);
 
 struct refined *refined_begin(struct soft *soft);
 /* Draws one step of a refined frame: four samples per pixel find the visible triangles, then each surface in a pixel is shaded once.
-   context: the same at each step, with its light and colour map. Returns true when no step is left. */
+   context: the frame's context with light and colour map set; the same at each step. Returns true when no step is left. */
 bool refined_step(struct refined *refined, const struct frame_context *context, const struct light *light, struct frame *frame);
 /* Ends a refined frame after its last step: finds the labels of its isolines among `points`, and keeps its visibility buffer for
    recolouring. Returns false when the frame failed because memory ran out; logged. */
@@ -44,8 +43,8 @@ void refined_end(struct refined **refined); /* frees the refined frame and sets 
 
 /* Returns whether a visibility buffer is kept from a refined frame that differs from this one only in values and colours. */
 bool soft_has_refined(struct soft *soft, const struct frame_context *context);
-/* Colours a frame from a kept visibility buffer: pixels, markers and labels. points: candidate points of its isolines. Returns false when
-   no buffer is kept. */
+/* Makes a frame from a kept visibility buffer: computes only its colours, markers and labels again. points: isoline points and arrows among
+   which visible labels are chosen. Returns false when no buffer is kept. */
 bool soft_resolve_again(struct soft *soft, const struct frame_context *context, const struct isoline_points *points, struct frame *frame);
 
 #endif

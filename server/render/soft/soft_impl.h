@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Data that the steps of a software preview pass on, and state of the software renderer. Private to soft/. */
+/* State of the software renderer, and of one frame between the steps in which it is drawn. Private to soft/. */
 #ifndef RENDER_SOFT_SOFT_IMPL_H
 #define RENDER_SOFT_SOFT_IMPL_H
 #include "render/soft/flags.h"
@@ -16,8 +16,8 @@
 
 enum { BAND_ROWS = 32, RAMP_STEPS = MODEL_LIGHT_STEPS, SOFT_STRETCH_MOST = 64, SOFT_STRETCH_LEAST = 8 };
 
-/* A mark is the 32-bit content of a pixel: 0: empty; else an entry of the colour map, or a material and its light, from which the pixel's
-   colour is looked up. The top bits tell the kind. */
+/* A mark is a 32-bit code, one per pixel, from which the pixel's colour is later looked up. 0: no surface. Otherwise it holds an entry of
+   the colour map, or a material and its light; the top bits tell which. */
 /* mark of a pixel that shows the field: MARK_FIELD | row * COLORMAP_COLUMNS + column of the colour map (bits of MARK_PLACE) | coverage by
    an isoline, 0..255 << MARK_LINE */
 #define MARK_FIELD 0x40000000u
@@ -147,7 +147,7 @@ struct raster { /* source and target of one frame's rasterization; its memory is
     size_t mesh_capacity;
     struct soft_pixels *pixels;
     size_t pixels_count, pixels_capacity;
-    int row_bias; /* offset that is added to the row of the colour map in a MARK_PIXELS mark, so that the stored number is not negative */
+    int row_bias; /* number added to the colour map row that a MARK_PIXELS mark stores, so that the stored number is not negative */
     int width_px, height_px, pitch_px; /* pitch_px: number of elements from one row to the next, a multiple of LANES */
     /* largest distance of a sample from the pixel's centre along x or y; bounding rectangles of parts are enlarged by it. Previews: 0 */
     float reach_px;
@@ -168,7 +168,7 @@ struct raster { /* source and target of one frame's rasterization; its memory is
     bool counts_bodies; /* true: the frame has section caps, for which the closed bodies at each pixel are counted (caps.c) */
     bool blends;        /* true: some of the parts (groups of triangles) found are blended (transparent) */
     bool has_ground;
-    bool greys;                                                                /* context is drawn grey */
+    bool greys;                                                                /* assets without a field are drawn grey */
     float sun_from_pixel[4][4], ground_from_pixel[3][3], ray_from_pixel[3][3]; /* matrices, as columns */
     /* cells of the depth grid; finds_cells: true: raster_tiles() with SOFT_COLORS computes the cells, too */
     struct depth_cell *cells;
@@ -224,11 +224,11 @@ size_t refined_bytes(const struct refined *refined);
 void raster_aim(struct raster *raster, const struct light *light); /* computes the matrices from pixels */
 /* Prepares for the depth grid, if the frame gets one; call it after raster_aim(). Without memory for the cells, the frame has no grid. */
 void raster_aim_depth(struct raster *raster, const struct light *light);
-/* Finds the cells of a rectangle whose top left corner is the corner of a cell. Runs on a worker. */
+/* Computes the depth grid's cells in a rectangle of the frame, whose top left corner must be the corner of a cell. Runs on a worker. */
 void raster_find_cells(const struct raster *raster, const struct soft_rect *rect);
 /* Returns the depth grid made from the cells found; the caller owns it. NULL: the frame gets no grid, or memory ran out. */
 struct depth_grid *raster_depth_grid(const struct raster *raster);
-/* computes the section planes in pixel coordinates; must be called before the other steps */
+/* computes the section planes in pixel coordinates (raster->cuts); must be called before the other steps */
 void raster_aim_cuts(struct raster *raster);
 /* returns whether one of the first `planes` section planes cuts a point off; at: (x w, y w, z, w), with x and y in pixels */
 bool raster_is_cut_off(const struct raster *raster, const float at[4], int planes);
@@ -260,9 +260,9 @@ const uint8_t *raster_rim(const struct raster *raster);
 /* Returns a visibility buffer from which the frame can be recoloured. Call it while raster->ids is valid, and before edges, rims and
    markers are drawn. NULL: out of memory. */
 struct visibility_buffer *raster_keep(struct raster *raster);
-/* adds the outline of the selected asset to the buffer's ink (lines drawn over pixels); overwrites raster->depth */
+/* adds the outline of the selected asset to buffer->ink (lines drawn over pixels); overwrites raster->depth */
 void raster_keep_rim(const struct raster *raster, struct visibility_buffer *buffer);
-/* Puts the buffer, with the frame's markers, into soft->kept, the store of buffers for recolouring. */
+/* Stores the visibility buffer, with the frame's markers, in soft->kept, so that later frames of the same view only need new colours. */
 void soft_keep(struct soft *soft, const struct frame_context *context, struct visibility_buffer *buffer, const struct frame *frame);
 struct soft_triangle {
     uint32_t id; /* id of the triangle, as in struct soft_sample or raster->ids */

@@ -22,7 +22,8 @@ struct eight_points {    /* eight surface points */
 
 /* --- where ------------------------------------------------------------------------------------------------------------------- */
 
-struct corners { /* corners of the triangles that eight points belong to, relative to the points; weights are computed from them */
+/* corners of the triangles of eight surface points, relative to the points; weigh() computes the corner weights from these */
+struct corners {
     /* a, b: x and y of the vector from the point to the corner, in pixels; multiplied by clip w if a corner of the triangle cannot be
        projected */
     float a[3][LANES], b[3][LANES];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Textures in memory: makes mipmap levels, each half the size of the last, and samples them. */
+/* Textures in main memory: computes mipmap levels, each half the size of the previous one, and samples them. */
 #include "render/soft/textures.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@ static quad texel(const struct soft_texture *texture, const uint8_t at[4])
     return (quad){ texture->linear[at[0]], texture->linear[at[1]], texture->linear[at[2]], (float)at[3] * (1 / 255.0f) };
 }
 
-/* Wraps a coordinate around (repeat) or clamps it to 0..side-1. x may lie at most one texel outside. */
+/* Wraps a texel coordinate around (repeat) or clamps it to 0..side-1. x may lie at most one texel outside that range. */
 static int within(int x, int side, bool repeat)
 {
     if (repeat)

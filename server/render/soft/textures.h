@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Materials and textures, sampled like GL: bilinear within a mipmap level, linear between two levels. Immutable once made; any thread.
-   Private to soft/. */
+/* Materials and textures of the software renderer. Textures are sampled as in GL: bilinear within a mipmap level, linear between two
+   levels. Immutable once made; any thread. Private to soft/. */
 #ifndef RENDER_SOFT_TEXTURES_H
 #define RENDER_SOFT_TEXTURES_H
 #include "base/workers.h"
@@ -11,7 +11,7 @@ enum { TEXTURE_LEVELS = 16 };
 struct soft_texture {
     const uint8_t (*levels[TEXTURE_LEVELS])[4]; /* mipmap levels; the finest level points into the asset file */
     uint8_t (*coarse)[4];                       /* memory of all mipmap levels but the finest; owned by this struct */
-    const float *linear; /* table that converts a byte to 0..1: to linear light for sRGB textures, otherwise in proportion */
+    const float *linear; /* table that converts a texel's byte to 0..1: to linear light for sRGB textures, to byte / 255 for others */
     int width_px, height_px, level_count;
     bool repeat;
 };

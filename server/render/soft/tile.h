@@ -15,7 +15,7 @@ enum { MOST_FACES = NEAR_TRIANGLES * PART_TRIANGLES, MOST_CORNERS = PART_VERTICE
 
 struct soft_corners { /* vertices of a part with the members of struct soft_vertex, followed by the vertices that clipping added */
     float x[MOST_CORNERS], y[MOST_CORNERS], depth[MOST_CORNERS], inverse_w[MOST_CORNERS], a[MOST_CORNERS], b[MOST_CORNERS];
-    /* flags of the vertices; a vertex that clipping added has only flags of SOFT_PATTERNS, and cut_patterns has the part of each pattern
+    /* flags of the vertices; a vertex that clipping added has only flags of SOFT_PATTERNS; cut_patterns holds how far each pattern applies
        there */
     uint32_t flags[MOST_CORNERS];
     struct near_patterns cut_patterns[MOST_CORNERS - PART_VERTICES];
@@ -35,7 +35,7 @@ struct soft_face { /* a triangle that faces the eye and covers a pixel centre of
 enum { FACE_BACK = 0x8000, FACE_TRIANGLE = PART_TRIANGLES - 1 }; /* FACE_BACK: the triangle looks away from the eye */
 
 enum { MOST_SAMPLES = 4 };
-struct soft_sample { /* one sample per pixel of a tile, stored row by row from the tile's upper left */
+struct soft_sample { /* buffers with one sample for each pixel of a tile, row by row from the tile's upper left corner */
     float *depth;
     uint32_t *marks; /* mark of each sample; NULL: not needed (`ids` may be NULL, too) */
     uint32_t *ids;   /* id of the triangle at each sample: first_id of the part + index in the part, and the flag ID_BACK */
@@ -84,8 +84,8 @@ static inline uint32_t soft_id(const struct soft_tile *tile, const struct soft_f
 }
 
 /* Rasterizes the parts (groups of triangles) that raster_find() listed into a rectangle (a multiple of LANES wide, at most a tile).
-   `samples` already hold the depth of nearer surfaces. Writes only depth and ids. Appends the blended fragments that nothing opaque hides.
-   Runs on a worker. */
+   `samples` already hold the depth of nearer surfaces. Writes only depth and ids. Appends the fragments of blended triangles that no opaque
+   surface hides to `fragments`. Runs on a worker. */
 void raster_samples(const struct raster *raster, const struct soft_rect *rect, const struct soft_sample samples[MOST_SAMPLES], int pitch_px,
                     float reach_px, struct soft_fragments *fragments);
 

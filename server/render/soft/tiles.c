@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws tile by tile: in each tile the parts (groups of triangles) that may be visible, nearest first, skipping parts behind surfaces drawn
-   already. */
+/* Draws a frame tile by tile. In each tile it draws the parts (groups of triangles) that may be visible, nearest first, and skips parts
+   behind surfaces that are already drawn. */
 #include "render/soft/kernels.h"
 
 #include <stdlib.h>
@@ -75,7 +75,7 @@ static bool is_hidden(const struct soft_tile *tile, const struct soft_rect *bloc
     return true;
 }
 
-/* Returns the rectangle that encloses all listed faces. */
+/* Returns the rectangle that encloses all faces in tile->faces. */
 static struct soft_rect faces_rect(const struct soft_tile *tile)
 {
     struct soft_rect rect = { INT16_MAX, INT16_MAX, 0, 0 };

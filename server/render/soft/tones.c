@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fills tables that convert light to colours (tones.h), and packs light into 32 bits. */
+/* Fills the tables that convert linear light to sRGB and back (tones.h), and packs light into 32 bits. */
 #include "render/soft/tones.h"
 
 #include <math.h>
@@ -19,8 +19,8 @@ uint32_t soft_pack_light(const float light[3])
     const float min_light = 0x1p-16f, max_light = 65408; /* range of the shared exponent */
     float brightest = fmaxf(fmaxf(light[0], light[1]), fmaxf(light[2], min_light));
     int exponent;
-    /* light whose brightest channel would round up to 512, which does not fit in nine bits, gets the next higher exponent: the factor lifts
-       it over the power of two */
+    /* if the brightest channel would round up to 512, which does not fit in nine bits, the next higher exponent is needed: the factor lifts
+       such light over the power of two */
     frexpf(fminf(brightest, max_light) * (1 + 0x1p-9f), &exponent);
     uint32_t packed = (uint32_t)(exponent + 15) << 27;
     for (int c = 0; c < 3; c++)

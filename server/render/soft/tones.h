@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Conversion of linear light to colours, for eight pixels at a time; ports shaders/light.glsl. Also packs the light on glossy fields, which
-   is stored apart from the field's colours. Private to soft/. */
+/* Conversion of linear light to colours, for eight pixels at a time; a C version of shaders/light.glsl. Also packs the light that falls on
+   glossy fields, which visibility buffers store separately from the field's colours. Private to soft/. */
 #ifndef RENDER_SOFT_TONES_H
 #define RENDER_SOFT_TONES_H
 #include "render/soft/vectors.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Visibility buffers: creates, completes and frees them, and copies field values to their vertices. */
+/* Creates, completes and frees visibility buffers, and copies the newest field values into their vertices. */
 #include "render/soft/visibility_buffer.h"
 
 #include <math.h>
@@ -165,7 +165,7 @@ static void number_bands(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Gives the visible vertices consecutive indices, mesh by mesh. */
+/* Gives the vertices that some pixel shows consecutive indices, mesh by mesh, and drops all others. */
 static void number_vertices(struct visibility_buffer *buffer, uint32_t *numbers)
 {
     uint32_t count = 0;
@@ -244,7 +244,7 @@ static void read_vertices(void *arg, size_t begin, size_t end)
     }
 }
 
-/* likely: mesh to try first. */
+/* Returns the mesh of a vertex, given by its index among all vertices. likely: mesh to try first. */
 static size_t mesh_of_vertex(const struct visibility_buffer *buffer, uint32_t vertex, size_t likely)
 {
     const struct visibility_mesh *meshes = buffer->meshes;

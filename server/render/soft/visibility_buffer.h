@@ -21,8 +21,8 @@ enum { VISIBILITY_INK = 253, VISIBILITY_RIM_DARK, VISIBILITY_RIM_LIGHT };
 
 struct soft_tones;
 
-/* light that a pixel reflects in the glossy look, packed (tones.h); besides: light that does not depend on the surface's colour, as from a
-   black surface; of_color: additional light from a white surface */
+/* Light that a pixel reflects in the glossy look, packed (tones.h). besides: light that a black surface would reflect; of_color: additional
+   light that a white surface would reflect. */
 struct visibility_gloss {
     uint32_t of_color, besides;
 };
@@ -90,7 +90,7 @@ struct visibility_buffer {
     int width_px, height_px, band_rows, band_count;
     uint32_t *surfaces;             /* per pixel, as described above */
     uint32_t *weights;              /* by pixel: weights of two corners of its triangle, 16 bits each: second corner | third corner << 16 */
-    uint8_t *rows;                  /* by pixel: row of the colour map, which is a brightness step */
+    uint8_t *rows;                  /* by pixel: row of the shaded colour map, that is, the brightness of the surface */
     struct visibility_gloss *gloss; /* by pixel: light on it in the glossy look; NULL: another look, in which `rows` holds the brightness */
     const struct soft_tones *tones; /* set with gloss; not owned */
     /* ink of each pixel (VISIBILITY_INK: lines drawn over its colour). visibility_buffer_settle() draws ink and veil (coverage by ghost
@@ -104,14 +104,14 @@ struct visibility_buffer {
     struct visibility_mesh *meshes;
     size_t mesh_count, mesh_capacity, vertex_count;
     bool evaluates; /* true: the field of at least one mesh is evaluated at pixels */
-    /* true: resolve_read() must find the cells (squares of pixels) again, because the set of meshes with many sensors has changed */
+    /* true: resolve_read() must compute the bands' `cells` again, because the set of meshes with many sensors has changed */
     bool finds_cells;
     float scale[4];     /* value of struct frame_uniforms.scale with which the vertices' values were converted */
     uint32_t *vertices; /* vertices that some pixel shows, mesh by mesh: index of each in the asset's file */
     /* value at each visible vertex, which is interpolated over triangles: column of the colour map (on a logarithmic scale the field's
        value); NAN: a flag of the vertex selects a pattern */
     float *carried;
-    float *plain;                 /* the same without NAN */
+    float *plain;                 /* the same values as in `carried`, but without NAN */
     uint32_t *flags;              /* from soft_flags() */
     struct depth_grid *grid;      /* reference to the frame's depth grid; NULL: the frame has none */
     struct frame_marker *markers; /* positions of markers in the frame, and whether surfaces hide them */
@@ -119,7 +119,7 @@ struct visibility_buffer {
 };
 
 struct visibility_buffer *visibility_buffer_create(int width_px, int height_px, int band_rows); /* NULL: out of memory */
-/* Adds storage for the glossy look. Returns false when out of memory. */
+/* Allocates buffer->gloss, which the glossy look needs. Returns false when out of memory. */
 bool visibility_buffer_gloss(struct visibility_buffer *buffer, const struct soft_tones *tones);
 /* frees the buffer and sets *buffer to NULL; accepts a pointer to NULL */
 void visibility_buffer_destroy(struct visibility_buffer **buffer);

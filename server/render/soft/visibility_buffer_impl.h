@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Helpers of the visibility buffer: positions on the scale as colour map columns, and ink over colours. Private to soft/. */
+/* Helpers of visibility buffers: convert values to colour map columns, and draw lines (ink) over colours. Private to soft/. */
 #ifndef RENDER_SOFT_VISIBILITY_BUFFER_IMPL_H
 #define RENDER_SOFT_VISIBILITY_BUFFER_IMPL_H
 #include <string.h>
@@ -32,7 +32,8 @@ static inline bool is_log(const float *scale)
     return scale[2] > 0.5f;
 }
 
-/* Finds the cells (squares of pixels) of a band whose fields have many sensors. The band's `places` and `corners` must be set. */
+/* Fills the `cells` of a band: the squares of pixels that show fields of many sensors (pixel_lists.h). The band's `places` and `corners`
+   must be set. */
 void visibility_find_cells(const struct visibility_buffer *buffer, int number);
 
 static inline bool has_ink(const struct visibility_buffer *buffer, size_t pixel)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds, in stored visibility buffers, the cells (squares of pixels) that show fields of many sensors, and the boxes around the surface
-   points there (pixel_lists.h). */
+/* Finds, in stored visibility buffers, the cells (squares of pixels) that show fields of many sensors, and the bounding boxes of the
+   surface points that each cell shows (pixel_lists.h). */
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Store of visibility buffers: a fixed array of slots, with a bound on their total size. */
+/* Store of visibility buffers: a fixed array of slots, with a limit on the total size of the buffers. */
 #include "render/soft/visibility_store.h"
 
 static void empty(struct visibility_store *store, struct visibility_slot *buffer)

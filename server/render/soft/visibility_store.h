@@ -27,8 +27,8 @@ struct visibility_store { /* zero-initialise, then set bound_bytes */
 
 /* Returns the buffer with that hash, valid until the next visibility_store_give() or visibility_store_drop(). NULL: none. */
 void *visibility_store_find(struct visibility_store *store, uint64_t shape);
-/* Takes ownership of a buffer and replaces any other buffer with that hash. Destroys the buffer immediately if it exceeds the bound and
-   keeps_newest is false. */
+/* Takes ownership of a visibility buffer and replaces any buffer with the same hash. Destroys the buffer immediately if it exceeds the
+   memory limit and keeps_newest is false. */
 void visibility_store_give(struct visibility_store *store, uint64_t shape, void *at, size_t bytes, void (*destroy)(void *at));
 void visibility_store_bound(struct visibility_store *store, size_t bytes); /* sets the bound and evicts */
 void visibility_store_drop(struct visibility_store *store, uint64_t shape);
