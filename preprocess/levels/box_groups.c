@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Groups boxes by recursive halving of space. The recursion ends in a cell with few boxes, with boxes that are one group already, or with a
- * box that fills the cell and so overlaps all others. A sweep along one axis, the usual method, would compare all pairs of boxes along a
- * plate perpendicular to that axis. */
+/* Groups overlapping boxes by recursive halving of space. The recursion ends in a cell with few boxes, with boxes that are one group
+ * already, or with a box that fills the cell and so overlaps all others. A sweep along one axis, the usual method, would compare all pairs
+ * of boxes along a plate perpendicular to that axis. */
 #include "preprocess/levels/box_groups.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 #include "surface/mesh/trimesh.h"
 
 #define FEW 24       /* maximum number of boxes in a cell for which all pairs are compared */
-#define MAX_DEPTH 96 /* maximum recursion depth: 24 bits of precision on each of three axes, plus a margin */
+#define MAX_DEPTH 96 /* maximum depth of halving space: 24 bits of precision on each of three axes, plus a margin */
 
 struct box_cell {
     float low_m[3], high_m[3];
@@ -65,8 +65,8 @@ static bool holds(const struct part_box *box, const float low_m[3], const float 
     return true;
 }
 
-/* Joins boxes that certainly overlap, without comparing pairs. If one box fills the cell, joins all boxes of the cell; otherwise joins
- * those that contain the cell's centre. Returns whether all boxes were joined. */
+/* Groups boxes that certainly overlap, without comparing pairs. If one box fills the cell, groups all boxes of the cell; otherwise groups
+ * those that contain the cell's centre. Returns whether all boxes were grouped. */
 static bool join_some(const struct part_box *boxes, const uint32_t *list, size_t count, const struct box_cell *cell, uint32_t *parent)
 {
     float middle_m[3];
@@ -84,7 +84,8 @@ static bool join_some(const struct part_box *boxes, const uint32_t *list, size_t
     return filler < count;
 }
 
-/* Returns the axis along which the cell should be halved: the one with the fewest boxes that lie in both halves; -1: no halving helps. */
+/* Returns the axis along which a cell of space should be halved: the one with the fewest boxes that lie in both halves; -1: no halving
+ * helps. */
 static int best_axis(const struct part_box *boxes, const uint32_t *list, size_t count, const struct box_cell *cell)
 {
     int best = -1;
@@ -118,8 +119,8 @@ static void join_half(const struct part_box *boxes, const uint32_t *list, size_t
     mem_free(inside);
 }
 
-/* Joins the boxes of a cell by recursive halving of the cell. Two overlapping boxes have a common point, so both are in the half that
- * contains this point, and are found there. */
+/* Groups the overlapping boxes of a cell by recursive halving of the cell. Two overlapping boxes have a common point, so both are in the
+ * half that contains this point, and are found there. */
 static void join_in(const struct part_box *boxes, uint32_t *list, size_t count, struct box_cell cell, int depth, uint32_t *parent)
 {
     if (count < 2 || are_one_group(boxes, list, count, parent))

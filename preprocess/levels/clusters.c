@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds clusters with meshoptimizer's meshlets, which grow over adjacent triangles. */
+/* Builds clusters (groups of adjacent triangles) from meshoptimizer's meshlets, which grow over adjacent triangles. */
 #include "preprocess/levels/clusters.h"
 
 #include <math.h>
@@ -16,7 +16,7 @@ struct clusters_making {
     struct level level; /* borrows the caller's arrays */
     float (*positions_m)[3];
     uint32_t vertex_count;
-    struct clusters made; /* clusters with index offsets relative to the level */
+    struct clusters made; /* clusters of the level of detail; their index offsets are relative to the level's first index */
 };
 
 /* A primitive whose vertices are renumbered from 0, because meshoptimizer's run time depends on the number of vertices it is given. */

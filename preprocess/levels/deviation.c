@@ -16,7 +16,7 @@
  * and LARGE at the midpoints of its edges */
 #define LARGE 16.0
 
-#define GRAIN 1024 /* measured points per unit of work of a thread */
+#define GRAIN 1024 /* number of measured points per unit of work of a thread */
 
 /* Returns a hash of the three vertex indices that does not depend on their order and is never 0. */
 static uint64_t triangle_hash(const uint32_t v[3])
@@ -48,7 +48,7 @@ static void make_room_to_know(struct deviation *surface, size_t triangle_count)
     surface->known = mem_array(surface->known_mask + 1, sizeof(*surface->known));
 }
 
-/* Adds a triangle to the hash set. Returns false if a triangle with the same corners is already in the set. */
+/* Adds a triangle to the surface's hash set of triangles. Returns false if a triangle with the same corners is already in the set. */
 static bool know_triangle(struct deviation *surface, const uint32_t v[3])
 {
     uint64_t hash = triangle_hash(v), *slot = &surface->known[slot_of(surface, hash)];
@@ -78,7 +78,7 @@ static size_t *sort_by_part(const struct deviation_params *params, const uint32_
     return order;
 }
 
-/* Records for each part the range of its triangles in the mesh, which is sorted by part. */
+/* Records for each part (connected component) the range of its triangles in the mesh, which is sorted by part. */
 static void list_parts(struct deviation *surface)
 {
     const struct trimesh *mesh = &surface->mesh;
@@ -174,7 +174,7 @@ struct probing {
     bool anywhere; /* true: measure the distance from any part of `to`; false: from the same part (connected component) of `to` */
     double expected_m;
     const float *known_m; /* by part (connected component): largest distance found before this pass; smaller distances need not be exact */
-    float *found_m;       /* by point, or by triangle in the second pass: its measured distance */
+    float *found_m;       /* by vertex, or by triangle in the second pass: its measured distance */
 };
 
 #define RECENT 4
@@ -185,7 +185,7 @@ struct near { /* cache of one thread */
     double known_m; /* largest distance of the part (connected component) that this thread has found so far */
 };
 
-struct deviation_probe {   /* state of one probe: a point, and the surface from which its distance is measured */
+struct deviation_probe {   /* state of one distance measurement ("probe"): a point, and the surface from which its distance is measured */
     const struct bvh *bvh; /* bounding volume hierarchy of the surface; NULL: `to` has no triangle of the part */
     const struct trimesh *mesh;
     double point[3];
@@ -217,8 +217,8 @@ static void keep_first(struct near *near, int place, uint32_t tri)
     near->tris[0] = tri;
 }
 
-/* Returns whether a triangle of the cache (near->tris) is closer to the probed point than the largest known distance, so that no search is
- * needed. Neighbouring points often have the same nearest triangle. */
+/* Returns whether one of the recently nearest triangles (near->tris) is closer to the probed point than the largest known distance, so that
+ * no search is needed. Neighbouring points often have the same nearest triangle. */
 static bool is_known(const struct deviation_probe *probe)
 {
     struct near *near = probe->near;
@@ -242,8 +242,8 @@ static void forget(struct near *near)
         near->tris[i] = TRIMESH_NONE;
 }
 
-/* Returns the distance of the probed point from the surface, or 0 if it is not larger than the largest distance found so far. Searches
- * within the expected distance first, which is enough for most points. */
+/* Returns the distance of the probed point from the other surface, or 0 if it is not larger than the largest distance found so far.
+ * Searches within the expected distance first, which is enough for most points. */
 static double distance_of(const struct deviation_probe *probe, double expected_m)
 {
     struct bvh_place place;
@@ -299,8 +299,8 @@ static double probe_at(const struct probing *probing, size_t t, const double w[3
     return distance_of(&probe, probing->expected_m);
 }
 
-/* Returns whether one triangle of the cache is within the largest known distance of all of triangle t, so that t needs no probes. The
- * distance from a triangle is a convex function, so its maximum over t is at a corner of t. */
+/* Returns whether all of triangle t is within the largest known distance of one of the recently nearest triangles (near->tris), so that t
+ * needs no measurement. The distance from a triangle is a convex function, so its maximum over t is at a corner of t. */
 static bool is_covered(const struct probing *probing, size_t t, struct near *near)
 {
     const struct trimesh *mesh = &probing->from->mesh;
@@ -330,8 +330,9 @@ static double probe_inside(const struct probing *probing, size_t t, int cuts, st
     return most_m;
 }
 
-/* Probes points inside a triangle; its corners are probed separately. A triangle whose longest edge is at most the expected distance is not
- * probed, because no inner point can be much farther away than the corners. A triangle that both surfaces contain is not probed either. */
+/* Measures the distance of points inside a triangle from the other surface; its corners are measured separately. A triangle whose longest
+ * edge is at most the expected distance is skipped, because no inner point can be much farther away than the corners. A triangle that both
+ * surfaces contain is skipped too. */
 static void probe_triangle(const struct probing *probing, size_t t, struct near *near)
 {
     const struct deviation *from = probing->from;
@@ -369,8 +370,8 @@ static void raise_to(float *most_m, float found_m)
     *most_m = *most_m < found_m ? found_m : *most_m;
 }
 
-/* Measures the corners of all triangles first, so that a triangle can be skipped if its corners show that its inside cannot raise the
- * result. */
+/* Measures the distances of surface `from` from surface `to`: the corners of all triangles first, so that a triangle can be skipped if its
+ * corners show that its inside cannot raise the result. */
 static void measure(const struct deviation *from, const struct deviation *to, const char *only, bool anywhere, double expected_m,
                     float *apart_m, struct workers *workers)
 {

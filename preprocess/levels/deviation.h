@@ -15,7 +15,7 @@ struct deviation {       /* a triangle surface, prepared for measuring distances
     uint32_t *index;      /* by vertex: lowest index of a vertex at its position; the mesh has one point per position, with this index */
     size_t highest;       /* largest value in index[] */
     char *has;            /* by vertex: nonzero if a triangle of this surface uses it */
-    uint64_t *known;      /* hash set of the surface's triangles, by their vertex indices */
+    uint64_t *known;      /* hash set of the surface's triangles, which finds duplicates and triangles that two surfaces share */
     size_t known_mask;
 };
 
@@ -24,8 +24,8 @@ struct deviation_params {
     const uint32_t *first_there; /* by vertex: lowest index of a vertex of the same part (connected component) at the same position */
     const uint32_t *part;        /* by vertex; borrowed */
     size_t part_count;
-    const char *only; /* by part: nonzero if the part will be measured; NULL: all parts are */
-    bool anywhere;    /* true: build one hierarchy over all parts, which deviation_measure_lost() needs */
+    const char *only; /* by part (connected component): nonzero if the part will be measured; NULL: all parts are */
+    bool anywhere;    /* true: build one bounding volume hierarchy over all parts, which deviation_measure_lost() needs */
 };
 /* Builds a surface to measure: copies positions and triangles (3 vertices each), and removes duplicate triangles. Builds a bounding volume
  * hierarchy for each part (connected component), so that a distance query for one part does not visit the triangles of others. Surfaces to
@@ -34,8 +34,8 @@ void deviation_init(struct deviation *surface, const struct deviation_params *pa
 /* Frees the surface. */
 void deviation_finish(struct deviation *surface);
 
-/* Returns the bounding volume hierarchy of a part's triangles, which belongs to the surface. NULL: the part has no triangles, or was
- * excluded by `only`. */
+/* Returns the bounding volume hierarchy of the triangles of a part (connected component), which belongs to the surface. NULL: the part has
+ * no triangles, or was excluded by `only`. */
 const struct bvh *deviation_hierarchy(const struct deviation *surface, size_t part);
 
 /* Raises apart_m[part] to the largest distance of the surface `from` to the same part of `to`, in metres. Probes vertices and points inside

@@ -36,7 +36,7 @@ struct levels_making {
     struct welds welds;
     struct versions versions;
     struct omission *omissions;
-    char *used;     /* by vertex: nonzero if the previous level uses the vertex */
+    char *used;     /* by vertex: nonzero if the previous level of detail uses the vertex */
     char *contrary; /* by part: see levels_find_contrary() */
     /* Current state: */
     /* by part (connected component): index of its version (simplification step) in the level being chosen; ABSENT: the part is omitted */
@@ -51,7 +51,7 @@ struct levels_making {
 /* --- events, sorted by error: one part changes to a coarser version or is omitted --------------------------------------- */
 
 struct event {
-    float error_m; /* smallest error in metres of a level for which the part may change */
+    float error_m; /* smallest error in metres of a level of detail for which the part may change */
     uint32_t part, version;
 };
 
@@ -103,7 +103,8 @@ static size_t let_all_happen(struct levels_making *making, const struct event *e
 
 /* --- one level ------------------------------------------------------------------------------------------------------------ */
 
-/* Replaces welds (groups of equal vertices) by vertices and writes the level, primitive by primitive in the geometry's order. */
+/* Replaces welds (groups of equal vertices) by vertices and writes the triangles of the level of detail, primitive by primitive in the
+ * geometry's order. */
 static void write_level(struct levels_making *making, struct level *level, const uint32_t *welds, size_t count)
 {
     const struct geometry *g = making->welds.geometry;
@@ -174,7 +175,7 @@ static float error_of_parts(const struct levels_making *making)
 }
 
 /* Moves corners of flattened faces (levels_facing.c). Sets most_m[part] to 0 if the part's error then exceeds limit_m, so that the next
- * attempt skips the part. Returns whether any part was marked. */
+ * attempt skips the part. Returns whether any part has to be skipped. */
 static bool try_facing(const struct levels_making *making, uint32_t *welds, size_t count, float limit_m, float *most_m)
 {
     const struct welds *of = &making->welds;
@@ -255,7 +256,7 @@ static bool bring_back(struct levels_making *making, const float *apart_m, float
     return any;
 }
 
-/* Returns the minimum error in metres that the level after `last` must have. */
+/* Returns the minimum error in metres that the level of detail after `last` must have. */
 static double step_m(const struct levels_making *making, const struct level *last)
 {
     double last_m = (double)last->error_m;
@@ -275,7 +276,7 @@ static bool is_worth(const struct levels_making *making, const struct level *las
     return now <= (is_far(making, last, error_m) ? FAR_WORTH : NEAR_WORTH) * before;
 }
 
-/* Adds a level with the parts in their current versions (simplification steps). *error_out_m receives the level's error. A part
+/* Adds a level of detail with the parts in their current versions (simplification steps). *error_out_m receives the level's error. A part
  * that earlier levels omitted as too small is restored if the level would otherwise look wrong. Returns false without adding the level if
  * these parts bring its triangle count so near to the previous level's that it is not worth storing. */
 static bool add_level(struct levels_making *making, struct levels *levels, float *error_out_m)
@@ -326,7 +327,7 @@ static void make_coarse(struct levels_making *making, struct levels *levels)
 {
     struct event *events = mem_array(making->welds.part_count * (making->versions.count + 1), sizeof(*events));
     size_t count = list_events(making, events);
-    /* waited_m: minimum error in metres of the next attempt after a rejected level; 0: the last attempt was accepted */
+    /* waited_m: minimum error in metres of the next attempt after a level of detail was rejected; 0: the last attempt was accepted */
     float error_m, waited_m = 0;
     making->used = mem_array(making->welds.geometry->vertex_count, 1);
     making->version = mem_array(making->welds.part_count, sizeof(*making->version));

@@ -7,12 +7,12 @@
 
 #define LEVELS_MAX 24
 
-/* Reasons why an edge stays unsplit although linear interpolation along it has an error: the level's triangle limit is reached; the pieces
- * would be too short; the distance along the surface jumps there, which no split fixes. */
+/* Reasons why subdivision leaves an edge unsplit although linear interpolation along it has an error: the level's triangle limit is
+ * reached; the parts of the edge would be too short; the distance along the surface jumps there, which no split fixes. */
 enum level_limit { LEVEL_LIMIT_TRIANGLES, LEVEL_LIMIT_LENGTH, LEVEL_LIMIT_JUMP, LEVEL_LIMITS };
 
 /* Edges that still have an interpolation error above one colour step after subdivision: their count, and the largest error in colour steps.
- * In coarser levels, the count of edges too short to split is extrapolated from a sample. */
+ * In coarser levels of detail, the count of edges too short to split is extrapolated from a sample. */
 struct level_left {
     uint32_t edges;
     float steps;
@@ -20,20 +20,22 @@ struct level_left {
 
 struct level {
     uint32_t *indices; /* vertex indices of the geometry */
-    /* material groups of the level's triangles; first_index is relative to this level; primitives without triangles are omitted */
+    /* the level's triangles, grouped by material; first_index is relative to this level; primitives without triangles are omitted */
     struct asset_primitive *primitives;
     uint32_t index_count, primitive_count;
     uint32_t whole_count; /* index_count before subdivision added triangles */
-    float error_m; /* metres; largest distance between this level's surface and the finest one, in either direction; 0 for the finest */
+    /* metres; largest distance between the surface of this level of detail and the finest level's, in either direction; 0 for the finest */
+    float error_m;
     struct level_left left[LEVEL_LIMITS];
 };
 
 struct levels {
     struct level at[LEVELS_MAX]; /* finest first */
     size_t count;
-    /* number of levels dropped during subdivision, because they would need about as many triangles as the next finer level */
+    /* number of levels of detail dropped during subdivision, because they would need about as many triangles as the next finer level */
     size_t given_up;
-    /* number of duplicate triangles in the finest level; 0 if the levels come from the build cache, which does not store the number */
+    /* number of duplicate triangles in the finest level of detail; 0 if the levels come from the build cache, which does not store the
+     * number */
     size_t repeated;
 };
 

@@ -11,9 +11,9 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define RING 48    /* maximum number of triangles around a point that may be removed */
-#define TURN 0.4   /* minimum cosine between the normals of a triangle before and after a collapse */
-#define BORDER 0.5 /* maximum movement of open borders and seams, as a share of the allowed error */
+#define RING 48    /* maximum number of triangles around a mesh point that may be removed */
+#define TURN 0.4   /* minimum cosine between the normals of a triangle before and after an edge collapse */
+#define BORDER 0.5 /* maximum movement of open borders and of seams (of material or texture), as a share of the allowed error */
 /* factor from the growth of a triangle's longest edge to the error added for it, because subdivision must split long edges later */
 #define STRETCH 0.05
 #define NONE UINT32_MAX
@@ -21,14 +21,15 @@
 struct bounded_face {
     uint32_t point[3], weld[3]; /* mesh points and welds (groups of equal vertices) of the corners; all NONE: the face was removed */
     uint32_t first;             /* index of the first original vertex ("place") in the face's list; next_place[] links the others */
-    /* index of the triangle of the original surface that was nearest to this face at the last test; tested first */
+    /* index of the triangle of the original surface that was nearest to this face at the last distance test; tested first at the next
+     * one */
     uint32_t near;
     double normal[3], length; /* normal, not of unit length; length: its length, twice the triangle's area */
     double longest_m;         /* longest edge */
 };
 
-struct removal_candidate { /* heap entry: a point that may be removed by merging it into the point `target` */
-    float error_m;         /* error of the collapse: exact if is_known, else a lower bound */
+struct removal_candidate { /* heap entry: a mesh point that may be removed by merging it into the point `target` */
+    float error_m;         /* error of merging the point into `target`: exact if is_known, else a lower bound */
     uint32_t point, stamp, target;
     bool is_known; /* error_m is exact */
 };
@@ -37,11 +38,13 @@ struct bounded {
     const struct welds *welds;
     const struct bvh *first;
     double (*points)[3];
-    float *moved_m; /* by point: distance by which the open borders and seams at the point have moved so far */
-    /* corner: by point, head of the list of face corners at the point (3 * face + 0 to 2); next: by corner, the next corner in the list */
+    float *moved_m; /* by mesh point: distance by which the open borders and seams at the point have moved so far */
+    /* corner: by mesh point, head of the list of face corners at the point (3 * face + 0 to 2); next: by corner, the next corner in the
+     * list */
     uint32_t *corner;
     uint32_t *next;
-    uint32_t *stamp; /* by point: incremented when the triangles around it change; a heap entry with an older value is outdated */
+    /* by mesh point: incremented when the triangles around the point change; a heap entry with an older value is outdated */
+    uint32_t *stamp;
     struct bounded_face *faces;
     size_t point_count, face_count, left;
     double (*places)[3];
@@ -92,10 +95,10 @@ struct point_ring {
     uint32_t point;
     struct ring_wedge wedges[RING];
     int count; /* number of wedges (triangles around the point); RING + 1: there are too many to store */
-    /* by edge from the point: the point at the edge's other end, and, in one of the edge's triangles, the welds (groups of equal vertices)
-     * at this end (here) and the other end (there) */
+    /* by edge from the ring's point: the point at the edge's other end, and, in one of the edge's triangles, the welds (groups of equal
+     * vertices) at this end (here) and the other end (there) */
     uint32_t ends[2 * RING], weld_here[2 * RING], weld_there[2 * RING];
-    bool is_feature[2 * RING]; /* by edge: whether it is an open border or a seam of material or texture */
+    bool is_feature[2 * RING]; /* by edge from the ring's point: whether it is an open border or a seam of material or texture */
     int end_count, feature_count;
     double longest_m; /* longest edge of all triangles */
 };
@@ -118,7 +121,8 @@ static void list_ring(struct bounded *b, uint32_t point, struct point_ring *ring
     while (*link != NONE && ring->count <= RING) {
         uint32_t corner = *link;
         const struct bounded_face *face = &b->faces[corner / 3];
-        if (face->point[corner % 3] != point) { /* unlink a corner whose point was merged into another point, or whose face was removed */
+        /* unlink from the point's list a corner whose point was merged into another point, or whose face was removed */
+        if (face->point[corner % 3] != point) {
             *link = b->next[corner];
             continue;
         }
@@ -197,7 +201,7 @@ static uint32_t weld_after(const struct point_ring *ring, int target, uint32_t w
     return found;
 }
 
-/* Writes the positions of the corners that a triangle around the point will have when the point has moved to the target. */
+/* Writes the positions that the corners of a triangle around a point will have when the point is merged into `target`. */
 static void moved_face(const struct bounded *b, const struct ring_wedge *wedge, uint32_t target, const double *at[3])
 {
     at[wedge->at] = b->points[target];
@@ -205,8 +209,8 @@ static void moved_face(const struct bounded *b, const struct ring_wedge *wedge, 
     at[(wedge->at + 2) % 3] = b->points[wedge->points[1]];
 }
 
-/* Returns how far open borders and seams would have moved after a collapse, in metres. 0: the point is on none; INFINITY: the collapse
- * would break a border or seam, so it is not allowed. */
+/* Returns how far open borders and seams would have moved after merging the ring's point into a neighbour, in metres. 0: the point is on
+ * none; INFINITY: the merge would break a border or seam, so it is not allowed. */
 static double border_of(const struct bounded *b, const struct point_ring *ring, int target)
 {
     int other = -1;
@@ -226,7 +230,8 @@ static double longest_edge(const double *const at[3])
     return sqrt(max_of(vec_distance2(at[0], at[1]), max_of(vec_distance2(at[1], at[2]), vec_distance2(at[2], at[0]))));
 }
 
-/* Returns a lower bound of the error of a collapse, in metres. INFINITY: the collapse is not allowed, or its error is at least most_m. */
+/* Returns a lower bound of the error in metres of merging the ring's point into a neighbour. INFINITY: the merge is not allowed, or its
+ * error is at least most_m. */
 static double bound_of(const struct bounded *b, const struct point_ring *ring, int target, double most_m)
 {
     uint32_t to = ring->ends[target];
@@ -252,7 +257,7 @@ static double bound_of(const struct bounded *b, const struct point_ring *ring, i
     return max_of(nearest_m, border_m) + STRETCH * longer_m;
 }
 
-/* Returns the larger of error_m and the distance of the point from the original surface. Tests triangle *near first, and writes the nearest
+/* Returns the larger of error_m and the distance of `point` from the original surface. Tests triangle *near first, and writes the nearest
  * triangle to *near. */
 static double raise(const struct bounded *b, const double point[3], double error_m, uint32_t *near)
 {
@@ -268,8 +273,8 @@ struct moved { /* a triangle after the collapse */
     const struct ring_wedge *wedge;
 };
 
-/* Returns the distance from an original vertex ("place") to the nearest of the moved triangles; once a triangle within enough_m is found,
- * any value up to enough_m. Tests the place's own triangle first. */
+/* Returns the distance from an original vertex ("place") to the nearest of the triangles that a collapse would move; once a triangle within
+ * enough_m is found, any value up to enough_m. Tests the place's own triangle first. */
 static double distance_to_any(const double place[3], const struct moved *moved, int count, int own, double enough_m)
 {
     double nearest_m = INFINITY;
@@ -283,7 +288,7 @@ static double distance_to_any(const double place[3], const struct moved *moved, 
 }
 
 /* Returns the largest of error_m and the two distances that make up the error of a collapse: from the affected original vertices ("places")
- * to the new triangles, and from the new triangles to the original surface. Stops early once the result exceeds enough_m. */
+ * to the triangles after the collapse, and from these triangles to the original surface. Stops early once the result exceeds enough_m. */
 static double error_of(struct bounded *b, const struct point_ring *ring, uint32_t to, double error_m, double enough_m)
 {
     struct moved moved[RING];
@@ -298,7 +303,8 @@ static double error_of(struct bounded *b, const struct point_ring *ring, uint32_
     for (int c = 0; c < ring->count && error_m <= enough_m; c++)
         for (uint32_t s = b->faces[ring->wedges[c].face].first; s != NONE && error_m <= enough_m; s = b->next_place[s])
             error_m = max_of(error_m, distance_to_any(b->places[s], moved, count, own[c] < count ? own[c] : 0, error_m));
-    /* probe each new triangle at its centre, and at the midpoint of the edge that it does not share with the next new triangle */
+    /* measure each triangle as it will be after the collapse: at its centre, and at the midpoint of the edge that it does not share with
+     * the next such triangle */
     for (int f = 0; f < count && error_m <= enough_m; f++) {
         const double *const *at = moved[f].at;
         uint32_t m = moved[f].wedge->at, *near = &b->faces[moved[f].wedge->face].near;
@@ -315,8 +321,7 @@ static double error_of(struct bounded *b, const struct point_ring *ring, uint32_
 
 /* --- collapsing ------------------------------------------------------------------------------------------------------------------ */
 
-/* Finds the neighbour into which a point can be merged with the smallest lower bound of the error, and pushes this collapse onto the
- * heap. */
+/* Finds the neighbour into which a point can be merged with the smallest lower bound of the error, and pushes this merge onto the heap. */
 static void offer(struct bounded *b, uint32_t point)
 {
     struct point_ring ring;
@@ -350,8 +355,8 @@ static void measure_face(const struct bounded *b, struct bounded_face *face)
     face->longest_m = longest_edge(at);
 }
 
-/* Assigns an original vertex ("place") to the nearest of the faces. Of equally near faces, the first one is taken. Returns its index in the
- * list. Tests the face `last` first, because successive places are close together. */
+/* Assigns an original vertex ("place") to the nearest of these faces of the simplified surface. Of equally near faces, the first one is
+ * taken. Returns its index in the list. Tests the face `last` first, because successive places are close together. */
 static int rehome(struct bounded *b, const uint32_t *faces, int count, int last, uint32_t place)
 {
     double nearest_m = INFINITY;
@@ -422,8 +427,8 @@ static int index_of(const struct point_ring *ring, uint32_t end)
     return -1;
 }
 
-/* Returns whether a collapse would make the surface touch itself along an edge: the edge's ends share a neighbour that is in no triangle
- * with both ends (link condition; Dey et al., Topology preserving edge contraction, Publ. Inst. Math. 1999). */
+/* Returns whether an edge collapse would make the surface touch itself along an edge: the ends of the collapsed edge share a neighbour that
+ * is in no triangle with both ends (link condition; Dey et al., Topology preserving edge contraction, Publ. Inst. Math. 1999). */
 static bool would_touch(struct bounded *b, const struct point_ring *ring, int target)
 {
     struct point_ring there;
@@ -439,8 +444,8 @@ static bool would_touch(struct bounded *b, const struct point_ring *ring, int ta
     return common > shared;
 }
 
-/* Takes the first entry from the heap and drops it if it is outdated. If its exact error is known, and therefore the smallest of all,
- * collapses the edge; otherwise computes the exact error and puts the entry back unless it is still the first one. */
+/* Takes the first collapse from the heap and drops it if it is outdated. If its exact error is known, and therefore the smallest of all,
+ * collapses the edge; otherwise computes the exact error and puts the collapse back unless it is still the first one. */
 static void take_turn(struct bounded *b, double error_m)
 {
     struct removal_candidate turn = pop(b);
@@ -536,7 +541,7 @@ static void measure_faces(struct bounded *b)
     }
 }
 
-/* Assigns those original vertices ("places") that are not points of the part's triangles to the nearest triangle. */
+/* Assigns the original vertices ("places") that are not corners of the part's triangles to the nearest triangle. */
 static void take_far_places(struct bounded *b, const uint32_t *places, size_t count)
 {
     struct trimesh mesh = { .points = b->points, .point_count = b->point_count, .tri_count = b->face_count };

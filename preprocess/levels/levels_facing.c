@@ -16,11 +16,11 @@
 #define BESIDE 1.25f
 #define NONE UINT32_MAX
 
-struct corner_need { /* a face corner to repair: it needs a vertex whose normal points to the face's side */
+struct corner_need { /* a face corner to repair: it needs a vertex whose normal points to the front of the face */
     size_t corner;
     float normal[3]; /* normal of the corner's face */
-    float score;     /* score of the best candidate so far: 2 - distance / maximum distance */
-    uint32_t weld;   /* weld (group of equal vertices) of the best candidate; NONE: none yet */
+    float score;     /* score of the best replacement so far: 2 - distance / maximum distance */
+    uint32_t weld;   /* weld (group of equal vertices) that is the best replacement so far; NONE: none yet */
     size_t next;     /* index in `needs` of the next corner with the same weld (group of equal vertices); SIZE_MAX: none */
 };
 

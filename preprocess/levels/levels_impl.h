@@ -5,8 +5,10 @@
 #include "preprocess/levels/deviation.h"
 #include "preprocess/levels/levels.h"
 
-#define LEVELS_FILLING 0.001 /* error, relative to the asset's size, that is one pixel when the asset fills the picture */
-#define LEVELS_SMALL 0.012   /* error, relative to the asset's size, that is one pixel when the asset spans a twelfth of the picture */
+/* error of a level of detail, relative to the asset's size, that is one pixel when the asset fills the picture */
+#define LEVELS_FILLING 0.001
+/* error of a level of detail, relative to the asset's size, that is one pixel when the asset spans a twelfth of the picture */
+#define LEVELS_SMALL 0.012
 /* largest error of a level, relative to the asset's size: a coarser level would be drawn only where the asset is smaller than about a dozen
  * pixels */
 #define LEVELS_FARTHEST 0.08
@@ -24,7 +26,7 @@ struct welds {
     uint32_t *first, *vertices;               /* vertices grouped by weld */
     uint32_t *part;                           /* part of each weld */
     uint32_t *first_there;                    /* by weld (group of equal vertices): lowest index of a weld at the same position */
-    float (*low_m)[3], (*high_m)[3], *size_m; /* by part: its bounding box, and the length of the box's diagonal */
+    float (*low_m)[3], (*high_m)[3], *size_m; /* by part (connected component): its bounding box, and the length of the box's diagonal */
     double whole_m;                           /* size of the asset's main part (base/math/gap_split.h), metres */
 };
 
@@ -36,12 +38,12 @@ void welds_finish(struct welds *welds);
 
 /* --- versions (levels_versions.c) --- */
 
-/* A version: the asset's triangles after some simplification. Each version is made from the version before. */
+/* A version: the asset's triangles after some steps of simplification. Each version is made from the version before. */
 struct version {
     uint32_t *welds; /* three weld indices per triangle */
     size_t count;    /* number of elements of `welds`; three per triangle */
-    /* by part: largest distance between this version and the first one, in either direction, metres; INFINITY: the part has no triangle
-     * left */
+    /* by part (connected component): largest distance between this version and the first one, in either direction, metres; INFINITY: the
+     * part has no triangle left */
     float *error_m;
     uint32_t *tris; /* by part: number of triangles */
 };
@@ -65,13 +67,13 @@ void versions_finish(struct versions *versions);
 /* --- omitted parts (levels_omissions.c) --- */
 
 struct omission {
-    float from_m; /* minimum error in metres of a level that omits the part; INFINITY: no level omits it */
+    float from_m; /* minimum error in metres of a level of detail that omits the part; INFINITY: no level omits it */
     /* true: no larger part is near, so the part belongs to a group of small neighbouring parts, and from_m is the size of that group */
     bool alone;
 };
 
-/* Writes for each part the minimum error of a level that may omit it: because the part lies on much larger parts, or because it and the
- * small parts around it are together no larger than the error. workers may be NULL. */
+/* Writes for each part (connected component) the minimum error of a level of detail that may omit it: because the part lies on much larger
+ * parts, or because it and the small parts around it are together no larger than the error. workers may be NULL. */
 void omissions_find(struct omission *omissions, const struct welds *welds, struct workers *workers);
 
 /* --- flattened parts (levels_facing.c) --- */

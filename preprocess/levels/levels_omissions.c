@@ -16,16 +16,16 @@
 #define OVER 1.1f
 #define SMALL 0.1   /* maximum size of a part that is omitted because it lies on others, relative to the whole asset */
 #define AROUND 4.0f /* small parts whose distance is less than this many times their size form a group, whose parts are omitted together */
-#define PROBES 4    /* number of points on each edge of a part's triangles whose distance from larger parts is measured */
+#define PROBES 4    /* number of points on each edge of a small part's triangles whose distance from larger parts is measured */
 
 #define CLASSES_MAX 20
-#define FEWER 0.75 /* a class of parts by size is made only if it has at most this share of the triangles of the class before */
+#define FEWER 0.75 /* a size class (struct size_class) is made only if it has at most this share of the triangles of the class before */
 
 /* Size class: the triangles of all parts larger than than_m, with a bounding volume hierarchy of their own. With one hierarchy of all
  * triangles, each search for a larger part would first find the small part itself and its neighbours. */
 struct size_class {
     float than_m;
-    struct trimesh mesh; /* triangles of the class; shares the points of the whole mesh */
+    struct trimesh mesh; /* triangles of the size class; shares the points of the whole mesh */
     struct bvh *bvh;
 };
 
@@ -92,7 +92,8 @@ static void add_class(struct omission_search *search, float than_m, size_t count
     class->bvh = bvh_create(&class->mesh);
 }
 
-/* Builds the size classes. A search for parts larger than a limit uses the class with the largest than_m that does not exceed the limit. */
+/* Builds the size classes (struct size_class). A search for parts larger than a limit uses the class with the largest than_m that does not
+ * exceed the limit. */
 static void make_classes(struct omission_search *search)
 {
     const struct welds *welds = search->welds;
@@ -125,7 +126,7 @@ struct larger {
     const struct omission_search *search;
     const struct size_class *class;
     float than_m;
-    uint32_t near; /* triangle that was found for the previous point, tested first; TRIMESH_NONE: none */
+    uint32_t near; /* index of the triangle that was nearest to the previous point, tested first; TRIMESH_NONE: none */
 };
 
 static bool is_larger(const void *arg, uint32_t tri)
@@ -134,8 +135,8 @@ static bool is_larger(const void *arg, uint32_t tri)
     return larger->search->welds->size_m[larger->search->part[larger->class->mesh.tri_source[tri]]] > larger->than_m;
 }
 
-/* Returns the larger of apart_m and the largest distance between points on a triangle's edges and the larger parts; INFINITY if that
- * distance exceeds limit_m. */
+/* Returns the larger of apart_m and the largest distance between points on the edges of triangle `tri` and the larger parts; INFINITY if
+ * that distance exceeds limit_m. */
 static float look_from(struct larger *larger, uint32_t tri, double limit_m, float apart_m)
 {
     const struct trimesh *mesh = &larger->search->mesh;
@@ -193,8 +194,8 @@ static size_t list_boxes(const struct omission_search *search, struct part_box *
     return count;
 }
 
-/* Groups neighbouring small parts that have no larger part near them. Each part of a group may be omitted from levels whose error is at
- * least the group's size. */
+/* Groups neighbouring small parts that have no larger part near them. Each part of a group may be omitted from levels of detail whose error
+ * is at least the group's size. */
 static void look_for_lonely(const struct omission_search *search)
 {
     const struct welds *welds = search->welds;

@@ -114,7 +114,7 @@ struct collapsing {
     struct bounded **parts; /* by part (connected component): its edge collapser (levels_bounded.h); NULL: the part has no triangle left */
     size_t *first_corner;   /* by part: index in `corners` of its first triangle in the version (simplification step) `from` */
     uint32_t *corners;
-    size_t *first_place; /* by part: index in `places` of its first vertex of the original model */
+    size_t *first_place; /* by part (connected component): index in `places` of its first vertex of the original model */
     uint32_t *places;
     double error_m; /* allowed error */
 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Groups vertices into welds (groups of equal vertices) for the simplifier, which could not collapse edges where vertices are split by
- * their normals. Finds the connected parts of a model. */
+/* Groups vertices into welds (groups of equal vertices) for the simplifier, which could not collapse edges where vertices with different
+ * normals share a position. Finds the connected parts of a model. */
 #include <math.h>
 #include <meshoptimizer.h>
 #include <string.h>

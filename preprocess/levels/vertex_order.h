@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Orders an asset's vertices for the asset file: vertices of the coarsest level first, so that each level uses a prefix of the array. */
+/* Orders an asset's vertices for the asset file: vertices of the coarsest level of detail first, so that each level uses only the first
+ * vertices of the array. */
 #ifndef PREPROCESS_LEVELS_VERTEX_ORDER_H
 #define PREPROCESS_LEVELS_VERTEX_ORDER_H
 #include "preprocess/levels/levels.h"

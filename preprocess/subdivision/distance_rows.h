@@ -15,16 +15,16 @@ struct distance_rows {
     uint32_t *place_of; /* position index of each vertex */
     size_t sensor_count;
     uint32_t vertex_count;
-    /* set by distance_rows_pack(): packed blocks of vertices, and where in the asset file's section each begins */
+    /* set by distance_rows_pack(): packed blocks of vertices, and the offset of each block in the asset file's section of distances */
     uint8_t **packed;
     uint64_t *offsets;
-    size_t packed_bytes; /* length of the packed section; 0: not packed */
+    size_t packed_bytes; /* length in bytes of the packed section of the asset file; 0: the distances are not packed */
 };
 
-/* Frees the arrays of an initialised or zeroed struct. */
+/* Frees the arrays of an initialised or zeroed struct distance_rows. */
 void distance_rows_finish(struct distance_rows *rows);
-/* Renumbers the vertices: new_of[old index] is the new index, or TRIMESH_NONE for a dropped vertex. `kept`: number of vertices
- * afterwards. */
+/* Renumbers the vertices in the rows of distances: new_of[old index] is the new index, or TRIMESH_NONE for a dropped vertex. `kept`: number
+ * of vertices afterwards. */
 void distance_rows_renumber(struct distance_rows *rows, const uint32_t *new_of, uint32_t kept);
 /* Packs the distances of many sensors (protocol/distance_pack.h) and frees distances_m. Leaves the distances as they are for few sensors,
  * or if packing saves no bytes: readers recognise a packed section by its length. workers may be NULL. Returns false if out of memory. */

@@ -9,10 +9,10 @@
 #include "base/math/simd.h"
 
 #define L INTERP_LANES
-#define MIN_M 1e-5f    /* metres; a sensor nearer than this has all the weight */
-#define MIN_EXP -87.0f /* argument of exp() below which the result would be denormal; smaller arguments are raised to it */
-/* lower limit of the nearness (1 at a sensor, 0 at the radius) from which slopes are computed: with a decay below 1, the slope is infinite
- * at the radius */
+#define MIN_M 1e-5f    /* metres; a sensor nearer than this to a point has all the weight there */
+#define MIN_EXP -87.0f /* argument of exp() below which a single-precision result would be denormal; smaller arguments are raised to it */
+/* lower limit of the nearness (1 at a sensor, 0 at the radius) from which the weight's slopes are computed: with a decay below 1, the slope
+ * is infinite at the radius */
 #define MIN_NEARNESS 1e-3f
 
 typedef float lanes __attribute__((vector_size(4 * L)));
@@ -28,7 +28,7 @@ SIMD_BODY void store(const lanes *from, float *to)
     memcpy(to, from, sizeof(*from));
 }
 
-SIMD_BODY void keep(const mask *which, lanes *x) /* keeps the lanes whose mask is set, and sets the others to 0 */
+SIMD_BODY void keep(const mask *which, lanes *x) /* keeps the lanes of *x whose mask is set, and sets the other lanes to 0 */
 {
     *x = (lanes)(*which & (mask)*x);
 }
@@ -96,8 +96,8 @@ SIMD_BODY void raise_lanes(lanes *x, float power)
             (*x)[l] = powf(base[l], power);
 }
 
-/* Fades a weight to 0 towards the reach: multiplies it by the square of (reach - distance) / (reach - distance of the nearest sensor).
- * Beyond the reach, the weight is 0, except that of the nearest sensor, which stays 1. */
+/* Lowers a sensor's weight smoothly to 0 towards the group's reach: multiplies it by the square of (reach - distance) / (reach - distance
+ * of the nearest sensor). Beyond the reach, the weight is 0, except that of the nearest sensor, which stays 1. */
 SIMD_BODY void fade(const struct interp_group *group, float near_m, const lanes *far, lanes *weight)
 {
     const lanes zero = { 0 }, near = zero + near_m;
@@ -208,7 +208,8 @@ SIMD_BODY void exponential(lanes *x)
     const lanes lowest = (lanes){ 0 } + MIN_EXP;
     take_more(&lowest, x);
     lanes halves = *x * 1.44269504f - 0.5f;
-    /* conversion truncates towards 0, which rounds to the nearest integer here because the number is at most 0 and 0.5 is subtracted */
+    /* conversion to an integer truncates towards 0, which rounds to the nearest integer here because the number is at most 0 and 0.5 is
+     * subtracted */
     mask n = __builtin_convertvector(halves, mask);
     lanes whole = __builtin_convertvector(n, lanes), r = *x - whole * 0.693359375f + whole * 2.12194440e-4f, p;
     p = 1.3888889e-3f * r + 8.3333333e-3f;
@@ -255,8 +256,8 @@ SIMD_BODY void paper_weight(const struct interp_group *group, size_t i, const st
 }
 
 /* Returns the largest change of the interpolated value, as a share of the range, if the nearness of each sensor changes by at most 1.
- * Nearness is 1 at the sensor and 0 at the radius. A sensor changes its own share, through its weight and its decay. It also changes the
- * shares of the others, which sum to 1 minus its own. Sensors beyond the radius change nothing. */
+ * Nearness is 1 at the sensor and 0 at the radius. A sensor changes its own term of the value, through its weight and its decay. It also
+ * changes the terms of the others, whose weights sum to 1 minus its own. Sensors beyond the radius change nothing. */
 SIMD_BODY float paper_slope(const struct interp_group *group, const struct softmax *softmax, const float *distance_m, float per,
                             const float *interp, float all)
 {

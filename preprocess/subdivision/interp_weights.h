@@ -17,7 +17,7 @@ static inline size_t interp_padded(size_t count)
 
 /* Writes the straight-line distances from the point to `count` positions, whose x, y and z are in separate arrays. */
 void interp_euclidean(const float point_m[3], const float *const places_m[3], size_t count, float *distance_m);
-/* Returns the smallest of `count` values. */
+/* Returns the smallest of `count` numbers, for example of distances. */
 float interp_least(const float *values, size_t count);
 
 struct interp_group {
@@ -34,11 +34,11 @@ struct interp_norm {
      * reach */
     float near_m, per;
 };
-/* Writes the inverse-distance (Shepard) weights of a group's sensors to `interp` and their normalisation to *norm. With `slopes`, returns
- * the largest change of the interpolated value per metre at the point, for any readings within the range; otherwise 0. */
+/* Writes the inverse-distance (Shepard) weights of a group's sensors at one point to `interp`, and their normalisation to *norm. With
+ * `slopes`, returns the largest change of the interpolated value per metre at the point, for any readings within the range; otherwise 0. */
 float interp_shepard(const struct interp_group *group, const float *distance_m, bool slopes, float *interp, struct interp_norm *norm);
-/* Like interp_shepard(), but with Algorithm 1 of Kim & Suh (Electronics 2025, 14(15), 2938) and its radius R = radius_m. Always returns the
- * largest change per metre. */
+/* Like interp_shepard(), but with the weights of Algorithm 1 of Kim & Suh (Electronics 2025, 14(15), 2938) and its radius R = radius_m.
+ * Always returns the largest change per metre. */
 float interp_paper(const struct interp_group *group, float radius_m, const float *distance_m, float *interp);
 
 /* Computes only the normalisation of Shepard weights (1 / sum of the weights), for interp_shepard_again(). distance_m: group->count values
@@ -48,9 +48,9 @@ void interp_shepard_norm(const struct interp_group *group, const float *distance
  * half the time. */
 void interp_shepard_again(const struct interp_group *group, const float *distance_m, const struct interp_norm *norm, float *interp);
 
-/* Compares the weights `sample` at a point with the linear combination of the corners' weights. Returns the largest error of linear
- * interpolation for any readings, as a share of the range (0 to 1): the larger of two sums, that of the positive and that of the negative
- * differences. */
+/* Compares the sensors' weights `sample` at a point with the linear combination of the weights at the corners. Returns the largest error of
+ * linear interpolation for any readings, as a share of the range (0 to 1): the larger of two sums, that of the positive and that of the
+ * negative differences. */
 float interp_error(const float *const *corners, const float *weights, size_t corner_count, const float *sample, size_t count);
 
 #endif

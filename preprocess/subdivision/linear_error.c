@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes sensor weights as server/field does, and how far they deviate from linear interpolation. */
+/* Computes the sensors' interpolation weights as server/field does, and how far they deviate from linear interpolation between the corners
+ * of triangles. */
 #include "preprocess/subdivision/linear_error.h"
 
 #include <math.h>
@@ -141,8 +142,8 @@ static void distances_finish(struct distances *distances)
     room_finish(&distances->picked_m);
 }
 
-/* Returns the distances of the group's sensors, valid until the next call. They are not copied if the sensors are consecutive on the asset
- * and need no padding. */
+/* Returns the distances from a point to a group's sensors, valid until the next call. They are not copied if the sensors are consecutive on
+ * the asset and need no padding. */
 static const float *pick(const struct linear_error_group *group, struct distances *distances, int mode)
 {
     const float *from = distances->of[mode];
@@ -225,8 +226,8 @@ struct error_question {
     double wide_m, slack_m;
 };
 
-/* Returns the largest error over all groups, as a share of the range. A group that has no value at one of the corners, because no path
- * leads from there to a sensor, counts as error 0. */
+/* Returns the largest error of linear interpolation over all groups, as a share of the range. A group that has no value at one of the
+ * corners, because no path leads from there to a sensor, counts as error 0. */
 static double worst_of(const struct linear_error *linear, const struct error_question *question, const float *sample)
 {
     double most = 0;

@@ -15,7 +15,7 @@
 #include "preprocess/subdivision/interp_weights.h"
 
 struct linear_error_group {
-    uint32_t *columns; /* indices of the group's sensors among the asset's sensors (columns) */
+    uint32_t *columns; /* indices of the group's sensors in the list of the asset's sensors (columns) */
     bool in_a_row;     /* the columns are consecutive */
     bool papers;       /* true: errors of Algorithm 1 (Kim & Suh) are included */
     size_t count;
@@ -28,16 +28,17 @@ struct linear_error {
     size_t group_count, sensor_count, share_count;
     int mode_count;    /* kinds of distance that count: 1: geodesic; 2: geodesic and straight-line (enum distance_mode) */
     size_t most_count; /* sensor count of the largest group, padded to INTERP_LANES */
-    /* x, y and z of the sensors' positions on the surface, by index of the sensor on the asset, padded to INTERP_LANES */
+    /* x, y and z of the sensors' positions on the surface, in three arrays by index of the sensor on the asset, padded to INTERP_LANES */
     float *axes_m[3];
 };
 
-/* Returns whether errors of Algorithm 1 are included for a group with sensor_count sensors on an asset: not for more than 64, and for one
- * sensor only with `singles: cut` in the plant file. */
+/* Returns whether errors of Algorithm 1 are included for a group with sensor_count sensors on an asset: not for more than 64 sensors, and
+ * for a single sensor only with `singles: cut` in the plant file. */
 bool straight_looks_at_paper(const struct plant_group *group, size_t sensor_count);
 
-/* Prepares the error measure for a plant's groups and an asset's sensors. places_m: positions of the sensors on the surface; copied. Radii
- * that the plant file does not state must be set with linear_error_set_radius(). Finish with linear_error_finish(). */
+/* Prepares the measure of interpolation errors for a plant's groups and an asset's sensors. places_m: positions of the sensors on the
+ * surface; copied. Radii that the plant file does not state must be set with linear_error_set_radius(). Finish with
+ * linear_error_finish(). */
 void linear_error_init(struct linear_error *linear, const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count,
                        const float (*places_m)[3]);
 /* Frees the arrays. */
@@ -46,7 +47,7 @@ void linear_error_finish(struct linear_error *linear);
  * sensor, by enum distance_mode. */
 void linear_error_set_radius(struct linear_error *linear, const float *const largest_m[2]);
 
-/* Returns the number of floats in a sample: the weights and changes that linear_error_weights() writes for one point. */
+/* Returns the number of floats in a sample: the weights and their changes per metre that linear_error_weights() writes for one point. */
 size_t linear_error_sample_count(const struct linear_error *linear);
 /* Computes a sample at a point. First come the sensors' interpolation weights for geodesic distances, then those for straight-line
  * distances if they count. Each is sorted by group; each group has the weights of Shepard interpolation, followed by those of Algorithm 1
@@ -60,17 +61,17 @@ void linear_error_norms(const struct linear_error *linear, const float point_m[3
  * with Algorithm 1. Does not write the changes per metre. */
 void linear_error_weights_again(const struct linear_error *linear, const float point_m[3], const float *geodesic_m,
                                 const struct interp_norm *norms, float *interp);
-/* Returns, from a sample's normalisations, a lower bound of the distance in metres to the nearest point where a group's data ends. Data
- * ends where all sensors of the group are out of reach. The field may peak at such a point, so edges near it must be short. */
+/* Returns, from a sample's normalisations, a lower bound of the distance in metres to the nearest point where a group's data ends because
+ * all sensors of the group are out of reach. The field may peak at such a point, so edges near it must be short. */
 double linear_error_rim_of(const struct linear_error *linear, const struct interp_norm *norms);
 /* Returns, from a sample's normalisations, the shorter of two distances in metres: that to the nearest sensor, in a straight line if
  * straight-line distances count, and that to the nearest point where a group's data ends. */
 double linear_error_nearest_of(const struct linear_error *linear, const struct interp_norm *norms);
-/* Return the error of the sample at a point (`between`, `inside`), as a share of the range. linear_error_on_edge() compares it with the
- * linear interpolation at fraction t between the samples of the edge's ends; linear_error_in_triangle() with the interpolation of
- * three corners' samples by `weights`. modes: kinds of distance to include. The change of the value within slack_m, at most one colour
- * step, is subtracted from the error. Farther than wide_m outside a group's data, the error is 0. Nearer, it counts, because an edge or
- * triangle that wide would carry the wrong values into the area with data. */
+/* Return the interpolation error at a point whose sample is `between` or `inside`, as a share of the range. linear_error_on_edge() compares
+ * the sample with the linear interpolation at fraction t between the samples of the edge's ends; linear_error_in_triangle() with the
+ * interpolation of three corners' samples by `weights`. modes: kinds of distance to include. The change of the value within slack_m, at
+ * most one colour step, is subtracted from the error. Farther than wide_m outside a group's data, the error is 0. Nearer, it counts,
+ * because an edge or triangle that wide would carry the wrong values into the area with data. */
 enum linear_error_modes {
     LINEAR_ERROR_GEODESIC = 1 << DISTANCE_GEODESIC,
     LINEAR_ERROR_EUCLIDEAN = 1 << DISTANCE_EUCLIDEAN,

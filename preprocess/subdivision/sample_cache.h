@@ -27,18 +27,18 @@ struct sample_cache_notes { /* lookups recorded by one thread; initialise with z
     size_t count, missed;
 };
 
-/* Opens the cache of a key. A missing file gives an empty cache. Close with sample_cache_close(). */
+/* Opens the cache of sample points with this key. A missing file gives an empty cache. Close with sample_cache_close(). */
 void sample_cache_open(struct sample_cache *sample_cache, struct log *log, const char *folder, uint64_t key);
-/* Unmaps the file and frees the recorded lookups. */
+/* Unmaps the cache file and frees the recorded lookups. */
 void sample_cache_close(struct sample_cache *sample_cache);
-/* Writes the lookups of this run if enough lookups were missing from the file. Ignores errors: then nothing is cached. */
+/* Writes the lookups of this run to the cache file if too many were missing from it. Ignores errors: then nothing is cached. */
 void sample_cache_write(const struct sample_cache *sample_cache, const char *folder, uint64_t key);
 
-/* Looks up the triangle that a sample point projects onto; *tri is TRIMESH_NONE if it projects onto none. key: a hash of everything the
- * projection depends on, except the surface. Returns false if it is not cached. Thread: any. */
+/* Looks up the surface triangle that a sample point projects onto; *tri is TRIMESH_NONE if it projects onto none. key: a hash of everything
+ * the projection depends on, except the surface. Returns false if it is not cached. Thread: any. */
 bool sample_cache_find(const struct sample_cache *sample_cache, uint64_t key, uint32_t *tri);
-/* Records a lookup in the calling thread's notes: the key, the triangle, and whether the lookup was answered by the cache. Moves full notes
- * to the cache. Thread: any, one at a time per notes object. */
+/* Records a lookup of a sample point in the calling thread's notes: the key, the triangle, and whether the cache answered the lookup. Moves
+ * full notes to the cache. Thread: any, one at a time per notes object. */
 void sample_cache_note(struct sample_cache *sample_cache, struct sample_cache_notes *notes, uint64_t key, uint32_t tri, bool known);
 /* Moves a thread's notes into the cache, for sample_cache_write(). Thread: any. */
 void sample_cache_hand_over(struct sample_cache *sample_cache, struct sample_cache_notes *notes);

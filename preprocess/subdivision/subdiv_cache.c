@@ -22,7 +22,7 @@
  * only if the changed sensors cannot move its error across a limit that decides whether the edge is split. With more doubt, the edge is
  * measured again. */
 #define MAX_SETTLED 0.5f
-#define LITTLE 0.4f /* share of SUBDIV_AIM; an edge whose error at the midpoint is smaller was not measured at other points */
+#define LITTLE 0.4f /* share of SUBDIV_AIM; an edge whose interpolation error at the midpoint is smaller was not measured at other points */
 
 struct subdiv_cache_entry {
     uint64_t key;
@@ -30,7 +30,7 @@ struct subdiv_cache_entry {
     uint32_t jumps;
 };
 
-struct sensor { /* the parameters of a sensor on which its weights depend */
+struct sensor { /* the parameters of a sensor that determine its interpolation weights */
     float place_m[3], strength, power;
     uint32_t group;
     int32_t mode_count; /* kinds of distance that count, see linear_error.h */
@@ -48,7 +48,7 @@ struct subdiv_head {
 /* two numbers follow: the doubt of the finding (weight of the sensors that changed since, subdiv_cache.h), and the amount by which its
  * error may be wrong */
 #define DOUBT_FOLLOWS 4
-#define SHARE_IS_HALF 8 /* the split fraction is 0.5; without this flag and SHARE_FOLLOWS it is 0 */
+#define SHARE_IS_HALF 8 /* the fraction at which the edge is best split is 0.5; without this flag and SHARE_FOLLOWS it is 0 */
 #define JUMPS 16
 
 /* --- sensors ---------------------------------------------------------------------------------------------------------------------- */
@@ -95,7 +95,7 @@ static uint32_t column_of(const struct linear_error *linear, const struct sensor
     return UINT32_MAX;
 }
 
-/* Lists the sensors that were added or removed between two sorted lists, that of the last run and that of this run. Returns false if there
+/* Lists the sensors that were added or removed since the last run, by comparing both runs' sorted lists of sensors. Returns false if there
  * are too many, or if one belongs to a group that no longer exists. */
 static bool find_changes(struct subdiv_cache *cache, const struct linear_error *linear, const struct sensor *old, size_t old_count)
 {
@@ -206,7 +206,7 @@ void subdiv_cache_close(struct subdiv_cache *cache)
     *cache = (struct subdiv_cache){ 0 };
 }
 
-/* the findings (measured errors) of this run, in the layout of the file */
+/* arrays of this run's findings (measured errors), in the layout of the cache file */
 struct packed_findings {
     uint64_t *keys;
     float *errors, *rest;
@@ -271,7 +271,7 @@ void subdiv_cache_write(const struct subdiv_cache *cache, const char *folder, ui
 
 /* --- findings --------------------------------------------------------------------------------------------------------------------- */
 
-/* Returns a key for the edge or triangle with these corners, which does not depend on their order. */
+/* Returns a cache key for the edge or triangle with these corners, which does not depend on the corners' order. */
 uint64_t subdiv_cache_key(const struct subdiv *subdiv, const uint32_t *corners, size_t count)
 {
     if (!subdiv->in->cache || !subdiv->in->cache->applies)
@@ -287,16 +287,16 @@ uint64_t subdiv_cache_key(const struct subdiv *subdiv, const uint32_t *corners, 
     return XXH3_64bits_withSeed(places_m, count * sizeof(*places_m), subdiv->level);
 }
 
-/* Distances in metres between an edge or triangle and a changed sensor. */
+/* Distances in metres between an edge or triangle and a sensor that was added or removed. */
 struct change_range {
-    double wide_m; /* largest distance from the middle of the corners to a corner */
-    double near_m; /* largest distance from a corner to its nearest sensor of the group */
-    double far_m;  /* lower bound of the distance to the changed sensor */
+    double wide_m; /* largest distance from the middle of the edge or triangle to one of its corners */
+    double near_m; /* largest distance from a corner to the group's sensor that is nearest to this corner */
+    double far_m;  /* lower bound of the distance from the edge or triangle to the changed sensor */
 };
 
-/* Returns an upper bound of the interpolation error that a new sensor's weight causes between these corners: from the weight's curvature,
- * and from a kink where two paths along the surface are equally long. On an edge, a kink is possible only if the distance to the sensor
- * grows by less than the edge's length. share: the weight's upper bound. */
+/* Returns an upper bound of the interpolation error that an added sensor's weight causes between these corners: from the weight's
+ * curvature, and from a kink where two paths along the surface are equally long. On an edge, a kink is possible only if the distance to the
+ * sensor grows by less than the edge's length. share: the weight's upper bound. */
 static float bend_of(const struct subdiv *subdiv, const struct subdiv_sensor_change *change, const uint32_t *corners, size_t count,
                      const struct change_range *range, double share)
 {
@@ -313,8 +313,8 @@ static float bend_of(const struct subdiv *subdiv, const struct subdiv_sensor_cha
     return (float)(share * (p * (p - 1) / 2 * near * near + p * p * near * far + p * (p + 1) / 2 * far * far) + kink);
 }
 
-/* Returns an upper bound of the total weight of all changed sensors at any point between these corners. Uses straight-line distances, which
- * are at most the distances along the surface. */
+/* Returns an upper bound of the total weight that all added and removed sensors have at any point between these corners. Uses straight-line
+ * distances, which are at most the distances along the surface. */
 static float share_of_changes(const struct subdiv *subdiv, const uint32_t *corners, size_t count, float *off)
 {
     const struct subdiv_cache *cache = subdiv->in->cache;
@@ -342,8 +342,8 @@ static float share_of_changes(const struct subdiv *subdiv, const uint32_t *corne
     return share;
 }
 
-/* Returns whether a cached error is so far from the limits SUBDIV_AIM and LITTLE that the sensor changes cannot have moved it across one.
- * doubt: weight of the changed sensors (subdiv_cache.h). */
+/* Returns whether a cached error is so far from the limits SUBDIV_AIM and LITTLE that the added and removed sensors cannot have moved it
+ * across one. doubt: weight of these sensors (subdiv_cache.h). */
 static bool is_settled(const struct subdiv_cache_entry *old, float doubt, float off)
 {
     const float matters = (float)SUBDIV_AIM, error = fmaxf(old->error, old->barred);

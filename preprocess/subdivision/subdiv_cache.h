@@ -15,7 +15,7 @@
 #include "preprocess/subdivision/linear_error.h"
 
 struct subdiv_cache {
-    bool applies; /* the cache is usable for this asset; false: nothing is read or written */
+    bool applies; /* true: the cache is usable for this asset; false: nothing is read or written */
     struct cache_file file;
     const uint64_t *keys; /* cache keys of the last run's findings (measured errors), in the mapped file */
     const float *errors, *rest;
@@ -26,14 +26,14 @@ struct subdiv_cache {
     size_t mask, finding_count;
     struct subdiv_sensor_change { /* a sensor that was added or removed */
         float place_m[3], power;
-        uint32_t group;  /* index of the group in struct linear_error */
+        uint32_t group;  /* index of the sensor's group in struct linear_error */
         uint32_t column; /* index of the added sensor on the asset; UINT32_MAX: the sensor was removed */
     } * changes;
     size_t change_count;
-    /* bit masks by level index; hopeless: levels skipped in this run because an earlier run dropped them; given_up: levels dropped in this
-     * run */
+    /* bit masks of levels of detail, by index; hopeless: levels skipped in this run because an earlier run dropped them; given_up: levels
+     * dropped in this run */
     uint64_t hopeless, given_up;
-    uint64_t changes_since;     /* count of sensor changes since the dropped levels were last tried */
+    uint64_t changes_since;     /* number of sensors added or removed since the dropped levels were last tried */
     struct text sensors, found; /* sensors and findings (measured errors) of this run, in binary form, to be written to the file */
     size_t measured_count, kept_count;
 };
@@ -41,7 +41,7 @@ struct subdiv_cache {
 /* Opens the findings (measured errors) of the last run that were stored under this key, and determines which sensors have changed since.
  * Never fails: without a usable file the cache is empty. linear must outlive the cache. */
 void subdiv_cache_open(struct subdiv_cache *cache, struct log *log, const char *folder, uint64_t key, const struct linear_error *linear);
-/* Unmaps the file and frees the arrays. A zeroed cache is allowed. */
+/* Unmaps the cache file and frees the arrays. A zeroed cache is allowed. */
 void subdiv_cache_close(struct subdiv_cache *cache);
 /* Writes this run's findings (measured errors) to the file, when subdivision has ended. Write errors are ignored: then the next run
  * measures everything again. */

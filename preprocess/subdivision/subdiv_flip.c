@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Flips edges: replaces the common edge of two triangles by the other diagonal. Where that reduces the error as much as a split would, it
- * saves a triangle. */
+/* Flips edges: replaces the common edge of two triangles by the other diagonal. Where that reduces the interpolation error as much as a
+ * split of the edge would, it saves a triangle. */
 #include <math.h>
 #include <string.h>
 
@@ -9,18 +9,18 @@
 #include "preprocess/subdivision/subdivide_impl.h"
 
 #define MAX_FLIP_ROUNDS 4  /* maximum consecutive rounds of flips */
-#define FLAT_OF_ERROR 0.02 /* maximum distance by which a flip may move the surface, as a share of the level's error_m */
-#define GAIN 0.7           /* maximum ratio of the error after a flip to the error before it */
+#define FLAT_OF_ERROR 0.02 /* maximum distance by which a flip may move the surface, as a share of error_m of the level of detail */
+#define GAIN 0.7           /* maximum ratio of the interpolation error after a flip to the error before it */
 #define CROSSING 0.02      /* share of an edge's length; the old and the new diagonal must cross at least this far from the ends of both */
 
-#define GRAIN 1024 /* flips per unit of work of a thread: takes a few tenths of a millisecond */
+#define GRAIN 1024 /* number of flips per unit of work of a thread: takes a few tenths of a millisecond */
 
 struct edge_flip {
     uint32_t edge, tris[2], across;
-    bool may; /* the flip is allowed: old and new diagonal cross, and the surface moves by less than FLAT_OF_ERROR permits */
+    bool may; /* true: the flip is allowed: old and new diagonal cross, and the surface moves by less than FLAT_OF_ERROR permits */
 };
 
-/* Lists the edges with an error above the limit of triangles made since the last call: mesh->made.at[first] and later. */
+/* Lists the edges with an error above the limit that belong to triangles made since the last call: mesh->made.at[first] and later. */
 static void list_edges(struct subdiv *subdiv, double limit, size_t first, struct subdiv_list *edges)
 {
     const struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -33,7 +33,7 @@ static void list_edges(struct subdiv *subdiv, double limit, size_t first, struct
     subdiv_mesh_sort(edges);
 }
 
-/* Finds the two triangles of an edge. Returns false if the edge does not have exactly two. */
+/* Finds the two triangles at an edge. Returns false if the edge does not have exactly two triangles. */
 static bool find_tris(const struct subdiv_mesh *mesh, uint32_t edge, uint32_t tris[2])
 {
     uint32_t first = mesh->cuts[edge].corner, second = first == TRIMESH_NONE ? first : mesh->next[first];

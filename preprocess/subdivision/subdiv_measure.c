@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measures the field at points between vertices, its deviation from linear interpolation, and the best point at which to split an edge. */
+/* Measures the field at points between vertices, its deviation from linear interpolation, and the best point at which to split an edge of
+ * the mesh. */
 #include <math.h>
 #include <string.h>
 #include <xxhash.h>
@@ -10,17 +11,17 @@
 #include "protocol/asset_distance.h"
 #include "surface/mesh/bvh.h"
 
-/* share of SUBDIV_AIM; if the error at an edge's midpoint is smaller, the error is assumed small along the whole edge */
+/* share of SUBDIV_AIM; if the interpolation error at an edge's midpoint is smaller, the error is assumed small along the whole edge */
 #define PROBABLE 0.4
-/* share of the distance from the nearest sensor; edges longer than this are measured at all their points, without the PROBABLE test */
+/* share of the distance to the nearest sensor; edges longer than this are measured at all their sample points, without the PROBABLE test */
 #define CLOSE 0.5
-/* share of the distance from the nearest sensor; longer edges are split at their middle, so that the split points of neighbouring edges
- * line up */
+/* share of the distance to the nearest sensor; longer edges are split at their middle, so that the split points of neighbouring edges line
+ * up */
 #define WIDE 0.3
 #define GRAIN 256  /* minimum number of edges, triangles or positions per unit of work of a thread: takes half a millisecond */
 #define POINTS 16  /* maximum number of points sampled on an edge */
 #define CORNERS 61 /* number of cached corner samples */
-#define STEPS 2    /* number of refinement steps in the search for the best split point */
+#define STEPS 2    /* number of refinement steps in the search for the best split point of an edge */
 /* share of the edge's error that remains after the best split; if more remains, the edge is checked for a jump. A smooth bend leaves a
  * quarter, a kink nothing. */
 #define NO_GAIN 0.5
@@ -68,8 +69,9 @@ bool subdiv_find_parts(struct subdiv *subdiv)
 
 struct origin_sight { /* which triangles of the original model a sample point may be projected onto */
     const struct subdiv *subdiv;
-    uint32_t origin[2]; /* used in the finest level: the point is projected onto one of these two triangles */
-    /* used in coarser levels: the point is projected onto a triangle of this connected component that faces the same way as `normal` */
+    uint32_t origin[2]; /* used in the finest level of detail: the point is projected onto one of these two triangles */
+    /* used in coarser levels of detail: the point is projected onto a triangle of this connected component that faces the same way as
+     * `normal` */
     uint32_t part;
     double normal[3];
     struct sample_cache_notes *notes; /* notes of the calling thread */
@@ -106,8 +108,8 @@ static void to_doubles(const float point[3], double at[3])
         at[i] = (double)point[i];
 }
 
-/* Finds the surface point for a sample point. In a coarser level, searches the connected component of the sample point first, then all
- * others: a point that protrudes slightly may belong to the component that hides the sample point's own. */
+/* Finds the surface point onto which a sample point is projected. In a coarser level of detail, searches the connected component of the
+ * sample point first, then all others: a point that protrudes slightly may belong to the component that hides the sample point's own. */
 static bool search(const struct origin_sight *sight, const double at[3], struct surface_point *hit)
 {
     const struct subdiv *subdiv = sight->subdiv;
@@ -135,7 +137,7 @@ static uint64_t key_of(const struct origin_sight *sight, const float point[3])
     return XXH3_64bits(&all, sizeof(all));
 }
 
-/* Projects a point onto the surface, using the cached triangle if there is one. */
+/* Projects a sample point onto the surface, using the cached triangle if there is one. */
 static bool project(const struct origin_sight *sight, const float point[3], const double at[3], struct surface_point *hit)
 {
     const struct subdiv *subdiv = sight->subdiv;
@@ -153,8 +155,8 @@ static bool project(const struct origin_sight *sight, const float point[3], cons
 }
 
 /* Finds the visible point nearest to the position `from` inside a partly hidden triangle: only a part of a large triangle may protrude from
- * other components. hit->tri on entry: result of the search for another position, or TRIMESH_NONE. On return: result for `from`, even if it
- * is too far away to count; TRIMESH_NONE if the whole triangle is hidden. Returns whether the result is near enough to count. */
+ * other connected components. hit->tri on entry: result of the search for another position, or TRIMESH_NONE. On return: result for `from`,
+ * even if it is too far away to count; TRIMESH_NONE if the whole triangle is hidden. Returns whether the result is near enough to count. */
 static bool find_seen(const struct origin_sight *sight, const double corners[3][3], const double from[3], double weights[3],
                       struct surface_point *hit)
 {
@@ -207,7 +209,7 @@ static void measure_always(const struct origin_sight *sight, const float point[3
 
 /* --- edges ------------------------------------------------------------------------------------------------------------------ */
 
-struct line { /* sample points along an edge, in order from a to b */
+struct line { /* sample points along a mesh edge, in order from its end a to its end b */
     const struct subdiv *subdiv;
     const float *a, *b; /* positions of the edge's ends */
     double length_m;
@@ -219,8 +221,8 @@ struct line { /* sample points along an edge, in order from a to b */
     struct interp_norm *norms;
 };
 
-/* Returns the error at sample point `point` if the field is interpolated linearly between sample points `from` and `to`. modes: kinds of
- * distance to include. */
+/* Returns the interpolation error at sample point `point` of an edge if the field is interpolated linearly between sample points `from` and
+ * `to`. modes: kinds of distance to include. */
 static double error_at(const struct line *line, enum linear_error_modes modes, int from, int to, int point)
 {
     double t = (line->t[point] - line->t[from]) / (line->t[to] - line->t[from]);
@@ -228,7 +230,8 @@ static double error_at(const struct line *line, enum linear_error_modes modes, i
     return linear_error_on_edge(line->subdiv->in->linear, modes, ends, t, line->interp[point], line->length_m, line->subdiv->slack_m);
 }
 
-/* Adds a sample point if it is visible. Returns its error against linear interpolation between the edge's ends, or 0 if it is hidden. */
+/* Adds a sample point at fraction t of an edge, if it is visible. Returns its error against linear interpolation between the edge's ends,
+ * or 0 if it is hidden. */
 static double add_point(struct line *line, double t)
 {
     const struct linear_error *linear = line->subdiv->in->linear;
@@ -262,8 +265,8 @@ static bool jumps(const struct line *line, double length_m)
     return false;
 }
 
-/* Returns the largest error that remains on the edge if it is split at its sample point `cut`. Stops early once the error exceeds
- * `enough`. */
+/* Returns the largest interpolation error that remains on the edge if it is split at its sample point `cut`. Stops early once the error
+ * exceeds `enough`. */
 static double left_after(const struct line *line, int cut, double enough)
 {
     double most = 0;
@@ -275,7 +278,8 @@ static double left_after(const struct line *line, int cut, double enough)
     return most;
 }
 
-/* Returns the index of the sample point at which a split leaves the smallest error, *left. Prefers the middle if it is about as good. */
+/* Returns the index of the edge's sample point at which a split leaves the smallest error, *left. Prefers the middle if it is about as
+ * good. */
 static int best_cut(const struct line *line, double *left)
 {
     int best = 0;
@@ -296,8 +300,8 @@ static void add_eighths(struct line *line, struct subdiv_finding *finding)
         finding->error = fmaxf(finding->error, (float)add_point(line, i / 8.0));
 }
 
-/* Finds the split point. Where a field bends evenly, the middle is best. At a kink, where two paths are equally long, the kink is best. If
- * the distance jumps, no split helps; halving the edge repeatedly narrows the jump down to a short edge. */
+/* Finds the point at which to split an edge. Where a field bends evenly, the middle is best. At a kink, where two paths are equally long,
+ * the kink is best. If the distance jumps, no split helps; halving the edge repeatedly narrows the jump down to a short edge. */
 static void find_cut(struct line *line, double length_m, double enough, struct subdiv_finding *finding)
 {
     double left;
@@ -323,15 +327,15 @@ struct measure_job {
     double enough;
 };
 
-/* Buffers of one thread: points of the current edge, and a cache of the samples at recently used corners, because the next edge probably
- * shares a corner. */
+/* Buffers of one thread: points of the current edge, and a cache of the samples (linear_error.h) at recently used corners, because the next
+ * edge probably shares a corner. */
 struct measure_room {
     float *points, *corners;
     struct interp_norm *norms; /* of the last sample point */
     /* by cache slot: the position whose sample is stored; the last three slots serve corners whose regular slot another corner of the same
      * edge or triangle occupies */
     uint32_t of[CORNERS + 3];
-    uint32_t taken[3]; /* by corner of the current edge or triangle: its cache slot */
+    uint32_t taken[3]; /* by corner of the current edge or triangle: index of its slot in the thread's cache of samples */
     struct sample_cache_notes notes;
 };
 
@@ -377,8 +381,8 @@ static void bar_short(struct subdiv_finding *finding)
     finding->error = 0;
 }
 
-/* Moves an edge's error to finding->barred if the geodesic distance jumps across the edge, because no split fixes a jump. Errors of
- * straight-line distances, which do not jump, stay in finding->error. */
+/* Moves an edge's error from finding->error to finding->barred if the geodesic distance jumps across the edge, because no split fixes a
+ * jump. Errors of straight-line distances, which do not jump, stay in finding->error. */
 static void bar_jump(struct subdiv_finding *finding, const struct line *line)
 {
     finding->jumps = true;
@@ -389,8 +393,8 @@ static void bar_jump(struct subdiv_finding *finding, const struct line *line)
     }
 }
 
-/* Returns the distance from the edge's midpoint to the nearest sensor or end of a group's data. Reuses the midpoint's normalisations if the
- * midpoint was the last point measured. */
+/* Returns the distance from the edge's midpoint to the nearest sensor, or to the nearest point where a group's data ends. Reuses the
+ * midpoint's normalisations if the midpoint was the last point measured. */
 static double nearest_to_middle(const struct line *line, uint32_t end)
 {
     const struct linear_error *linear = line->subdiv->in->linear;
@@ -480,7 +484,7 @@ static bool jumps_inside(const struct subdiv *subdiv, const struct subdiv_tri *t
     return false;
 }
 
-struct inside { /* state while a triangle's error is measured at inner points */
+struct inside { /* state while a triangle's interpolation error is measured at inner points */
     struct origin_sight sight;
     const struct subdiv_tri *tri;
     const float *interp[3]; /* samples at its corners */
@@ -495,7 +499,7 @@ static void place_in(const struct inside *inside, const double weights[3], doubl
         at[i] = weights[0] * inside->corners[0][i] + weights[1] * inside->corners[1][i] + weights[2] * inside->corners[2][i];
 }
 
-/* Returns the interpolation error at the point of the triangle with these barycentric weights. hit: the point's projection onto the
+/* Returns the interpolation error at the point of a triangle with these barycentric weights. hit: the point's projection onto the
  * surface. */
 static double error_inside(const struct inside *inside, const double weights[3], const struct surface_point *hit)
 {
@@ -514,8 +518,8 @@ static double error_inside(const struct inside *inside, const double weights[3],
     return linear_error_in_triangle(linear, modes, inside->interp, weights, interp, wide_m, subdiv->slack_m);
 }
 
-/* Measures a triangle's error at its centre. If the centre is hidden inside another part, measures at the visible points nearest to the
- * centre and to three points near the corners. */
+/* Measures a triangle's interpolation error at its centre. If the centre is hidden inside another part, measures at the visible points
+ * nearest to the centre and to three points near the corners. */
 static void try_inside(const struct subdiv *subdiv, struct subdiv_finding *finding, struct measure_room *room)
 {
     static const double places[4][3] = {

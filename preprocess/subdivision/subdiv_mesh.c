@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Splits edges at new vertices, and the triangles at split edges. */
+/* Splits edges of the mesh at new vertices, and the triangles at these edges. */
 #include "preprocess/subdivision/subdiv_mesh.h"
 
 #include <math.h>
@@ -112,7 +112,8 @@ static uint32_t edge_of(struct subdiv_mesh *mesh, uint32_t a, uint32_t b, uint32
 
 #define LOOK_UP TRIMESH_NONE
 
-/* Creates a triangle. known: indices of its three edges; TRIMESH_NONE for an edge that must be looked up by its vertices, which is slow. */
+/* Creates a triangle with corners v; other properties are copied from `like`. known: indices of its three edges; TRIMESH_NONE for an edge
+ * that must be looked up by its vertices, which is slow. */
 static struct subdiv_tri make_tri(struct subdiv_mesh *mesh, const struct subdiv_tri *like, const uint32_t v[3], const uint32_t known[3])
 {
     struct subdiv_tri tri = { .v = { v[0], v[1], v[2] }, .primitive = like->primitive, .origin = like->origin };
@@ -157,7 +158,7 @@ static void put_tri(struct subdiv_mesh *mesh, size_t t, const struct subdiv_tri 
     enter(mesh, t);
 }
 
-/* Appends a triangle. Returns its index. */
+/* Appends a triangle to the current level of detail. Returns its index. */
 static size_t add_tri(struct subdiv_mesh *mesh, const struct subdiv_tri *like, const uint32_t v[3], const uint32_t known[3])
 {
     struct subdiv_tri tri = make_tri(mesh, like, v, known);
@@ -182,7 +183,8 @@ void subdiv_mesh_load(struct subdiv_mesh *mesh, const struct level *level)
     mesh->tri_count = 0;
     mesh->loads++;
     mesh->made.count = mesh->open.count = 0;
-    /* edges that were not proven to need no split must be measured again for this level, because the error limit depends on the level */
+    /* edges that were not proven to need no split must be measured again for this level of detail, because the error limit depends on the
+     * level */
     for (size_t e = 0; e < mesh->edges.count; e++) {
         mesh->cuts[e].error = mesh->cuts[e].proven ? mesh->cuts[e].error : -1;
         mesh->cuts[e].corner = TRIMESH_NONE;
@@ -341,7 +343,7 @@ static struct subdiv_tri cut_thrice(struct subdiv_mesh *mesh, const struct subdi
     return piece;
 }
 
-/* Splits a triangle at all its split edges: the first piece replaces it, the others are appended. */
+/* Splits a triangle at all its split edges: the first of the new triangles takes its index, the others are appended. */
 static void split_tri(struct subdiv_mesh *mesh, size_t t)
 {
     struct subdiv_tri old = mesh->tris[t];
@@ -373,7 +375,7 @@ static bool is_open(const struct subdiv_mesh *mesh, size_t t)
     return subdiv_mesh_is_split(mesh, e[0]) || subdiv_mesh_is_split(mesh, e[1]) || subdiv_mesh_is_split(mesh, e[2]);
 }
 
-/* Pieces that need further splits are appended to mesh->open and handled in the next round. */
+/* Triangles that need further splits are appended to mesh->open and split in the next round. */
 size_t subdiv_mesh_apply(struct subdiv_mesh *mesh)
 {
     size_t before = mesh->tri_count;
@@ -402,8 +404,8 @@ uint32_t subdiv_mesh_insert(struct subdiv_mesh *mesh, size_t tri, const double w
 
 /* --- flipping ------------------------------------------------------------------------------------------------------------- */
 
-/* Writes the three corners in winding order, starting with the two corners of the edge, and to `e` the three edges, starting with that
- * edge. */
+/* Writes the triangle's three corners in winding order, starting with the two corners of `edge`, and to `e` its three edges, starting with
+ * `edge`. */
 static void corners_from(const struct subdiv_tri *tri, uint32_t edge, uint32_t v[3], uint32_t e[3])
 {
     int first = tri->e[0] == edge ? 0 : tri->e[1] == edge ? 1 : 2;

@@ -10,20 +10,21 @@
 
 struct subdiv_tri {
     uint32_t v[3], e[3]; /* v: vertex index of each corner; e[i]: index of the edge from v[i] to v[i + 1] */
-    /* primitive: index of the level's primitive; origin: index of the original triangle, before subdivision, that contains this one */
+    /* primitive: index of the triangle's primitive in the level of detail; origin: index of the original triangle, before subdivision, that
+     * contains this one */
     uint32_t primitive, origin;
     bool good;  /* true: the error inside the triangle has been measured */
     bool aimed; /* true: the triangle has been checked for flatness (aim_at_corners()) */
 };
 
-struct subdiv_edge { /* an edge between two positions, shared by all levels */
+struct subdiv_edge { /* an edge between two positions, shared by all levels of detail */
     /* vertices at the edge's ends; where several vertices share a position (with different normals or texture coordinates), any one */
     uint32_t a, b;
     /* indices of the triangles that contain the edge, among the level's triangles before subdivision. The second one is recorded only for
      * edges of the finest level. TRIMESH_NONE: none */
     uint32_t origin[2];
     uint32_t middle;    /* position index of the split point; TRIMESH_NONE: not split */
-    uint32_t load;      /* value that mesh.loads (number of levels loaded so far) had in the last level that split the edge */
+    uint32_t load;      /* value that mesh.loads had in the last level of detail that split the edge */
     /* head of the list of corners of the current level at which the edge begins (3 * triangle + i, linked by mesh.next); TRIMESH_NONE: no
      * triangle of the level has the edge */
     uint32_t corner;
@@ -31,8 +32,8 @@ struct subdiv_edge { /* an edge between two positions, shared by all levels */
     float error;  /* error of the field along the edge that a split may fix, as a share of the range; below 0: not measured yet */
     float barred; /* error of the field along the edge that no split may fix, as a share of the range */
     bool jumps;   /* reason for `barred`; true: the distance jumps along the edge; false: the edge is too short */
-    bool unasked; /* true: the edge is too short to split in the current level, so it is not measured */
-    bool proven;  /* true: the edge was measured and needs no split; coarser levels have looser limits */
+    bool unasked; /* true: the edge is too short to split in the current level of detail, so it is not measured */
+    bool proven;  /* true: the edge was measured and needs no split in any level of detail, because coarser levels have looser limits */
 };
 
 struct subdiv_list { /* a list of triangle or corner indices */
@@ -50,12 +51,12 @@ struct subdiv_mesh {
     struct subdiv_edge *cuts;
     uint32_t *vertex_middles; /* by index in vertex_edges: the vertex at the edge's split point */
     size_t cut_capacity, middle_capacity;
-    uint32_t loads;          /* number of levels loaded so far */
+    uint32_t loads;          /* number of levels of detail loaded so far */
     struct subdiv_tri *tris; /* triangles of the current level */
     size_t tri_count, tri_capacity;
     uint32_t *next; /* by corner (3 * triangle + i): the next corner at which the same edge begins; TRIMESH_NONE: none */
     size_t next_capacity;
-    struct subdiv_list made; /* indices of the triangles made since this list was last emptied */
+    struct subdiv_list made; /* indices of the triangles that splits or flips have made since this list was last emptied */
     struct subdiv_list open; /* indices of the triangles that subdiv_mesh_apply() still has to split */
 };
 
@@ -65,20 +66,21 @@ bool subdiv_mesh_init(struct subdiv_mesh *mesh, struct geometry *geometry);
 /* Frees the mesh, but not the geometry. */
 void subdiv_mesh_finish(struct subdiv_mesh *mesh);
 
-/* Loads a level's triangles as the current ones. */
+/* Makes the triangles of a level of detail the current ones. */
 void subdiv_mesh_load(struct subdiv_mesh *mesh, const struct level *level);
-/* Writes the current triangles back to the level, primitive by primitive. */
+/* Writes the current triangles back to their level of detail, primitive by primitive. */
 void subdiv_mesh_store(const struct subdiv_mesh *mesh, struct level *level);
 
-/* Returns whether the current level splits this edge. */
+/* Returns whether the current level of detail splits this edge. */
 static inline bool subdiv_mesh_is_split(const struct subdiv_mesh *mesh, uint32_t edge)
 {
     return mesh->cuts[edge].load == mesh->loads;
 }
-/* Splits an edge at its stored fraction (subdiv_edge.share), at position_m. Triangles change only in subdiv_mesh_apply(). Returns true if
- * the position cuts[edge].middle is new, false if another level had already split the edge. */
+/* Splits an edge at its stored fraction (subdiv_edge.share); position_m is the position of the split point. Triangles change only in
+ * subdiv_mesh_apply(). Returns true if the position cuts[edge].middle is new, false if another level of detail had already split the
+ * edge. */
 bool subdiv_mesh_split_edge(struct subdiv_mesh *mesh, uint32_t edge, const float position_m[3]);
-/* Appends a number to a list. */
+/* Appends a triangle or corner index to a list. */
 static inline void subdiv_mesh_list(struct subdiv_list *list, uint32_t number)
 {
     list->sorted = list->count == 0 || (list->sorted && list->at[list->count - 1] < number);
@@ -86,14 +88,14 @@ static inline void subdiv_mesh_list(struct subdiv_list *list, uint32_t number)
         mem_grow(&list->at, &list->capacity, list->count + 1, sizeof(*list->at));
     list->at[list->count++] = number;
 }
-/* Sorts a list and removes duplicates. */
+/* Sorts a list of indices and removes duplicates. */
 void subdiv_mesh_sort(struct subdiv_list *list);
-/* Marks all triangles of the current level as new (mesh->made). */
+/* Puts all triangles of the current level of detail on the list mesh->made, as if they had just been made. */
 void subdiv_mesh_list_all(struct subdiv_mesh *mesh);
-/* Splits all triangles of the current level at their split edges, whether subdiv_mesh_split_edge() or another level split the edge. Returns
- * the number of triangles added. */
+/* Splits all triangles of the current level of detail at their split edges, whether subdiv_mesh_split_edge() or another level split the
+ * edge. Returns the number of triangles added. */
 size_t subdiv_mesh_apply(struct subdiv_mesh *mesh);
-/* Inserts a vertex into a triangle at these barycentric weights. Returns the vertex. */
+/* Inserts a vertex into a triangle at these barycentric weights, which divides the triangle. Returns the vertex. */
 uint32_t subdiv_mesh_insert(struct subdiv_mesh *mesh, size_t tri, const double weights[3], const float position_m[3]);
 
 /* Returns the other diagonal of the two triangles at an edge: the edge between their opposite corners, which need not exist in the level.

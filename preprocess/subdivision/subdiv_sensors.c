@@ -9,11 +9,12 @@
 #include "surface/mesh/bvh.h"
 
 #define ON_OF_SIZE 1e-5 /* relative to the asset's size; a sensor this close to a vertex or an edge gets its vertex there */
-#define MAX_CUTS 30     /* maximum number of edges that are split at one sensor because another level has split them at a different point */
+/* maximum number of edges that are split at one sensor because another level of detail has split them at a different point */
+#define MAX_CUTS 30
 /* maximum number of sensors for which every triangle is compared with every sensor instead of building a bounding volume hierarchy */
 #define FEW 32
 
-struct sensor_hit { /* the point of a level nearest to a sensor */
+struct sensor_hit { /* the point of a level of detail that is nearest to a sensor */
     size_t tri;
     double weights[3], point[3];
 };
@@ -47,8 +48,8 @@ static double try_piece(const struct subdiv *subdiv, size_t t, const double poin
     return distance_m;
 }
 
-/* Finds, among the pieces of the level's original triangle `tri`, the piece nearest to a point. The first piece has the index of the
- * original; the others were appended. Returns the distance. */
+/* Finds, among the triangles into which original triangle `tri` has been divided, the one nearest to a point. One of these triangles has
+ * the index of the original; the others were appended. Returns the distance. */
 static double find_piece(const struct subdiv *subdiv, uint32_t tri, const double point[3], struct sensor_hit *hit)
 {
     double best_m = try_piece(subdiv, tri, point, INFINITY, hit);
@@ -58,7 +59,7 @@ static double find_piece(const struct subdiv *subdiv, uint32_t tri, const double
     return best_m;
 }
 
-/* Returns the distance of a vertex from a point. */
+/* Returns the distance in metres of a vertex from a point. */
 static double off(const struct subdiv *subdiv, uint32_t vertex, const float point[3])
 {
     return subdiv_length(subdiv_position(subdiv, vertex), point);
@@ -101,8 +102,8 @@ static uint32_t put_into_triangle(struct subdiv *subdiv, const struct sensor_hit
     return vertex;
 }
 
-/* Finds or creates the vertex at a sensor: an existing one, or a new one on an edge or inside a triangle. An edge that another level split
- * elsewhere is split there first. Returns false if the level omits the connected component that the sensor sits on. */
+/* Finds or creates the vertex at a sensor: an existing one, or a new one on an edge or inside a triangle. An edge that another level of
+ * detail split elsewhere is split there first. Returns false if the current level omits the connected component that the sensor sits on. */
 static bool find_vertex(struct subdiv *subdiv, uint32_t tri, const double point[3], double error_m, uint32_t *vertex)
 {
     struct sensor_hit hit = { 0 };

@@ -19,17 +19,19 @@
 /* sum of a triangle's edge errors, in multiples of the error limit; below this sum, only one of 500 large triangles has an error inside
  * above the limit */
 #define LIKELY 1.0
-/* in multiples of the minimum length shortest_m; a triangle whose longest edge is at most this long is not measured inside */
+/* in multiples of the minimum edge length shortest_m; the inside of a triangle whose longest edge is at most this long is not measured */
 #define MIN_INSIDE 2.0
 #define FLAT 1e-3 /* a triangle is flat if its longest edge is shorter than the sum of the other two by at most this share */
-/* share of the longest edge; the opposite corner of a flat triangle must be at least this far from the edge's ends */
+/* share of the longest edge; a flat triangle's longest edge is split near the opposite corner only if that corner is at least this far from
+ * the edge's ends */
 #define ASIDE 0.1
 /* height relative to the asset's size, a few rounding errors of a float; a triangle below this height is degenerate */
 #define LINE_OF_SIZE 2.5e-7
-#define MORE_PLACES 12.0        /* number of positions for which memory is reserved, in multiples of the model's number of positions */
+/* number of positions for which address space is reserved, in multiples of the model's number of positions */
+#define MORE_PLACES 12.0
 #define MAX_REPORTED_EDGES 2000 /* maximum number of short edges of a coarser level that are measured for the report */
-/* subdivision of a level stops when a round of splits may add fewer triangles than this share of the level's triangles; a round may
- * add half of the triangles that the limit leaves */
+/* share of a level's triangles; subdivision of the level stops when a round of splits may add fewer triangles than this. A round may add
+ * half of the triangles that the level's limit leaves */
 #define FULL 2e-4
 
 /* limits of the triangles added to the finest level: as a multiple of its triangles, and as a count; the larger limit applies */
@@ -43,20 +45,21 @@
 /* minimum number of triangles for which a level's size is first estimated from a sample; smaller samples are unreliable */
 #define SAMPLE_WORTH 9000
 #define SAMPLE_ROUNDS 4 /* maximum rounds of splits on a sample; more rounds would not change the estimate */
-/* minimum length of a piece of an edge in the finest level, in multiples of the model's tolerance; short because sensors may be close
- * together */
+/* minimum length of the two parts of a split edge in the finest level of detail, in multiples of the model's tolerance; short because
+ * sensors may be close together */
 #define SHORTEST_NEAR 0.125
-/* minimum length of a piece of an edge in a coarser level, in multiples of its error_m: at most a pixel where the level is drawn */
+/* minimum length of the two parts of a split edge in a coarser level of detail, in multiples of its error_m: at most a pixel where the
+ * level is drawn */
 #define SHORTEST 1.0
 #define JUMP_WIDTH 8    /* in tolerances or errors */
 #define ON_SURFACE 0.25 /* distance from the surface, in multiples of the tolerance, up to which a point counts as on the surface */
-/* in multiples of the level's error_m; distance up to which a coarser level may show the field of another point */
+/* in multiples of the level's error_m; a coarser level of detail may show at a point the field of another point up to this distance away */
 #define SLACK 0.7
 
 /* --- cutting -------------------------------------------------------------------------------------------------------------- */
 
 #define BINS (1u << 16)
-/* index of the histogram bin: positive floats compare like their bit patterns, so the upper 16 bits serve */
+/* Returns the histogram bin of an error: positive floats compare like their bit patterns, so the upper 16 bits are a monotonic index. */
 static uint32_t bin_of(float error)
 {
     uint32_t bits;
@@ -105,10 +108,10 @@ static bool is_too_short(const struct subdiv *subdiv, const struct subdiv_edge *
     return !subdiv->finest && subdiv_is_short(subdiv, subdiv_length(subdiv_position(subdiv, edge->a), subdiv_position(subdiv, edge->b)));
 }
 
-/* Flags of a new triangle. SIDE_* flags exist per edge, shifted left by the edge's index 0 to 2. */
+/* Flags of a triangle that the last round of splits made. SIDE_* flags exist per edge, shifted left by the edge's index 0 to 2. */
 #define SIDE_IS_NEW 1u
 #define SIDE_IS_TOO_SHORT 8u
-#define ASKS 64u /* flag: the triangle has new edges and is not degenerate */
+#define ASKS 64u /* flag: the triangle has edges that were not measured yet, and is not degenerate */
 
 struct sides {
     const struct subdiv *subdiv;
@@ -157,8 +160,9 @@ static size_t take_new_sides(struct subdiv *subdiv, const struct sides *sides, u
     return count;
 }
 
-/* Measures new edges. Edges that only degenerate triangles have are invisible, and splitting them would add degenerate triangles, so they
- * get error 0. Half of the edges of coarser levels are too short to split, so their error does not matter. */
+/* Measures the edges that the last round of splits made. Edges that only degenerate triangles have are invisible, and splitting them would
+ * add degenerate triangles, so they get error 0. Half of the edges of coarser levels of detail are too short to split, so their error does
+ * not matter. */
 static void measure_edges(struct subdiv *subdiv)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -210,7 +214,7 @@ static bool inside_may_err(const struct subdiv *subdiv, const struct subdiv_tri 
 struct insides {
     const struct subdiv *subdiv;
     double limit;
-    char *asked; /* by new triangle: whether the error inside it must be measured */
+    char *asked; /* by triangle of the last round of splits: whether the error inside it must be measured */
 };
 
 static void choose_insides(void *arg, size_t begin, size_t end)
@@ -226,8 +230,8 @@ static void choose_insides(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Measures the error inside new triangles whose edges need no split. If it exceeds the limit, records it at the triangle's longest edge, so
- * that this edge is split. */
+/* Measures the error inside triangles that the last round of splits made and whose edges need no split. If it exceeds the limit, records it
+ * at the triangle's longest edge, so that this edge is split. */
 static void measure_insides(struct subdiv *subdiv, double limit)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -318,7 +322,7 @@ static void find_flat(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Moves the split points of the longest edges of new flat triangles next to their opposite corners. */
+/* Moves the split points of the longest edges of flat triangles that the last round made next to the triangles' opposite corners. */
 static void aim_at_corners(struct subdiv *subdiv)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -333,8 +337,8 @@ static void aim_at_corners(struct subdiv *subdiv)
     mem_free(aims.flat);
 }
 
-/* Also splits the longest edge of a flat triangle if another of its edges is split; otherwise the pieces would stay as long as the longest
- * edge. */
+/* Also splits the longest edge of a flat triangle if another of its edges is split; otherwise the resulting triangles would stay as long as
+ * the longest edge. */
 static void cut_beside_corners(struct subdiv *subdiv)
 {
     struct subdiv_mesh *mesh = &subdiv->mesh;
@@ -380,7 +384,7 @@ static struct subdiv_finding *list_errors(const struct subdiv *subdiv, double li
     return findings;
 }
 
-/* Splits the edges with the largest errors above the limit, as many as the level's remaining triangles allow. Returns false if no edge was
+/* Splits the edges with the largest errors above the limit, as many as the level's triangle limit allows. Returns false if no edge was
  * split. */
 static bool cut_worst(struct subdiv *subdiv, double limit)
 {
@@ -448,7 +452,7 @@ static void tell_left(struct subdiv *subdiv, struct level *level)
     mem_free(told);
 }
 
-/* Splits edges in rounds until no error exceeds the limit, or the level has reached its triangle limit. */
+/* Splits edges in rounds until no error exceeds `limit`, or the level of detail has reached its triangle limit. */
 static void cut_to(struct subdiv *subdiv, double limit)
 {
     int rounds = subdiv->sample_blocks ? SAMPLE_ROUNDS : MAX_ROUNDS;
@@ -467,8 +471,8 @@ static void cut_to(struct subdiv *subdiv, double limit)
     }
 }
 
-/* Estimates a level's final size by splitting a sample of its triangles until no error exceeds the limit `large`. Returns whether the whole
- * level would certainly need too many triangles, so that its subdivision can be skipped. */
+/* Estimates the final size of a level of detail by splitting a sample of its triangles until no error exceeds the limit `large`. Returns
+ * whether the whole level would certainly need too many triangles, so that its subdivision can be skipped. */
 static bool is_hopeless(struct subdiv *subdiv, const struct level *level, double large)
 {
     struct level sample;
@@ -492,8 +496,8 @@ static bool is_known_hopeless(const struct subdiv *subdiv)
     return subdiv->in->cache && subdiv->in->cache->hopeless >> subdiv->level & 1;
 }
 
-/* Subdivides a level in several passes, each with a smaller error limit. If the level reaches its triangle limit, the errors that remain
- * are then the smallest ones. Measures nothing if each pixel evaluates the fields of all groups. */
+/* Subdivides a level of detail in several passes, each with a smaller error limit. If the level reaches its triangle limit, the errors that
+ * remain are then the smallest ones. Measures nothing if each pixel evaluates the fields of all groups. */
 static void subdivide_level(struct subdiv *subdiv, struct level *level, size_t finer_tris)
 {
     static const double limits[] = { 16 * SUBDIV_AIM, 4 * SUBDIV_AIM, 2 * SUBDIV_AIM, SUBDIV_AIM };
@@ -525,8 +529,8 @@ static void subdivide_level(struct subdiv *subdiv, struct level *level, size_t f
     subdiv_mesh_store(&subdiv->mesh, level);
 }
 
-/* Subdivides all levels. A coarser level that reaches its triangle limit is dropped: the next finer level, which costs no more, takes its
- * place. */
+/* Subdivides all levels of detail. A coarser level that reaches its triangle limit is dropped: the next finer level, which costs no more,
+ * takes its place. */
 static void subdivide_all(struct subdiv *subdiv, struct levels *levels)
 {
     size_t kept = 0, finer_tris = 0;
@@ -578,7 +582,7 @@ static bool start(struct subdiv *subdiv, struct geometry *geometry)
     if (!subdiv_mesh_init(&subdiv->mesh, geometry) || !subdiv_find_parts(subdiv))
         return false;
     size_t places = subdiv->mesh.welded.count;
-    /* reserves more memory than needed, because the kernel provides it only for pages that are used */
+    /* reserves more memory for distances than needed, because the kernel provides it only for pages that are used */
     subdiv->geodesic_capacity = (size_t)(MORE_PLACES * (double)places) * subdiv->sensors;
     subdiv->geodesic_m = mem_try_array(subdiv->geodesic_capacity, sizeof(*subdiv->geodesic_m));
     if (subdiv->samples <= MAX_STORED) {

@@ -20,7 +20,7 @@
 #include "preprocess/subdivision/linear_error.h"
 #include "surface/surface.h"
 
-#define SUBDIV_ERROR (1 / 255.0) /* error as a share of the value range: one step of an 8-bit colour scale */
+#define SUBDIV_ERROR (1 / 255.0) /* allowed interpolation error as a share of the value range: one step of an 8-bit colour scale */
 
 struct subdiv_input {
     struct linear_error *linear; /* error measure; subdivide_levels() calls linear_error_set_radius() */

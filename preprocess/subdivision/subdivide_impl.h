@@ -7,7 +7,7 @@
 #include "preprocess/subdivision/subdiv_mesh.h"
 #include "preprocess/subdivision/subdivide.h"
 
-/* error limit at the sampled points, a tenth below SUBDIV_ERROR, because errors between these points may be larger */
+/* limit of the interpolation error at the sampled points, a tenth below SUBDIV_ERROR, because errors between these points may be larger */
 #define SUBDIV_AIM (0.9 * SUBDIV_ERROR)
 
 struct subdiv {
@@ -34,11 +34,11 @@ struct subdiv {
     double error_m, shortest_m, slack_m;
     double jump_m;    /* edges shorter than this, in metres, are not split where the distance along the surface jumps */
     bool finest_full; /* true: the finest level reached its triangle limit */
-    bool full;        /* true: the level has almost reached, or would certainly reach, its triangle limit */
-    /* count of blocks of triangles in the current sample (subdiv_take_sample()); 0: the whole level is processed */
+    bool full;        /* true: the current level of detail has almost reached, or would certainly reach, its triangle limit */
+    /* count of blocks of triangles in the current sample (subdiv_take_sample()); 0: the whole level of detail is processed */
     size_t sample_blocks;
-    double sample_of; /* number of the level's triangles that one triangle of the sample represents */
-    /* most_tris: triangle limit of the level; first_count: number of its triangles before vertices were inserted at sensors */
+    double sample_of; /* number of triangles of the level of detail that one triangle of the sample represents */
+    /* most_tris: triangle limit of the level of detail; first_count: number of its triangles before vertices were inserted at sensors */
     size_t most_tris, first_count;
 };
 
@@ -67,33 +67,33 @@ static inline bool subdiv_is_short(const struct subdiv *subdiv, double length_m)
 
 /* --- measuring (subdiv_measure.c) --- */
 
-/* The measured error of one edge or triangle. */
+/* The measured interpolation error of one edge or triangle. */
 struct subdiv_finding {
     uint32_t number;
     float error, share; /* share: fraction at which a split of the edge leaves the smallest error */
-    float barred;       /* error, as a share of the range, that no split may fix */
+    float barred;       /* interpolation error, as a share of the range, that no split may fix */
     bool jumps;
     bool is_cached;   /* true: the measurement comes from the cache of the last run, so it was not measured again */
     float doubt, off; /* see subdiv_cache.h */
     uint64_t key;     /* cache key */
 };
 
-/* Writes the connected component of each position to subdiv->part. Returns false if out of memory. */
+/* Writes the connected component of each vertex position to subdiv->part. Returns false if out of memory. */
 bool subdiv_find_parts(struct subdiv *subdiv);
-/* Sets the connected component of a new position. */
+/* Sets the connected component of a position that a split has added. */
 void subdiv_add_place(struct subdiv *subdiv, uint32_t place, uint32_t part);
 /* Computes the samples (linear_error.h) at the positions from index `first` on. edges: for each of these positions, the edge it is on, from
  * which its distances are computed first; NULL: the distances are known. */
 void subdiv_measure_places(struct subdiv *subdiv, uint32_t first, const uint32_t *edges, size_t count);
-/* Measures the error of edges and stores the results in mesh.cuts (struct subdiv_edge). */
+/* Measures the interpolation error of edges and stores the results in mesh.cuts (struct subdiv_edge). */
 void subdiv_measure_new_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count);
 /* Measures the interpolation error inside triangles. */
 void subdiv_measure_insides(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count);
 
 /* --- prediction of levels that would grow too large (subdiv_bound.c) --- */
 
-/* Returns whether a coarser level, or the level that the current sample represents, will certainly need more triangles than allowed.
- * Estimated from the measured errors, before the splits are made. */
+/* Returns whether a coarser level of detail, or the level that the current sample represents, will certainly need more triangles than
+ * allowed. Estimated from the measured errors, before the splits are made. */
 bool subdiv_will_exceed_bound(const struct subdiv *subdiv);
 /* Copies some of a level's triangles into *sample, in blocks of a few consecutive triangles. The caller frees *sample with level_finish().
  * Returns the number of blocks. */
@@ -113,12 +113,13 @@ void subdiv_cache_add(struct subdiv *subdiv, const struct subdiv_finding *findin
 /* --- edge flips (subdiv_flip.c) --- */
 
 /* Flips edges with an error above `limit`, each between two triangles, if the error along the other diagonal is smaller. The surface may
- * move by at most a small share of the level's error. */
+ * move by at most a small share of error_m of the level of detail. */
 void subdiv_flip_edges(struct subdiv *subdiv, double limit);
 
 /* --- sensors (subdiv_sensors.c) --- */
 
-/* Inserts a vertex at each sensor. error_m: largest distance of the current level's surface from the finest level's surface, metres. */
+/* Inserts a vertex at each sensor into the current level of detail. error_m: largest distance of the level's surface from the finest
+ * level's surface, metres. */
 void subdiv_place_sensors(struct subdiv *subdiv, double error_m);
 
 #endif
