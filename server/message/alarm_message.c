@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses the message `alarm` (acknowledge, reset, shelve) and carries it out. */
+/* Parses the message `alarm`, with which a user acknowledges, resets or shelves alarms, and carries it out. */
 #include "message/alarm_message.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes alarms as JSON and CSV. */
+/* Writes lists of alarms and rows of the alarm journal as JSON and CSV. */
 #include "message/alarm_text.h"
 
 #include <jansson.h>
@@ -158,7 +158,7 @@ struct listing {
     struct text csv;
 };
 
-static const char SPECIAL[] = ",\"\n\r"; /* characters that require quotes around a CSV cell */
+static const char SPECIAL[] = ",\"\n\r"; /* characters that require quotes around a CSV cell that contains one */
 
 static void add_csv_number(struct text *out, double value)
 {
@@ -271,7 +271,7 @@ static void add_journal_csv(struct text *out, const struct journal_row *row)
     text_add(out, "\n");
 }
 
-/* Converts limit and value to the tag's present unit, if the row's unit is known and can be converted to it. */
+/* Returns a journal row with limit and value converted to the tag's present unit, if the row's unit is known and can be converted. */
 static struct journal_row in_present_unit(const struct plant *plant, const struct journal_row *row)
 {
     struct journal_row out = *row;

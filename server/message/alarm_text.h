@@ -7,15 +7,15 @@
 #include "base/text/text.h"
 #include "message/message.h"
 
-/* Cache of the newest message `alarms`, reused for each session that needs the same text. Zero-initialise; end with
-   alarm_text_cache_finish(). Thread: the loop. */
+/* Cache of the newest message `alarms`, so that its JSON text is built once for all sessions that need the same one. Zero-initialise; end
+   with alarm_text_cache_finish(). Thread: the loop. */
 struct alarm_text_cache {
     char *text;
     uint64_t since, number;
 };
 void alarm_text_cache_finish(struct alarm_text_cache *cache);
-/* Returns the message `alarms` with the alarms whose change number is greater than *number; *number 0: with all alarms that are not
-   normal. Sets *number to the newest change number. cache NULL: the text is not cached. */
+/* Returns the message `alarms` with the alarms that changed after the change with the number *number; *number 0: with all alarms that are
+   not normal. Sets *number to the newest change number. cache NULL: the text is not cached. */
 char *alarms_text(struct alarm_text_cache *cache, struct alarm_service *alarm_service, const struct plant *plant, int64_t now_utc_ns,
                   uint64_t *number);
 
@@ -27,8 +27,8 @@ struct alarm_query {
     char tag[256];                     /* name of a tag or a device whose alarms are wanted; empty: all alarms */
     int64_t from_us, to_us, before_id; /* for the journal */
 };
-/* Parses decoded arguments such as `limit=100`, `format=csv`. journal: also accepts the arguments of /api/v1/alarms/journal. Returns
-   false with *error saying what is wrong. */
+/* Parses the arguments of an HTTP query, percent-decoded, such as `limit=100`, `format=csv`. journal true: also accepts the arguments of
+   /api/v1/alarms/journal. Returns false with *error saying what is wrong. */
 bool alarm_query_parse(const struct plant *plant, bool journal, const char *const *args, size_t count, int64_t now_us,
                        struct alarm_query *query, struct message_error *error);
 /* Returns the alarms that are not normal, as JSON or CSV. */

@@ -59,8 +59,8 @@ static json_t *given_json(const json_t *list, struct message_error *error)
     return camera;
 }
 
-/* Sets the camera of a view from the members of a query. lens: true: also applies the members `projection` and `height_m`. Returns false
-   with *error naming the wrong member. */
+/* Sets the camera of a view from the members of the JSON object `o`. lens true: also applies the members `projection` and `height_m`.
+   Returns false with *error naming the wrong member. */
 static bool parse_given(const json_t *o, bool lens, struct view *view, struct message_error *error)
 {
     const json_t *list = json_object_get(o, "camera"), *height = json_object_get(o, "height_m");
@@ -78,13 +78,14 @@ static bool parse_given(const json_t *o, bool lens, struct view *view, struct me
     return good;
 }
 
-/* Returns true if a query has a member that states a camera. */
+/* Returns true if the JSON object has a member that states a camera. */
 static bool has_camera(const json_t *o)
 {
     return json_object_get(o, "camera") || json_object_get(o, "projection") || json_object_get(o, "height_m");
 }
 
-/* Adjusts the plant's initial camera so that each half of a split view shows as much as the whole view. */
+/* Moves the plant's initial camera back so that each half of a split view, which is narrower, shows as much as the whole view. bare: the
+   picture has no legend and no clock. */
 static void keep_whole(const struct scene *scene, bool bare, struct view *view)
 {
     struct camera_window window = { 0 };

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Readers of members of a JSON object, which also check type and range. Each returns false, with *error saying what was expected, if the
-   member is wrong. Pure. Thread: any. */
+/* Functions that read one member of a JSON object and check its type and range. Each returns false, with *error saying what was expected,
+   if the member is wrong. Pure. Thread: any. */
 #ifndef MESSAGE_JSON_FIELDS_H
 #define MESSAGE_JSON_FIELDS_H
 #include "message/message.h"
 #include "message/names.h"
 
-/* Names of the readers: need_...: a missing member is an error; may_...: a missing member leaves *out unchanged and the reader returns
+/* Functions need_...: a missing member is an error. Functions may_...: a missing member leaves *out unchanged, and the function returns
    true. *given, if not NULL, receives whether the member was present. */
 bool need_number(const json_t *o, const char *name, double low, double high, double *out, struct message_error *error);
 bool may_number(const json_t *o, const char *name, double low, double high, double *out, bool *given, struct message_error *error);
@@ -18,8 +18,8 @@ bool may_vector(const json_t *o, const char *name, double out[3], bool *given, s
 bool may_name(const json_t *o, const char *name, const struct name *names, int *out, bool *given, struct message_error *error);
 /* Reads a text of 1 to size - 1 printable ASCII characters. */
 bool may_text(const json_t *o, const char *name, char *out, size_t size, bool *given, struct message_error *error);
-/* Reads free text of less than `size` bytes without control characters (has_controls()). needed: true: an empty or blank text is an
-   error. */
+/* Reads a member with a text that a user wrote, of less than `size` bytes without control characters (has_controls()). needed: true: an
+   empty or blank text is an error. */
 bool need_words(const json_t *o, const char *name, bool needed, char *out, size_t size, struct message_error *error);
 /* Returns true if the text has characters that would garble a line of text: control characters, and overrides of the writing direction. */
 bool has_controls(const char *text);

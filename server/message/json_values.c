@@ -5,13 +5,15 @@
 
 json_t *number(double value)
 {
-    return isfinite(value) ? json_real(value + 0.0) : json_null(); /* adding 0.0 turns -0.0 into 0.0, so that no minus sign is sent */
+    return isfinite(value) ? json_real(value + 0.0) : json_null(); /* adding 0.0 turns -0.0 into 0.0, so that JSON never has a minus sign
+                                                                      before zero */
 }
 
 json_t *reading_number(double value)
 {
     double size = fabs(value);
-    if (size >= 1e7 && size < 9e15 && value == trunc(value)) /* an integer is exact, whatever the number of digits of json_text() */
+    if (size >= 1e7 && size < 9e15 && value == trunc(value)) /* writes a large whole number as a JSON integer: json_text() rounds only real
+                                                                numbers, to a limited number of digits */
         return json_integer((json_int_t)value);
     return number(round_reading(value));
 }

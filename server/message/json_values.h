@@ -8,14 +8,14 @@
 
 /* Returns a number, never -0.0; null if the value is not finite. */
 json_t *number(double value);
-/* Returns a reading rounded by round_reading(), which json_text() must print with READING_DIGITS; like number() if the value is not
-   finite. */
+/* Returns a reading's value, rounded by round_reading(); json_text() must print it with READING_DIGITS digits; like number() if the value
+   is not finite. */
 json_t *reading_number(double value);
 /* Returns a string; null for NULL; "(not UTF-8)" for a text that is not UTF-8. */
 json_t *string(const char *text);
 /* Returns a JSON array of three numbers. */
 json_t *vector(const double v[3]);
-/* Returns an array of `count` numbers; null if count is 0. */
+/* Returns a JSON array of `count` numbers; null if count is 0. */
 json_t *number_list(const double *values, int count);
 
 #endif

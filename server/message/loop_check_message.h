@@ -12,8 +12,8 @@ bool loop_check_parse(const struct plant *plant, const json_t *o, struct message
    mem_free(). */
 char *loop_check_do(struct loop_checks *loop_checks, const struct plant *plant, const struct snapshot *now, const struct message *message,
                     const char *who);
-/* Returns the message `proofs`: the newest check of each tag; since > 0: only checks with sequence numbers (loop_checks_number()) above
-   `since`. Free with mem_free(). */
+/* Returns the message `proofs`: the newest loop check of each tag; since > 0: only checks with sequence numbers (loop_checks_number())
+   above `since`. Free with mem_free(). */
 char *loop_checks_text(const struct loop_checks *loop_checks, const struct plant *plant, uint64_t since, bool all);
 
 #endif

@@ -53,7 +53,8 @@ static bool same_places(const struct frame *frame, const struct known_markers *k
     return true;
 }
 
-/* Returns the next label of isolines (or of arrows) from index *at on, and advances *at; NULL: no more labels. */
+/* Returns the next label in `labels` that belongs to an arrow (arrows true) or to an isoline, from index *at on, and advances *at; NULL: no
+   more. */
 static const struct frame_label *next_label(const struct frame_label *labels, size_t count, size_t *at, bool arrow)
 {
     while (*at < count && labels[*at].arrow != arrow)
@@ -87,7 +88,7 @@ static json_t *all_markers(const struct frame *frame)
     return list;
 }
 
-/* Returns a list of those markers whose values changed, without positions, for a client that knows the positions. */
+/* Returns the values of the markers that changed since the client was told, without positions. */
 static json_t *changed_values(const struct frame *frame, const struct known_markers *known)
 {
     json_t *list = json_array();
@@ -163,7 +164,8 @@ static void add_list(struct text *text, const char *name, const char *list)
     text_add_bytes(text, list, strlen(list));
 }
 
-/* Appends the markers that the client needs: all with their positions or, if the client knows the positions, only changed values. */
+/* Appends the JSON list of the frame's sensor markers: all with their positions or, if the client knows the positions, only changed
+   values. */
 static void add_markers(struct text *text, struct frame *frame, const struct known_markers *known, struct marker_text_cache *lists)
 {
     if (!same_places(frame, known)) {

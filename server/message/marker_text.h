@@ -5,7 +5,7 @@
 #define MESSAGE_MARKER_TEXT_H
 #include "render/frame.h"
 
-struct known_markers { /* the markers that a client already has; zero-initialise; end with known_markers_finish() */
+struct known_markers { /* the sensor markers and labels that a client was sent before; zero-initialise; end with known_markers_finish() */
     bool any;
     struct frame_marker *markers;
     size_t marker_count, marker_capacity;
@@ -14,14 +14,15 @@ struct known_markers { /* the markers that a client already has; zero-initialise
     double drawn_error;
 };
 
-/* JSON lists for the newest frame, shared by all its clients; zero-initialise; end with marker_text_cache_finish() */
+/* JSON lists of the newest frame's markers and labels, built once for all its clients; zero-initialise; end with
+   marker_text_cache_finish() */
 struct marker_text_cache {
     struct frame *frame;
     char *markers, *labels, *arrows;
 };
 
-/* Returns the message for the frame with sequence number seq; free with mem_free(). Returns NULL if nothing changed for the client.
-   Updates `known`. */
+/* Returns the message `markers` for the frame with sequence number seq; free with mem_free(). Returns NULL if nothing changed for the
+   client. Updates `known`. */
 char *marker_text(struct frame *frame, uint32_t seq, struct known_markers *known, struct marker_text_cache *lists);
 void marker_text_cache_finish(struct marker_text_cache *lists);
 void known_markers_finish(struct known_markers *known);

@@ -56,8 +56,8 @@ enum message_type {
 /* frames of a session that the server signs: none, the refined ones, or all */
 enum signed_frames { SIGNED_NONE, SIGNED_REFINED, SIGNED_ALL };
 
-/* RESUME_CHARS: length of a resume token (with which a client continues its session) without a view; RESUME_MOST_CHARS: largest length,
-   with a view */
+/* RESUME_CHARS: length of a resume token, with which a client continues its session after a lost connection. RESUME_MOST_CHARS: largest
+   length of a resume token that also contains the session's view */
 enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32, RESUME_MOST_CHARS = 8191 };
 
 enum params_given { /* bits of params_change.given, one for each member that a params message may have */
@@ -98,7 +98,7 @@ enum baseline_change { BASELINE_STAYS, BASELINE_NONE, BASELINE_NAMED, BASELINE_N
 struct params_change {
     uint32_t seq;
     unsigned given;            /* bit mask of enum params_given */
-    struct field_params field; /* first of the parameters: this member and those below are valid only if their bit is set in `given` */
+    struct field_params field; /* this member and all below are new values of parameters, each valid only if its bit is set in `given` */
     int colormap;
     double ramp_interval;
     struct color_scale color_scale;
@@ -123,7 +123,7 @@ struct params_change {
 
 struct fit_message {
     struct framing framing;
-    int projection; /* enum projection, or PROJECTION_AS_IT_IS */
+    int projection; /* enum projection; PROJECTION_AS_IT_IS: the message states none, so the view keeps its own */
 };
 
 struct split_change {
@@ -133,7 +133,7 @@ struct split_change {
 
 struct pick_request {
     double x_px, y_px;
-    bool has_camera; /* true: the pick is for `camera`; false: the pick is for the client's newest camera */
+    bool has_camera; /* true: the client asks what is at a pixel of a picture from `camera`; false: of a picture from its newest camera */
     struct camera camera;
 };
 
@@ -149,7 +149,7 @@ struct alarm_request {
 
 #define TIME_MOST_SPEED 3600
 struct time_request {
-    bool has_at;   /* true: playback starts at at_us; false: playback starts at the instant shown now */
+    bool has_at;   /* true: the session goes to the instant at_us; false: it stays at the instant shown now */
     int64_t at_us; /* microseconds UTC; 0: the present */
     double speed;  /* seconds of history per second of playback; negative: backwards; 0: paused */
 };
@@ -158,7 +158,7 @@ enum { CODEC_LIST_MOST = 4 };
 struct codec_list { /* codecs that a client can decode, the preferred one first */
     enum wire_codec at[CODEC_LIST_MOST];
     int count;
-    bool choose; /* true: the server may choose any of these codecs, and change the choice later */
+    bool choose; /* true: the server may choose any codec of this list, and change the choice later */
 };
 
 struct place_request {
@@ -167,7 +167,7 @@ struct place_request {
 };
 
 struct coverage_request {
-    int group;    /* index of the group; -1: the group shown in the view */
+    int group;    /* index of the group whose sensors are judged; -1: the group shown in the view */
     double far_m; /* metres from the nearest sensor beyond which a surface counts as uncovered; 0: the default */
 };
 
@@ -180,11 +180,11 @@ struct loop_check_request {
 
 struct note_request {
     char id[NOTE_ID_BYTES], text[NOTE_TEXT_BYTES], name[ALARM_NAME_BYTES - 24];
-    /* message remove_note: the note to remove; message note: the note that the new one replaces, or "" */
+    /* message remove_note: id of the note to remove; message note: id of the note that the new one replaces, or "" */
     int tag, asset; /* index of the tag or asset to which the note is attached; -1: none */
     bool has_position;
     double position_m[3];
-    int64_t until_us; /* time at which the note ends, microseconds UTC; 0: when a user removes it */
+    int64_t until_us; /* time at which the note ends, microseconds UTC; 0: it stays until a user removes it */
 };
 
 struct wall_request {
@@ -204,7 +204,7 @@ struct hello_request {
     double idle_ms; /* milliseconds since the user was last active; negative: not stated */
     bool tokens;    /* true: the server shall send the view as a token whenever it changes */
     bool depth;     /* true: the client wants depth grids with its frames */
-    bool anew;      /* true: resume keeps only the session's id and the sessions that follow it; the view starts fresh */
+    bool anew;      /* true: the client resumes only the session's id and its followers, not its view */
     bool has_camera, has_params;
     /* tile of a picture that is spread over many displays, which this display shows; display 0: this client shows no tile */
     struct wall_place tile;
@@ -218,7 +218,8 @@ struct message {
     double pixel_ratio;              /* messages hello and resize: device pixels per CSS pixel of the page; 0: not stated */
     char named[NAMED_VIEW_ID_BYTES]; /* messages hello, look and params: id of a named view; empty: no view (only in hello and params) */
     struct camera camera;            /* camera, hello */
-    uint32_t seq; /* sequence number of the messages camera, ack, fit, pick and look; message hello: sequence number of its camera */
+    uint32_t seq; /* sequence number that the client gave its message camera, ack, fit, pick or look; message hello: sequence number of its
+                     camera */
     struct params_change params;     /* params, hello */
     struct split_change split;       /* messages params and hello: change of the right half of a split view, applied after `params` */
     struct fit_message fit;
@@ -227,7 +228,7 @@ struct message {
     double decode_ms; /* message ack: milliseconds that the client needed to decode the frame; negative: not stated */
     double t;         /* ping */
     bool active;      /* message ping: true: the user was active since the last ping */
-    uint64_t follow;  /* messages follow and lead: id of a session; 0: no session */
+    uint64_t follow;  /* messages follow and lead: number of another session; 0: no session */
     struct alarm_request alarm;
     struct time_request time; /* time, hello */
     struct place_request place;
@@ -235,13 +236,13 @@ struct message {
     /* messages save_tags, accept_places and restore_tags: hash of the tag list that the user saw and confirms; empty: not confirmed yet */
     char confirm[17];
     struct assumed_filter accept; /* accept_places */
-    char kept[65];                /* message restore_tags: name of the stored version of the tag list */
+    char kept[65];                /* message restore_tags: name of the earlier version of the tag list to restore */
     struct loop_check_request loop_check;
-    /* edit of a named view. save_view sets all members, remove_view only the id, share_view only the address, send_to_wall only view and
-       title */
+    /* messages that edit or share a named view. save_view sets all members, remove_view only the id, share_view only the address,
+       send_to_wall only view and title */
     struct named_view_edit view_edit;
     struct note_request note;         /* note, remove_note */
-    struct wall_request wall;         /* in display, send_to_wall and point */
+    struct wall_request wall;         /* messages display, send_to_wall and point: the pane or display of a wall that is meant */
     struct pair_request pair;         /* pair, unpair */
     enum signed_frames signed_frames; /* hello, sign */
 };
@@ -269,10 +270,11 @@ bool params_apply_show(const struct params_context *context, const struct params
                        struct view *view, struct message_error *error);
 /* Stores or removes the baseline that a change names. Call it last, after all checks of the change, because it cannot be undone. */
 void params_apply_baseline(const struct params_context *context, const struct params_change *change, struct view *view);
-/* Parts of params_parse() and params_apply() that handle the members `scale`, `breaks` and `isolines`. */
+/* Parts of params_parse() and params_apply() that handle the members `scale`, `breaks` (limits between colour bands) and
+   `isolines`. */
 bool params_parse_paint(const json_t *o, struct params_change *out, struct message_error *error);
 bool params_apply_paint(const struct plant *plant, const struct params_change *change, struct view *view, struct message_error *error);
-/* split_parse() and split_apply() handle the member `split`, which describes the right half of a split view (params_split.c). */
+/* split_parse() and split_apply() parse and apply the member `split`, which describes the right half of a split view (params_split.c). */
 bool split_parse(const struct plant *plant, const json_t *o, struct split_change *out, struct message_error *error);
 bool split_apply(const struct params_context *context, const struct split_change *change, struct view *view, struct message_error *error);
 /* Returns true if a view may have that width and height in pixels. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses a client's JSON text into a checked struct. */
+/* Parses a client's JSON message into a struct message whose values are checked. */
 #include "message/message_parse.h"
 
 #include <math.h>
@@ -83,7 +83,8 @@ static bool parse_key_frame(const struct plant *plant, const json_t *o, struct m
     return true;
 }
 
-/* Reads the message `time`. JSON has its microseconds as a double, which represents the microseconds of any valid time exactly. */
+/* Reads the message `time`. Reading JSON yields its microseconds as a double, which represents the microseconds of any valid time
+   exactly. */
 static bool parse_time(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
     const json_t *at = json_object_get(o, "at_us");

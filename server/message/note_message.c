@@ -54,7 +54,7 @@ bool remove_note_parse(const struct plant *plant, const json_t *o, struct messag
     return given;
 }
 
-/* Adds the result to an answer. A refusal that concerns a note of another user names the note's author. */
+/* Adds to a JSON answer whether a note was added or ended. A refusal that concerns a note of another user also names the note's author. */
 static void add_result(json_t *answer, enum refusal_code code, const char *author)
 {
     struct refusal why = { .code = code };

@@ -4,7 +4,7 @@
 #define MESSAGE_NOTE_MESSAGE_H
 #include "message/message.h"
 
-/* note_parse() and its sibling parse the messages into out->note. They return false with *error saying what is wrong. */
+/* note_parse() and remove_note_parse() parse the messages into out->note. They return false with *error saying what is wrong. */
 bool note_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool remove_note_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 /* Creates the note or ends it. who: the user's name; may_end_others: the user may also end notes that other users wrote; now_us: UTC.

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses and applies the parameters for bands, isolines and logarithmic scales. */
+/* Parses and applies the parameters for colour bands, isolines and logarithmic colour scales. */
 #include <math.h>
 #include <string.h>
 

@@ -5,8 +5,8 @@
 #include "message/message.h"
 #include "placing/tag_file.h"
 
-/* place_parse() and its siblings parse messages into out->place, out->coverage, out->confirm, out->accept and out->kept. They return false
-   with *error saying what is wrong. */
+/* place_parse() and the functions below parse messages into out->place, out->coverage, out->confirm, out->accept and out->kept. They
+   return false with *error saying what is wrong. */
 bool place_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool coverage_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool save_tags_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
@@ -15,15 +15,15 @@ bool restore_tags_parse(const struct plant *plant, const json_t *o, struct messa
 
 /* Returns `placed`, the answer to `place`, with the positions of the sensors that are moved on trial; free with mem_free(). */
 char *placed_text(const struct plant *plant, const struct place_set *set, uint32_t seq);
-/* Returns `gaps`, the answer to `coverage`, with the surfaces that no sensor covers; free with mem_free(). */
+/* Returns `gaps`, the answer to `coverage`, with the surfaces that are too far from every sensor; free with mem_free(). */
 char *coverage_text(const struct scene *scene, const struct place_set *set, const struct sensor_coverage_answer *answer);
-/* Returns how a message would change the current tag list, `before`, for the client to show and confirm; free with mem_free(). The
-   message is save_tags (applies the moves of `set`), accept_places or restore_tags; for the latter two `set` is NULL. If the message
-   already confirms the resulting list by its hash, *order receives a request to save it (tag_save_free); else NULL. who: the user's
+/* Returns how a message would change the current tag list, `before`, for the client to show and confirm; free with mem_free(). The message
+   is save_tags (applies the new positions of the sensors in `set`), accept_places or restore_tags; for the latter two `set` is NULL. If the
+   message already confirms the resulting list by its hash, *order receives a request to save it (tag_save_free); else NULL. who: the user's
    name. */
 char *tags_diff_text(const struct scene *scene, const char *before, const struct place_set *set, const struct message *message,
                      const char *who, struct tag_save **order);
-/* Returns the message `tags_saved` for a list that was refused; free with mem_free(). */
+/* Returns the message `tags_saved` which says why a tag list could not be saved; free with mem_free(). */
 char *tags_refused_text(uint32_t seq, const struct refusal *why);
 
 #endif

@@ -23,14 +23,14 @@ static inline bool role_is_node(enum role role)
 
 extern const struct name names_role[]; /* ends with a NULL text */
 
-/* Returns true if a client of that role may send the message. If not, *error receives the refusal to send. */
+/* Returns true if a client of that role may send the message. If not, *error says why. */
 bool role_may_send(enum role role, const struct message *message, struct message_error *error);
 
-/* Returns true if that role may use an argument NAME=VALUE in the query of a picture. If not, *error receives the refusal. */
+/* Returns true if that role may use an argument NAME=VALUE in the HTTP query of a picture. If not, *error says why. */
 bool role_may_ask(enum role role, const char *arg, struct message_error *error);
 
 /* Returns true if that role may save a view with this address. Saved views are shown to all users with the rights of an engineer, so an
-   address with parameters for engineers needs an engineer. If not, *error receives the refusal. */
+   address with parameters for engineers needs an engineer. If not, *error says why. */
 bool role_may_save(enum role role, const char *address, struct message_error *error);
 
 /* Returns the plant in which names of a message from that role are looked up. For roles below viewer it is *copy, the same plant without

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Translates the fields of the page's URL (clients/web/core/address.js) into arguments of a query. */
+/* Translates the fields of the page's URL (clients/web/core/address.js) into arguments of the HTTP query for the same picture. */
 #include "message/view_address.h"
 
 #include <stdio.h>
@@ -13,8 +13,8 @@
 enum { CAMERA_NUMBERS = 11 };
 
 static const struct {
-    /* name: field in the page's URL; of_query: argument of a query with the same meaning; NULL: queries have no such argument, so the field
-       is dropped */
+    /* name: field in the page's URL; of_query: argument of an HTTP query with the same meaning; NULL: there is none, so the field is left
+       out */
     const char *name, *of_query;
 } names[] = {
     { "group", "group" },
@@ -145,10 +145,12 @@ static bool add_field(struct view_address *out, const char *name, char *value, s
     return good && known;
 }
 
-/* Callback that receives one field of the address, decoded; value "": the field has no value. Returns false to stop. */
+/* Callback that receives one field NAME=VALUE of a view's address, percent-decoded; value "": the field has no value. Returns false to
+   stop. */
 typedef bool field_fn(void *arg, const char *name, char *value);
 
-/* Calls `take` for each field of an address. Returns false if `take` returned false, after which no more fields are passed. */
+/* Calls `take` for each field NAME=VALUE of a view's address. Returns false if `take` returned false, after which no more fields are
+   passed. */
 static bool each_field(const char *address, field_fn *take, void *arg)
 {
     char *copy = mem_strdup(address), *rest = copy;
@@ -219,7 +221,7 @@ bool view_address_set(struct view_address *address, const char *arg)
         else
             address->args[left++] = address->args[i];
     address->count = left;
-    if (!strcmp(arg, "at=now")) /* the present, which has no argument */
+    if (!strcmp(arg, "at=now")) /* `at=now` means the present, for which queries have no argument */
         return true;
     if (left == VIEW_ADDRESS_ARGS)
         return false;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The fragment of the page's URL after `#`: splits it into fields, and translates them into arguments of view_query_parse(). Pure. */
+/* Address of a view: the part of the page's URL after `#`. Splits an address into fields, and translates them into arguments of
+   view_query_parse(). Pure. */
 #ifndef MESSAGE_VIEW_ADDRESS_H
 #define MESSAGE_VIEW_ADDRESS_H
 #include <stdbool.h>
@@ -14,14 +15,16 @@ struct view_address {
     size_t count;
 };
 
-/* Reads an address into arguments of a query. The selected tag and the tilt of the camera are dropped, because pictures do not show
-   them. Returns false with *error if a picture cannot show the address. Call view_address_finish() in any case. */
+/* Translates the address of a view into arguments of an HTTP query for a picture. The selected tag and the tilt of the camera are dropped,
+   because pictures do not show them. Returns false with *error if a picture cannot show the address. Call view_address_finish() in any
+   case. */
 bool view_address_read(struct view_address *out, const char *address, struct message_error *error);
-/* Adds an argument. Returns false if there is no room for more. */
+/* Adds the argument NAME=VALUE. Returns false if there is no room for more. */
 bool view_address_add(struct view_address *address, const char *name, const char *value);
 /* Returns whether an argument NAME=VALUE has this name. */
 bool view_address_is_named(const char *arg, const char *name);
-/* Returns whether the argument `given` of a query replaces the argument `name` of a view. Both may be followed by `=` and a value. */
+/* Returns whether the argument `given` of a query replaces the argument `name` of a saved view: it is the same argument, or it makes the
+   other one meaningless, as `fit` does with `camera`. Both texts may be followed by `=` and a value. */
 bool view_address_replaces(const char *given, const char *name);
 /* Adds an argument NAME=VALUE in place of those that it replaces. Returns false if there is no room for more. */
 bool view_address_set(struct view_address *address, const char *arg);

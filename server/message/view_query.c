@@ -64,7 +64,7 @@ static const struct {
     { "at", STRING },
 };
 
-/* Reads a number at the beginning of `text`; *end receives the rest. Returns NULL if there is no number. */
+/* Reads a number at the beginning of `text`; *end then points behind the number. Returns NULL if there is no number. */
 static json_t *number(const char *text, const char **end)
 {
     char *stop;
@@ -179,7 +179,7 @@ static json_t *strings(const char *text)
     return array;
 }
 
-/* Reads clipping planes: four numbers each, separated by semicolons. Returns NULL if the form is wrong. */
+/* Reads the planes that cut the model: four numbers each, separated by semicolons. Returns NULL if the text is anything else. */
 static json_t *planes(const char *text)
 {
     json_t *array = json_array();

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes a view as a query. Values that equal the plant's defaults are written too, since the defaults may change later. */
+/* Writes a view as the arguments of an HTTP query. Values that equal the plant's defaults are written too, since the defaults may change
+   later. */
 #include "message/view_query_write.h"
 
 #include <math.h>
@@ -25,7 +26,8 @@ static void add_numbers(struct text *text, const double *values, size_t count)
         add_number(text, i > 0 ? "," : "", values[i]);
 }
 
-/* Adds the argument NAME=TEXT, and empties the text buffer for the next argument. Returns false if there is no room. */
+/* Adds the argument NAME=TEXT, where `text` holds TEXT, and empties `text` for the next argument. Returns false if `out` has no room for
+   more. */
 static bool flush(struct view_address *out, const char *name, struct text *text)
 {
     bool good = view_address_add(out, name, text->length > 0 ? text->at : "");
@@ -51,7 +53,7 @@ static bool put_numbers(struct view_address *out, const char *name, const double
     return good;
 }
 
-/* Adds a list of numbers as an argument, or `none` if the list is empty. */
+/* Adds an argument whose value is a list of numbers, or `none` if the list is empty. */
 static bool put_list(struct view_address *out, const char *name, const double *values, int count)
 {
     return count > 0 ? put_numbers(out, name, values, (size_t)count) : view_address_add(out, name, "none");

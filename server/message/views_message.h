@@ -6,7 +6,7 @@
 #include "message/message.h"
 #include "views/short_links.h"
 
-/* save_view_parse() and its siblings parse the messages into out->view_edit. They return false with *error saying what is wrong. */
+/* save_view_parse() and the functions below parse the messages into out->view_edit. They return false with *error saying what is wrong. */
 bool save_view_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool remove_view_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool share_view_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
@@ -15,7 +15,7 @@ char *view_edit_do(struct named_views *views, const struct message *message, con
 /* Shares a view by a short link. time_us: UTC. added: set to the id of the link if it is new, else to "". Returns the answer; free with
    mem_free(). */
 char *share_view_do(struct short_links *links, const struct message *message, int64_t time_us, char added[SHORT_LINK_ID_BYTES]);
-/* The part of the walls that a client's token allows the client to see. */
+/* The part of the plant's walls of displays that a client's token allows the client to see. */
 struct walls_reader {
     /* wall and display to which a paired device is limited: it may see nothing else; NULL: the client may see all walls */
     const char *wall;

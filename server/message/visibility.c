@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts between JSON and struct visibility, which says which assets of the plant are shown. */
+/* Converts between JSON and struct visibility, which says which assets are hidden, isolated or ghosted, and how the model is cut. */
 #include "message/visibility.h"
 
 #include <math.h>

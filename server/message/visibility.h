@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Members of messages about hidden, isolated and ghosted assets, and about clipping. Pure. */
+/* Members of JSON messages that hide, isolate or ghost assets, or cut the model. Pure. */
 #ifndef MESSAGE_VISIBILITY_H
 #define MESSAGE_VISIBILITY_H
 #include "message/message.h"
 
 /* Reads `hidden`, `isolate`, `ghost` and `clip` into the change. Returns false with *error naming the wrong member. */
 bool visibility_parse(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error);
-/* Applies a change of hidden, isolated and ghosted assets and of clipping to a view. */
+/* Applies a change to a view's hidden, isolated and ghosted assets and to the planes that cut the model. */
 void visibility_apply(const struct params_change *change, struct visibility *visibility);
-/* Adds the members `hidden`, `isolate`, `ghost` and `clip` to an object. */
+/* Adds the members `hidden`, `isolate`, `ghost` and `clip` to the JSON object `into`. */
 void visibility_print(const struct plant *plant, const struct visibility *visibility, json_t *into);
 
 #endif

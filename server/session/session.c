@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One client's session: acts on its messages, ticks and limits. */
+/* Acts on one client's messages, does its timed work and applies its limits. */
 #include "session/session_impl.h"
 #include "session/view/resume.h"
 #include "session/view/view_token.h"
@@ -113,8 +113,8 @@ static bool on_resize(struct session *session, const struct message *message, st
     if (session_is_tile(session))
         session_tile_fit(session, &session->tile.place, message->width_px, message->height_px, &session->view, &session->tile.layout);
     session_scope_fit(session, &session->view);
-    /* a client that shows a view of the plant file gets that view again at its new size: if the file states no camera for it, the camera
-       depends on the size */
+    /* a view of the plant file is set again after the picture changed its size, because the camera depends on the size if the file states
+       none */
     if (session->scope.named[0] && session->identity.holder.views[0])
         return session_look(session, session->scope.named, &session->view, error);
     if (message->pixel_ratio > 0)
@@ -134,7 +134,8 @@ static bool on_ack(struct session *session, const struct message *message, int64
     return false;
 }
 
-/* Answers `fit` with a camera. The view does not move: the client chooses its camera itself. */
+/* Answers the message `fit` with a camera that shows the requested object as a whole. The session's view does not change: the client sends
+   that camera itself. */
 static void on_fit(struct session *session, const struct message *message)
 {
     struct camera camera = session->view.camera;
@@ -229,7 +230,8 @@ static void on_note(struct session *session, const struct message *message, int6
 {
     const struct session_context *context = session->context;
     const struct kept_action action = session_kept_begin(session);
-    char *what = session_note_what(session, message); /* before the note ends and its author may be forgotten */
+    char *what = session_note_what(session, message); /* describes the note first: note_do() may remove it, and then its author is not known
+                                                         any more */
     char *answer = note_do(context->services->notes, context->plant, message, session_who(session),
                            session->identity.role >= ROLE_ENGINEER, now_utc_ns / 1000);
     session_kept_reply(session, &action, "note", what, answer);
@@ -365,8 +367,8 @@ void session_too_fast(struct session *session, int64_t count, const char *whose)
     session_reply_error(session, &error);
 }
 
-/* Starts a new second of the message rate. Messages that were read beyond the limit of the last second count against the new one. most:
-   limit per second. */
+/* Starts a new second for the limit on messages of a client. Messages that were read beyond the limit of the last second count against the
+   new one. most: messages allowed per second. */
 static void begin_second(struct message_rate *rate, int64_t most, int64_t now_ns)
 {
     int64_t seconds = (now_ns - rate->begin_ns) / NS_PER_S, allowed = seconds * most;
@@ -399,8 +401,8 @@ static bool parse(const struct session *session, const char *text, size_t count,
     struct message_error other;
     if (message_parse(known, text, count, message, error))
         return true;
-    /* hello: its names are looked up in the whole plant, because its token is not checked yet; afterwards the token's role decides what the
-       client may see */
+    /* the first message, hello, may name anything in the plant, because its token is not checked yet; later messages may name only what the
+       token's role may see */
     return known != plant && !session->hello && message_parse(plant, text, count, message, &other) && message->hello.token[0];
 }
 
@@ -452,7 +454,7 @@ static void tell_token(struct session *session, int64_t now_ns)
     mem_free(token);
 }
 
-/* Returns whether the client still has to get a picture: one is wanted, requested, in flight or ready to send. */
+/* Returns whether a newer picture is due to the client: one is wanted, requested, in flight or ready to send. */
 static bool is_owed(const struct session *session)
 {
     const struct frame_demand *demand = &session->demand;

@@ -18,8 +18,8 @@
 /* Makes the session of a new connection. Never NULL. */
 struct session *session_create(const struct session_context *context, uint64_t id, int64_t now_ns);
 void session_destroy(struct session **session); /* destroys the session and sets *session to NULL; accepts a pointer to NULL */
-/* Tells the session who connected. Copies `client`; client->share must outlive the session. A session without an introduction has all
-   rights. After the introduction the first frame waits for session_begin(), for a second at most. */
+/* Tells the session who connected. Copies `client`; client->share must outlive the session. If this function is not called, the session has
+   all rights. If it is called, the first frame waits for session_begin(), for a second at most. */
 void session_introduce(struct session *session, const struct session_client *client);
 /* Notes that the session's connection is lost; call it before session_destroy(). Returns the view's pixels to the admission budget and
    tells the leader. keep: keep the view for the client's return. */
@@ -44,8 +44,8 @@ bool session_left_alone(const struct session *session, int64_t now_ns, struct me
 /* Closes the session if its token was revoked or has expired, or if its user was inactive for too long; otherwise updates the session's
    role from the token. */
 void session_check_token(struct session *session, int64_t now_ns, int64_t now_utc_ns);
-/* Returns the pacer's state. A client that acknowledges nothing is first sent no more frames (PACER_STALLS), then disconnected
-   (PACER_DEAD). */
+/* Returns whether frames reach the client (pacer.h). A client that acknowledges nothing is first sent no more frames (PACER_STALLS), then
+   disconnected (PACER_DEAD). */
 enum pacer_state session_state(const struct session *session, int64_t now_ns);
 
 /* --- plant reload ---------------------------------------------------------------------------------------------------- */
@@ -56,7 +56,7 @@ char *session_carry(struct session *session);
 /* Switches to the plant that the context now has. carried: the view's parameters from session_carry(), by names; names that the new plant
    lacks are skipped. */
 void session_take_plant(struct session *session, const char *carried);
-/* Writes into *out the view that the session will have in the plant of another context. */
+/* Writes into *out the view that the session will have after a reload to the plant of `context`. */
 void session_view_in(const struct session *session, const struct session_context *context, struct view *out);
 
 /* --- input ------------------------------------------------------------------------------------------------------------ */
@@ -68,7 +68,8 @@ void session_on_oversize(struct session *session, size_t count, int64_t now_ns);
 /* Tells the client that it sent `count` messages, too many for one second; the event loop reads nothing more from it until this second is
    over. whose: whether the limit is the client's ("") or its address's ("of this address "). */
 void session_too_fast(struct session *session, int64_t count, const char *whose);
-/* Does the session's timed work. Call it about every 100 ms, or once a second while session_rests() is true for all sessions. */
+/* Does the session's timed work, such as playback and the choice of the codec. Call it about every 100 ms, or once a second while
+   session_rests() is true for all sessions. */
 void session_on_tick(struct session *session, int64_t now_ns);
 /* Returns the monotonic time up to which the client's display is known to be current. A picture is owed to the client if its view or a
    reading has changed since the picture it shows. If none is owed, the time is when the client's last message arrived. Otherwise it is the
@@ -76,7 +77,7 @@ void session_on_tick(struct session *session, int64_t now_ns);
 int64_t session_fresh_ns(const struct session *session);
 /* Returns whether session_on_tick() has nothing to do within the next second: no frame is wanted or in flight, and no text is due. */
 bool session_rests(const struct session *session, int64_t now_ns);
-/* Notes that a reading shown in this session changed at data_ns (monotonic). */
+/* Notes that a reading that this session shows changed at data_ns (monotonic), so that a new frame is due. */
 void session_on_data(struct session *session, int64_t data_ns);
 /* Notes that connections to data sources were made or lost. */
 void session_on_links(struct session *session);
@@ -127,7 +128,7 @@ json_t *session_scope_views(const struct session *session);
 
 /* --- texts ------------------------------------------------------------------------------------------------------------ */
 
-/* Returns whether session_next_text() would return a text now. */
+/* Returns whether session_next_text() has a message to send now. */
 bool session_has_text(const struct session *session, int64_t now_ns);
 /* Returns whether the next text may list readings, so that the caller refreshes the context's snapshot first. */
 bool session_tags_due(const struct session *session, int64_t now_ns);
@@ -164,7 +165,7 @@ void session_on_leader(struct session *session, int64_t now_ns);
 /* Notes that the leader is about to be destroyed. The leader's last view stays on show until the client follows another session or
    nobody. */
 void session_leader_gone(struct session *session, int64_t now_ns);
-/* Copies the view of `session` to the session `heir`, which keeps its own picture size. */
+/* Copies the view of `session` to the session `heir`, which takes over the lead but keeps its own picture size. */
 void session_inherit(struct session *heir, const struct session *session);
 /* Replies that the lead cannot be handed over, because the requested heir does not follow this session. */
 void session_lead_nobody(struct session *session);
@@ -193,11 +194,11 @@ void session_tile_tell(struct session *session, const bool *there, const int64_t
 
 /* --- placing sensors -------------------------------------------------------------------------------------------------- */
 
-/* Shows the session's trial sensor positions again, with exact distances, once these were computed. */
+/* Redraws the sensors that the engineer moved on trial, once their exact distances along the surface are computed. */
 void session_on_placed(struct session *session, int64_t now_ns);
 /* Removes from the session the tag list that a reload is to activate, and returns it; the caller owns it. NULL: there is none. */
 struct tag_save *session_take_save(struct session *session);
-/* Queues the answer to the message `gaps` (sensor coverage). */
+/* Queues the answer to the client's message `gaps`, which asks how far each place is from a sensor. */
 void session_on_coverage(struct session *session, const struct sensor_coverage_answer *answer);
 
 #endif

@@ -35,7 +35,7 @@ struct session_context {
     bool (*hand_on)(void *arg, const struct session *session, const char *text);
     void *hand_on_arg;
     bool core_up; /* on a renderer (daemon that draws for a core): true: the core sends readings */
-    /* keys that sign view tokens (views that another daemon can restore); NULL: clients get no view tokens */
+    /* keys that sign view tokens, with which clients restore their view at another daemon; NULL: clients get no view tokens */
     const struct view_token_keys *token_keys;
     const bool *links_up;                     /* connection state of each data source, by source index */
     bool imports;                             /* engineers may import plants */
@@ -45,7 +45,7 @@ struct session_context {
     /* monotonic time until which some session's camera counts as moving; refined frames of other sessions wait until then, because they
        would make its pictures stutter */
     int64_t moving_until_ns;
-    bool overloaded;  /* true: the render thread is too slow to draw refined frames for all sessions after each change of readings */
+    bool overloaded;  /* true: drawing is too slow to send all sessions a refined frame after each change of readings */
     unsigned codecs;  /* bit mask of the codecs that work here (1 << enum wire_codec); 0: JPEG and PNG */
     double cpu_used;  /* busy share of all processors of the machine, 0..1 */
     const char *node; /* this daemon's name behind a load balancer; NULL: it runs alone */
@@ -56,14 +56,15 @@ struct session_context {
     int64_t lock_ns;                       /* monotonic duration without user activity after which the user must sign in again; 0: never */
     struct login_throttle *login_throttle; /* counter of wrong tokens in `hello` messages, by address; NULL: not counted */
     struct audit *audit;                   /* writer of the audit trail; NULL: nothing is recorded */
-    struct file_writer *file_writer;       /* writes views, notes, walls, pairings and loop checks; NULL: they are written at once */
+    struct file_writer *file_writer;       /* background writer of views, notes, walls, pairings and loop checks; NULL: these are written at
+                                              once */
     /* list of answers that wait for the disk, shared by all sessions; NULL: session_destroy() drops such answers */
     struct kept_answers *kept_answers;
     struct resumes *resumes;           /* changed by hello */
-    struct admission *admission;       /* admission budget; its pixel counts are changed by hello, resize and visible */
+    struct admission *admission;       /* shared limit on the pixels of all sessions; hello, resize and visible change its counts */
     struct tag_text_cache *tag_texts;  /* cache of `tags` messages; NULL: no caching */
-    /* Cached parts of `welcome`, by enum audience_lists: for clients with names, for open viewers (without a token), for tokens narrowed to
-       views. NULL: no caching. */
+    /* By enum audience_lists: cached JSON lists of groups, assets and so on for `welcome`. Clients with names, open viewers (without a
+       token) and tokens narrowed to views get different lists. NULL: no caching. */
     char **lists_said;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides which frames a session wants next, and what to do with those that arrive. */
+/* Decides which frames a session requests next, and what to do with frames that arrive from the render service. */
 #include <math.h>
 
 #include "base/clock.h"
@@ -10,17 +10,18 @@
 static const int64_t STILL_NS = 200 * NS_PER_MS; /* time without movement of the camera after which a refined frame is due */
 /* time without a requested preview after which a refined frame is due while the render thread is overloaded or the network is slow */
 static const int64_t LOADED_STILL_NS = 1000 * NS_PER_MS;
-/* age of the last refined frame at which another is due while the render thread is overloaded or the network is slow, even if previews
-   continue */
+/* age of the last refined frame at which another one is requested although previews continue; applies while the render thread is overloaded
+   or the network is slow */
 static const int64_t LOADED_SHARE_NS = 3 * NS_PER_S;
 /* maximum time for which a refined frame is postponed while other sessions' cameras move */
 static const int64_t MAX_POSTPONE_NS = 10 * NS_PER_S;
-/* if the expected transfer of a refined frame takes longer, it is sent in two stages: a draft, then full quality */
+/* limit on the expected transfer time of a refined frame; above it the frame is sent twice: first a draft of low quality, then full
+   quality */
 static const int64_t SLOW_STILL_NS = 500 * NS_PER_MS;
 static const int64_t FULL_QUALITY_DELAY_NS = 1000 * NS_PER_MS; /* delay before the second stage */
 /* maximum time for which the first frame waits for the first bandwidth measurement */
 static const int64_t MAX_START_WAIT_NS = 1000 * NS_PER_MS;
-/* if the view has changed, and sending the rest of a refined frame takes longer, the rest is not sent */
+/* limit on the time to send the rest of a refined frame whose view has changed; if it would take longer, the rest is not sent */
 static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;
 static const int64_t RETRY_DELAY_NS = 2000 * NS_PER_MS; /* delay before a frame that failed for lack of memory is requested again */
 /* assumed ratio between the sizes of a refined frame and of a preview, used until a refined frame was sent */
@@ -31,7 +32,8 @@ static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = t
 static const int64_t CAMERA_INTERVAL_NS = 120 * NS_PER_MS;
 enum { SMALL_PX = 128 }; /* shortest side in pixels to which the quality ladder may shrink a picture */
 
-/* Handles a frame that could not be drawn. A session that already shows a frame keeps it; a new session would see nothing and is closed. */
+/* Handles the answer that the requested frame could not be drawn. A session that already shows a frame keeps it; a new session would see
+   nothing and is closed. */
 static void on_failure(struct session *session, const struct frame_request *request)
 {
     struct message_error error = { 0 };
@@ -98,7 +100,8 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded)
     note_refined(session, &encoded->request);
     if (session_is_tile(session))
         session_tile_came(session, &encoded->request, encoded->made_ns);
-    if (encoded_frame_stands_alone(encoded)) /* drops the frames that are ready but not sent yet, because this frame decodes without them */
+    if (encoded_frame_stands_alone(encoded)) /* drops the frames that are ready but not sent yet, because the new frame decodes without them
+                                                and replaces them */
         session_drop_ready(session);
     struct encoded_frame **last = &session->delivery.ready;
     while (*last)
@@ -142,7 +145,8 @@ static bool refine_due(const struct session *session, int64_t now_ns)
     return session->demand.refined == REFINED_DRAFT ? is_calm(session, now_ns) : now_ns - session->demand.input_ns >= STILL_NS;
 }
 
-/* Returns whether the render thread can refine a frame for each change of readings in all sessions, and no camera moves. */
+/* Returns whether the render thread has time for a refined frame of every session after each change of readings: no camera moves, and it is
+   not overloaded. */
 static bool all_can_be_refined(const struct session *session, int64_t now_ns)
 {
     return !session->context->overloaded && now_ns >= session->context->moving_until_ns;
@@ -175,9 +179,9 @@ static void make_still(const struct session *session, struct frame_request *requ
     request->quality = request->draft ? DRAFT : STILL;
 }
 
-/* Requests a refined frame for changed readings. or_moving: the render service draws a preview instead, unless refining is as quick; set
-   while the render thread cannot refine the frames of all sessions, or a frame is requested already. A refined frame can take a minute, for
-   example while lighting is baked; render_thread_next.c shows a preview once readings have waited too long. */
+/* Requests a refined frame for changed readings. Sets or_moving, with which the render service draws a preview instead, unless refining is
+   as quick; set while the render thread cannot refine the frames of all sessions, or a frame is requested already. A refined frame can take
+   a minute, for example while lighting is baked; render_thread_next.c shows a preview once readings have waited too long. */
 static void make_refreshed(const struct session *session, int64_t now_ns, struct frame_request *request)
 {
     const struct quality_ladder *ladder = &session->delivery.pacer.ladder;
@@ -187,8 +191,8 @@ static void make_refreshed(const struct session *session, int64_t now_ns, struct
     request->moving_quality.quality = quality_ladder_rung(ladder, quality_ladder_step(ladder, session->delivery.common_step)).quality;
 }
 
-/* Returns whether the camera moves slowly enough that its next frame soon shows the new readings, so that they need no frame of their
-   own. */
+/* Returns whether a moving camera will soon need a frame anyway, which shows the new readings, too, so that the readings need no frame of
+   their own. */
 static bool next_camera_brings(const struct session *session, int64_t now_ns)
 {
     return session->demand.refined == REFINED_NOT && now_ns - session->demand.input_ns < CAMERA_INTERVAL_NS;
@@ -318,7 +322,8 @@ bool session_next_request(const struct session *session, int64_t now_ns, struct 
     return true;
 }
 
-/* Makes the request lossless and adds the record of its inputs, if the client wants such frames signed. */
+/* If the client wants signed frames, makes this frame lossless and requests the record of what it was drawn from
+   (render/frame_record.h). */
 static void make_signed(const struct session *session, struct frame_request *request)
 {
     enum signed_frames frames = session->codec.signed_frames;
@@ -337,7 +342,7 @@ bool session_wants(const struct session *session, int64_t now_ns, struct frame_r
 {
     *request = (struct frame_request){ .view = session_shown(session), .codec = session->codec.current, .asked_ns = now_ns };
     request->account = session->room.share ? session->room.share->account : 0;
-    /* a past instant: its readings never change, so no time is given up to which the client knows them */
+    /* readings of a past instant never change, so read_ns is 0 then: no later change can require another request */
     request->read_ns = request->view.at_us ? 0 : session->context->changed_ns;
     request->view.camera_seq = session->view.camera_seq;
     request->view.params_seq = session->view.params_seq;
@@ -374,7 +379,7 @@ bool session_gets_depth(const struct session *session)
     return session->asks_depth && !session->context->plant->display.no_reprojection && !session_is_tile(session);
 }
 
-/* Notes that the client will have the depth grids of this frame. Returns false if the client has them already. */
+/* Notes that the client will have the depth grid that belongs to this frame. Returns false if it was sent before. */
 static bool take_depth(struct session *session, const struct frame *frame)
 {
     struct depth_grid **sent = session->delivery.depth;
@@ -433,8 +438,8 @@ bool session_gives_up(const struct session *session, const struct encoded_frame 
     return moved && pacer_is_slower(&session->delivery.pacer, (double)bytes_left, GIVE_UP_NS);
 }
 
-/* A refined frame was cut short, but the render service counts it as shown: so the next frame must be drawn even if its content is the
-   same. */
+/* Requests the frame again that was cut short. The render service counts that frame as shown, so the new one must be drawn even if its
+   content is the same. */
 void session_gave_up(struct session *session)
 {
     pacer_gave_up(&session->delivery.pacer);

@@ -7,7 +7,7 @@
 #include "session/view/resume.h"
 #include "session/view/view_token.h"
 
-/* Refuses a client for which there is no capacity now, and closes its connection. Returns false with *error. */
+/* Refuses a client because the server has no capacity for another session, and closes its connection. Returns false with *error. */
 static bool refuse_full(struct session *session, enum refusal_code why, int retry_after_s, struct message_error *error)
 {
     message_refuse(error, "full", NULL, why);

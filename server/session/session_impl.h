@@ -9,7 +9,7 @@
 
 /* Queues a text to be sent to the client; takes ownership of the text (mem_free). */
 void session_reply(struct session *session, char *text);
-/* Counts an error and queues its text for the client. */
+/* Counts an error in the session's statistics, and queues its message for the client. */
 void session_reply_error(struct session *session, const struct message_error *error);
 /* Drops the frames that are encoded and not sent yet. */
 void session_drop_ready(struct session *session);
@@ -77,9 +77,9 @@ bool session_look(struct session *session, const char *id, struct view *view, st
 /* Sets the view of this id, for a token that permits only some views; id "": shows the first view that the token allows. Closes the
    session if the view cannot be set. */
 bool session_scope_view(struct session *session, const char *id, struct view *view, struct message_error *error);
-/* Shrinks the view of a paired display that shows no picture of the plant. */
+/* Gives the smallest allowed picture size to a paired display that shows only trends or alarms, no picture of the plant. */
 void session_scope_fit(const struct session *session, struct view *view);
-/* Takes ownership of a text to be sent (mem_free), and returns the part that the client may read. */
+/* Takes ownership of a text to be sent (mem_free), and returns it without the list items that a narrowed token may not see. */
 char *session_scope_text(const struct session *session, char *text);
 
 /* --- session_life.c ---------------------------------------------------------------------------------------------------- */
@@ -93,7 +93,8 @@ void session_forget_depth(struct session *session);
 
 /* --- session_frames.c ------------------------------------------------------------------------------------------------- */
 
-/* Returns whether drawing may begin: the session no longer waits for the first bandwidth measurement or for the readings of an instant. */
+/* Returns whether drawing may begin: the session no longer waits for the first bandwidth measurement or for the recorded readings of a past
+   instant. */
 bool session_begun(const struct session *session, int64_t now_ns);
 /* Returns whether a frame is wanted now, with the request in *request. Ignores how many frames are in flight. */
 bool session_wants(const struct session *session, int64_t now_ns, struct frame_request *request);
@@ -101,7 +102,8 @@ bool session_wants(const struct session *session, int64_t now_ns, struct frame_r
 void session_pause(struct session *session);
 /* Notes that the frame delivery.pacer.acked is on the client's screen. */
 void session_on_shown(struct session *session);
-/* Stores the client's list of codecs and uses the first that this server can encode. Returns false with *error if there is none. */
+/* Stores the list of codecs that the client decodes, and uses the first one that this server can encode. Returns false with *error if there
+   is none. */
 bool session_choose_codec(struct session *session, const struct codec_list *codecs, struct message_error *error);
 /* Makes the server sign the session's frames from now on, as the message asks. Returns false with *error if this server cannot sign. */
 bool session_choose_signed(struct session *session, enum signed_frames frames, struct message_error *error);
@@ -110,7 +112,8 @@ void session_choose_again(struct session *session, int64_t now_ns);
 
 /* --- session_admission.c ---------------------------------------------------------------------------------------------- */
 
-/* Reserves pixels for a view of that size in place of the last one. Returns false with *error if that exceeds a limit. */
+/* Reserves a view of that size in the admission budget, in place of the session's last size. Returns false with *error if that exceeds a
+   limit. */
 bool session_reserve_pixels(struct session *session, int width_px, int height_px, struct message_error *error);
 /* Returns the pixels that the session has reserved to the admission budget. */
 void session_release_pixels(struct session *session);
@@ -129,11 +132,11 @@ bool session_on_time(struct session *session, const struct time_request *request
                      struct message_error *error);
 /* Makes a new session start at an instant of the past. */
 void session_time_begin(struct session *session, int64_t at_us, double speed);
-/* Releases the session's reference to the snapshot of a past instant. */
+/* Releases the recorded readings of the past instant that the session shows. */
 void session_time_end(struct session *session);
 /* Returns to the present immediately, whatever instant is being loaded. */
 void session_time_leave(struct session *session);
-/* Copies the session's instant and playback to the heir. */
+/* Copies the past instant and the playback of `session` to the session that takes over its lead. */
 void session_time_inherit(struct session *heir, const struct session *session);
 /* Queues the message that tells the client which instant it is shown. */
 void session_tell_time(struct session *session);
@@ -148,7 +151,8 @@ void session_ask_lead(struct session *session, const struct message *message);
 
 /* Returns a description of the view as text, by names of tags and assets, for session_look_again(); the caller frees it with mem_free. */
 char *session_carried_text(const struct session_context *context, const struct view *view);
-/* Restores a view after a plant reload: size and camera from `before`, everything else from `carried` as far as the new plant has it. */
+/* Restores a view after a plant reload: size and camera from `before`, everything else from the text `carried`, except what the new plant
+   does not have. */
 void session_look_again(struct session *session, const struct view *before, const char *carried);
 
 /* --- tile_session.c --------------------------------------------------------------------------------------------------- */
@@ -173,7 +177,7 @@ bool session_on_place(struct session *session, const struct message *message, in
 bool session_ask_coverage(struct session *session, const struct message *message, struct message_error *error);
 bool session_save_tags(struct session *session, const struct message *message, struct message_error *error);
 bool session_check_loop(struct session *session, const struct message *message, struct message_error *error);
-/* Drops the sensors moved on trial; afterwards the session's placing state has no pointer to the plant. */
+/* Forgets the sensors that the engineer moved on trial; afterwards session->placement has no pointer into the plant. */
 void session_place_leave(struct session *session);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Holds back answers until their action is on disk. Only the answer waits, not the event loop. */
+/* Holds back the answer to a user's action until the journal, the saved file and the audit trail have that action on disk. The event loop
+   does not wait. */
 #include <errno.h>
 #include <jansson.h>
 #include <string.h>
@@ -42,7 +43,8 @@ static int disk_state(const struct session *session, struct kept_answer *kept)
     return journal ? journal : file;
 }
 
-/* Changes an answer that says that the action is on disk, so that it says the opposite. Returns false if the answer does not say that. */
+/* Changes an answer that reports an action as saved, so that it reports the error. Returns false if the answer says nothing about
+   saving. */
 static bool say_not_kept(json_t *answer, int error)
 {
     json_t *done = json_object_get(answer, "done");
@@ -77,7 +79,7 @@ static void answer_now(struct session *session, struct kept_answer *kept, int di
 }
 
 /* Queues the answer if it is known whether its action is on disk, or immediately if `now` is true. Returns true if the answer was queued
-   and removed from the list; *at is then the next answer. */
+   and removed from the list; *at then points to the next waiting answer. */
 static bool try_to_answer(struct session *session, struct kept_answer **at, bool now)
 {
     struct kept_answer *kept = *at;

@@ -162,7 +162,7 @@ void session_take_plant(struct session *session, const char *carried)
     session->owed.loop_checks_sent = 0;
     session->owed.views_sent = session->owed.notes_sent = session->owed.walls_sent = session->owed.pointers_sent = 0;
     session->demand.refined = REFINED_NOT;
-    /* counts the outstanding requests as dropped, because the old plant's render service will not answer them any more */
+    /* counts the outstanding frame requests as dropped, because the old plant's render service will not answer them any more */
     while (session->delivery.pacer.asked > 0)
         pacer_dropped(&session->delivery.pacer);
     if (!session->hello)

@@ -58,7 +58,7 @@ struct session_close {
 /* The pixels that the session's view takes from the admission budget (session_admission.c). */
 struct session_room {
     struct address_share *share; /* admission figures of the client's address; NULL: the session has no address */
-    int64_t pixels; /* pixels counted for this session in the admission totals; 0: they were returned while the page was hidden */
+    int64_t pixels; /* pixels counted for this session in the admission totals; 0: none, for example while the page is hidden */
     int64_t hidden_ns, shown_ns; /* monotonic: when the page was last hidden; when the page was last shown again, 0: never */
 };
 
@@ -71,7 +71,7 @@ struct session_codec {
     bool unsigned_said; /* true: the client was told why its frames are unsigned; reset when a signed frame is sent */
 };
 
-/* Why the next frame is wanted, and how refined the shown picture is (session_frames.c). */
+/* Reasons to request the next frame, and the quality of the picture that is shown (session_frames.c). */
 struct frame_demand {
     /* reasons why a frame is wanted. input: the view changed; data: a reading changed; any: a frame must come even if its content is the
        same, and must decode without earlier frames */
@@ -79,7 +79,8 @@ struct frame_demand {
     int64_t input_ns;               /* monotonic time of the newest change of the view */
     int64_t data_ns;                /* monotonic time of the oldest changed reading for which no frame was requested */
     int64_t preview_ns, refined_ns; /* monotonic times when the newest preview, and the newest refined frame, was requested */
-    enum { REFINED_NOT, REFINED_DRAFT, REFINED_FULL } refined; /* quality of the best refined frame requested for the present view */
+    enum { REFINED_NOT, REFINED_DRAFT, REFINED_FULL } refined; /* quality of the best refined frame that was requested for the present
+                                                                  view */
     /* true: a refined frame is requested and has not arrived; the render thread draws it between other sessions' frames, which may take a
        minute */
     bool refining;
@@ -98,9 +99,10 @@ struct frame_delivery {
     uint64_t newest_number;          /* sequence number of the newest frame received from the render service */
     bool newest_refined;             /* the frame newest_number is refined */
     struct encoded_frame *ready;     /* frames to be sent next, oldest first; a frame that decodes on its own replaces all before it */
-    bool measured;                   /* pacer.acked is new (session_take_shown) */
+    bool measured;                   /* true: the client acknowledged frame pacer.acked, and session_take_shown() has not returned it yet */
     struct depth_grid *depth[2];     /* newest depth grids sent to the client, of a frame or of both halves of a split view; NULL: none */
-    int steps[QUALITY_LADDER_STEPS]; /* number of viewers of this view, this session included, at each step of the quality ladder */
+    int steps[QUALITY_LADDER_STEPS]; /* number of sessions that show this view, this session included, by the quality step that each
+                                        needs */
     int common_step;                 /* ladder step that all viewers share; negative: each viewer uses its own */
 };
 
@@ -120,14 +122,15 @@ struct session_following {
     uint64_t left;            /* number of a leader who has gone and whose last view is still shown; 0: none */
     struct view own_view;     /* the session's own view while it follows a leader */
     uint64_t heir_wanted;     /* number of the session to which the client wants to hand the lead; 0: the lead stays */
-    bool followers_changed;   /* true: the list of followers changed and must be sent */
+    bool followers_changed;   /* true: the list of followers changed and must be sent to the client */
     int64_t followers_ns;     /* monotonic time when the list of followers was last built */
     char *followers_text;     /* text that lists the followers, to be sent; NULL: none */
     uint32_t told_params_seq; /* params_seq of the leader's view in the last message sent to the client */
     int told_size_px[2];
 };
 
-/* The instant that the session shows (session_time.c). The shown instant itself is view.at_us with the readings in `historical`. */
+/* The past instant that the session shows, and playback (session_time.c). The shown instant itself is view.at_us with the readings in
+   `historical`. */
 struct travel {
     /* readings of the shown instant (a reference); NULL: the session shows the present */
     const struct historical_snapshot *historical;
@@ -145,14 +148,14 @@ struct owed_texts {
     bool welcome, params, following, tags_all, tags, status, time, loop_checks;
     uint32_t params_seq;    /* sequence number of the client's message that the next `params` answers */
     int64_t tags_ns;        /* monotonic time when tags were last sent */
-    uint32_t *tag_changes;  /* by tag: value of reading.changes that was last sent */
+    uint32_t *tag_changes;  /* by tag: change counter (reading.changes) of the reading that was last sent */
     bool alarms_sent;       /* true: `alarms` was sent at least once */
     uint64_t alarms_number; /* sequence number of the last change of alarms that was sent to the client */
     /* sequence numbers of the last changes sent to the client, one each for named views, notes, messages of desks to walls, and pointers */
     uint64_t views_sent, notes_sent, walls_sent, pointers_sent;
     int64_t notes_at_us;                /* instant for which notes were last sent, UTC microseconds; 0: the present */
     uint64_t loop_checks_sent;          /* sequence number of the newest loop check that was sent */
-    int64_t told_at_us;                 /* shown instant that the client was last told, UTC microseconds; 0: the present */
+    int64_t told_at_us;                 /* instant of the last `time` message that the client was sent, UTC microseconds; 0: the present */
     bool told_beginning;                /* true: the last `time` message included the beginning of recorded history */
     char *replies[SESSION_MAX_REPLIES]; /* answers to be sent, oldest first */
     int reply_count;
@@ -160,17 +163,17 @@ struct owed_texts {
 
 /* Sensors that an engineer moves on trial (session_place.c). */
 struct session_placement {
-    struct place_set *set; /* trial positions of this session; NULL: nothing was moved */
+    struct place_set *set; /* trial positions of the sensors that this session moved; NULL: none was moved */
     uint32_t seq;          /* sequence number of the newest `place` message of the client */
     struct tag_save *save; /* tag list with the engineer's changes, which waits to be saved (session_take_save); NULL: none */
 };
 
 struct session_pick { /* pick: a query for what is at a pixel */
-    bool pending;     /* true: `query` waits to be sent to the render service */
+    bool pending;     /* true: `query` was not sent to the render service yet */
     struct pick_query query;
 };
 
-/* A tile of one picture that spans many displays (tiles/tile_sync.h). */
+/* One display's part of a picture that spans a wall of displays (tiles/tile_sync.h). */
 enum { TILE_HELD = 8 };
 struct session_tile {
     struct wall_place place; /* the wall's display for which this tile is; display 0: the session is no tile */
@@ -186,9 +189,10 @@ struct session_tile {
     /* id of a picture of the wall in which this tile's content equals that of a frame still on its way to the client; 0: none */
     uint64_t unchanged;
     uint32_t presented_seq;
-    int64_t made_ns; /* time from a request to the encoded preview, smoothed, in nanoseconds; 0: not known */
+    int64_t made_ns; /* time from the request for a preview to the encoded frame, smoothed, in nanoseconds; 0: not known */
     int64_t late_us; /* UTC microseconds since when the tile is dropped from the wall; 0: it takes part */
-    /* out_ns: duration for which the tile is dropped; in_ns: monotonic time when it may be readmitted, or when it was readmitted last */
+    /* out_ns: time for which the tile is dropped. in_ns: monotonic time when it is readmitted at the earliest; while it takes part: when it
+       was readmitted last */
     int64_t out_ns, in_ns;
     char *told; /* last `tiles` message sent to the client; NULL: none */
 };
@@ -207,7 +211,8 @@ struct session_stats { /* counts of messages and errors, for the log and the met
 /* Restrictions of a narrowed token, which allows only some views or one display (session_scope.c). */
 struct session_scope {
     char named[NAMED_VIEW_ID_BYTES]; /* id of the plant file's view that is shown; "": none */
-    bool *tags; /* for a paired display without pictures: flags by tag, whether the display shows the tag; NULL: no restriction */
+    bool *tags; /* by tag: whether this paired display shows the tag; NULL: no restriction (the display shows pictures, or the session is no
+                   display) */
 };
 
 struct session {

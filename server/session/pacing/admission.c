@@ -94,7 +94,7 @@ enum refusal_code admission_refuses_pixels(const struct admission *admission, co
 
 /* --- whether the render thread can serve one more moving camera ------------------------------------------------------------ */
 
-/* Type of a function that returns one figure of the drawing statistics of an address; 0: the figure is not known. */
+/* Type of a function that returns one figure of the drawing statistics of a client address; 0: the figure is not known. */
 typedef int64_t of_share(const struct address_share *share);
 
 static int64_t cost_of(const struct address_share *share)
@@ -115,7 +115,8 @@ static int count_below(const struct admission *admission, of_share *of, int64_t 
     return below;
 }
 
-/* Returns the lower median of a figure over all addresses; a single address cannot shift it. 0: the figure is known of no address. */
+/* Returns the lower median of the figure `of` over all client addresses, so that no single address can shift the result. 0: the figure is
+   known for no address. */
 static int64_t usual(const struct admission *admission, of_share *of)
 {
     int64_t found = 0;
@@ -126,7 +127,7 @@ static int64_t usual(const struct admission *admission, of_share *of)
     return found;
 }
 
-struct moving_sessions { /* numbers of sessions whose camera moves */
+struct moving_sessions { /* numbers of sessions whose camera moves now */
     /* own: moving sessions of the address in question; all: moving sessions of all addresses; others: number of other addresses that have
        moving sessions */
     int own, all, others;
@@ -142,8 +143,8 @@ static struct moving_sessions count_crowd(const struct admission *admission, con
     return crowd;
 }
 
-/* Returns whether frame rates would fall below QUOTA_LEAST_FPS with one more moving session of the address `own`. Render time is shared
-   equally among addresses. */
+/* Returns whether frame rates would fall below QUOTA_LEAST_FPS if one more session of the client address `own` moved its camera. Render
+   time is shared equally among addresses. */
 static bool slows_too_far(const struct admission *admission, const struct address_share *own)
 {
     const struct admission_window *newest = &admission->windows[ADMISSION_WINDOWS - 1];

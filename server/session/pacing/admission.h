@@ -30,7 +30,7 @@ struct address_share {  /* use that one client address makes of the server; zero
 
 struct admission {
     const struct quotas *quotas;
-    /* figures of the last finished seconds, newest last; `now`: figures of the current second */
+    /* drawing statistics of the last ADMISSION_WINDOWS seconds, newest last; `now`: statistics of the current second */
     struct admission_window windows[ADMISSION_WINDOWS], now;
     int64_t begin_ns; /* monotonic start of `now` */
     /* content id of the last frame counted. Clients that share a frame report it one after the other; with this id it counts once */

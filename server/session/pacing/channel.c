@@ -5,7 +5,8 @@
 #include "base/clock.h"
 
 static const int64_t RTT_WINDOW_NS =
-    15 * NS_PER_S; /* length of a measuring window; a round trip counts in the window in which it was measured and in the next one */
+    15 * NS_PER_S; /* length of a window for which the minimum round-trip time is kept; a round trip counts in the window in which it was
+                      measured and in the next one */
 /* upper limit of a measured round trip; a longer one is caused by a queue somewhere, not by the network's delay */
 static const int64_t MAX_RTT_NS = 1 * NS_PER_S;
 /* lower limit of a measured transfer time; a faster transfer only shows that bandwidth is plentiful */
@@ -15,7 +16,7 @@ static const int64_t MIN_TRANSFER_NS = NS_PER_MS / 4;
 static const int64_t WAITED_NS = 1 * NS_PER_MS;
 /* size in bytes of a frame below which its measurement may only raise the bandwidth estimate, not lower it */
 static const size_t SMALL_BYTES = 4096;
-static const double SAMPLE_WEIGHT = 0.25; /* weight of a new sample in smoothed values */
+static const double SAMPLE_WEIGHT = 0.25; /* weight of a new measurement in smoothed values, 0..1 */
 
 static void smooth(double *value, double sample)
 {

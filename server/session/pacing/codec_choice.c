@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Chooses between H.264 (fewer bytes) and JPEG (less processor time). */
+/* Chooses between the codecs H.264 (fewer bytes) and JPEG (less processor time) for one client. */
 #include "session/pacing/codec_choice.h"
 
 #include <inttypes.h>

@@ -36,8 +36,8 @@ static int most_frames(const struct pacer *pacer)
     return most > PACER_MOST ? PACER_MOST : (int)most;
 }
 
-/* Returns whether one more frame may be requested without exceeding the bytes that may be in flight. Frames that are requested but not made
-   yet count with the expected size of a preview at the present step of the quality ladder. */
+/* Returns whether one more frame may be requested without exceeding the limit on unacknowledged bytes (AHEAD_NS). Frames that are requested
+   but not made yet count with the expected size of a preview at the present step of the quality ladder. */
 static bool fits_window(const struct pacer *pacer)
 {
     int64_t window_ns = AHEAD_NS + channel_rtt_ns(&pacer->channel);

@@ -10,7 +10,8 @@
 enum { PACER_LEAST = 2, PACER_MOST = 8 };
 
 struct pacer_note {    /* facts about a sent frame that are needed when the frame is acknowledged */
-    bool moving, full; /* moving: the frame is a preview, at ladder step `step`; full: the frame is refined, in full quality */
+    bool moving, full; /* moving: the frame is a preview, drawn at step `step` of the quality ladder; full: the frame is refined, in full
+                          quality */
     int step;
     bool of_data; /* true: the frame was made because a reading changed; false: because of an input */
     /* input_ns: monotonic time of the input or of the changed reading; made_ns: monotonic time when the frame was encoded */
@@ -55,9 +56,9 @@ uint32_t pacer_sent(struct pacer *pacer, size_t bytes, const struct pacer_note *
 void pacer_wrote(struct pacer *pacer, bool all, int64_t now_ns);
 /* Notes that the newest frame was cut short: the client will not acknowledge it. */
 void pacer_gave_up(struct pacer *pacer);
-/* Records the acknowledgement of frame seq, which covers all earlier frames too, and updates channel and ladder. decode_ns: decoding time
-   reported by the client; negative: not reported. Returns PACER_ACK_NEW, PACER_ACK_OLD if the frame was acknowledged before, or
-   PACER_ACK_NEVER_SENT. */
+/* Records the acknowledgement of frame seq, which covers all earlier frames too, and updates the channel estimate and the quality ladder.
+   decode_ns: decoding time reported by the client; negative: not reported. Returns PACER_ACK_NEW, PACER_ACK_OLD if the frame was
+   acknowledged before, or PACER_ACK_NEVER_SENT. */
 enum pacer_ack pacer_acked(struct pacer *pacer, uint32_t seq, int64_t decode_ns, int64_t now_ns);
 /* Returns PACER_FLOWS; PACER_STALLS if, for PACER_STALL_S, the client acknowledged no frame and its socket accepted no bytes (send no
    more); or PACER_DEAD if it should be disconnected. */

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Moves one client along the steps of quality and of picture size. */
+/* Chooses the encoding quality and the picture size of one client's previews from the client's bandwidth and speed. */
 #include "session/pacing/quality_ladder.h"
 
 #include "base/clock.h"
 
 /* transfer time of a frame above which the frame is too large for the network, so the ladder steps down */
 static const int64_t SLOW_NS = 80 * NS_PER_MS;
-/* expected transfer time of a frame of the next better step below which the ladder steps up */
+/* expected transfer time of a frame below which the ladder steps up to the quality of that frame */
 static const int64_t FAST_NS = 40 * NS_PER_MS;
 static const int64_t MIN_UP_DELAY_NS = 1 * NS_PER_S, MAX_UP_DELAY_NS = 30 * NS_PER_S;
 static const int64_t LASTED_NS = 5 * NS_PER_S; /* time without a step down after which the last step up counts as right */
@@ -128,7 +128,7 @@ static void follow_network(struct quality_ladder *ladder, const struct channel *
     } else if (up >= ladder->step || channel->lag_ns > SLOW_NS) {
         ladder->good_since_ns = 0;
     } else if (!ladder->known) {
-        go_up(ladder, up, now_ns); /* steps up without delay, because the initial step was only a guess */
+        go_up(ladder, up, now_ns); /* steps up without delay, because the initial quality step was only a guess */
     } else if (!ladder->good_since_ns) {
         ladder->good_since_ns = now_ns;
     } else if (now_ns - ladder->good_since_ns >= ladder->patience_ns) {

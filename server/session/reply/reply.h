@@ -6,7 +6,8 @@
 #include "session/session_context.h"
 
 char *reply_welcome_text(const struct session *session, int64_t now_utc_ns);
-/* Lists the parameters of a view. open: the text is for clients without a token; names of tags and baselines are left out. */
+/* Returns the parameters of a view as a JSON message: quantity, colour range, hidden assets and so on. open: the text is for clients
+   without a token; names of tags and baselines are left out. */
 char *reply_params_text(const struct session_context *context, const struct view *view, uint32_t seq, bool open);
 /* Lists the followers of a session, at most REPLY_FOLLOWERS. open: the text is for clients without a token; names of users are left out. */
 enum { REPLY_FOLLOWERS = 256 };
@@ -28,12 +29,12 @@ char *reply_tiles_text(const struct wall *wall, const struct wall_place *place, 
                        const int64_t *late_us, bool leads);
 /* Lists the named views. id: the view whose earlier versions are listed too; NULL: no earlier versions. */
 char *reply_views_text(const struct session_context *context, const char *id);
-/* Adds an error to the JSON of a named view whose address is not valid in this plant, for example because it names an unknown tag: member
-   `wrong` has the text, `refusal` the code. */
+/* Adds an error to the JSON of a named view whose address is not valid in this plant, for example because it names an unknown tag: the
+   member `wrong` has the error's text, `refusal` its code. */
 void reply_add_wrong(const struct session_context *context, json_t *view, const char *address);
 /* Answers the message `fit`. */
 char *reply_camera_text(const struct camera *camera, uint32_t seq);
-/* Answers a pick (what is at a pixel). query.seq 0: the answer has no member `seq`. */
+/* Returns the answer to a pick (a click on the picture): what is at that pixel. query.seq 0: the answer has no member `seq`. */
 char *reply_picked_text(const struct plant *plant, const struct pick_answer *answer);
 char *reply_error_text(const struct message_error *error);
 char *reply_api_plant_text(const struct session_context *context);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Helpers that the files of server texts share. Private to reply*.c. Thread: the event loop. */
+/* Helpers of the files that build the server's JSON messages. Private to reply*.c. Thread: the event loop. */
 #ifndef SESSION_REPLY_REPLY_IMPL_H
 #define SESSION_REPLY_REPLY_IMPL_H
 #include <jansson.h>
@@ -22,7 +22,7 @@ const char *reply_environment_name(const struct plant *plant, int environment);
 
 /* --- reply_plant.c --- */
 
-/* Returns the constant properties of a tag as a new JSON object. */
+/* Returns a new JSON object with what does not change about a tag: name, description, unit, source, group, asset and limits. */
 json_t *reply_tag(const struct plant *plant, const struct plant_tag *t);
 
 #endif

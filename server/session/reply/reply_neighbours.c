@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lists a group's sensors on all assets, each with the estimate from its neighbouring sensors, as JSON. */
+/* Builds the JSON answer of /api/v1/neighbours: a group's sensors on all assets, each with the estimate from its neighbouring sensors. */
 #include "session/reply/reply_neighbours.h"
 
 #include <math.h>

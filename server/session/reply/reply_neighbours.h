@@ -6,7 +6,7 @@
 #include "field/neighbours.h"
 #include "session/session_context.h"
 
-struct neighbour_text_cache { /* cache for neighbour_text(); zero-initialise; use one cache for one plant only */
+struct neighbour_text_cache { /* cache for neighbour_text(); zero-initialise; each cache serves one plant only */
     struct neighbours_cache found;
 };
 

@@ -22,7 +22,7 @@ static json_t *alarm_of(const struct reading *reading)
     return string(alarm_kind_name((enum alarm_kind)reading->alarm));
 }
 
-/* Returns whether the reading has nothing to report but its value: good quality and no alarm. */
+/* Returns whether the reading can be sent as a value alone, because it has good quality and no alarm. */
 static bool is_plain(const struct reading *reading)
 {
     return reading->quality == QUALITY_GOOD && !reading->alarm;

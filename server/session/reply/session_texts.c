@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides which texts a session is sent next, and when. */
+/* Decides which JSON message a client is sent next, and when. */
 #include <string.h>
 
 #include "base/clock.h"

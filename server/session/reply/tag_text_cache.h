@@ -6,10 +6,10 @@
 #include "session/session.h"
 
 struct tag_text_cache { /* zero-initialise */
-    /* by tag: value of reading.changes that the clients had before this message; the message is right only for clients with the same
-       values */
+    /* by tag: change counter (reading.changes) that clients had received before this message; the message is right only for clients with
+       the same counters */
     uint32_t *before;
-    int64_t taken_ns; /* time of the snapshot that `text` shows */
+    int64_t taken_ns; /* time of the snapshot of readings that `text` lists */
     bool all;
     char *text; /* `tags` message in the cache; NULL: none yet */
 };

@@ -16,7 +16,8 @@ int tile_layout_height(const struct tile_layout *layout)
     return layout->rows * layout->height_px + (layout->rows - 1) * layout->gap_px[1] + 2 * layout->margin_px[1];
 }
 
-/* Scales a side to an even number of pixels: encoders with chroma subsampling would blend an odd column with the next tile's pixels. */
+/* Scales a tile's width or height to an even number of pixels: encoders with chroma subsampling would blend an odd column with the next
+   tile's pixels. */
 static int scaled(int px, double scale)
 {
     int less = (int)(px * scale) & ~1;
@@ -28,8 +29,8 @@ struct tile_layout tile_layout_scale(const struct tile_layout *layout, double sc
     struct tile_layout out = *layout;
     out.width_px = scaled(layout->width_px, scale);
     out.height_px = scaled(layout->height_px, scale);
-    /* A layout whose tiles shrink has gaps and margins that shrink by the same factor, even if the tiles cannot shrink further because of
-       their minimum size. */
+    /* The gaps between tiles and the margin shrink by the factor by which the tiles really shrank, which a minimum size of tiles may
+       limit. */
     double across = fmin(scale, (double)out.width_px / layout->width_px), down = fmin(scale, (double)out.height_px / layout->height_px);
     out.gap_px[0] = (int)lround(layout->gap_px[0] * across);
     out.gap_px[1] = (int)lround(layout->gap_px[1] * down);

@@ -19,7 +19,7 @@ struct tile_layout {
 /* Lays out the tiles of a wall for displays of that size; the wall must have tiles. If the picture would have more than most_px pixels
    or too long a side, all tiles shrink by one factor. */
 void tile_layout_init(struct tile_layout *layout, const struct wall *wall, int width_px, int height_px, int64_t most_px);
-/* Returns the same layout with all tiles scaled; scale is at most 1. */
+/* Returns the layout with tiles, gaps and margin scaled by `scale`, which is at most 1. */
 struct tile_layout tile_layout_scale(const struct tile_layout *layout, double scale);
 /* Return the width and height of the whole picture in pixels. */
 int tile_layout_width(const struct tile_layout *layout);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State of one tile of a picture over many displays: its size, the pictures it has, and whether it delays the other tiles. */
+/* One tile of a picture over many displays: its size, the pictures that its client has, and whether it delays the other tiles. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -7,7 +7,7 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-/* time for which the other tiles wait for a slow tile; after it the slow tile is dropped */
+/* time for which the wall waits for a tile to acknowledge its frame; then that tile is dropped */
 static const int64_t MAX_LATE_NS = 3 * NS_PER_S;
 /* time for which a slow tile is dropped; it doubles each time, up to the maximum */
 static const int64_t OUT_NS = 10 * NS_PER_S, MAX_OUT_NS = 320 * NS_PER_S;
@@ -41,7 +41,7 @@ void session_tile_move(struct session *session, struct burn_shift shift, int64_t
     session->tile.moved = true;
     if (!session->demand.data)
         session->demand.data_ns = now_ns;
-    /* requests a picture even if its content is the same, because the burn-in shift makes the tile show another part of the picture */
+    /* requests a picture even if its content is the same: the burn-in shift makes the tile show other pixels */
     session->demand.data = true;
 }
 

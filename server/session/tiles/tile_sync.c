@@ -130,7 +130,7 @@ static void drop_to(struct session_tile *tile, uint64_t picture)
     tile->held_count = kept;
 }
 
-/* Returns the id of the newest picture after `presented` that all members have; 0: none. */
+/* Returns the id of the newest picture after `presented` that the clients of all members have received; 0: none. */
 static uint64_t common(const struct session_tiles *tiles, uint64_t presented)
 {
     const struct session_tile *first = tiles->count > 0 ? &tiles->members[0]->tile : NULL;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Keeps the views of disconnected clients for their return. */
+/* Keeps the views of clients whose connection was lost, so that they can continue with the same view. */
 #include "session/view/resume.h"
 
 #include <openssl/crypto.h>
@@ -14,11 +14,11 @@ struct kept_view {
     char secret[RESUME_CHARS + 1];
     struct token_holder holder;
     struct resumed what;
-    int64_t until_ns; /* monotonic time at which the view is dropped, set when its connection is lost */
+    int64_t until_ns; /* monotonic time at which the view of a lost connection is dropped */
 };
 
 struct resumes {
-    struct kept_view *kept; /* list of entries: those of connected sessions, and those of lost connections in the order of their loss */
+    struct kept_view *kept; /* all entries: those of connected sessions, and those of lost connections in the order of their loss */
     size_t count, capacity;
 };
 

@@ -13,7 +13,7 @@ struct resumes;
 struct resumes *resumes_create(void);
 void resumes_destroy(struct resumes **resumes); /* destroys the list and sets *resumes to NULL; accepts a pointer to NULL */
 
-/* Makes a connected session resumable from now on, and writes its secret. */
+/* Makes a connected session resumable from now on. Writes the secret that its client must present after a lost connection. */
 void resumes_open(struct resumes *resumes, struct session *session, char secret[RESUME_CHARS + 1]);
 /* Notes that the session's connection is lost. keep: keep its view for RESUME_KEPT_NS; false: the session cannot be resumed. */
 void resumes_close(struct resumes *resumes, const struct session *session, bool keep, int64_t now_ns);
@@ -22,7 +22,7 @@ struct resumed {
     struct view view;
     struct codec_list codecs;
     double pixel_ratio;
-    uint64_t called; /* number by which other sessions follow the resumed session */
+    uint64_t called; /* session number that other sessions use to follow this one */
     double speed;    /* playback speed, recorded seconds per second, if view.at_us is a past instant */
     /* session that has the view and is still connected, and must be closed now; NULL: the view's connection is lost */
     struct session *live;

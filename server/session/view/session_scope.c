@@ -34,12 +34,12 @@ const char *session_scope_find_view(const struct plant_services *services, enum 
     return address;
 }
 
-/* Reads a view as its author wrote it, with the author's rights; keeps the size of `view`. Returns false with *error if the view cannot be
-   shown in a stream. */
+/* Sets *view to a saved view, whatever the session itself may see, but keeps the size of `view`. Returns false with *error if the view
+   cannot be shown live. */
 static bool read_view(const struct session *session, const char *id, struct view *view, struct message_error *error)
 {
     const struct session_context *context = session->context;
-    /* without readings: opening a view must not keep a baseline, which needs the role operator */
+    /* bare: gives no readings, because opening a view must not save a baseline, which needs the role operator */
     const struct params_context params = { .scene = context->services->scene, .baselines = context->services->baselines, .bare = true };
     struct view read;
     const char *address =
@@ -58,7 +58,7 @@ static bool read_view(const struct session *session, const char *id, struct view
     view->camera_seq = before.camera_seq;
     view->params_seq = before.params_seq;
     view->tier = before.tier;
-    view_set_instant(view, before.at_us, before.field.slot); /* keeps the instant of a session that shows the past */
+    view_set_instant(view, before.at_us, before.field.slot); /* keeps the past instant that the session shows */
     view_set_trial(view, before.field.trial);
     return true;
 }
@@ -163,8 +163,8 @@ static bool is_own(const struct session *session, const json_t *item)
            json_integer_value(json_object_get(item, "display")) == session->identity.holder.display;
 }
 
-/* Returns whether an item of a list concerns this display. Items about a picture across many displays are listed under the first of these
-   displays. */
+/* Returns whether an item of a JSON list (`item`) concerns the display of this session. Items about a picture across many displays are
+   listed under the first of these displays. */
 static bool is_ours(const struct session *session, const json_t *item)
 {
     const char *id = json_string_value(json_object_get(item, "wall"));
@@ -190,7 +190,7 @@ static bool shows_note(const struct session *session, const json_t *item)
 static const struct {
     const char *type, *list;
     bool (*keeps)(const struct session *session, const json_t *item);
-    bool of_tags; /* true: the list is filtered only for a display without pictures */
+    bool of_tags; /* true: only for a display without pictures is the list filtered, by the tags that it shows */
 } filters[] = {
     { "tags", "values", shows_row, true },  { "alarms", "alarms", shows_alarm, true }, { "views", "list", shows_view, false },
     { "notes", "list", shows_note, false }, { "walls", "list", is_ours, false },       { "walls", "displays", is_own, false },

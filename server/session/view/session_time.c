@@ -6,7 +6,7 @@
 #include "history/history.h"
 #include "session/session_impl.h"
 
-static const int64_t STEP_NS = 100 * NS_PER_MS; /* minimum time between two steps of playback */
+static const int64_t STEP_NS = 100 * NS_PER_MS; /* minimum time between two steps of playback, each of which shows a later instant */
 /* minimum time between two steps of slow playback; longer, because readings change little from step to step */
 static const int64_t SLOW_STEP_NS = 500 * NS_PER_MS;
 static const double SLOW_SPEED = 10;
@@ -119,7 +119,7 @@ bool session_on_time(struct session *session, const struct time_request *request
     return true;
 }
 
-/* Advances playback. Returns false if it has reached the present. */
+/* Moves playback on to the instant that is due now. Returns false if it has reached the present. */
 static bool step(struct session *session, int64_t now_ns, int64_t now_utc_ns)
 {
     struct travel *travel = &session->travel;
@@ -162,8 +162,8 @@ static void on_failure(struct session *session)
     session->owed.time = true;
 }
 
-/* Shows the loaded instant at_us even if the client has asked for a later one since. Dragging the time slider thus shows pictures all the
-   way. */
+/* Shows the loaded instant at_us even if the client has asked for a later one since. So a user who drags the time slider sees pictures
+   while dragging. */
 void session_on_historical_snapshot(struct session *session, int64_t at_us, bool good, int64_t now_ns)
 {
     struct travel *travel = &session->travel;

@@ -29,7 +29,7 @@ void view_token_add_key(struct view_token_keys *keys, const uint8_t key[VIEW_TOK
     keys->count += keys->count < VIEW_TOKEN_KEYS;
 }
 
-/* Writes the MAC of `text`, the token up to its last dot. */
+/* Writes the MAC (HMAC-SHA-256) of `text`, the view token up to its last dot. */
 static bool sign(const uint8_t key[VIEW_TOKEN_KEY_BYTES], const char *text, size_t count, char mac[2 * MAC_BYTES + 1])
 {
     uint8_t bytes[MAC_BYTES];
@@ -87,7 +87,7 @@ char *view_token_make(const struct view_token_keys *keys, const struct session *
     return token;
 }
 
-/* Returns the length of the signed part of a token, or 0 if no key has signed it. */
+/* Returns the length of the part of a view token that its MAC covers; 0: no key of `keys` has made that MAC. */
 static size_t find_signed(const struct view_token_keys *keys, const char *token)
 {
     const char *end = strrchr(token, '.');
