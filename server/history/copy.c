@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Copies files and checks that each copy is complete. */
+/* Copies SQLite databases and other files for a backup, and checks that each copy is complete. */
 #include "history/copy.h"
 
 #include <errno.h>
@@ -51,8 +51,8 @@ static bool stat_folder(const char *path, struct stat *st)
     return good;
 }
 
-/* Returns the reason why a file must not be copied (static text), or NULL if it may be copied. Refuses files of strangers: the owner of
-   a folder could place a link in it to a file that only the caller may read. */
+/* Returns why a file must not be copied (static text), or NULL if it may be copied. The owner of the folder could put a hard link there
+   to a file that only the caller (root) may read, so files of other users are refused. */
 static const char *fault_of(const char *path, const struct stat *st)
 {
     struct stat folder;
@@ -65,7 +65,7 @@ static const char *fault_of(const char *path, const struct stat *st)
     return st->st_nlink > 1 && st->st_uid != folder.st_uid ? "the file has another hard link" : NULL;
 }
 
-/* Opens a file for reading. Returns -1 on failure (logged). */
+/* Opens a file to copy it, unless fault_of() refuses it. Returns its descriptor, or -1 on failure (logged). */
 static int open_source(struct log *log, const char *path)
 {
     struct stat st;
@@ -81,8 +81,8 @@ static int open_source(struct log *log, const char *path)
     return -1;
 }
 
-/* Creates a file that only its owner and group can read; if root creates it, it gets the owner of its folder. Returns -1 on failure
-   (logged). */
+/* Creates the file of a copy, readable by its owner and group only. If root creates it, it gets the owner of its folder. Returns its
+   descriptor, or -1 on failure (logged). */
 static int create_target(struct log *log, const char *path)
 {
     struct stat folder;
@@ -98,7 +98,7 @@ static int create_target(struct log *log, const char *path)
     return -1;
 }
 
-/* Returns whether SQLite's integrity check of a database finds no fault; logs the first fault. */
+/* Returns true if SQLite's integrity check of a database finds no fault; otherwise logs the first fault. */
 static bool is_whole(struct log *log, sqlite3 *db, const char *path)
 {
     sqlite3_stmt *check = NULL;
@@ -111,7 +111,8 @@ static bool is_whole(struct log *log, sqlite3 *db, const char *path)
     return good;
 }
 
-/* Copies all pages of the database in one call. A writer can continue meanwhile, in the write-ahead log. */
+/* Copies all pages of a database in one call. The daemon can continue to write, because it writes to the write-ahead log. Returns an
+   SQLite result code. */
 static int copy_pages(sqlite3 *from, sqlite3 *to)
 {
     sqlite3_backup *backup = sqlite3_backup_init(to, "main", from, "main");
@@ -121,8 +122,8 @@ static int copy_pages(sqlite3 *from, sqlite3 *to)
     return code == SQLITE_DONE ? end : code;
 }
 
-/* Returns the path with symbolic links resolved, as SQLITE_OPEN_NOFOLLOW requires; free with free(). NULL: the file must not be copied
-   (logged). */
+/* Returns a database's path with all symbolic links resolved, because SQLITE_OPEN_NOFOLLOW refuses links; free with free(). Returns NULL
+   if the file must not be copied (logged). */
 static char *path_of_database(struct log *log, const char *path)
 {
     int fd = open_source(log, path);

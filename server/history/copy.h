@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Copies databases that may be written meanwhile (SQLite's online backup), and files; checks that a copy is complete. Thread: any. */
+/* Copies databases into which a daemon may write meanwhile (SQLite's online backup), and other files; checks that a copy is complete.
+   Thread: any. */
 #ifndef HISTORY_COPY_H
 #define HISTORY_COPY_H
 #include <stdbool.h>
 
 #include "base/log/log.h"
 
-#define HISTORY_BACKUP_STAMP "last-backup" /* marker file in the history folder; its modification time is the time of the last backup */
+/* marker file in the history folder; `plantcast backup` sets its modification time to the time of the backup */
+#define HISTORY_BACKUP_STAMP "last-backup"
 
-enum { COPY_HASH_BYTES = 33 }; /* length in bytes of a hash as text: 32 hexadecimal digits and a terminating 0 */
+enum { COPY_HASH_BYTES = 33 }; /* length of a file's hash as text: 32 hexadecimal digits and a terminating 0 */
 
 /* Copies the state of the database `from` at one moment to a single file, checks it and syncs it to disk. Returns false on failure
    (logged); `to` is then removed. This function and copy_file() follow no symbolic link and read no file whose owner is neither the

@@ -24,13 +24,14 @@
 #include "value/quality.h"
 
 enum {
-    QUEUE_MAX = 4000000,   /* maximum number of queued samples; the queue is emptied once a second */
-    WAITING_MAX = 4000000, /* maximum number of rows held in memory while the disk cannot be written */
-    /* maximum number of recorded points that wait for month_file_tidy(), which compresses them; readers hold these points in memory */
+    QUEUE_MAX = 4000000,   /* maximum number of samples in struct historian_queue, which is emptied once a second */
+    WAITING_MAX = 4000000, /* maximum number of recorded rows held in memory while the disk cannot be written */
+    /* if more recorded points are not compressed yet, month_file_tidy() runs early, because readers load all these points into memory */
     TIDY_ROWS = 1000000,
-    TAG_LEADS = -1,   /* marker in the queue, in place of a tag's index: the samples after it come from this daemon's own store */
-    TAG_FOLLOWS = -2, /* marker in the queue, in place of a tag's index: the samples after it come over a new connection to the leading
-                         daemon */
+    /* marker in the queue, instead of a tag's index: the samples after it come from this daemon's own store (it became the leader) */
+    TAG_LEADS = -1,
+    /* marker in the queue, instead of a tag's index: the samples after it come over a new connection to the leading daemon */
+    TAG_FOLLOWS = -2,
     RETRY_MAX_S = 30,
 };
 static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 1200 * NS_PER_S, KEEP_NS = 60 * NS_PER_S, STEP_NS = 2 * NS_PER_S,
@@ -52,25 +53,27 @@ struct historian {
     struct {
         counter *samples, *points, *lost, *waiting, *good, *bytes, *free, *backup;
     } counters;
-    struct postgres *postgres; /* sender of history to PostgreSQL; NULL: history is not sent to a database */
-    atomic_bool restored;      /* set once points that were missing on this machine have been read from PostgreSQL into the files */
+    struct postgres *postgres; /* thread that sends history to PostgreSQL; NULL: no database is configured */
+    atomic_bool restored;      /* set once points that this machine lacked have been read from PostgreSQL into its history files */
     /* --- below: used by the historian's thread only */
     struct history_tag *tags;
     struct recorder *recorder;
     struct snapshot *snapshot;
     struct recorder_rows waiting, held;
-    struct spool_rows spooled; /* rows that could not be written in the last run, read from its spool file; written before all others */
-    char *spool_path;          /* path of the last run's spool file (rows that could not be written to history); NULL: none */
+    /* rows that the previous run could not write to history, read from its spool file; written before all others */
+    struct spool_rows spooled;
+    char *spool_path; /* path of the previous run's spool file; NULL: there is none */
     struct month_file *file;
     struct historian_queue taken;
     bool recovered, failing, stands_by, fills;
-    int64_t fill_us;     /* if `fills` is true: UTC time from which points are missing on this machine and must be read from PostgreSQL */
+    int64_t fill_us;     /* if `fills` is true: UTC time from which this machine lacks points, which must be read from PostgreSQL */
     int64_t mirrored_us; /* UTC time of the newest sample mirrored from the leading daemon; 0: none */
     int64_t retry_ns, retry_after_ns, tidied_ns, kept_ns, utc_ahead_ns;
     struct thread thread;
     /* --- below: under thread.lock */
     struct historian_queue queue;
-    const struct plant *next; /* plant of the historian that will continue this one's recorded lines after a reload; NULL: none */
+    /* the plant after a reload, whose historian continues this one's recorded lines; NULL: the daemon ends instead */
+    const struct plant *next;
     /* receives the time spans whose points the next historian must still read from PostgreSQL; NULL: not wanted */
     struct postgres_owed *owed;
 };
@@ -141,8 +144,8 @@ static void put(struct historian *historian, int tag, const struct history_point
     counter_inc(historian->counters.points, (int64_t)(historian->waiting.count - before));
 }
 
-/* Records quality changes caused by time alone, such as a reading that goes stale: the store makes no sample event for them. A standby gets
-   them from store_tell_aged(), so that both histories have the same points. */
+/* Records a change of quality that time alone causes, such as a reading that becomes stale, because the store makes no sample event for
+   it. Passes it to store_tell_aged() too, so that a standby records the same points. */
 static void take_qualities(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
 {
     store_snapshot(historian->store, mono_ns, utc_ns, historian->snapshot);
@@ -158,7 +161,7 @@ static void take_qualities(struct historian *historian, int64_t mono_ns, int64_t
     }
 }
 
-/* Ends the recorded lines of all tags just after last_us with a point without a value, because later values are unknown. */
+/* Ends the recorded line of every tag just after last_us with a point without a value, because values after that time are unknown. */
 static void leave_out(struct historian *historian, int64_t last_us)
 {
     for (size_t i = 0; i < historian->plant->tag_count; i++)
@@ -166,8 +169,8 @@ static void leave_out(struct historian *historian, int64_t last_us)
             put(historian, (int)i, &(struct history_point){ last_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION });
 }
 
-/* Handles a new connection to the leading daemon: the samples that the leader recorded since the last mirrored one are missing here and
-   must be read from PostgreSQL. */
+/* Handles a new connection to the leading daemon. This machine lacks the samples that the leader recorded since the last mirrored one,
+   so they must be read from PostgreSQL. */
 static void begin_to_follow(struct historian *historian)
 {
     if (historian->mirrored_us)
@@ -185,7 +188,7 @@ static void take_mirrored(struct historian *historian, int64_t t_us)
         historian->mirrored_us = t_us;
 }
 
-/* Stops following the leading daemon, because this daemon takes the lead at t_us. The former leader may have recorded more after the
+/* Stops mirroring the leading daemon, because this daemon becomes the leader at t_us. The former leader may have recorded more after the
    connection was lost, and sent that to PostgreSQL: those points must be read from there. */
 static void begin_to_lead(struct historian *historian, int64_t t_us)
 {
@@ -196,14 +199,16 @@ static void begin_to_lead(struct historian *historian, int64_t t_us)
         postgres_lead(historian->postgres, historian->mirrored_us, t_us);
 }
 
-/* Returns true if a sample's UTC time was taken after the wall clock was set, false if before. */
+/* Returns true if a sample got its UTC time after the wall clock was set, false if before. ahead_ns: UTC minus monotonic time now;
+   step_ns: by how much the clock was set. */
 static bool is_after_step(const struct sample_event *event, int64_t ahead_ns, int64_t step_ns)
 {
     int64_t off_ns = event->utc_ns - event->mono_ns - ahead_ns;
     return llabs(off_ns) < llabs(off_ns + step_ns);
 }
 
-/* Passes the queued samples to the recorder. step_ns: by how much the wall clock was set since the last call; 0: it was not set. */
+/* Passes the queued samples to the recorder. step_ns: by how much the wall clock was set since the last call, in nanoseconds; 0: it was
+   not set. */
 static void take_events(struct historian *historian, const struct now *now, int64_t step_ns)
 {
     pthread_mutex_lock(&historian->thread.lock);
@@ -265,8 +270,8 @@ static void say_gap(struct historian *historian, struct month_file *file, int64_
     mem_free(text);
 }
 
-/* After a daemon was killed: records the newest sample of each of its tags, ends the recorded lines there, and records the gap as an
-   event. */
+/* Called after a start: if the previous daemon was killed, records the newest sample of each tag, ends the recorded lines there, and
+   notes the gap in the file's table of events. */
 static int recover(struct historian *historian)
 {
     size_t count;
@@ -292,7 +297,8 @@ static int recover(struct historian *historian)
     return error;
 }
 
-/* Closes the file of a month that is over; its newest samples are all recorded. */
+/* Closes the file of a month that is over. Its held rows (newest samples that were not recorded) are deleted, because all are recorded
+   by now. */
 static int leave_month(struct historian *historian)
 {
     int error = month_file_tidy(historian->file);
@@ -315,7 +321,7 @@ static int enter_month(struct historian *historian, int month)
     return error;
 }
 
-/* Returns the index after the last row, from `begin` on, that belongs to the same month as row `begin`. */
+/* Returns the end (exclusive) of the rows from index `begin` on that belong to the same month as row `begin`. */
 static size_t same_month(const struct recorder_rows *rows, size_t begin)
 {
     int month = month_of(rows->at[begin].point.t_us);
@@ -326,7 +332,8 @@ static size_t same_month(const struct recorder_rows *rows, size_t begin)
     return end;
 }
 
-/* Writes rows month by month; written rows are removed from `rows`. held: the rows are newest samples that are not recorded yet. */
+/* Writes rows to the files of their months, and removes the written rows from `rows`. held: the rows are newest samples that the filter
+   has not recorded yet. */
 static int write_rows(struct historian *historian, struct recorder_rows *rows, bool held)
 {
     size_t done = 0;
@@ -346,7 +353,7 @@ static int write_rows(struct historian *historian, struct recorder_rows *rows, b
     return error;
 }
 
-/* Writes the rows of the last second: usually all to one month's file, in one transaction. */
+/* Writes the rows of the last second. Usually all belong to one month, and are written in one transaction. */
 static int write_second(struct historian *historian)
 {
     struct recorder_rows *rows = &historian->waiting, *held = &historian->held;
@@ -374,8 +381,8 @@ static void measure_free(struct historian *historian)
         counter_set(historian->counters.free, (int64_t)(disk.f_bavail * disk.f_frsize));
 }
 
-/* Updates the metric of the last `plantcast backup`. Also reserves disk space again for the spool, the file for rows that cannot be written
-   to the history, if that space was used. */
+/* Updates the metric that shows the time of the last `plantcast backup`. Also reserves disk space for the spool (the file for rows that
+   cannot be written to the history) again, if the spool has used it. */
 static void look_around(struct historian *historian)
 {
     struct stat backup;
@@ -410,8 +417,8 @@ static int apply_retention(struct historian *historian, int64_t mono_ns, int64_t
     return error;
 }
 
-/* Closes the month's file but leaves the newest samples in it as held rows (samples not recorded yet), so that recover() handles them as
-   after a crash. */
+/* Closes the month's file after the spooled rows were written, but keeps its held rows (newest samples that are not recorded yet), so
+   that recover() handles them as after a crash. */
 static int leave_file(struct historian *historian)
 {
     int error = month_file_tidy(historian->file);
@@ -420,8 +427,8 @@ static int leave_file(struct historian *historian)
     return error;
 }
 
-/* Writes the rows that the last run spooled (saved because history could not be written) to their month's file, before recover()
-   determines when that run ended. */
+/* Writes the rows of the previous run's spool file to the files of their months. This must happen before recover() determines from these
+   files when that run ended. */
 static int write_spooled(struct historian *historian)
 {
     if (!historian->spool_path)
@@ -445,7 +452,7 @@ static int write_all(struct historian *historian, int64_t mono_ns, int64_t utc_n
     int error = write_spooled(historian);
     if (!error && !historian->file) {
         if (!historian->waiting.count)
-            return 0; /* without rows to write, nothing is done, so that no empty history folder is created */
+            return 0; /* with no rows to write, nothing is done, so that no empty history folder is created */
         make_folder(historian);
     }
     if (!error && !historian->recovered)
@@ -483,7 +490,7 @@ static void try_to_write(struct historian *historian, int64_t mono_ns, int64_t u
 
 /* --- start and stop ----------------------------------------------------------------------------------------------------------- */
 
-/* Reads both clocks at nearly the same moment: repeats if the thread was interrupted between the readings. */
+/* Reads the monotonic and the UTC clock at nearly the same moment: repeats if the thread was interrupted between the two readings. */
 static struct now look_at_clocks(void)
 {
     struct now now;
@@ -505,7 +512,7 @@ static int64_t watch_clock(struct historian *historian, const struct now *now)
     return llabs(step_ns) > STEP_NS ? step_ns : 0;
 }
 
-/* Records an event in the month's file that the clock was set, because the times of points alone do not show it. */
+/* Notes in the month's table of events that the wall clock was set, because the times of points alone do not show it. */
 static void note_step(struct historian *historian, int64_t utc_ns, int64_t step_ns)
 {
     char *text = mem_printf(step_ns > 0 ? HISTORY_FORWARD_TEXT : HISTORY_BACK_TEXT, fabs((double)step_ns) / 1e9);
@@ -515,8 +522,8 @@ static void note_step(struct historian *historian, int64_t utc_ns, int64_t step_
     mem_free(text);
 }
 
-/* Ends the recorded line of every tag at its newest sample, which is recorded. A tag that the next plant lacks also gets a point without
-   a value, which marks the end of its data. */
+/* Before the historian of the reloaded plant takes over, ends the recorded line of every tag at its newest sample. A tag that the
+   reloaded plant lacks also gets a point without a value, which marks the end of its data. */
 static void end_lines(struct historian *historian, int64_t utc_ns)
 {
     if (!historian->next)
@@ -539,8 +546,9 @@ static void tick(struct historian *historian, bool last)
     if (step_ns)
         note_step(historian, utc_ns, step_ns);
     if (historian->file && month_file_month(historian->file) != month_of(utc_ns / 1000))
-        recorder_end(historian->recorder, &historian->waiting); /* records the newest sample of every tag, because a recorded line must
-                                                                   not depend on memory across the end of a month */
+        /* records the newest sample of every tag in the old month's file, because a recorded line that crosses the month's end must not
+           depend on samples in memory */
+        recorder_end(historian->recorder, &historian->waiting);
     if (last)
         end_lines(historian, utc_ns);
     try_to_write(historian, mono_ns, utc_ns, last);
@@ -548,8 +556,8 @@ static void tick(struct historian *historian, bool last)
     measure_free(historian);
 }
 
-/* Ends the recorded lines of the earlier run, whose spooled rows (saved when history could not be written) still cannot be written to
-   its month's file. */
+/* Ends the recorded lines of the previous run at its newest samples. Used if the rows of that run's spool file still cannot be written
+   to history, before they are spooled together with this run's rows. */
 static void end_spooled_lines(struct spool_rows *rows)
 {
     struct recorder_rows *kept = &rows->kept;
@@ -562,11 +570,13 @@ static void end_spooled_lines(struct spool_rows *rows)
     rows->held.count = 0;
 }
 
-/* Saves the rows that cannot be written in a spool file for the next start. Tries possible folders until one accepts the file. */
+/* Saves the rows that cannot be written to history in a spool file, for the next start. Tries the paths of spool_places() until one can
+   be written. */
 static void spool(struct historian *historian)
 {
     char **places = spool_places(historian->folder);
-    struct spool_rows *rows = &historian->spooled; /* the earlier run's rows come first, if they could not be written to history either */
+    /* the previous run's spooled rows come first, if they could not be written to history either */
+    struct spool_rows *rows = &historian->spooled;
     end_spooled_lines(rows);
     size_t before = rows->kept.count;
     mem_grow(&rows->kept.at, &rows->kept.capacity, before + historian->waiting.count + 1, sizeof(*rows->kept.at));
@@ -587,7 +597,7 @@ static void spool(struct historian *historian)
                   "history: %zu points could not be written; these points wait in the spool file %s for the next start",
                   rows->kept.count + rows->held.count, *place);
     if (!error && historian->spool_path && strcmp(historian->spool_path, *place) != 0)
-        unlink(historian->spool_path); /* deletes the old spool file, because its rows have been saved in the new one, too */
+        unlink(historian->spool_path); /* deletes the old spool file, because the new one contains its rows */
     spool_places_free(places);
 }
 

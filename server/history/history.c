@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads series across months, and reduces long series to buckets. */
+/* Reads a tag's recorded series across the files of several months, and reduces long series to buckets (intervals of equal length). */
 #include "history/history.h"
 
 #include <errno.h>
@@ -14,10 +14,11 @@ enum { OPEN_MONTHS = 4 };
 struct history_reader {
     struct log *log;
     char *folder;
-    const struct plant *plant; /* plant to whose units values are converted; NULL: values keep the units of the time of recording */
-    bool *told; /* by tag of `plant`: the log says that points of the tag are left out */
+    /* plant that states the units to which values are converted; NULL: values keep the units in which they were recorded */
+    const struct plant *plant;
+    bool *told; /* by index of tag in `plant`: true once the log says that points of the tag are left out (unit not convertible) */
     struct month_file *files[OPEN_MONTHS];
-    int next; /* index in the array of open files of the file to close next */
+    int next; /* index in `files` of the file that is closed next to make room for another */
 };
 
 struct history_reader *history_reader_create(struct log *log, const char *folder)
@@ -47,8 +48,8 @@ void history_reader_destroy(struct history_reader **reader)
     *reader = NULL;
 }
 
-/* Opens the file of a month; it stays valid until another month is opened. Returns NULL with *error 0 if the month has no file, and NULL
-   with -errno if the file cannot be read. */
+/* Opens the file of a month, or returns it if it is open; it stays valid until another month is opened. Returns NULL with *error 0 if
+   the month has no file, and NULL with *error -errno if the file cannot be read. */
 static struct month_file *open_month(struct history_reader *reader, int month, int *error)
 {
     struct month_file **place = &reader->files[reader->next];
@@ -57,7 +58,8 @@ static struct month_file *open_month(struct history_reader *reader, int month, i
         if (reader->files[i] && month_file_month(reader->files[i]) == month) {
             if (month_file_is_there(reader->files[i]))
                 return reader->files[i];
-            place = &reader->files[i]; /* the month's file was deleted or renamed since it was opened: opens the new file in its place */
+            /* the month's file was deleted or replaced since it was opened: closes it and opens the present one */
+            place = &reader->files[i];
         }
     if (place == &reader->files[reader->next])
         reader->next = (reader->next + 1) % OPEN_MONTHS;
@@ -72,8 +74,8 @@ static struct month_file *open_month(struct history_reader *reader, int month, i
 
 /* --- series ------------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the longest rollup level (bucket length) that is at most twice stretch_us, the wanted length. Returns -1 if all levels are
-   longer: the caller must use the points themselves. */
+/* Returns the rollup level with the longest buckets that are at most twice stretch_us, the wanted length. Returns -1 if the buckets of
+   all levels are longer: the caller must then compute buckets from the points. */
 static int level_for(int64_t stretch_us)
 {
     int level = -1;
@@ -83,7 +85,7 @@ static int level_for(int64_t stretch_us)
     return level;
 }
 
-/* Returns the shortest length, in microseconds, of which at most max_points fill the time span. */
+/* Returns the shortest bucket length, in microseconds, with which at most max_points buckets cover the time span. */
 static int64_t wanted_length(int64_t span_us, int max_points)
 {
     int64_t count = max_points > 1 ? max_points : 1, length_us = (span_us + count - 1) / count;
@@ -97,12 +99,12 @@ static int64_t bucket_length(int64_t stretch_us, int level)
     return count > 1 ? count * unit_us : unit_us;
 }
 
-/* Merges buckets of one length into longer buckets, which are appended to `out`. */
+/* State of merging a series' short buckets into longer ones, which are appended to `out`. */
 struct gather {
     struct history_series *out;
-    int64_t length_us; /* length of the input buckets */
-    /* rollup: of points that no file has in a bucket; continues from one month to the next. done_us: buckets of the rollup that begin
-       before this time are left out, because a file has them */
+    int64_t length_us; /* length of the short buckets */
+    /* rollup: computes buckets from points that are in no bucket of a file yet; continues from one month to the next. done_us: its
+       buckets that begin before this time are left out, because a file has them */
     struct rollup rollup;
     int64_t done_us;
     bool has_last;
@@ -120,12 +122,14 @@ static struct history_bucket *bucket_of(struct history_series *out, int64_t t_us
     return bucket;
 }
 
-/* Adds a bucket. The straight line from the previous bucket to this one also counts in every longer bucket that it crosses. */
+/* Merges a short bucket into the long bucket of its time. The straight line from the previous short bucket to this one counts in every
+   long bucket that it crosses. */
 static void put_bucket(struct gather *gather, const struct history_bucket *bucket)
 {
     struct history_series *out = gather->out;
     struct history_bucket to = *bucket;
-    if (out->step) /* a switch holds its value; `first` of earlier versions is the value after a step at the bucket's start */
+    /* a switch holds its last value until then; files of earlier versions stored in `first` the value after a step at the bucket's start */
+    if (out->step)
         to.first = gather->last.last;
     int64_t begin_us = bucket->t_us - bucket->t_us % out->bucket_us, end_us = gather->last.t_us + gather->length_us;
     struct history_bucket *before = gather->has_last ? &out->buckets.at[out->buckets.count - 1] : NULL;
@@ -141,8 +145,8 @@ static void put_bucket(struct gather *gather, const struct history_bucket *bucke
     gather->has_last = true;
 }
 
-/* Adds points that no file has in a bucket. Points before done_us are in one already; of these only the last matters, as the start of the
-   line to the next point. */
+/* Computes buckets from points that no bucket of a file includes yet. Of the points before done_us only the last matters, because the
+   line to the next point starts there. */
 static void put_points(struct gather *gather, const struct history_points *points)
 {
     struct history_bucket closed;
@@ -153,7 +157,7 @@ static void put_points(struct gather *gather, const struct history_points *point
             put_bucket(gather, &closed);
 }
 
-/* Adds the incomplete bucket of the newest points. */
+/* Merges the incomplete bucket of the series' newest points. */
 static void put_rest(struct gather *gather)
 {
     struct history_bucket rest;
@@ -161,8 +165,8 @@ static void put_rest(struct gather *gather)
         put_bucket(gather, &rest);
 }
 
-/* Computes the first bucket of a month's file again if the line from the month before enters it: the file's own bucket begins at the first
-   point. Returns whether the bucket was added in *joined. */
+/* Recomputes the first bucket of a month's file if the line from the previous month's last point crosses it, because the file's own
+   bucket begins only at its first point. *joined tells whether the recomputed bucket was merged. */
 static int join_month(struct month_file *file, const char *tag, const struct history_bucket *first, struct gather *gather, bool *joined)
 {
     struct history_points points = { 0 };
@@ -202,8 +206,8 @@ static int add_month(struct month_file *file, const char *tag, int level, int64_
     return error;
 }
 
-/* Drops points outside the range except the last one before and the first one after: each month's file contributed such points of its
-   own. */
+/* Drops points outside the time range, except the last one before and the first one after it, because every month's file may have
+   contributed such points. */
 static void drop_edges(struct history_points *points, int64_t from_us, int64_t to_us)
 {
     size_t first = 0, last = points->count;
@@ -216,7 +220,7 @@ static void drop_edges(struct history_points *points, int64_t from_us, int64_t t
     points->count = last - first;
 }
 
-/* Drops buckets outside the range except the last one that begins at or before from_us and the first one that ends after to_us. */
+/* Drops buckets outside the time range, except the last one that begins at or before from_us and the first one that ends after to_us. */
 static void drop_outer_buckets(struct history_series *series, int64_t from_us, int64_t to_us)
 {
     struct history_buckets *buckets = &series->buckets;
@@ -230,7 +234,7 @@ static void drop_outer_buckets(struct history_series *series, int64_t from_us, i
     buckets->count = last - first;
 }
 
-/* Logs once for each tag that points are left out. */
+/* Logs, once for each tag, that points are left out because their unit cannot be converted. */
 static void report_left_out(struct history_reader *reader, int tag, const struct history_left_out *left_out)
 {
     const struct plant_tag *of = &reader->plant->tags[tag];
@@ -241,13 +245,13 @@ static void report_left_out(struct history_reader *reader, int tag, const struct
     reader->told[tag] = true;
 }
 
-struct month_request { /* part of a series to read from the months' files */
+struct month_request { /* the part of a tag's series to read from a month's file */
     const char *tag;
-    int level; /* level of buckets; -1: points */
+    int level; /* rollup level whose buckets are read; -1: points are read */
     int64_t from_us, to_us;
 };
 
-/* left_out: receives the points that are left out; NULL: they are not counted */
+/* Reads the requested part of one month. left_out: counts points whose unit cannot be converted; NULL: they are not counted. */
 static int read_month(struct history_reader *reader, int month, const struct month_request *of, struct gather *gather,
                       struct history_left_out *left_out)
 {
@@ -268,8 +272,8 @@ static int read_month(struct history_reader *reader, int month, const struct mon
     return error;
 }
 
-/* Reads the parts of a series from all files of its time span. Also reads the newest file before the range, because the line that enters
-   the range may begin there, and the oldest file after it. */
+/* Reads a series from the files of all months in its time span. Also reads the last file before the span, because the line that enters
+   the span may begin there, and the first file after it. */
 static int read_months(struct history_reader *reader, const struct month_request *of, struct gather *gather,
                        struct history_left_out *left_out)
 {
@@ -287,12 +291,12 @@ static int read_months(struct history_reader *reader, const struct month_request
     return error;
 }
 
-/* Reads the buckets from from_us to to_us, the one before and the one after. */
+/* Reads the buckets between two times, with one bucket before and one after. */
 static int read_buckets(struct history_reader *reader, const struct month_request *of, struct history_series *out)
 {
     struct gather gather = { .out = out, .length_us = of->level < 0 ? out->bucket_us : history_level_us[of->level], .done_us = INT64_MIN };
     out->buckets.count = 0;
-    /* a bucket that begins with a point also needs the point before: a step may lead to the first one */
+    /* if buckets are computed from points, the point before is needed as well, because its value holds until a step at the first point */
     struct month_request before = { of->tag, of->level, of->level < 0 ? of->from_us - 1 : of->from_us, of->to_us };
     int error = read_months(reader, &before, &gather, NULL);
     if (!error && of->level < 0)
@@ -312,7 +316,8 @@ int history_intervals(struct history_reader *reader, const char *tag, int64_t fr
     int64_t length_us = level < 0 ? stretch_us : bucket_length(stretch_us, level);
     struct month_request of = { tag, level, from_us - from_us % length_us, to_us - to_us % length_us + length_us - 1 };
     *out = (struct history_series){ .bucket_us = length_us };
-    /* The buckets before and after the range are read only in part at first: if they are needed, the second pass reads them in full. */
+    /* The first pass reads the buckets before and after the range only in part. If the series includes such a bucket, the second pass
+       extends the range and reads it in full. */
     for (int pass = 0; pass < 2 && !error; pass++) {
         error = read_buckets(reader, &of, out);
         drop_outer_buckets(out, from_us, to_us);
@@ -331,7 +336,8 @@ int history_series(struct history_reader *reader, const char *tag, int64_t from_
                    struct history_series *out)
 {
     const struct month_request of = { tag, -1, from_us, to_us };
-    const size_t most = (size_t)max_points + 2; /* including the points before and after the range; months' files may have two more */
+    /* including one point before and one after the range; reading may find two more, of neighbouring months */
+    const size_t most = (size_t)max_points + 2;
     struct history_left_out left_out = { 0 };
     int index = reader->plant ? plant_find_tag(reader->plant, tag) : -1;
     bool counts = index >= 0 && !reader->told[index];
@@ -355,8 +361,8 @@ void history_series_finish(struct history_series *series)
 
 /* --- one instant -------------------------------------------------------------------------------------------------------------- */
 
-/* Returns true if the tag has no value at t_us because its newest sample is older than the tag's Stale s. A running daemon would have
-   recorded a newer point. */
+/* Returns true if the tag has no value at t_us because its newest recorded sample is older than `Stale s` of the tag allows. If the tag
+   had still had readings, the historian would have recorded a newer point. */
 static bool has_ended(const struct history_pair *pair, int64_t t_us, int64_t stale_us)
 {
     return pair->after.t_us == INT64_MIN && history_point_usable(&pair->before) && stale_us < INT64_MAX - HISTORY_SETTLED_US &&
@@ -373,7 +379,7 @@ static void read_pair(const struct history_pair *pair, int64_t t_us, int64_t sta
     out->value = isnan(before->value) ? 0 : before->value;
     out->received_utc_ns = t_us * 1000;
     out->age_ns = 0;
-    if (!quality_is_good(out->quality)) { /* no Good reading has arrived since the point `before`: the value is as old as that point */
+    if (!quality_is_good(out->quality)) { /* the quality has not been Good since the point `before`, so the value is as old as that point */
         out->received_utc_ns = before->t_us * 1000;
         out->age_ns = (t_us - before->t_us) * 1000;
     } else if (pair->after.t_us != INT64_MIN && history_point_joined(before, &pair->after, pair->step)) {
@@ -399,8 +405,8 @@ int history_at(struct history_reader *reader, const struct history_tag *tags, in
     int month = month_of(t_us), error = 0;
     for (size_t i = 0; i < into->count; i++)
         pairs[i].before.t_us = pairs[i].after.t_us = INT64_MIN;
-    for (int i = 0; i < 3 && !error; i++) /* reads the month of t_us and the months before and after, because lines between points cross
-                                             the ends of months */
+    /* the month of t_us, the month before and the month after, because lines between points cross the ends of months */
+    for (int i = 0; i < 3 && !error; i++)
         error = at_month(reader, month + (int[]){ 0, -1, 1 }[i], tags, t_us, into->count, pairs);
     for (size_t i = 0; i < into->count; i++)
         read_pair(&pairs[i], t_us, tags[i].stale_us, &into->readings[i]);
@@ -439,7 +445,7 @@ static int by_beginning(const void *a, const void *b)
     return (x->from_us > y->from_us) - (x->from_us < y->from_us);
 }
 
-/* Sorts gaps, keeps those that overlap from_us..to_us, and joins overlapping ones. */
+/* Sorts gaps in recording by time, keeps those that overlap from_us..to_us, and joins overlapping ones. */
 static void tidy_gaps(struct history_gaps *gaps, int64_t from_us, int64_t to_us)
 {
     size_t kept = 0;
@@ -457,7 +463,7 @@ static void tidy_gaps(struct history_gaps *gaps, int64_t from_us, int64_t to_us)
     gaps->count = kept;
 }
 
-/* first reads the newest file before from_us too, because a gap may have begun before from_us */
+/* also reads the last file before from_us, because a gap that it notes may extend beyond from_us */
 int history_gaps(struct history_reader *reader, int64_t from_us, int64_t to_us, struct history_gaps *out)
 {
     size_t count;

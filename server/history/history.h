@@ -1,46 +1,46 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Queries of recorded history: series over time, and all readings at one instant. Read only; works while a daemon is recording.
-   Functions that return int return 0 or -errno, already logged. Thread: one per reader. */
+/* Queries recorded history: series of one tag over time, and the readings of all tags at one time. Never writes; works while a daemon is
+   recording. Functions that return int return 0 or -errno, already logged. Thread: one per reader. */
 #ifndef HISTORY_HISTORY_H
 #define HISTORY_HISTORY_H
 #include "history/month_file.h"
 #include "plant/plant.h"
 #include "value/snapshot.h"
 
-static const int64_t HISTORY_SETTLED_US = 3 * 1000000; /* microseconds; points newer than this may not be in the file completely yet */
+static const int64_t HISTORY_SETTLED_US = 3 * 1000000; /* points that are younger than these microseconds may not be in the file yet */
 
-/* Returns the plant's tags as history files describe them; free with mem_free(); names belong to the plant. */
+/* Returns an array that describes the plant's tags as history files need it; free with mem_free(). The names belong to the plant. */
 struct history_tag *history_tags(const struct plant *plant);
 
 struct history_reader;
-/* Creates a reader, never NULL; the folder need not exist yet. */
+/* Creates a reader of the history files in a folder, which need not exist yet. Never returns NULL. */
 struct history_reader *history_reader_create(struct log *log, const char *folder);
-/* Makes the reader convert all series to the units in which this plant shows its tags; without this call, values have the units of the
-   time of recording. (history_at() converts by its own `tags`.) `plant` must outlive the reader. */
+/* Makes the reader convert all series to the units in which `plant` shows its tags; without this call, values keep the units in which
+   they were recorded. history_at() always converts to the units of its argument `tags`. `plant` must outlive the reader. */
 void history_reader_show_by(struct history_reader *reader, const struct plant *plant);
 void history_reader_destroy(struct history_reader **reader); /* Frees the reader and sets *reader to NULL; accepts a pointer to NULL. */
 
-/* A series of one tag: its points or, if there are more points than requested, buckets of equal length (intervals). Both show spikes in
-   full. */
+/* The series of one tag: its points or, if there are more points than requested, buckets (intervals of equal length) with minimum and
+   maximum. Both show short spikes at their true height. */
 struct history_series {
     bool step;
     struct history_points points; /* points, ascending; including the last one before and the first one after the requested time span */
     int64_t bucket_us;            /* length of a bucket; 0: the series consists of points, not buckets */
-    /* buckets, ascending; the first one begins at or before the requested time span and the last one ends after it, if there are such
-       buckets. Between two buckets that do not adjoin, the line is straight; if the tag is a switch, the value holds instead */
+    /* buckets, ascending. The first one begins at or before the requested time span and the last one ends after it, if there are such
+       buckets. Between buckets that do not adjoin, the value follows a straight line; if the tag is a switch, it holds */
     struct history_buckets buckets;
 };
-/* Reads the series of a tag between two times: its points if they are at most max_points, else buckets. */
+/* Reads the series of a tag between two times: points if there are at most max_points, otherwise buckets. */
 int history_series(struct history_reader *reader, const char *tag, int64_t from_us, int64_t to_us, int max_points,
                    struct history_series *out);
-/* Reads the buckets of a tag between two times, even if it has few points. Each is one to two times (to_us - from_us) / max_count long,
-   and begins at a multiple of its length. */
+/* Reads the buckets of a tag between two times, even if it has few points. Each bucket is one to two times (to_us - from_us) / max_count
+   long, and begins at a multiple of its length. */
 int history_intervals(struct history_reader *reader, const char *tag, int64_t from_us, int64_t to_us, int max_count,
                       struct history_series *out);
 void history_series_finish(struct history_series *series);
 
-/* Reads the hourly means of a tag: `hours` whole hours, the last of which ends at or before to_us. The mean of an hour is NaN if less than
-   half of the hour has a value. */
+/* Computes the means of a tag in `hours` whole hours, the last of which ends at or before to_us. The mean is NaN if the tag has a value
+   during less than half of the hour. */
 int history_hourly(struct history_reader *reader, const char *tag, int64_t to_us, int hours, double *means);
 
 /* Finds the times of the first and the last recorded point. Returns false if no point is recorded, or if history cannot be read

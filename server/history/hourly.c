@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hourly means, from rollups. */
+/* Computes hourly means of a tag from the buckets of its recorded series. */
 #include "history/history.h"
 
 #include "history/month.h"
 
 static const int64_t HOUR_US = 3600 * US_PER_S;
 
-/* Fills the hourly means between two buckets (rollups of recorded points). No point was recorded in these hours, so each mean lies on the
+/* Sets the hourly means between two one-hour buckets that do not adjoin. No point was recorded in these hours, so each mean lies on the
    straight line between the buckets. */
 static void fill_between(const struct history_series *series, const struct history_bucket *a, const struct history_bucket *b,
                          int64_t from_us, int hours, double *means)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads a CSV file twice: first to find all errors and the sample spacing of each series, then to record the samples in the months'
-   files. */
+/* Imports a CSV file of samples. Reads it twice: first to find all errors and how far apart the samples of each tag are, then to record
+   the samples in the history files of their months. */
 #include "history/import.h"
 
 #include <ctype.h>
@@ -27,33 +27,33 @@
 enum {
     FLUSH_ROWS = 500000,
     MAX_ERRORS = 50,
-    MEDIANS = 10 /* number of median spacings of a series beyond which the time between two samples is a gap */
+    MEDIANS = 10 /* a time between two samples of more than this many median times between samples is a gap */
 };
 
-/* The samples of one tag. */
+/* The samples of one tag in the imported file. */
 struct import_series {
-    bool has_row;   /* true: the current pass over the file has read a row of this tag */
-    int64_t row_us; /* time of the row of this tag that the current pass read last */
+    bool has_row;   /* true: the current pass over the CSV file has read a row of this tag */
+    int64_t row_us; /* time of this tag's row that the current pass read last */
     bool seen;      /* true: the first pass found samples of this tag */
     int64_t first_us, last_us;
     struct spacing spacing;
     int64_t longest_us; /* longest time between two samples of this tag that is not a gap in the data */
-    /* true: `pending` holds the tag's newest sample of the second pass. It is recorded once a sample with a later time was read, because a
-       row with the same time replaces it */
+    /* true: `pending` holds the tag's newest sample that the second pass has read. It is recorded once a later sample was read, because
+       another row with the same time would replace it */
     bool has_pending;
     struct history_point pending;
-    struct history_points before; /* points that the history had in the time span of the series before the import */
-    size_t next;                  /* index into `before`, whose points are compared with the imported samples in order of time */
+    struct history_points before; /* points of this tag that the history had before the import, in the time span of the imported samples */
+    size_t next;                  /* index into `before` of the first point that is not older than the imported sample in hand */
 };
 
 struct history_import {
     const struct import_params *params;
     struct csv csv;
-    int time, tag, value, quality, unit; /* column indices in the CSV file; -1: no such column. tag -1: the file has the wide form (one
-                                            column per tag) */
-    int *tags;                           /* wide form: index of the tag of each column; -1: the column is ignored */
-    struct import_series *series;        /* array by tag */
-    int64_t row_us;                      /* wide form: time in the row read last; long form: INT64_MIN */
+    /* column indices in the CSV file; -1: no such column. tag -1: the file has the wide form (one column for each tag) */
+    int time, tag, value, quality, unit;
+    int *tags;                    /* wide form: tag index of each column; -1: the column is not a tag's and is ignored */
+    struct import_series *series; /* array by index of the tag */
+    int64_t row_us;               /* wide form: time of the row that was read last; long form (one sample in a row): INT64_MIN */
     struct import_counts *counts;
 };
 
@@ -112,8 +112,8 @@ static bool find_columns(struct history_import *import)
 
 /* --- rows ----------------------------------------------------------------------------------------------------------------------- */
 
-/* Reads the time of a row. In the hour that occurs twice when clocks are set back, a row that is not later than after_us, the previous
-   row, belongs to the second occurrence. */
+/* Reads the time of a row. When clocks are set back in autumn, one hour of local time occurs twice. A row whose time is not after the
+   previous row's (after_us) then belongs to the second occurrence. */
 static bool take_time(struct history_import *import, int64_t after_us, int64_t *t_us)
 {
     const char *text = csv_text(&import->csv, import->time);
@@ -163,7 +163,8 @@ static bool take_quality(struct history_import *import, uint32_t *quality)
     return false;
 }
 
-/* Converts a value from the unit that the row states; without a stated unit, from the tag's own unit. */
+/* Converts a value from the unit in the row's column Unit; if that is blank, from the unit in which the tag's device sends values. The
+   result is in the tag's unit. */
 static bool take_unit(struct history_import *import, int tag, double *value)
 {
     const struct plant_tag *of = &import->params->plant->tags[tag];
@@ -227,7 +228,7 @@ static bool take_row(struct history_import *import, take_sample *take, void *arg
     return good;
 }
 
-/* Reads the file and passes every sample to `take`. Returns false if the file has errors, or `take` failed. */
+/* Makes one pass over the CSV file and passes every sample to `take`. Returns false if the file has errors, or `take` failed. */
 static bool read_file(const struct import_params *params, struct diag *diag, struct import_counts *counts, struct import_series *series,
                       take_sample *take, void *arg)
 {
@@ -274,8 +275,8 @@ static bool check_sample(struct history_import *import, void *arg, int tag, cons
     return true;
 }
 
-/* Returns the median spacing of a typical series: the lower median over all series with a rhythm (at least three samples and a spacing);
-   0 if no series has a rhythm. */
+/* Returns a typical time between samples: the lower median, over all series with a rhythm (at least three samples), of the series'
+   median times between samples. Returns 0 if no series has a rhythm. */
 static int64_t typical_spacing(struct import_series *series, size_t count)
 {
     int64_t *medians = mem_array(count ? count : 1, sizeof(*medians)), typical_us = 0;
@@ -290,10 +291,10 @@ static int64_t typical_spacing(struct import_series *series, size_t count)
     return typical_us;
 }
 
-/* Returns the longest time between two samples that is not a gap. The column `Stale s` of the tag list is used only if it fits the series:
-   that time is meant for live readings, which may come faster. A series of two samples has no rhythm, since the time between them may
-   itself be the gap: it uses the value of a typical series. If no series has a rhythm, it uses the longest time that our own history leaves
-   between two points. */
+/* Returns the longest time between two samples of a series that does not count as a gap. `Stale s` of the tag list is used only if the
+   series is fast enough for it, because it is meant for live readings. A series of two samples has no rhythm, since the time between the
+   two may itself be the gap: it uses the median of a typical series. If no series has a rhythm, it uses the longest time that the
+   historian leaves between two points. */
 static int64_t longest_gap(const struct import_params *params, const struct plant_tag *tag, struct spacing *spacing, int64_t typical_us,
                            bool exported)
 {
@@ -312,7 +313,8 @@ static int64_t longest_gap(const struct import_params *params, const struct plan
     return is_least && longest_us < override_us ? override_us : longest_us;
 }
 
-/* Runs between the two passes over the file: sets the longest gap-free time of each series, and resets the state for the second pass. */
+/* Runs between the two passes over the CSV file: sets the time beyond which each series has a gap, and resets the state for the second
+   pass. */
 static void judge_series(const struct import_params *params, struct import_series *series, struct import_counts *counts)
 {
     int64_t typical_us = typical_spacing(series, params->plant->tag_count);
@@ -351,7 +353,7 @@ static int by_month_tag_time(const void *a, const void *b)
     return (x->point.t_us > y->point.t_us) - (x->point.t_us < y->point.t_us);
 }
 
-/* Imports the rows of one month, one tag at a time. */
+/* Imports the rows of one month into its file, one tag at a time. */
 static bool fill_month(struct filling *filling, const struct history_row *rows, size_t count)
 {
     struct history_point *points = mem_array(count, sizeof(*points));
@@ -397,14 +399,14 @@ static void add_row(struct filling *filling, int tag, int64_t t_us, double value
     rows->at[rows->count++] = (struct history_row){ tag, { t_us, value, quality } };
 }
 
-/* Returns true if a point marks the end of a line (it has no value): values after the preceding sample are unknown. */
+/* Returns true if a point ends a recorded line: it has no value, because values after the preceding sample are unknown. */
 static bool is_end_of_line(const struct history_point *point)
 {
     return point->quality == QUALITY_BAD_NO_COMMUNICATION && isnan(point->value);
 }
 
-/* Returns true if the existing history ends a line at that time with a point without a value, written by an earlier import or when a daemon
-   stopped. Call it with ascending times. */
+/* Returns true if the existing history has a point without a value at t_us, with which an earlier import or a stopped daemon ended the
+   line. Call it with ascending times. */
 static bool was_end_of_line(struct import_series *series, int64_t t_us)
 {
     while (series->next < series->before.count && series->before.at[series->next].t_us < t_us)
@@ -413,8 +415,8 @@ static bool was_end_of_line(struct import_series *series, int64_t t_us)
            is_end_of_line(&series->before.at[series->next]);
 }
 
-/* Records the pending sample. If the next sample, at next_us, is further away than the longest gap-free time, also records a point without
-   a value, which ends the line. next_us INT64_MAX: there is no next sample. */
+/* Records the tag's pending sample. If the next sample, at next_us, comes only after a gap, also records a point without a value, which
+   ends the line. next_us INT64_MAX: there is no next sample. */
 static void record_pending(struct filling *filling, int tag, int64_t next_us)
 {
     struct import_series *series = &filling->series[tag];
@@ -426,7 +428,8 @@ static void record_pending(struct filling *filling, int tag, int64_t next_us)
     if (ends) {
         const struct history_point end = { sample->t_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION };
         recorder_put(filling->recorder, tag, &end, &filling->rows);
-        /* the recorded line continues here: the sample overwrites the point without a value that had ended the line */
+        /* the line continues here: the sample's value overwrites the point without a value with which the existing history ended the
+           line */
     } else if (usable && was_end_of_line(series, sample->t_us + 1)) {
         recorder_end_tag(filling->recorder, tag, &filling->rows);
         add_row(filling, tag, sample->t_us + 1, sample->value, sample->quality);
@@ -448,8 +451,8 @@ static bool fill_sample(struct history_import *import, void *arg, int tag, const
 
 /* --- joining existing history -------------------------------------------------------------------------------------------------------- */
 
-/* Joins the first sample of a series to the recorded line before it. If the time between them is a gap, records a point without a value at
-   the end of that line; otherwise removes such a point. */
+/* Joins the first imported sample of a series to the point that history has before it. If the time between them is a gap, ends the
+   existing line with a point without a value; otherwise removes such a point. */
 static void join_before(struct filling *filling, struct history_reader *reader, int tag)
 {
     struct import_series *series = &filling->series[tag];
@@ -469,7 +472,7 @@ static void join_before(struct filling *filling, struct history_reader *reader, 
     history_series_finish(&earlier);
 }
 
-/* Reads the existing points of history in the time span of each series into series->before. */
+/* Reads the points that history already has in the time span of each imported series into series->before. */
 static bool read_before(struct filling *filling)
 {
     const struct plant *plant = filling->params->plant;
@@ -492,7 +495,7 @@ static bool read_before(struct filling *filling)
     return good;
 }
 
-/* Records the last sample of each series and joins it to the recorded point that follows it. */
+/* Records the last imported sample of each series, and joins it to the point that history has after it. */
 static void record_last(struct filling *filling)
 {
     for (size_t i = 0; i < filling->params->plant->tag_count; i++) {
@@ -518,9 +521,10 @@ static bool fill(const struct import_params *params, struct import_series *serie
         .series = series,
         .counts = counts,
     };
-    /* the second pass gets a diag of its own, which is discarded: `diag` already has these findings from the first pass */
+    /* the second pass reports into a struct diag of its own, which is discarded, because `diag` already has the same findings from the
+       first pass */
     struct diag again = { 0 };
-    mkdir(params->folder, 0777); /* result ignored: if the folder cannot be created, opening a month reports the error */
+    mkdir(params->folder, 0777); /* result ignored: if the folder cannot be created, opening a month's file reports the error */
     bool good = read_before(&filling) && read_file(params, &again, counts, series, fill_sample, &filling);
     diag_finish(&again);
     if (good)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Imports series from a CSV file into history, such as data from before Plantcast was installed. Works while a daemon is recording. */
+/* Imports samples from a CSV file into history, such as data from before Plantcast was installed. Works while a daemon is recording. */
 #ifndef HISTORY_IMPORT_H
 #define HISTORY_IMPORT_H
 #include "base/log/log.h"
@@ -12,20 +12,22 @@ struct import_params {
     const struct plant *plant;
     const char *folder, *path;
     const char *encoding; /* encoding of the file; NULL: detected from its bytes */
-    int64_t start_us; /* time in UTC microseconds from which the numbers in the time column count; INT64_MIN: the column has timestamps */
-    int64_t unit_us;  /* microseconds per unit of the numbers in the time column */
+    /* UTC time in microseconds at which the numbers in the time column are 0; INT64_MIN: the column has timestamps instead */
+    int64_t start_us;
+    int64_t unit_us;        /* microseconds per unit of the numbers in the time column */
     int64_t longest_gap_us; /* longest time between two samples of a tag that is not a gap; 0: derived from each series */
 };
 
 struct import_counts {
     long long samples, points; /* samples read; points recorded */
-    /* numbers of samples without a usable value, of samples replaced by a later row with the same time, and of gaps */
+    /* bad: samples without a usable value; duplicates: samples that a later row with the same time replaced; gaps: times without
+       samples, in which lines are interrupted */
     long long bad, duplicates, gaps;
     int tags;
     struct charset_choice encoding;
     bool exported; /* true: the file has the columns of `plantcast history export` */
     int64_t from_us, to_us;
-    int64_t longest_us[2]; /* smallest and largest, over all series, of the longest time between samples that is not a gap */
+    int64_t longest_us[2]; /* smallest and largest, over all tags, of the longest time between samples that is not a gap; in microseconds */
 };
 
 /* Imports a file in one of two forms. Long: columns Tag, Time, Value and perhaps Quality (0x80050000, Good, Uncertain, Bad) and Unit.

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State and functions that the files month_file*.c share. Private to them. */
+/* State and functions that month_file*.c, month_blocks.c and month_seconds.c share. Private to them. */
 #ifndef HISTORY_MONTH_FILE_IMPL_H
 #define HISTORY_MONTH_FILE_IMPL_H
 #include <sys/types.h>
@@ -31,34 +31,34 @@ struct month_file {
     bool has_blocks; /* true: the file is known to have blocks of compressed points (format version 3 or later) */
     bool writes;     /* true: this handle has written the newest points at least once (month_seconds.h) */
     ino_t inode;
-    const struct plant *shown_by; /* plant to whose units values are converted; NULL: not converted */
+    const struct plant *shown_by; /* plant that states the units to which values are converted; NULL: not converted */
     const struct history_tag *tags;
     size_t tag_count, waiting;
-    int64_t *ids;                  /* id in the file of each tag, by index of the tag; 0: not known yet */
-    struct month_rollups *rollups; /* rollups in progress, by tag */
+    int64_t *ids;                  /* by index of the tag: the tag's id in the file; 0: not known yet */
+    struct month_rollups *rollups; /* incomplete rollup buckets, by index of the tag */
     struct month_chunk *chunk;     /* the chunk (times that several blocks share) that was read last */
-    struct month_seconds *seconds; /* newest points of the file, as this handle has read them */
-    /* number and stamp (increases with each write) of the row of the table `second` that was written last */
+    struct month_seconds *seconds; /* newest points, which are not in blocks yet, as this handle has read them from the table `second` */
+    /* number and stamp (increases with each write) of the row in the table `second` that was written last */
     int64_t slot, stamp;
     int64_t slot_before, stamp_before; /* values of slot and stamp when the transaction began, which a rollback restores */
 };
 
-/* Returns a prepared statement of enum month_statement, ready to bind and step (base/files/database.h). */
+/* Returns the prepared SQL statement `which`, ready to bind and step (base/files/database.h). */
 sqlite3_stmt *month_sql(struct month_file *file, enum month_statement which);
-/* Steps a statement to its end, and logs errors. Returns 0 or -errno. */
+/* Runs an SQL statement to its end, and logs errors. `doing` says in the log what failed. Returns 0 or -errno. */
 int month_run(struct month_file *file, sqlite3_stmt *statement, const char *doing);
-/* Finds out whether the file has an outbox now, since another handle may have created one; *has receives the answer. Returns 0 or
-   -errno. */
+/* *has tells whether the file has an outbox (points to send to PostgreSQL) now, because another handle may have created one. Returns 0
+   or -errno. */
 int month_has_outbox(struct month_file *file, bool *has);
 struct history_point month_point(sqlite3_stmt *statement, int first_column); /* Reads a point from the columns t, v, q of the current
                                                                                 row, the first of which is first_column. */
-/* Returns whether the file has blocks and seconds: files of versions 1 and 2 have none until a writer converts them. */
+/* Returns whether the file has the tables `block` and `second`: files of versions 1 and 2 lack them until a writer converts them. */
 bool month_has_blocks(struct month_file *file);
 /* Returns the id of the tag's series whose unit is `wanted` or can be converted to it, and the conversion in *change; 0: the file has no
-   such series. wanted NULL: the series to which the newest points belong, without conversion. */
+   such series. wanted NULL: returns the series to which the newest points belong, without conversion. */
 int64_t month_find_tag(struct month_file *file, const char *name, const char *wanted, bool *step, struct unit_change *change);
-/* Appends a tag's points of blocks and of the table `sample`, from the last one at or before from_us to the first one after to_us,
-   ascending. Returns 0 or -errno. */
+/* Appends a tag's points from the compressed blocks and from the table `sample` (older versions), ascending, from the last one at or
+   before from_us to the first one after to_us. Returns 0 or -errno. */
 int month_stored_points(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out);
 void history_points_add(struct history_points *points, const struct history_point *point);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads a month's file. */
+/* Reads points, rollups, events and gaps from a month's history file. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,7 +25,7 @@ void month_file_show_by(struct month_file *file, const struct plant *plant)
     file->shown_by = plant;
 }
 
-/* Returns the unit in which the plant shows the tag now. NULL: values keep the file's unit. */
+/* Returns the unit in which the plant shows the tag now. NULL: values keep the unit in which the file stores them. */
 static const char *unit_shown(const struct month_file *file, const char *name)
 {
     int tag = file->shown_by ? plant_find_tag(file->shown_by, name) : -1;
@@ -85,7 +85,7 @@ static int by_time(const void *a, const void *b)
     return (x->t_us > y->t_us) - (x->t_us < y->t_us);
 }
 
-/* Adds the newest points of a tag, which are not in blocks yet, and its newest sample; ascending. */
+/* Appends a tag's newest points, which are not in blocks yet, and its held sample (newest, not recorded yet); sorted by time. */
 static int add_recent(struct month_file *file, int64_t id, struct history_points *out)
 {
     const struct month_seconds *seconds = file->seconds;
@@ -107,7 +107,7 @@ static int add_recent(struct month_file *file, int64_t id, struct history_points
     return error;
 }
 
-/* Adds points that versions 1 and 2 of the file format recorded, which are in the table `sample`. */
+/* Appends a tag's points in the table `sample`, which versions 1 and 2 of the file format wrote. */
 static int add_samples(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out)
 {
     struct history_point edge;
@@ -129,8 +129,8 @@ static int add_samples(struct month_file *file, int64_t id, int64_t from_us, int
     return error;
 }
 
-/* Removes surplus points: of several before from_us only the last stays, of several after to_us only the first, and of two with equal
-   times the newer row. */
+/* Removes the points that a query need not return: of several before from_us only the last stays, of several after to_us only the first,
+   and of two with equal times the newer row. */
 static void trim(struct history_points *points, size_t begin, int64_t from_us, int64_t to_us)
 {
     size_t kept = begin;
@@ -159,7 +159,7 @@ int month_stored_points(struct month_file *file, int64_t id, int64_t from_us, in
     return error;
 }
 
-/* Appends the points of a series, in the unit of the file. */
+/* Appends the points of a tag's series, in the unit in which the file stores them. */
 static int add_series(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out)
 {
     size_t begin = out->count;
@@ -256,8 +256,8 @@ static void take(struct history_pair *pair, const struct history_point *there, i
         pair->after = point;
 }
 
-/* Returns an array that maps tag ids of the file to indices in `tags`; -1: not in `tags`. NULL: the file has none of the tags. Free with
-   mem_free(). */
+/* Returns an array that maps a tag's id in the file to its index in `tags`; -1: not in `tags`. Returns NULL if the file has none of the
+   tags. Free with mem_free(). */
 static int *index_by_id(struct month_file *file, const struct history_tag *tags, size_t count, struct history_pair *pairs, int64_t *most)
 {
     int64_t *ids = mem_array(count ? count : 1, sizeof(*ids));
@@ -283,7 +283,7 @@ static void take_of(const int *index, int64_t most, int64_t id, const struct his
         take(&pairs[index[id]], point, t_us);
 }
 
-/* Searches the newest points, which are not in blocks yet, and the newest samples for the points around t_us. */
+/* Searches the newest points, which are not in blocks yet, and the held samples (not recorded yet) for the points around t_us. */
 static int take_recent(struct month_file *file, int64_t t_us, const int *index, int64_t most, struct history_pair *pairs)
 {
     const struct month_seconds *seconds = file->seconds;
@@ -367,7 +367,7 @@ int month_file_span(struct month_file *file, int64_t *first_us, int64_t *last_us
     return error;
 }
 
-/* Parses the text of an event with which the historian recorded a gap. Returns false for other events. */
+/* Parses the text of an event with which the historian noted a gap in recording. Returns false for other events. */
 static bool read_gap(const char *kind, const char *text, int64_t t_us, struct history_gap *out)
 {
     double seconds;

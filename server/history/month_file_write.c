@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes a month's file. Points are first written in order of time; later they are sorted by tag, compressed and reduced to rollups. */
+/* Writes a month's history file. Points are first written in order of time; later they are sorted by tag, compressed and reduced to
+   rollups. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,8 +21,8 @@ static int begin(struct month_file *file)
     return month_run(file, month_sql(file, SQL_BEGIN), "cannot begin to write");
 }
 
-/* Commits the transaction if `error` is 0, otherwise rolls it back. After a rollback, tag ids and rollups in memory differ from the
-   file, so they are reset. */
+/* Commits the transaction if `error` is 0, otherwise rolls it back. After a rollback, the tag ids and rollups in memory may not agree
+   with the file, so they are reset. */
 static int end(struct month_file *file, int error)
 {
     if (!error)
@@ -76,8 +77,8 @@ static void report_set_aside(struct month_file *file, const struct history_tag *
     sqlite3_reset(find);
 }
 
-/* Ends the tag's series, whose unit cannot be converted to the tag's present unit, and renames it. The series keeps its points and its
-   unit. Readers leave the series out until the tag has a unit that fits. */
+/* Ends the tag's series, whose unit cannot be converted to the tag's present unit, and gives it another name. The series keeps its
+   points and its unit. Readers leave it out until the tag has a unit to which it can be converted. */
 static int set_series_aside(struct month_file *file, const struct history_tag *of, int64_t id)
 {
     static const struct month_chunk own = { 0 };
@@ -100,8 +101,8 @@ static int set_series_aside(struct month_file *file, const struct history_tag *o
     return error;
 }
 
-/* Ensures that the unit of the tag's series in this file fits the unit in which the plant shows the tag now: sets a series aside that does
-   not fit, and converts the values of one that does. The table `second` (newest points) has no point of the tag at this time:
+/* Makes the tag's series in this file agree with the unit in which the plant shows the tag now: sets aside a series that cannot be
+   converted, and converts the values of one that can. The table `second` (newest points) has no point of the tag now, because
    month_file_write() moves the points of earlier handles to blocks first. */
 static int fit_unit(struct month_file *file, int tag)
 {
@@ -112,7 +113,7 @@ static int fit_unit(struct month_file *file, int tag)
     int64_t id = month_find_tag(file, of->name, of->unit, &step, &change);
     if (id != newest) {
         int moved = newest ? set_series_aside(file, of, newest) : 0;
-        if (!moved && id) /* this series was set aside earlier */
+        if (!moved && id) /* an earlier change of unit has set this series aside, and its unit fits again */
             moved = rename_series(file, id, of->name);
         file->rollups[tag].loaded = false;
         if (moved)
@@ -123,8 +124,7 @@ static int fit_unit(struct month_file *file, int tag)
     static const char *const columns[][2] = { { "sample", "v" },     { "recent", "v" },    { "held", "v" },
                                               { "rollup", "low" },   { "rollup", "high" }, { "rollup", "mean" },
                                               { "rollup", "first" }, { "rollup", "last" }, { "outbox", "v" } };
-    /* the file may have an outbox from an earlier run, when a database was configured: its values are converted too. No outbox is created
-       here */
+    /* a file from a time when PostgreSQL was configured has an outbox (points to send there), whose values are converted too */
     bool has_outbox;
     int error = month_has_outbox(file, &has_outbox);
     size_t count = sizeof(columns) / sizeof(columns[0]) - !has_outbox;
@@ -160,7 +160,7 @@ static int tag_id(struct month_file *file, int tag, int64_t *id)
     return error;
 }
 
-/* Finds the ids of rows' tags. Returns rows with ids in *with_ids, which the caller frees. */
+/* Replaces the tag index of each row by the tag's id in the file. Returns the new rows in *with_ids, which the caller frees. */
 static int find_ids(struct month_file *file, const struct history_row *rows, size_t count, struct month_row **with_ids)
 {
     int error = 0;
@@ -172,7 +172,8 @@ static int find_ids(struct month_file *file, const struct history_row *rows, siz
     return error;
 }
 
-/* Copies the recorded points to the outbox, and the newest samples to the table from which the outbox's reader takes them. */
+/* Copies the recorded points to the outbox, and the newest samples to the table `held`, from which the thread that sends to PostgreSQL
+   takes them. */
 static int put_outbox(struct month_file *file, const struct month_row *rows, size_t count, const struct month_row *held, size_t held_count)
 {
     int error = 0;
@@ -187,7 +188,8 @@ int month_file_write(struct month_file *file, const struct history_row *rows, si
                      size_t held_count)
 {
     struct month_row *recorded = NULL, *newest = NULL;
-    int error = file->writes ? 0 : month_file_tidy(file); /* moves points that an earlier handle left in the table `second` to blocks */
+    /* moves points that an earlier handle left in the table `second` to compressed blocks */
+    int error = file->writes ? 0 : month_file_tidy(file);
     if (error || (error = begin(file)))
         return error;
     error = find_ids(file, rows, count, &recorded);
@@ -252,8 +254,8 @@ void month_file_forget_rollups(struct month_file *file)
     memset(file->rollups, 0, file->tag_count * sizeof(*file->rollups));
 }
 
-/* Computes the rollups from the points that follow the beginning of from_us's hour, and from the last point before it. Writes the
-   complete buckets to disk. */
+/* Computes the rollups from the points since the start of the hour of from_us, and from the last point before that. Writes the complete
+   buckets to the file and leaves the incomplete ones in *rollups. */
 static int roll_from(struct month_file *file, int64_t id, int64_t from_us, struct month_rollups *rollups)
 {
     int64_t hour_us = from_us - from_us % history_level_us[LEVEL_1_H];
@@ -269,7 +271,7 @@ static int roll_from(struct month_file *file, int64_t id, int64_t from_us, struc
     return error;
 }
 
-/* Finds the newest point of a tag up to a time; t_us INT64_MIN: none. */
+/* Finds the newest point of a tag at or before t_us; before->t_us INT64_MIN: there is none. */
 static int find_before(struct month_file *file, int64_t id, int64_t t_us, struct history_point *before)
 {
     struct history_points points = { 0 };
@@ -281,7 +283,7 @@ static int find_before(struct month_file *file, int64_t id, int64_t t_us, struct
     return error;
 }
 
-/* Restores the incomplete rollup buckets in memory from the points that the previous writer left in the file. */
+/* Restores a tag's incomplete rollup buckets in memory from the points that the previous writer left in the file. */
 static int load_rollups(struct month_file *file, int tag, int64_t id)
 {
     struct month_rollups *rollups = &file->rollups[tag];
@@ -314,7 +316,7 @@ static int by_tag_and_time(const void *a, const void *b)
     return x->order < y->order ? -1 : 1;
 }
 
-/* Stores the times of all rows once, as a chunk that their blocks share. The caller frees chunk->times. */
+/* Stores the different times of all rows once, as a chunk that the blocks of these rows share. The caller frees chunk->times. */
 static int share_times(struct month_file *file, const struct month_row *rows, size_t count, struct month_chunk *chunk)
 {
     chunk->times = mem_array(count + 1, sizeof(*chunk->times));
@@ -327,13 +329,14 @@ static int share_times(struct month_file *file, const struct month_row *rows, si
     return month_chunk_store(file, chunk);
 }
 
-/* Writes the points of one tag to blocks. tag -1: the plant no longer has the tag, so there are no rollups. Uses `points` as a buffer. */
+/* Writes the newest points of one tag to blocks and updates its rollups. tag -1: the plant no longer has the tag, so no rollups are
+   computed. `points` is a buffer. */
 static int move_tag(struct month_file *file, int tag, const struct month_chunk *chunk, const struct month_row *rows, size_t count,
                     struct history_points *points)
 {
     int error = 0;
     if (tag >= 0 && !file->rollups[tag].loaded)
-        /* before the new points are in blocks: rollups computed from the blocks would count these points twice */
+        /* loads the rollups before the new points are in blocks: otherwise these points would count twice */
         error = load_rollups(file, tag, rows->id);
     points->count = 0;
     for (size_t i = 0; i < count && !error; i++) {
@@ -363,8 +366,8 @@ static int move_rows(struct month_file *file, struct month_row *rows, size_t cou
     return error;
 }
 
-/* Finds the ids of the plant's tags that the file has. Does not use tag_id(), which converts units: the newest points, which are not in
-   blocks yet, have the unit of the file. Returns the indices of tags by id; -1: none. Free with mem_free(). */
+/* Returns an array that maps tag ids of the file to tag indices of the plant; -1: none. Does not use tag_id(), which converts units,
+   because the newest points still have the unit of the file. Free with mem_free(). */
 static int *tags_by_id(struct month_file *file, int64_t *id_max)
 {
     int64_t *ids = mem_array(file->tag_count + 1, sizeof(*ids));
@@ -421,7 +424,7 @@ static int roll_again(struct month_file *file, int tag, int64_t id, int64_t from
     struct month_rollups rollups;
     struct history_point before;
     int error = find_before(file, id, from_us - 1, &before);
-    /* the line that began at the last point before from_us now ends at a new point, so the buckets in between change too */
+    /* the line that began at the last point before from_us now ends at an imported point, so the buckets in between change too */
     if (before.t_us != INT64_MIN)
         from_us = before.t_us;
     from_us -= from_us % history_level_us[LEVEL_1_H];
@@ -509,13 +512,13 @@ int month_file_forget_gaps(struct month_file *file, int64_t from_us, int64_t to_
         error = forget_in_blocks(file, &gap);
     if (!error)
         error = forget(file, SQL_FORGET_GAP_NOTES, from_us, to_us, gap_quality);
-    if (!error && has_outbox) /* deletes the gap's point from the outbox too, so that it is not sent to PostgreSQL */
+    if (!error && has_outbox) /* also deletes the points that mark the gap from the outbox, so that they are not sent to PostgreSQL */
         error = forget(file, SQL_FORGET_OUTBOX_GAPS, from_us, to_us, gap_quality);
     return end(file, error);
 }
 
-/* Records the held points (newest samples), each followed by a point that marks a gap. Without sends_gaps the gap points are not sent to
-   PostgreSQL, where another daemon continues the lines. */
+/* Records the held points (each tag's newest sample), each followed by a point that marks a gap. Without sends_gaps the gap points are
+   not sent to PostgreSQL, where another daemon continues the lines. */
 static int end_lines(struct month_file *file, uint32_t gap_quality, bool sends_gaps, int64_t *ended_us)
 {
     sqlite3_stmt *held = month_sql(file, SQL_ALL_HELD);

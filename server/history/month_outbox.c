@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and deletes points in the outbox. */
+/* Reads and deletes points in the outbox of a month's file. */
 #include "history/month_outbox.h"
 
 #include <errno.h>
@@ -9,7 +9,8 @@
 #include "history/month.h"
 #include "history/month_file.h"
 
-enum { DELETE_ROWS = 20000 }; /* maximum number of rows deleted per transaction; the historian has to wait for each transaction */
+/* maximum number of rows deleted per transaction; limited because the historian cannot write during the transaction */
+enum { DELETE_ROWS = 20000 };
 enum statement { BEGIN, COMMIT, THERE, SPAN, ROWS, HELD, TAGS, EVENTS, DELETE, STATEMENT_COUNT };
 
 static const char *const sql[STATEMENT_COUNT] = {
@@ -19,7 +20,7 @@ static const char *const sql[STATEMENT_COUNT] = {
     [SPAN] = "SELECT (SELECT min(seq) FROM outbox), (SELECT max(seq) FROM outbox)",
     [ROWS] = "SELECT seq, tag, t, v, q FROM outbox ORDER BY seq LIMIT ?",
     [HELD] = "SELECT 0, tag, t, v, q FROM held",
-    /* without the suffix of series that were set aside: in the database, name and unit together identify a tag */
+    /* a series that was set aside has a suffix to its name, which is removed: in PostgreSQL, name and unit together identify a tag */
     [TAGS] = "SELECT id, substr(name, 1, instr(name || char(31), char(31)) - 1), unit, step FROM tag",
     [EVENTS] = "SELECT t, kind, text FROM event",
     [DELETE] = "DELETE FROM outbox WHERE seq <= ?",

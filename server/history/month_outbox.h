@@ -26,29 +26,31 @@ struct month_outbox_event {
     int64_t t_us;
     char *kind, *text;
 };
-/* One consistent read of the outbox; zero-initialise, free with month_outbox_batch_finish(). */
+/* The content of an outbox that one transaction has read; zero-initialise, free with month_outbox_batch_finish(). */
 struct month_outbox_batch {
-    struct month_outbox_row *rows, *held; /* rows: recorded points in order of insertion; held: newest samples of tags that are not
-                                             recorded yet */
-    struct month_outbox_tag *tags;        /* all tags of the file */
-    struct month_outbox_event *events;    /* all events of the file */
+    /* rows: recorded points in order of insertion; held: the newest sample of each tag that is not recorded yet */
+    struct month_outbox_row *rows, *held;
+    struct month_outbox_tag *tags;     /* all tags of the month's file */
+    struct month_outbox_event *events; /* all events of the month's file, such as gaps */
     size_t row_count, row_capacity, held_count, held_capacity, tag_count, tag_capacity, event_count, event_capacity;
 };
 
 struct month_outbox;
-/* Opens the outbox of a month. Returns NULL with *error on failure; -ENOENT, not logged: there is no file, or the file has no outbox. */
+/* Opens the outbox of a month's file. Returns NULL with *error on failure; -ENOENT, not logged: there is no file, or the file has no
+   outbox. */
 struct month_outbox *month_outbox_open(struct log *log, const char *folder, int month, int *error);
 void month_outbox_close(struct month_outbox **outbox); /* Closes the outbox and sets *outbox to NULL; accepts a pointer to NULL. */
 /* *count receives an estimate of the number of points in the outbox: the difference between the last and the first sequence number. */
 int month_outbox_count(struct month_outbox *outbox, int64_t *count);
 /* Finds the sequence number of the newest point; 0: the outbox is empty. */
 int month_outbox_last(struct month_outbox *outbox, int64_t *seq);
-/* Reads the oldest points, at most `most`, and sets the other members of the batch. Frees the batch's previous content. */
+/* Reads the oldest points of the outbox, at most `most`, and the file's newest samples, tags and events. Frees the batch's previous
+   content. */
 int month_outbox_read(struct month_outbox *outbox, size_t most, struct month_outbox_batch *batch);
 void month_outbox_batch_finish(struct month_outbox_batch *batch);
-/* Deletes the points with sequence numbers up to `seq`. */
+/* Deletes the points with sequence numbers up to `seq`, because they have been sent. */
 int month_outbox_delete(struct month_outbox *outbox, int64_t seq);
-/* Deletes the oldest points so that at most `keep` remain. */
+/* Deletes the oldest points of the outbox, sent or not, so that at most `keep` remain. */
 int month_outbox_shorten(struct month_outbox *outbox, int64_t keep);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The newest points of a month's file, in the order in which they were recorded: one compressed row a second, until month_file_tidy()
-   moves the points to blocks. The rows are overwritten in place, because that writes fewer pages than rows that come and go. Private to
-   month_file*.c. Functions that return int return 0 or -errno, already logged. */
+   moves the points to blocks. The rows are overwritten in place, because that writes fewer disk pages than deleting and inserting rows.
+   Private to month_file*.c. Functions that return int return 0 or -errno, already logged. */
 #ifndef HISTORY_MONTH_SECONDS_H
 #define HISTORY_MONTH_SECONDS_H
 #include "base/mem.h"
@@ -9,24 +9,25 @@
 
 struct month_row {
     int64_t id;   /* the tag's id in the file; 0: no row */
-    size_t order; /* position of the point in the order of recording */
+    size_t order; /* position of the point in the order of recording; of two points with equal times the later one counts */
     struct history_point point;
 };
 
-/* The newest points, as a handle has read them from the table `second`. */
+/* The newest points, as a handle of a month's file has read them from the table `second`. */
 struct month_seconds {
-    /* mark: stamp of the newest row that was moved to blocks; stamp, slot: stamp and number of the newest row read */
+    /* stamps increase with each write. mark: stamp of the newest row whose points were moved to blocks; stamp, slot: stamp and number of
+       the newest row that was read */
     int64_t mark, stamp, slot;
     struct month_row *rows; /* recorded points */
     struct month_row *held; /* newest sample of each tag, by the tag's id in the file; id 0: no sample */
     size_t count, capacity, held_count, held_capacity;
 };
 
-/* Writes recorded rows and newest samples as one row of the table, inside a transaction. Sorts the arrays. */
+/* Writes recorded points and newest samples as one row of the table `second`, inside a transaction. Sorts the arrays. */
 int month_seconds_write(struct month_file *file, struct month_row *rows, size_t count, struct month_row *held, size_t held_count);
-/* Updates file->seconds from the present rows of the table. */
+/* Updates file->seconds from the present rows of the table `second`. */
 int month_seconds_read(struct month_file *file);
-/* Marks all rows that were read as moved to blocks, inside a transaction. */
+/* Marks all rows that month_seconds_read() has read as moved to blocks, inside a transaction. */
 int month_seconds_clear(struct month_file *file);
 /* Frees the content of file->seconds. */
 static inline void month_seconds_finish(struct month_file *file)

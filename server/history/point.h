@@ -12,7 +12,7 @@ struct history_point {
     uint32_t quality; /* OPC UA quality that holds from this point until the next */
 };
 
-/* Returns whether the point has a value that may be drawn. */
+/* Returns true if the point has a value and its quality is not Bad. */
 static inline bool history_point_usable(const struct history_point *p)
 {
     return (p->quality >> 30) < 2 && !isnan(p->value);

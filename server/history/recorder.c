@@ -12,7 +12,7 @@ struct recorder_lane {
     struct swinging_door door;
     struct swinging_door_params params;
     uint32_t quality;
-    bool touched; /* in recorder->touched */
+    bool touched; /* true: the lane's index is in recorder->touched (tags with samples since the last recorder_held()) */
 };
 
 struct recorder {
@@ -22,8 +22,8 @@ struct recorder {
     int *touched;
 };
 
-/* Returns the range of a tag's values (highest minus lowest): the measuring range of its instrument if that is known, otherwise the colour
-   range of its group. */
+/* Returns the width of a tag's range of values: the measuring range of its instrument if that is known, otherwise the colour range of
+   its group; 0: unknown. */
 static double span_of(const struct plant *plant, const struct plant_tag *tag)
 {
     if (tag->scale.has_range)
@@ -119,8 +119,8 @@ void recorder_held(struct recorder *recorder, struct recorder_rows *held)
     for (size_t i = 0; i < recorder->touched_count; i++) {
         struct recorder_lane *lane = &recorder->lanes[recorder->touched[i]];
         lane->touched = false;
-        /* if the newest sample was just recorded, the recorded point becomes the tag's held row, so that the end of the line is known if
-           the writer is killed */
+        /* if the newest sample was just recorded, the recorded point becomes the tag's held row, so that after a crash it is known where
+           the line ends */
         if (!swinging_door_held(&lane->door, &point))
             point = lane->door.anchor;
         add_points(held, recorder->touched[i], &point, 1);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Selects the samples that are recorded: one swinging-door filter for each tag. Pure. Thread: one. */
+/* Selects the samples that are recorded: one swinging-door filter for each tag. Does no input or output. Thread: one. */
 #ifndef HISTORY_RECORDER_H
 #define HISTORY_RECORDER_H
 #include "history/month_file.h"
@@ -13,16 +13,17 @@ struct recorder_rows { /* zero-initialise; free `at` with mem_free() */
 struct recorder;
 struct recorder *recorder_create(const struct plant *plant);
 void recorder_destroy(struct recorder **recorder); /* Frees the recorder and sets *recorder to NULL; accepts a pointer to NULL. */
-/* Adds a sample of a tag, and appends to `kept` the rows that must now be recorded because of the sample. */
+/* Passes a sample to its tag's filter, and appends to `kept` the rows that must now be recorded. */
 void recorder_put(struct recorder *recorder, int tag, const struct history_point *sample, struct recorder_rows *kept);
 /* Returns the quality of a tag's newest sample; Bad_WaitingForInitialData if it has none yet. */
 uint32_t recorder_quality(const struct recorder *recorder, int tag);
-/* Appends the held rows: the newest samples that are not recorded yet, of tags that had a sample since the last call. */
+/* Appends the held rows: for each tag that had a sample since the last call, its newest sample, which may not be recorded yet. */
 void recorder_held(struct recorder *recorder, struct recorder_rows *held);
-/* Makes the next recorder_held() append the newest samples of all tags. Call it if the held rows of the last recorder_held() could not be
+/* Makes the next recorder_held() append the newest samples of all tags. Call it if the rows of an earlier recorder_held() could not be
    written. */
 void recorder_hold_again(struct recorder *recorder);
-/* Records the newest sample of a tag if it is not recorded yet, as if the override period (longest time between two points) were over. */
+/* Records the newest sample of a tag if the filter has not recorded it yet, as if the override period (longest time between two recorded
+   points) were over. */
 void recorder_end_tag(struct recorder *recorder, int tag, struct recorder_rows *kept);
 void recorder_end(struct recorder *recorder, struct recorder_rows *kept); /* calls recorder_end_tag() for all tags */
 

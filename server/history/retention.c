@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Deletes whole months by age and size, or only the oldest points of a month if that suffices. */
+/* Deletes the history files of whole months by age and size, or only the oldest points of a month if that suffices. */
 #include "history/retention.h"
 
 #include <errno.h>
@@ -18,7 +18,7 @@ static const char *const parts[] = { "", "-wal", "-shm" };
 /* CUT_BYTES: maximum number of bytes deleted from a month in one call, because the recording thread waits for the call */
 enum { PARTS = sizeof(parts) / sizeof(parts[0]), CUT_BYTES = 16000000 };
 static const int64_t NEWEST_US = 600 * US_PER_S; /* the last ten minutes of history are never deleted by the size limit */
-#define CUT_BELOW 0.01 /* fraction of the size limit that is freed in addition, so that the limit is not reached again soon */
+#define CUT_BELOW 0.01 /* this fraction of the size limit is freed in addition, so that the limit is not reached again soon */
 
 static char *path_of(const char *folder, int month, int part)
 {
@@ -52,7 +52,7 @@ static bool delete_month(struct log *log, const char *folder, int month, const c
     return gone;
 }
 
-/* Returns the used bytes of a month's file. Free space within the file counts as used except in the newest month, where new points will
+/* Returns the used bytes of a month's file. Free space within the file counts as used, except in the newest month, whose new points will
    fill it. */
 static int64_t used_bytes(struct log *log, const char *folder, int month, bool newest)
 {
@@ -71,13 +71,13 @@ static bool cut_month(struct log *log, const char *folder, int month, bool newes
     struct month_file_size size;
     int64_t first_us = INT64_MAX, last_us = INT64_MIN;
     int error;
-    /* opens the file for reading, because opening for writing would rename a damaged file */
+    /* opens the file for reading first, because opening a damaged file for writing would rename it */
     struct month_file *file = month_file_read(log, folder, month, &error);
     bool can = file && !month_file_size(file, &size) && !month_file_span(file, &first_us, &last_us) && (size.shrinks || newest);
     month_file_close(&file);
     if (!can || first_us > last_us || !(file = month_file_open(log, folder, month, NULL, 0, &error)))
         return false;
-    if (!newest) /* free space already in the file counts as freed, because deleting points also returns that space to the disk */
+    if (!newest) /* free space in the file counts as freed, because the cut returns it to the disk together with the points' space */
         too_many = too_many > size.free_bytes ? too_many - size.free_bytes : 0;
     double share = (double)(too_many < CUT_BYTES ? too_many : CUT_BYTES) / (double)(size.bytes - size.free_bytes);
     int64_t until_us = first_us + (int64_t)((double)(last_us - first_us) * share), latest_us = last_us - NEWEST_US;
@@ -86,8 +86,8 @@ static bool cut_month(struct log *log, const char *folder, int month, bool newes
     return good;
 }
 
-/* Returns the number of points that wait in a month's outbox to be sent; 1 if the outbox cannot be read, so that the month is not
-   deleted for its age. */
+/* Returns the number of points in a month's outbox, which wait to be sent to PostgreSQL. Returns 1 if the outbox cannot be read, so that
+   the month is not deleted for its age. */
 static int64_t waiting_in(struct log *log, const char *folder, int month)
 {
     int error;
@@ -99,7 +99,7 @@ static int64_t waiting_in(struct log *log, const char *folder, int month)
     return count;
 }
 
-/* Returns the used size in bytes of all months' files, without SQLite's companion files (WAL), whose size is bounded. */
+/* Returns the sum of the used bytes of all months' files, without SQLite's companion files (write-ahead log), whose size is bounded. */
 static int64_t all_used(struct log *log, const char *folder, const int *months, size_t count)
 {
     int64_t bytes = 0;
@@ -108,7 +108,8 @@ static int64_t all_used(struct log *log, const char *folder, const int *months, 
     return bytes;
 }
 
-/* Deletes a whole month. Returns false if its file could not be deleted. */
+/* Deletes the files of a whole month, and adds `waiting`, its number of unsent points, to *unsent. Returns false if its file could not
+   be deleted. */
 static bool drop_month(struct log *log, const char *folder, int month, const char *why, int64_t waiting, int64_t *unsent)
 {
     bool gone = delete_month(log, folder, month, why);
@@ -143,7 +144,8 @@ int64_t retention_apply(struct log *log, const char *folder, const struct retent
         mem_free(why);
     }
     if (!limits->sends)
-        *unsent = 0; /* deletes the points that an earlier configuration left in an outbox: no database is configured to receive them now */
+        *unsent = 0; /* points that an earlier configuration left in an outbox do not count as lost, because no database is configured
+                        now */
     if (*unsent)
         log_event(log, LOG_ERROR, EVENT_HISTORY_LOST,
                   "history: keep_gb: deleted %lld of the oldest points before PostgreSQL had received them", (long long)*unsent);
@@ -154,7 +156,7 @@ int64_t retention_apply(struct log *log, const char *folder, const struct retent
     return left;
 }
 
-/* Returns the used bytes per day of a month; 0: the month has less than a day of points. */
+/* Returns the used bytes per day of history in a month's file; 0: the file covers less than a day. */
 static double bytes_per_day(struct log *log, const char *folder, int month, bool newest)
 {
     int error;

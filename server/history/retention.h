@@ -9,15 +9,15 @@
 #include "base/log/log.h"
 
 struct retention_limits {
-    double days, bytes; /* limits of age (days) and size (bytes); 0: no limit */
-    /* true: the outboxes are sent to PostgreSQL (month_outbox.h), so a month with unsent points is not deleted for its age */
+    double days, bytes; /* limits of age in days and of size in bytes; 0: no limit */
+    /* true: points in the outboxes are sent to PostgreSQL (month_outbox.h), so a month with unsent points is not deleted for its age */
     bool sends;
 };
-/* Deletes what exceeds the limits: whole months (logged), or up to 16 MB of a month per call. Call it every minute. Returns the
+/* Deletes history that exceeds the limits: whole months (logged), or up to 16 MB of a month per call. Call it every minute. Returns the
    remaining size on disk in bytes. *unsent receives the number of deleted points that had not been sent to PostgreSQL (logged). */
 int64_t retention_apply(struct log *log, const char *folder, const struct retention_limits *limits, int64_t now_us, int64_t *unsent);
-/* Returns for how many days the size limit suffices, judged by the newest month that has at least a day of history; INFINITY: unknown.
-   Logs a warning if `days` are more. Call it at the start. */
+/* Returns for how many days of history the size limit suffices, judged by the newest month that has at least a day of history; INFINITY:
+   unknown. Logs a warning if limits->days is more. Call it at the start. */
 double retention_check(struct log *log, const char *folder, const struct retention_limits *limits);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes rollups by integrating the line through the points of one tag, segment by segment. */
+/* Computes rollups by integrating the line through the recorded points of one tag, segment by segment. */
 #include "history/rollup.h"
 
 static int64_t floor_to(int64_t t_us, int64_t length_us)
@@ -27,8 +27,8 @@ static void take_value(struct history_bucket *bucket, double value)
     bucket->high = fmax(bucket->high, value);
 }
 
-/* Adds to the bucket the part from t0_us to t1_us of the line from rollup->last to `next`. next NULL: the value of rollup->last holds over
-   that time. */
+/* Adds to the current bucket the part from t0_us to t1_us of the line from rollup->last to `next`. next NULL: the value of rollup->last
+   holds over that time. */
 static void take_part(struct rollup *rollup, const struct history_point *next, int64_t t0_us, int64_t t1_us)
 {
     struct history_bucket *bucket = &rollup->bucket;
@@ -87,7 +87,8 @@ bool rollup_put(struct rollup *rollup, const struct history_point *point, struct
         open_bucket(rollup, next.t_us);
         if (rollup->has_last)
             take_part(rollup, &next, rollup->bucket.t_us > rollup->last.t_us ? rollup->bucket.t_us : rollup->last.t_us, next.t_us);
-        /* the point is at the bucket's start, and no line leads to it: the value before holds until then */
+        /* the point is at the bucket's start, and no straight line leads to it: the previous value holds until then, so it is the
+           bucket's first value */
         if (rollup->has_last && next.t_us == rollup->bucket.t_us && history_point_usable(&rollup->last) &&
             !history_point_joined(&rollup->last, &next, rollup->step))
             rollup->bucket.first = rollup->last.value;
@@ -105,7 +106,7 @@ bool rollup_rest(const struct rollup *rollup, struct history_bucket *out)
     return rollup->open;
 }
 
-/* Adds good_us microseconds with this mean value to the bucket's mean. */
+/* Counts good_us more microseconds, with the given mean value, in the bucket's mean. */
 static void add_time(struct history_bucket *bucket, double mean, int64_t good_us)
 {
     if (good_us <= 0)
@@ -138,7 +139,7 @@ void rollup_bridge(struct history_bucket *into, const struct history_bucket *a, 
         into->bad_us += to_us - from_us;
         return;
     }
-    /* earlier versions stored no value in `first` if a point without a value is at the start of `b` */
+    /* the slope is 0 if `b` has no first value: versions before stored none if a point without a value is at the start of `b` */
     double slope = isnan(b->first) ? 0 : (b->first - a->last) / (double)(b->t_us - end_us);
     double enter = a->last + slope * (double)(from_us - end_us), leave = a->last + slope * (double)(to_us - end_us);
     take_value(into, enter);

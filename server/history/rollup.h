@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rollups: minimum, maximum, mean and last value of a tag in intervals of equal length (buckets), and how long it had no value. Only
-   intervals that contain a recorded point make a bucket; between two buckets the line is straight, from `last` of the one to `first` of
-   the next. Pure. */
+/* Rollups: minimum, maximum, mean, first and last value of a tag in intervals of equal length (buckets), and how long it had no value.
+   Only an interval that contains a recorded point makes a bucket. Between two buckets the line is straight, from `last` of the one to
+   `first` of the next. No input or output. */
 #ifndef HISTORY_ROLLUP_H
 #define HISTORY_ROLLUP_H
 #include <stddef.h>
@@ -9,15 +9,16 @@
 #include "history/point.h"
 
 struct history_bucket {
-    int64_t t_us;     /* start time of the bucket; a multiple of its length */
-    double low, high; /* extremes of the line within the bucket, including where the line enters and leaves it; NaN: no usable value */
-    double mean;      /* mean of the value over that time within the bucket in which there was a value */
+    int64_t t_us; /* start time of the bucket; a multiple of its length */
+    /* minimum and maximum of the line within the bucket, including where the line enters and leaves it; NaN: no usable value */
+    double low, high;
+    double mean; /* mean over that part of the bucket's time in which there was a value */
     /* first: value at the bucket's start, before a step there, or of its first point if no line leads into the bucket; last: value at the
        bucket's end. NaN: no value */
     double first, last;
-    int64_t good_us;  /* microseconds with a value */
-    int64_t bad_us;   /* microseconds without a value */
-    uint32_t quality; /* quality at the end */
+    int64_t good_us;  /* microseconds of the bucket's time with a value */
+    int64_t bad_us;   /* microseconds of the bucket's time without a value */
+    uint32_t quality; /* quality at the bucket's end */
 };
 
 struct rollup { /* zero-initialise, then set length_us and step */
@@ -26,7 +27,7 @@ struct rollup { /* zero-initialise, then set length_us and step */
     bool has_last, open;
     struct history_point last;
     struct history_bucket bucket;
-    double area; /* integral of value over microseconds */
+    double area; /* integral over time of the value in the current bucket, in value times microseconds */
 };
 
 /* Adds the next point in order of time; a point older than the last one counts as if it had the last one's time. Returns true if the
@@ -34,10 +35,10 @@ struct rollup { /* zero-initialise, then set length_us and step */
 bool rollup_put(struct rollup *rollup, const struct history_point *point, struct history_bucket *closed);
 /* *out receives the incomplete bucket, up to the last point. Returns false if no bucket is incomplete. */
 bool rollup_rest(const struct rollup *rollup, struct history_bucket *out);
-/* Merges bucket `b` into bucket `a`. `b` comes after `a`, within the same longer bucket. */
+/* Merges bucket `b` into bucket `a`. `b` must come later, and both must lie within the same longer bucket. */
 void rollup_merge(struct history_bucket *a, const struct history_bucket *b);
-/* The line from the end of bucket `a` (at end_us) to the start of bucket `b` belongs to no bucket: adds its part between from_us and to_us
-   to the bucket `into`. */
+/* No bucket includes the line from the end of bucket `a` (at end_us) to the start of bucket `b`. This function adds the part of that
+   line between from_us and to_us to the bucket `into`. */
 void rollup_bridge(struct history_bucket *into, const struct history_bucket *a, int64_t end_us, const struct history_bucket *b,
                    int64_t from_us, int64_t to_us);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores at most MAX_SPACINGS times between samples. For a longer series only every second one is stored, then only every fourth, and so
-   on. */
+/* Finds the median time between samples. Stores at most MAX_SPACINGS times between samples: for a longer series only every second one,
+   then only every fourth, and so on. */
 #include "history/spacing.h"
 
 #include <stdlib.h>

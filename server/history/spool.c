@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes spool files: one line for each row, with its kind (recorded or held), time, value, quality and name of the tag. A line
-   of kind `u` precedes the first row of each tag: length of the tag's unit, unit and name. Earlier versions ignore this line. */
+/* Reads and writes spool files, text with one line for each unwritten row: kind (recorded or held), time, value, quality and name of the
+   tag. A line of kind `u` precedes the first row of each tag: length of the tag's unit, unit and name. Earlier versions of the program
+   ignore such lines. */
 #include "history/spool.h"
 
 #include <errno.h>
@@ -22,7 +23,8 @@ static const char HEAD[] = "plantcast spool 1\n";
 enum {
     PLACES = 3,
     RESERVE_BYTES = 8 << 20,
-    PLENTY = 10 /* the reserve file (disk space kept for a spool) is made only if the free space on the disk is this many times its size */
+    /* the reserve file (disk space kept for a spool file) is made only if the free space on the disk is this many times its size */
+    PLENTY = 10
 };
 
 char **spool_places(const char *folder)
@@ -51,8 +53,8 @@ static char *reserve_of(const char *folder, int length)
     return mem_printf("%.*s/spool.reserve", length, folder);
 }
 
-/* Creates the reserve file, which keeps disk space for a spool. It gets its name once all its blocks are allocated, so that a killed
-   program leaves no partial reserve. */
+/* Creates the reserve file, which keeps disk space for a spool file. It gets its final name once all its blocks are allocated, so that a
+   program killed meanwhile leaves no partial reserve. */
 static int make_reserve(const char *path)
 {
     char *made = mem_printf("%s.new", path);
@@ -81,7 +83,7 @@ int spool_reserve(const char *folder)
     return error;
 }
 
-/* Writes the spool into the blocks of the reserve file, then renames that file to the spool's name. */
+/* Writes the spool's text into the blocks of the reserve file, then renames that file to the spool's name. Used when the disk is full. */
 static int write_into_reserve(const char *path, const struct text *text)
 {
     const char *slash = strrchr(path, '/');
@@ -110,7 +112,7 @@ static const char *unit_of(const struct plant *plant, int tag)
     return plant->tags[tag].unit ? plant->tags[tag].unit : "";
 }
 
-/* has_unit: by tag, whether the text has the line with its unit */
+/* Appends a line of text for each row. has_unit: by tag, true once the text has the line with the tag's unit */
 static void add_rows(struct text *text, const struct plant *plant, const struct recorder_rows *rows, char kind, bool *has_unit)
 {
     for (size_t i = 0; i < rows->count; i++) {
@@ -146,7 +148,7 @@ int spool_write(const char *path, const struct plant *plant, const struct spool_
     return error;
 }
 
-struct spool_unit { /* of one tag */
+struct spool_unit { /* units of one tag: in the spool file and now */
     bool misfits;              /* the spool's unit cannot be converted to the tag's present unit */
     struct unit_change change; /* conversion from the spool's unit to the tag's present unit */
 };
@@ -186,7 +188,8 @@ static void add_line(const char *line, const struct plant *plant, struct spool_u
     to->at[to->count++] = (struct history_row){ tag, point };
 }
 
-/* Reads the spool file if it belongs to this user. Returns its text, free with mem_free(); NULL with errno on failure. */
+/* Reads the spool file if it is a regular file of this user that nobody else can write. Returns its text, free with mem_free(); NULL
+   with errno on failure. */
 static char *read_own(const char *path)
 {
     struct stat st;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that sends the points in the outboxes of the months' files to PostgreSQL. */
+/* The thread that sends the points in the outboxes of the months' history files to PostgreSQL. */
 #include "history/postgres/postgres.h"
 
 #include <errno.h>
@@ -20,11 +20,11 @@
 
 enum { BATCH_ROWS = 20000, ROUND_MS = 1000 };
 enum { NOTES = 128, SPANS = POSTGRES_SPANS };
-/* maximum time between the ends of different tags' lines. If the time of the last mirrored sample is unknown, points are read from the
-   database from this long before the newest end of a recorded line */
+/* upper bound of the time between the ends of different tags' recorded lines. If it is not known when this daemon last mirrored a sample
+   of the leader, points are read from the database from this long before the newest recorded point */
 static const int64_t LINE_END_SPREAD_US = 60 * INT64_C(1000000);
-/* upper bound of the delay until a sample is a point in the file of the leader and of the standby. The thread waits this long before it
-   deletes sent points, and before it reads missing points from the database */
+/* upper bound of the delay until a sample is a point in the files of both the leader and the standby. The thread waits this long before
+   it deletes points that the leader has sent, and before it reads points from the database that this machine lacks */
 static const int64_t OVERLAP_NS = 10 * NS_PER_S;
 static const int64_t LOOK_NS = 30 * NS_PER_S, NEWEST_NS = 5 * NS_PER_S, SAY_LOST_NS = 60 * NS_PER_S;
 
@@ -33,8 +33,8 @@ struct waiting_month {
     int64_t count;
 };
 
-/* On a standby: the newest sequence number in a month's outbox at a certain time. Once the leader has sent everything up to that time, the
-   standby deletes the points up to this number. */
+/* Used on a standby: the newest sequence number in a month's outbox at the time at_ns. Once the leader has sent all points up to that
+   time, the standby deletes the points up to this number. */
 struct outbox_note {
     int64_t at_ns, seq;
     int month;
@@ -43,7 +43,7 @@ struct outbox_note {
 struct postgres {
     struct postgres_params params;
     char *folder;
-    int64_t ended_us; /* time of the last point recorded in the history files, when the sending thread started */
+    int64_t ended_us; /* UTC time of the last point in the history files when the sending thread started */
     struct history_tag *tags;
     struct {
         counter *up, *points, *waiting, *lost, *restored;
@@ -66,7 +66,8 @@ struct postgres {
     int64_t looked_ns, newest_ns, retry_ns, say_lost_ns;
     int64_t lost;                  /* number of points that were deleted unsent and are not logged yet */
     char said[POSTGRES_WHY_BYTES]; /* text of the last error that was logged; empty: no error */
-    /* alone: only this daemon writes to the database; flushed: all points that an earlier run left in the outboxes are sent */
+    /* alone: this daemon has the lock by which only it writes to the database; flushed: all points that an earlier run left in the
+       outboxes are sent */
     bool alone, flushed;
     struct outbox_note notes[NOTES];
     size_t note_count;
@@ -145,7 +146,8 @@ static void restore(struct postgres *postgres)
         postgres->params.restored(postgres->params.arg);
 }
 
-/* Reconnects as the only writer after this daemon has become the leader, and ends the lines in the database that no daemon continues. */
+/* If this daemon has become the leader: reconnects with the lock that makes it the only writer, and ends the lines in the database that
+   no daemon continues. */
 static void take_lead(struct postgres *postgres)
 {
     pthread_mutex_lock(&postgres->lock);
@@ -169,15 +171,16 @@ static void take_lead(struct postgres *postgres)
     pthread_mutex_unlock(&postgres->lock);
 }
 
-/* Call with the lock held. */
+/* Returns true if the points of a span can be read: the other daemon has had time to send them, and this daemon has sent its own. Call
+   it with the lock held. */
 static bool is_due(const struct postgres *postgres, const struct postgres_span *span)
 {
     return clock_mono_ns() >= span->at_ns + OVERLAP_NS && postgres->sent_ns >= span->at_ns;
 }
 
-/* Reads from the database the points that another daemon recorded in a time span. leads: the span is the time just before this daemon took
-   the lead. This daemon then marked the ends of lines in the database; the former leader may have sent later points, so the marks are
-   corrected first. */
+/* Reads from the database the points that another daemon recorded in a time span. leads: the span is the time just before this daemon
+   became the leader. This daemon then marked the ends of lines in the database; the former leader may have sent later points, so the
+   marks are corrected first. */
 static bool fill_span(struct postgres *postgres, const struct postgres_span *span, bool leads, int64_t *points,
                       char why[POSTGRES_WHY_BYTES])
 {
@@ -185,8 +188,8 @@ static bool fill_span(struct postgres *postgres, const struct postgres_span *spa
            postgres_restore_span(&postgres->restore, &postgres->tables, span->from_us, span->to_us, points, why);
 }
 
-/* Reads the points of the oldest owed time span (recorded by another daemon, still missing here) from the database. It first waits until
-   that daemon has had time to send them and our own points are sent. */
+/* Reads from the database the points of the oldest owed time span: another daemon recorded them, and this machine lacks them. It first
+   waits until that daemon has had time to send them and our own points are sent. */
 static void fill(struct postgres *postgres)
 {
     pthread_mutex_lock(&postgres->lock);
@@ -222,8 +225,8 @@ static void count_month(struct postgres *postgres, struct waiting_month *month)
     month_outbox_close(&outbox);
 }
 
-/* Counts the points in the outboxes. Checks the newest month each time, other months rarely: only imports and changes of the clock add
-   points there. */
+/* Counts the points in the outboxes. Counts the newest month each time, other months rarely, because only imports and changes of the
+   clock add points there. */
 static void look_for_points(struct postgres *postgres)
 {
     size_t count;
@@ -251,7 +254,7 @@ static int64_t waiting(const struct postgres *postgres)
     return sum;
 }
 
-/* Deletes the oldest points from the outboxes if too many wait; the history files still have them. */
+/* Deletes the oldest points from the outboxes if more than spool_points wait; the history files still have them. */
 static void drop_oldest(struct postgres *postgres)
 {
     int64_t over = waiting(postgres) - (int64_t)postgres->params.plant->history.postgres.spool_points, lost = 0;
@@ -280,7 +283,8 @@ static void drop_oldest(struct postgres *postgres)
 
 /* --- sending ------------------------------------------------------------------------------------------------------------------ */
 
-/* Sends one batch of points. *more receives true if another batch follows. Returns false if no more can be sent now. */
+/* Sends one batch of an outbox's points. *more receives true if another batch follows. Returns false if the database or the file failed,
+   so that sending must stop. */
 static bool send_batch(struct postgres *postgres, struct month_outbox *outbox, struct waiting_month *month, bool newest, bool *more)
 {
     struct month_outbox_batch batch = { 0 };
@@ -316,7 +320,7 @@ static bool send_month(struct postgres *postgres, struct waiting_month *month, b
     return good;
 }
 
-/* Deletes from the outbox the points that the leader has sent to the database, OVERLAP_NS after they were recorded. */
+/* On a standby: deletes from the outbox the points that the leader has sent to the database, OVERLAP_NS after they were recorded. */
 static void forget_sent(struct postgres *postgres)
 {
     pthread_mutex_lock(&postgres->lock);
@@ -337,8 +341,8 @@ static void forget_sent(struct postgres *postgres)
     }
 }
 
-/* Notes the newest sequence number in the newest month's outbox. When a new month begins, points of the older month may be sent twice; the
-   database then replaces each point by its equal. */
+/* On a standby: notes the newest sequence number in the newest month's outbox. When a new month begins, points of the older month may be
+   sent twice; the database then replaces each point by its equal. */
 static void note_outbox(struct postgres *postgres)
 {
     int error, month = postgres->month_count ? postgres->months[postgres->month_count - 1].month : 0;
@@ -350,8 +354,8 @@ static void note_outbox(struct postgres *postgres)
     month_outbox_close(&outbox);
 }
 
-/* Sends the points in all outboxes. The newest samples, which are not recorded yet, are sent every few seconds with the newest month,
-   and when the program ends. */
+/* Sends the points in all outboxes. With the newest month it also sends the newest samples, which are not recorded yet, every few
+   seconds and when the daemon ends. */
 static void send_all(struct postgres *postgres)
 {
     int64_t now_ns = clock_mono_ns();
@@ -390,7 +394,8 @@ static void *postgres_main(void *arg)
         drop_oldest(postgres);
         counter_set(postgres->counters.waiting, waiting(postgres));
         if (postgres->alone || !postgres->flushed) {
-            /* nothing is sent until the restore has ended the lines that earlier recordings left open in the database */
+            /* until the restore of this machine's files has ended the lines that earlier recordings left open in the database, nothing
+               is sent */
             if (!postgres->restore.wanted || postgres->restore.next_month != INT_MAX)
                 send_all(postgres);
         } else {
@@ -435,7 +440,7 @@ int64_t postgres_sent_age_ns(struct postgres *postgres)
     return sent_ns == INT64_MIN ? INT64_MAX : clock_mono_ns() - sent_ns;
 }
 
-/* Returns the time of the last point in the files. Without files, returns the oldest time that retention keeps. */
+/* Returns the UTC time of the last point in the history files. Without files, returns the oldest time that retention keeps. */
 static int64_t end_of_files_us(struct postgres *postgres)
 {
     const int64_t day_us = INT64_C(86400000000);
@@ -452,11 +457,11 @@ static int64_t end_of_files_us(struct postgres *postgres)
     return last_us;
 }
 
-/* Call with the lock held. */
+/* Adds a time span whose points must be read from the database. Call it with the lock held. */
 static void add_span(struct postgres *postgres, const struct postgres_span *span)
 {
     struct postgres_span *last = &postgres->owed.spans[SPANS - 1];
-    /* the list of time spans is full, because the connection breaks often: extends the last span instead of adding one */
+    /* the list is full, because the connection breaks often: extends the last span instead of adding one */
     if (postgres->owed.span_count == SPANS)
         *last = (struct postgres_span){ last->from_us, span->to_us, span->at_ns };
     else
@@ -487,8 +492,8 @@ void postgres_lead(struct postgres *postgres, int64_t from_us, int64_t to_us)
     pthread_mutex_unlock(&postgres->lock);
 }
 
-/* Queues another read of the time before this daemon led. The queue holds at most two such reads: the first keeps its place however often a
-   standby reconnects, and the second runs after the points of the newest connection have arrived. */
+/* Queues another read of the span just before this daemon became the leader. The queue holds at most two such reads: the first keeps its
+   place however often a standby reconnects, and the second runs after the points of the newest connection have arrived. */
 void postgres_fill_again(struct postgres *postgres)
 {
     struct postgres_span *newest = NULL;

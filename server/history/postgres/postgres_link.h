@@ -19,16 +19,16 @@ struct postgres_link *postgres_link_open(const struct plant_postgres *postgres, 
 /* Connects like postgres_link_open(), with an explicit time limit for connecting and for each answer. */
 struct postgres_link *postgres_link_open_within(const struct plant_postgres *postgres, int stop_fd, int64_t patience_ns,
                                                 char why[POSTGRES_WHY_BYTES]);
-/* Sets how long each of the following calls may wait for an answer. */
+/* Sets how long each of the following calls may wait for an answer of the server. */
 void postgres_link_set_patience(struct postgres_link *link, int64_t patience_ns);
 void postgres_link_close(struct postgres_link **link); /* Closes the connection and sets *link to NULL; accepts a pointer to NULL. */
 const char *postgres_link_why(const struct postgres_link *link); /* Returns the reason of the last failure as text. */
 
-/* Runs SQL statements; drops rows that they return. Returns false on failure. */
+/* Runs SQL statements; discards rows that they return. Returns false on failure. */
 bool postgres_link_run(struct postgres_link *link, const char *sql);
-/* Runs statements given as a format. Returns false on failure. */
+/* Runs SQL statements given as a printf() format. Returns false on failure. */
 bool postgres_link_runf(struct postgres_link *link, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
-/* Runs one statement with parameters as text. Returns its rows in binary format, for PQclear(); NULL on failure. */
+/* Runs one SQL statement with parameters as text. Returns its rows in binary format, for PQclear(); NULL on failure. */
 PGresult *postgres_link_ask(struct postgres_link *link, const char *sql, int count, const char *const *parameters);
 
 /* Begins COPY table FROM STDIN (FORMAT binary). The functions postgres_copy_...() add rows column by column; postgres_copy_end() ends the
@@ -37,13 +37,13 @@ bool postgres_copy_begin(struct postgres_link *link, const char *table);
 void postgres_copy_row(struct postgres_link *link, int columns);
 void postgres_copy_int32(struct postgres_link *link, int32_t value);
 void postgres_copy_int64(struct postgres_link *link, int64_t value);
-void postgres_copy_time(struct postgres_link *link, int64_t t_us);   /* microseconds UTC since 1970 */
-void postgres_copy_double(struct postgres_link *link, double value); /* NaN becomes NULL */
+void postgres_copy_time(struct postgres_link *link, int64_t t_us);   /* t_us: microseconds UTC since 1970 */
+void postgres_copy_double(struct postgres_link *link, double value); /* NaN is sent as NULL */
 void postgres_copy_text(struct postgres_link *link, const char *text);
 void postgres_copy_bool(struct postgres_link *link, bool value);
-bool postgres_copy_end(struct postgres_link *link); /* Sends all rows. */
+bool postgres_copy_end(struct postgres_link *link); /* Sends all rows of the COPY. Returns false on failure. */
 
-/* Functions such as postgres_int32() and postgres_double(), which read columns of result rows in binary format. */
+/* The four functions return one column of a result row in binary format. */
 int32_t postgres_int32(const PGresult *result, int row, int column);
 int64_t postgres_int64(const PGresult *result, int row, int column);
 int64_t postgres_time(const PGresult *result, int row, int column);

@@ -71,8 +71,8 @@ static void end(struct postgres_restore *restore)
 
 /* --- ending lines in the database --------------------------------------------------------------------------------------------- */
 
-/* Ends the lines in the database at their last points, as month_file_recover() does in files. Each tag's newest sample becomes a recorded
-   point. That is done even if later points exist, because a standby may have sent its first points already. */
+/* Ends the recorded lines in the database at their last points, as month_file_recover() does in files. Each tag's newest sample becomes
+   a recorded point, even if later points exist, because a standby may have sent its first points already. */
 bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us)
 {
     static const char sql[] =
@@ -89,8 +89,8 @@ bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us)
     return postgres_link_runf(tables->link, sql, tables->plant, QUALITY_BAD_NO_COMMUNICATION, (long long)(now_us / US_PER_S));
 }
 
-/* Corrects the ends of lines within a time span. This daemon wrote a gap mark after the last point that it knew of. If the former leader
-   continued the line, that mark is deleted, and a mark is written after the true end. */
+/* Corrects the ends of recorded lines within a time span. This daemon wrote a gap mark after the last point that it knew of. If the
+   former leader continued the line, that mark is deleted, and a mark is written after the true last point. */
 bool postgres_restore_end_span(struct postgres_tables *tables, int64_t from_us, int64_t to_us)
 {
 #define AT(US) "('epoch'::timestamptz + " US " * interval '1 microsecond')"
@@ -111,8 +111,8 @@ bool postgres_restore_end_span(struct postgres_tables *tables, int64_t from_us, 
     return postgres_link_runf(tables->link, sql, tables->plant, QUALITY_BAD_NO_COMMUNICATION, (long long)from_us, (long long)to_us);
 }
 
-/* *first and *last receive the first and last month with points; *any is false if the database has no points. Returns false if the query
-   failed. */
+/* *first and *last receive the first and the last month of which the database has points; *any is false if it has no points. Returns
+   false if the query failed. */
 static bool find_months(struct postgres_tables *tables, int *first, int *last, bool *any)
 {
     char plant[NUMBER_BYTES];
@@ -138,7 +138,7 @@ static bool find_months(struct postgres_tables *tables, int *first, int *last, b
 
 struct tag_there {
     int32_t id;
-    int tag; /* index in the plant */
+    int tag; /* index of the tag in the plant */
     struct unit_change change;
 };
 
@@ -148,7 +148,8 @@ static bool fail(char why[POSTGRES_WHY_BYTES], int error)
     return false;
 }
 
-/* Reads the points of one tag up to the end of a month. Each query returns at most POINTS_AT_ONCE points, to bound the memory. */
+/* Copies the points of one tag up to the end of a month from the database into the month's file. Each query returns at most
+   POINTS_AT_ONCE points, to bound the memory. */
 static bool restore_tag(struct postgres_tables *tables, const struct tag_there *there, struct month_file *file, int64_t after_us,
                         int64_t end_us, int64_t *points, char why[POSTGRES_WHY_BYTES])
 {
@@ -199,8 +200,8 @@ static bool restore_events(struct postgres_tables *tables, struct month_file *fi
     return rows && (!error || fail(why, error));
 }
 
-/* Finds the tags in the database that this plant also has, by name, and whose unit can be converted to the tag's present unit. Returns NULL
-   if the query failed. */
+/* Finds the tags in the database that this plant also has, by name, and whose unit can be converted to the tag's present unit. Returns
+   an array, *count long, to free with mem_free(); NULL if the query failed. */
 static struct tag_there *find_tags(const struct postgres_restore *restore, struct postgres_tables *tables, size_t *count)
 {
     char plant[NUMBER_BYTES];

@@ -14,25 +14,26 @@ struct postgres_restore {
     bool wanted;    /* a restore is in progress */
     int next_month; /* month to restore next (months since January 1970); INT_MAX: the restore has not begun */
     int64_t points; /* points restored so far */
-    /* true: sending may begin, because the lines of earlier recordings in the database are ended or another daemon continues them */
+    /* true: points may be sent to the database, because the lines of earlier recordings there are ended or another daemon continues them */
     bool begins;
 };
 
-/* Decides whether the folder needs a restore and sets restore->wanted. A restore is needed if the folder has no months' files, or if an
-   earlier restore is unfinished. Creates the folder. */
+/* Sets restore->wanted if the folder needs a restore: it has no months' files, or an earlier restore is unfinished. Creates the folder. */
 void postgres_restore_init(struct postgres_restore *restore, struct log *log, const struct plant *plant, const struct history_tag *tags,
                            const char *folder);
-/* Ends the lines in the database at their last points. Returns false if the server fails. */
+/* Ends the recorded lines of all tags in the database at their last points. Returns false if the server fails. */
 bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us);
-/* Corrects line ends between the last sample received from the former leader and our own first sample. Lines that the former leader
-   continued after the connection was lost then end at their true last points. Returns false if the server fails. */
+/* Corrects the ends of recorded lines in the database between the last sample received from the former leader and our own first sample.
+   Lines that the former leader continued after the connection was lost then end at their true last points. Returns false if the server
+   fails. */
 bool postgres_restore_end_span(struct postgres_tables *tables, int64_t from_us, int64_t to_us);
-/* Reads the points of all tags between two times from the database, replacing the gap in the files. Returns false if the server fails or
-   the files cannot be written (logged, reason in `why`). */
+/* Copies the points of all tags between two times from the database into the files, in place of the gap there. Returns false if the
+   server fails or the files cannot be written (logged, reason in `why`). */
 bool postgres_restore_span(struct postgres_restore *restore, struct postgres_tables *tables, int64_t from_us, int64_t to_us,
                            int64_t *points, char why[POSTGRES_WHY_BYTES]);
-/* Restores one more month; *points receives the number of its points. Returns false if the server fails, or the files cannot be written
-   (logged, reason in `why`). The first call ends the lines of earlier recordings; make it before anything is written to the database. */
+/* Restores one more month from the database; *points receives the number of its points. Returns false if the server fails, or the files
+   cannot be written (logged, reason in `why`). The first call ends the lines of earlier recordings in the database; make it before
+   anything is written there. */
 bool postgres_restore_step(struct postgres_restore *restore, struct postgres_tables *tables, int64_t now_us, int64_t *points,
                            char why[POSTGRES_WHY_BYTES]);
 

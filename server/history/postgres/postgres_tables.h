@@ -11,20 +11,21 @@ enum { POSTGRES_VERSION = 1 };
 struct postgres_tables { /* state of one connection; zero-initialise, free with postgres_tables_finish() */
     struct postgres_link *link;
     int plant; /* id of the plant in the database */
-    int month; /* month (months since January 1970) whose tags are in `tags` */
+    int month; /* month (months since January 1970) whose file's tags are in `tags` */
     struct postgres_tag {
         int32_t id; /* id of the tag in the database; 0: not known */
         char *unit;
-    } * tags; /* array of the month's tags, indexed by their id in the month's file */
+    } * tags; /* array of that month's tags, indexed by their id in the month's file */
     size_t tag_capacity;
 };
 
 /* Creates missing tables, checks their version and, if `alone` is true, takes a lock so that no other daemon writes for this plant. On
-   failure `why` has the reason; it is empty if the server reports the reason (postgres_link_why). */
+   failure `why` has the reason; it is empty if the server reports the reason (postgres_link_why()). */
 bool postgres_tables_open(struct postgres_tables *tables, struct postgres_link *link, const struct plant *plant, bool alone,
                           char why[POSTGRES_WHY_BYTES]);
 void postgres_tables_finish(struct postgres_tables *tables);
-/* Writes a batch in one transaction; a point that exists is replaced. newest true: also writes the newest samples and the events. */
+/* Writes a batch of points in one transaction; a point that exists is replaced. newest true: also writes the newest samples, which are
+   not recorded yet, and the events. */
 bool postgres_tables_write(struct postgres_tables *tables, int month, const struct month_outbox_batch *batch, bool newest);
 
 #endif
