@@ -13,7 +13,7 @@ extern "C" {
 
 struct draco_mesh;
 
-/* Decodes a Draco buffer. Returns the mesh, which the caller destroys, or NULL with the reason in why. */
+/* Decodes Draco-compressed data. Returns the mesh, which the caller destroys, or NULL with the reason in why. */
 struct draco_mesh *draco_mesh_decode(const void *bytes, size_t size, char why[MODEL_WHY_BYTES]);
 /* Frees the mesh and sets *mesh to NULL. *mesh may be NULL. */
 void draco_mesh_destroy(struct draco_mesh **mesh);
@@ -22,11 +22,11 @@ void draco_mesh_destroy(struct draco_mesh **mesh);
 uint32_t draco_mesh_vertex_count(const struct draco_mesh *mesh);
 /* Returns the number of triangles. */
 uint32_t draco_mesh_triangle_count(const struct draco_mesh *mesh);
-/* Writes three vertex indices per triangle to out. */
+/* Writes the mesh's triangles to `out`, three vertex indices each. */
 void draco_mesh_indices(const struct draco_mesh *mesh, uint32_t *out);
 
 /* Writes the attribute unique_id of all vertices to out, tightly packed: `width` components each, of a glTF component type. Returns false
- * if there is no such attribute or it has fewer components. */
+ * if the mesh has no such attribute or it has fewer components. */
 bool draco_mesh_attribute(const struct draco_mesh *mesh, uint32_t unique_id, int component_type, int width, void *out);
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads accessors: all component types, normalised, strided and sparse. */
+/* Reads glTF accessors: all component types, normalised, strided and sparse. */
 #include "preprocess/model/gltf_impl.hh"
 
 #include <algorithm>
@@ -49,8 +49,8 @@ uint32_t integer(const unsigned char *at, int type)
                                                             : load<uint32_t>(at);
 }
 
-/* Returns the span of `count` elements of `element` bytes at `offset` in a buffer view, with the view's stride or packed. Buffer views are
- * known to lie within their buffers (model_document.h). */
+/* Returns the memory of `count` elements of `element` bytes each, at byte `offset` of a buffer view, with the view's stride or tightly
+ * packed. Buffer views are known to lie within their buffers (model_document.h). */
 byte_span view_span(const gltf_work &w, int number, uint64_t offset, uint64_t element, uint64_t count, bool strided,
                     const std::string &what)
 {

@@ -36,20 +36,21 @@ struct gltf_work { /* a model being read */
     const model_document *document;
     tinygltf::Model parsed;
     gltf_model *model;
-    uint64_t elements_left; /* remaining elements that may be read; limits small files that refer to the same data over and over */
+    /* number of accessor elements that may still be read; limits small files that refer to the same data over and over */
+    uint64_t elements_left;
 };
 
-/* a strided range of numbers in memory, already checked to be within its buffer */
+/* a strided range of accessor elements in memory, already checked to be within its buffer */
 struct byte_span {
     const unsigned char *bytes;
     size_t stride, count;
 };
 
-/* Reads an accessor's numbers, one element at a time. */
+/* Reads the numbers of a glTF accessor, one element at a time. */
 class accessor
 {
   public:
-    /* width: number of components to read; 0: all of the accessor's */
+    /* width: number of components to read per element; 0: all that the accessor has */
     accessor(const gltf_work &w, int number, int width, const std::string &what);
     size_t count() const
     {
@@ -67,14 +68,15 @@ class accessor
     {
         return normalized;
     }
-    void get(size_t element, double *out) const; /* throws gltf_refusal if a number is not finite */
+    void get(size_t element, double *out) const; /* reads the components of one element; throws gltf_refusal if a number is not finite */
 
   private:
     std::string what;
     int type, wanted;
     bool normalized;
     byte_span base, values;
-    std::vector<std::pair<size_t, size_t>> replaced; /* sparse replacements, sorted: element, and its index in `values` */
+    /* replacements of a sparse accessor, sorted: index of the element, and index of its new value in `values` */
+    std::vector<std::pair<size_t, size_t>> replaced;
 };
 
 void take_elements(gltf_work *w, uint64_t count, const std::string &what);
@@ -84,9 +86,10 @@ double number_in(const tinygltf::Value &value, const char *key, size_t index, do
 struct uv_transform {
     double offset[2] = { 0, 0 }, scale[2] = { 1, 1 }, rotation = 0;
     int set = 0;          /* n of TEXCOORD_n */
-    bool bounded = false; /* the mapping is valid only for coordinates in 0..1, because the wrapping outside cannot be drawn */
+    /* true: the mapping is valid only for coordinates in 0..1, because the texture's wrapping outside that range cannot be drawn */
+    bool bounded = false;
 };
-enum { BASE_COLOR, METALLIC_ROUGHNESS, NORMAL, OCCLUSION, EMISSIVE, USE_COUNT }; /* uses of a texture by a material */
+enum { BASE_COLOR, METALLIC_ROUGHNESS, NORMAL, OCCLUSION, EMISSIVE, USE_COUNT }; /* purposes for which a material can use a texture */
 
 /* The distinct mappings (texture transforms) of a material's textures: at most two, because a vertex stores two texture coordinates. */
 struct uv_lays {
@@ -97,7 +100,7 @@ struct uv_lays {
 };
 uv_lays lays_of(const tinygltf::Model &m, int material);
 
-/* Appends a text about ignored content to the model's left_out. read_materials() must have allocated the list. */
+/* Appends a text about content of the model that is not drawn to the model's left_out. read_materials() must have allocated the list. */
 void leave_out(gltf_work *w, const std::string &text);
 void read_materials(gltf_work *w);
 /* Removes from a material the textures with mapping `lay` (uv_lays) that cannot be drawn outside 0..1, and appends a text about each to the

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads materials and the images of their textures. */
+/* Reads glTF materials and the images of their textures. */
 #include "preprocess/model/gltf_impl.hh"
 
 #include <array>
@@ -11,7 +11,7 @@ namespace gltf
 namespace
 {
 
-struct use { /* one use of a texture by a material */
+struct use { /* one use of a texture by a material, such as the base colour */
     int texture, set;
     const tinygltf::ExtensionMap *extensions;
 };
@@ -115,7 +115,7 @@ std::string material_what(const gltf_work &w, int number)
 
 const char *const use_names[USE_COUNT] = { "base colour", "metallic-roughness", "normal", "occlusion", "emissive" };
 
-/* Returns, for each use of a texture, a pointer to the material's member that holds the texture's index. */
+/* Returns, for each purpose of a texture, a pointer to the material's member that holds the texture's index. */
 std::array<uint32_t *, USE_COUNT> places_of(asset_material *m)
 {
     return { &m->base_color_texture, &m->metallic_roughness_texture, &m->normal_texture, &m->occlusion_texture, &m->emissive_texture };

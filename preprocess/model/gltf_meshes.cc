@@ -10,7 +10,7 @@ namespace gltf
 namespace
 {
 
-/* Returns vertex indices, three per triangle. */
+/* Returns the vertex indices of a primitive's triangles, three per triangle. */
 std::vector<uint32_t> read_indices(gltf_work *w, const tinygltf::Primitive &p, size_t vertex_count, const std::string &what)
 {
     std::vector<uint32_t> out;
@@ -60,8 +60,8 @@ std::vector<uint32_t> triangle_list(std::vector<uint32_t> in, int mode, const st
     return out;
 }
 
-/* Returns the used vertices in ascending order and renumbers the indices accordingly. Dropping unused vertices matters because exporters
- * often share one large buffer among many primitives. */
+/* Returns the vertices that `indices` use, in ascending order, and renumbers the indices accordingly. Dropping unused vertices matters
+ * because exporters often share one large buffer among many primitives. */
 std::vector<uint32_t> compact(std::vector<uint32_t> *indices)
 {
     std::vector<uint32_t> used;
@@ -138,7 +138,7 @@ float (*read_vectors(const attribute_reader &reader, const std::string &name))[3
 }
 
 /* Reads a set of texture coordinates; *out stays NULL if the primitive has none. Returns true if coordinates lie outside 0..1 although the
- * texture's mapping is valid only inside. */
+ * texture's mapping (uv_transform) is valid only inside. */
 bool read_texcoords(const attribute_reader &reader, const uv_transform &uv, float (**out)[2])
 {
     std::string name = "TEXCOORD_" + std::to_string(uv.set);
@@ -239,7 +239,7 @@ void read_meshes(gltf_work *w)
         check_morphing(mesh.weights, name);
         for (size_t i = 0; i < mesh.primitives.size(); i++) {
             gltf_primitive *primitive = &model->primitives[model->primitive_count];
-            model->primitive_count++; /* count the primitive before it is read, so that a partially read one is freed on errors */
+            model->primitive_count++; /* count the primitive before it is read, so that gltf_free() also frees a partially read one */
             if (!read_primitive(w, mesh.primitives[i], primitive, out, name + ", primitive " + std::to_string(i)))
                 model->primitive_count--;
         }

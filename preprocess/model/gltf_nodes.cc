@@ -20,15 +20,15 @@ constexpr uint32_t ELEMENTS_PER_INSTANCE = 16;
 /* tolerance of a quaternion's length; rotations of instances stored as bytes deviate by up to 0.008 */
 constexpr double ROTATION_SLACK = 0.01;
 
-/* Throws if a rule of node_rules.h refuses the node: why is not NULL. */
+/* Throws an exception if `why`, the result of a rule of node_rules.h about the node `what`, is not NULL. */
 void check(const char *why, const std::string &what)
 {
     if (why)
         refuse("%s: %s", what.c_str(), why);
 }
 
-/* Computes the transform of a node or an instance. glTF requires rotations to be unit quaternions. One of another length is normalised, as
- * other programs do, and counted; rounding is tolerated. matrix: replaces the other three; nullptr: none. */
+/* Computes the transform of a node or an instance. glTF requires rotations to be unit quaternions. A quaternion of another length is
+ * normalised, as other programs do, and counted; rounding is tolerated. matrix: replaces the other three; nullptr: none. */
 void compose(gltf_work *w, const double t[3], const double q[4], const double s[3], const double *matrix, double out[16],
              const std::string &what)
 {

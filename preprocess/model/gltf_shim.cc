@@ -73,7 +73,7 @@ void parse(gltf::gltf_work *w)
         loader.LoadASCIIFromString(&w->parsed, &error, &warning, w->document->json, static_cast<unsigned>(w->document->json_bytes), "");
     while (!error.empty() && error.back() == '\n')
         error.pop_back();
-    if (!good || !error.empty()) /* tinygltf reports content that it could not read in `error`, also if it returns true */
+    if (!good || !error.empty()) /* tinygltf describes content that it could not read in `error`, even if it returns true */
         refuse("%s", error.empty() ? "not a glTF file" : error.c_str());
 }
 

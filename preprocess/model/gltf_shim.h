@@ -13,8 +13,9 @@ struct gltf_primitive { /* triangles of one material, in model units and the mes
     uint32_t vertex_count, index_count;
     float (*positions)[3];
     float (*normals)[3];          /* vertex normals; NULL: the primitive has none */
-    float (*texcoords)[2];        /* coordinates for the material's first texture mapping; NULL: none */
-    float (*second_texcoords)[2]; /* coordinates for the textures that the mask `second` of the material names; NULL: none */
+    float (*texcoords)[2];        /* coordinates for the material's first texture mapping (KHR_texture_transform); NULL: none */
+    /* coordinates for the textures with the material's second mapping, which the material's bit mask `second` lists; NULL: none */
+    float (*second_texcoords)[2];
     uint8_t (*colors)[4];         /* vertex colours; NULL: none */
     uint32_t *indices;            /* triangle list, converted from strips and fans */
     int material;                 /* index of the material; -1: none */
@@ -24,15 +25,15 @@ struct gltf_mesh {
     char *name;
     uint32_t first_primitive, primitive_count; /* range of the mesh's primitives, each of which has at least one triangle */
     uint64_t index_count;                      /* sum over the mesh's primitives */
-    uint32_t skipped_lines, skipped_points;    /* primitives skipped because they are not triangles */
+    uint32_t skipped_lines, skipped_points;    /* numbers of primitives skipped because they consist of lines or points */
 };
 
 struct gltf_node {    /* nodes are in depth-first order: the subtree of node i is the range [i, end) */
     char *name;       /* name of the node; "": it has none */
     int parent, mesh; /* indices; -1: none */
     uint32_t end;
-    uint32_t number;  /* index in the file's list of nodes; instances below a node have that node's index */
-    double world[16]; /* column-major transform from the node's frame to the scene's */
+    uint32_t number;  /* index in the file's list of nodes; an instance (EXT_mesh_gpu_instancing) has the index of its node */
+    double world[16]; /* column-major transform from the node's frame to the scene's frame */
 };
 
 struct gltf_texture {
@@ -57,14 +58,14 @@ struct gltf_model {
     uint32_t primitive_count, mesh_count, node_count, material_count, texture_count, image_count;
     uint32_t skipped_lines, skipped_points; /* sums over all meshes */
     uint32_t scaled_rotations;              /* number of nodes and instances whose rotation quaternion is not of unit length */
-    char **left_out;                        /* texts, one for each texture use and each extension that is ignored */
+    char **left_out;                        /* texts for the report, one for each use of a texture and each extension that is ignored */
     uint32_t left_out_textures;
 };
 
 /* Parses and decodes a model file. Returns false with the reason in why, which names the object and the number; then gltf_free() need not
  * be called. */
 bool gltf_load(struct gltf_model *model, const struct model_source *source, char why[MODEL_WHY_BYTES]);
-/* Frees the arrays of the model. */
+/* Frees the arrays of a parsed model. */
 void gltf_free(struct gltf_model *model);
 
 #ifdef __cplusplus

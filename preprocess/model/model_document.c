@@ -12,7 +12,8 @@
 #include "plant/models/model_rules.h"
 #include "preprocess/model/model_uri.h"
 
-#define MAX_ZERO_BYTES ((uint64_t)64 << 20) /* maximum bytes of accessors without a buffer view, which take no space in the file */
+/* maximum total size in bytes of accessors without a buffer view, which take no space in the file */
+#define MAX_ZERO_BYTES ((uint64_t)64 << 20)
 
 /* --- buffers ------------------------------------------------------------------------------------------------------------- */
 
@@ -159,7 +160,7 @@ static bool load_images(struct document_work *work)
 
 static const char specular[] = "KHR_materials_pbrSpecularGlossiness";
 
-/* Records the ignored extensions: required ones that only affect appearance, and unknown ones. */
+/* Records the ignored glTF extensions: required ones that only affect appearance, and unknown ones. */
 static void take_left_out(struct document_work *work)
 {
     const json_t *required = json_object_get(work->root, "extensionsRequired"), *used = json_object_get(work->root, "extensionsUsed");

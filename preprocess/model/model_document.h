@@ -16,7 +16,7 @@ struct document_bytes {
 };
 
 struct document_image {
-    /* name: name of the image, for messages; missing: reason why the image could not be read, NULL if it was read */
+    /* name: name of the image, for messages; missing: reason why the image could not be read; NULL: it was read */
     char *name, *missing;
     struct document_bytes bytes; /* bytes of the image as stored in the file: PNG, JPEG or WebP */
 };

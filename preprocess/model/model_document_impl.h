@@ -14,15 +14,15 @@ struct document_work { /* a document being normalised; model_rules.h has already
     char *why;
 };
 
-/* Returns the whole number under `key` of an object, or 0 if there is none. */
+/* Returns the whole number under `key` of a JSON object, or 0 if there is none. */
 static inline uint64_t document_number(const json_t *object, const char *key)
 {
     return (uint64_t)json_integer_value(json_object_get(object, key));
 }
 
-/* Appends a buffer and takes ownership of bytes.own, also on failure. Returns the buffer's index. */
+/* Appends a buffer to the glTF document and takes ownership of bytes.own, also on failure. Returns the buffer's index. */
 size_t document_add_buffer(struct document_work *work, struct document_bytes bytes);
-/* Appends a buffer view that covers the whole buffer, and makes the accessor read from that view. */
+/* Appends a buffer view that covers the whole of `buffer`, and makes the accessor read from that view. */
 void document_point_accessor(struct document_work *work, json_t *accessor, size_t buffer);
 /* Finds `length` bytes at `offset` of a buffer and writes their address to *out. Returns false if the buffer is too short; `what` begins
  * the error text in work->why. */

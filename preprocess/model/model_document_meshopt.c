@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes EXT_meshopt_compression: compressed buffer views become plain ones. */
+/* Decodes EXT_meshopt_compression: compressed buffer views become plain buffer views. */
 #include <inttypes.h>
 #include <meshoptimizer.h>
 #include <stdio.h>

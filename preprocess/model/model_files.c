@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Keeps the list of model files and parses one at a time. */
+/* Keeps the list of a plant's model files and parses one at a time. */
 #include "preprocess/model/model_files.h"
 
 #include <errno.h>

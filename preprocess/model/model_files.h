@@ -16,7 +16,8 @@ struct model_file {
     struct gltf_model parsed; /* valid between model_file_parse() and model_file_release() */
     bool is_parsed, was_parsed;
     double parse_s;
-    /* numbers of skipped, scaled and ignored items in the model at its last parse; valid if was_parsed */
+    /* numbers of primitives that were skipped, of rotations that were scaled to unit length, and of texts in left_out, at the model's last
+     * parse; valid if was_parsed */
     uint32_t skipped_lines, skipped_points, scaled_rotations, left_out_textures;
     /* texts for the report, one for each ignored texture use and each ignored extension */
     char **left_out;
@@ -30,7 +31,7 @@ struct model_files {
 /* Adds the asset's model file to the list; reads and hashes it if it is new. Returns its index in the list; at[index].good says whether it
  * could be read. */
 size_t model_files_add(struct model_files *files, const struct plant_asset *asset);
-/* Releases all models and frees the list. */
+/* Frees the parsed models and the list of files. */
 void model_files_finish(struct model_files *files);
 
 /* Parses the file into file->parsed, until model_file_release(). Returns false with the reason in file->why, also if the file has changed

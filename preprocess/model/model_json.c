@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds and parses the JSON of a model file. */
+/* Finds and parses the JSON text of a glTF or GLB file. */
 #include "preprocess/model/model_json.h"
 
 #include <string.h>
 
 #include "base/mem.h"
 
-#define MAX_LEVELS 64 /* maximum nesting depth of arrays and objects; glTF needs about ten levels, the free-form `extras` a few more */
+#define MAX_LEVELS 64 /* maximum nesting depth of JSON arrays and objects; glTF needs about ten levels, the free-form `extras` a few more */
 
 static uint32_t read_u32(const unsigned char *at)
 {
@@ -38,7 +38,7 @@ static bool glb_good(struct model_bytes file, struct model_bytes *json, struct m
     return true;
 }
 
-/* Returns whether the nesting depth is within MAX_LEVELS, because the JSON parser is recursive and could overflow the stack. */
+/* Returns whether the nesting depth of the JSON text is within MAX_LEVELS. The JSON parser is recursive and could overflow the stack. */
 static bool depth_good(struct model_bytes json, char *why)
 {
     int depth = 0;

@@ -17,7 +17,7 @@ static bool hash_uri(const struct model_source *source, const char *what, size_t
 {
     size_t size;
     char uri_why[MODEL_WHY_BYTES];
-    /* skips data that the URI itself contains: it is part of the file's bytes, which are in the hash already */
+    /* skip data that the URI itself contains: it is part of the model file's bytes, which are in the hash already */
     if (!uri || model_uri_is_data(uri))
         return true;
     unsigned char *bytes = model_uri_read(source->folder, uri, &size, uri_why);

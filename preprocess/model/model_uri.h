@@ -8,7 +8,7 @@
 
 #define MODEL_MAX_BYTES ((size_t)4 << 30) /* maximum size of a model file, and of each file that it names */
 
-/* Returns whether a URI contains its data ("data:"). */
+/* Returns whether a URI contains its data itself ("data:..."). */
 bool model_uri_is_data(const char *uri);
 
 /* Returns the bytes that a URI refers to, which the caller frees with mem_free(). folder: the model's folder as realpath() returns it.

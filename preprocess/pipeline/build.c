@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds one asset: from a parsed model, or cached geometry, to the bytes of its file. */
+/* Builds the prepared file of one asset: from a parsed model, or cached geometry, to the bytes of the file. */
 #include "preprocess/pipeline/build.h"
 
 #include <math.h>
@@ -28,7 +28,7 @@ static void hash_text(XXH3_state_t *state, const char *text)
     XXH3_64bits_update(state, text ? text : "", text ? strlen(text) + 1 : 1);
 }
 
-/* Returns the number of sensors on the asset in the group of a sensor, without those whose position is assumed. */
+/* Returns the number of sensors on the asset that are in the same group as sensor `sensor`, without those whose position is assumed. */
 static size_t count_of_group(const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
 {
     size_t found = 0;
@@ -68,13 +68,14 @@ static void hash_gp(XXH3_state_t *state, const struct plant *plant, const struct
         if (!has_sensor || !plant_prepares(&plant->groups[g], INTERPOLATION_GP))
             continue;
         if (gp->fit)
-            plant_model_hash(gp->fit, &readings); /* errors are ignored here, because reading the readings file for the fit reports them */
+            /* an unreadable readings file is ignored here, because reading it for the fit reports the error */
+            plant_model_hash(gp->fit, &readings);
         XXH3_64bits_update(state, numbers, sizeof(numbers));
         XXH3_64bits_update(state, &readings, sizeof(readings));
     }
 }
 
-/* Hashes the plant file's settings that subdivision depends on. */
+/* Hashes the plant file's settings on which subdivision depends. */
 static void hash_field(XXH3_state_t *state, const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
 {
     const struct plant_tag *tag = &plant->tags[sensors[sensor].tag];
@@ -158,11 +159,11 @@ struct build {
     struct geometry geometry;
     struct levels levels;
     struct sensor_distances measured;
-    struct asset_level file[LEVELS_MAX]; /* levels of detail in the form in which the file stores them */
-    /* serialised geometry and levels, to be written to the geometry cache; empty if they were read from it */
+    struct asset_level file[LEVELS_MAX]; /* levels of detail in the form in which the asset file stores them */
+    /* serialised geometry and levels of detail, to be written to the geometry cache; empty if they were read from it */
     struct text parts;
-    bool surface_kept;              /* true: the surface has been written to the cache */
-    struct distance_rows distances; /* distances of the vertices in their final order */
+    bool surface_kept;              /* true: the surface has been written to the build cache */
+    struct distance_rows distances; /* distances of the vertices from the sensors, in the vertices' final order */
     struct clusters_making *making[LEVELS_MAX];
     size_t making_count;
     bool keeps; /* true: results of subdivision are written to the cache for the next run */
@@ -170,10 +171,10 @@ struct build {
     struct sample_cache sample_cache;
     struct build_report geometry_report;
     struct workers_task *keeping;          /* task that writes the caches */
-    struct workers_task *sending;          /* task that writes the asset's file to disk */
+    struct workers_task *sending;          /* task of the workers that writes the asset's file to disk */
     void (*tasks[2])(struct build *build); /* two tasks that run concurrently */
     bool failed[2];
-    int write_error; /* errno of a failed write; 0: no write failed */
+    int write_error; /* errno of a failed write to the asset's file; 0: no write failed */
     char *why;
 };
 
@@ -223,8 +224,8 @@ static void assume_sensors(struct build *build)
 
 /* --- two concurrent tasks: subdivision, and checking the distances --- */
 
-/* Starts partitioning a finished level into clusters while the next level is being subdivided, because meshoptimizer uses a single core.
- * Called for each level that subdivision has finished. */
+/* Starts partitioning a finished level of detail into clusters while the next level is being subdivided, because meshoptimizer uses a
+ * single core. Called for each level that subdivision has finished. */
 static void begin_clusters(void *arg, const struct level *level)
 {
     struct build *build = arg;
@@ -232,7 +233,8 @@ static void begin_clusters(void *arg, const struct level *level)
     build->making[build->making_count++] = clusters_begin(build->workers, level, (const float(*)[3])g->positions_m, g->vertex_count);
 }
 
-/* Waits until the clusters of all levels are made and collects them. Must be done before the levels are merged. */
+/* Waits until the clusters of all levels of detail are made and collects them. Must be done before the levels are merged into one index
+ * array. */
 static void end_clusters(struct build *build, struct clusters *clusters)
 {
     uint32_t first_index = 0;
@@ -278,8 +280,8 @@ static void split(struct build *build)
     build->output->report.split_s = seconds_since(&since_ns);
 }
 
-/* Compares some distances with those of the heat method, for the report. For a small asset this takes longer than everything else, so it is
- * skipped if the field is constant or the cache has the result. */
+/* Compares some of the asset's distances with those of the heat method, for the report. For a small asset this takes longer than everything
+ * else, so it is skipped if the field is constant or the cache has the result. */
 static void check(struct build *build)
 {
     const struct build_input *input = build->input;
@@ -301,7 +303,7 @@ static void check(struct build *build)
 
 /* --- writing the caches that the next run reads ------------------------------------------------------------------------------ */
 
-/* Serialises geometry and levels for the geometry cache, before subdivision changes them. */
+/* Serialises geometry and levels of detail for the geometry cache, before subdivision changes them. */
 static void pack_parts(struct build *build)
 {
     const struct build_input *input = build->input;
@@ -328,7 +330,8 @@ static void write_geometry(const struct build *build)
         geometry_cache_write(input->folder, input->geometry_key, build->parts.at, build->parts.length, &build->geometry_report);
 }
 
-/* Checks the distances, then writes the surface with the result of the check to the cache. Runs while levels are being subdivided. */
+/* Checks the distances against the heat method, then writes the surface with the result of the check to the cache. Runs while levels of
+ * detail are being subdivided. */
 static void check_and_keep(struct build *build)
 {
     check(build);
@@ -346,7 +349,7 @@ static void write_caches(void *arg)
     write_geometry(build);
 }
 
-/* Orders the vertices by level, so that each level uses only the first vertices of the array. own: number of vertices before
+/* Orders the vertices by level of detail, so that each level uses only the first vertices of the array. own: number of vertices before
  * subdivision. */
 static bool put_in_order(struct build *build, uint32_t own)
 {
@@ -372,7 +375,7 @@ static bool put_in_order(struct build *build, uint32_t own)
     return good || wrong(build->why, "out of memory for the levels of detail of %u vertices", g->vertex_count);
 }
 
-/* Computes the influence file (weights of sensors for harmonic, fin and gp). Needs the surface and the final order of vertices. */
+/* Computes the influence file (weights of sensors for harmonic, fin and gp). Needs the surface and the vertices in their final order. */
 static bool make_influence(struct build *build)
 {
     const struct build_input *input = build->input;
@@ -415,8 +418,8 @@ static void send_file(void *arg)
     folder_draft_send(arg);
 }
 
-/* Computes the distances in the file's format and starts writing them to disk early: they are most of the file, and writing runs while
- * other sections are hashed and checked. */
+/* Computes the distances in the asset file's format and starts writing them to disk early: they are most of the file, and writing runs
+ * while other sections are hashed and checked. */
 static void write_distances(void *arg, uint16_t *codes)
 {
     struct build *build = arg;
@@ -485,7 +488,7 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
         return wrong(build->why, "the distances of the asset cannot be written to %s: %s", input->folder, strerror(build->write_error));
     if (!bytes)
         return false;
-    /* check the file as a reader would, because an invalid file must not be written */
+    /* check the asset file as a reader would, because an invalid file must not be written */
     return asset_view_fresh(&output->view, bytes, size, view_why) ||
            wrong(build->why, "the prepared file of the asset would be invalid: %s", view_why);
 }
@@ -504,7 +507,7 @@ static bool build_file(struct build *build)
             return false;
         build->geometry_report = build->output->report;
         build->keeping = workers_begin(build->workers, write_caches, build);
-        surface_field_finish(&build->measured.field); /* free the distances early, because they take much memory */
+        surface_field_finish(&build->measured.field); /* free the distances of the surface early, because they take much memory */
     }
     if (!any && input->sensor_count > 0)
         sensor_distances_even(&build->distances, input->sensor_count, own);
@@ -530,7 +533,7 @@ static bool unpack(struct build *build)
     return false;
 }
 
-/* Gets the geometry: from the cache, together with levels and surface, or else by cutting it out of the model. */
+/* Gets the asset's geometry: from the cache, together with levels of detail and surface, or else by cutting it out of the model. */
 static bool begin(struct build *build)
 {
     const struct build_input *input = build->input;

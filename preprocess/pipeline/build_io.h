@@ -13,7 +13,7 @@ struct geometry_cache;
 struct build_input {
     const struct gltf_model *model; /* parsed model to cut the asset from; unused if `cache` is set */
     struct geometry_params geometry;
-    const struct plant *plant;          /* the plant; its groups and tags determine where the field needs a finer mesh */
+    const struct plant *plant;          /* the plant; its groups and tags determine where the field needs smaller triangles */
     const struct plant_sensor *sensors; /* the asset's sensors; position_m is set for all sensors, including those placed by a node */
     size_t sensor_count;
     uint64_t key;
@@ -25,7 +25,7 @@ struct build_input {
 struct build_level {
     uint32_t triangles;       /* triangles after simplification */
     uint32_t split_triangles; /* triangles after subdivision */
-    uint32_t vertices;        /* number of vertices that the level uses: the first ones of the asset's array */
+    uint32_t vertices;        /* number of vertices that the level of detail uses: the first ones of the asset's array */
     float error_m;
     struct level_left left[LEVEL_LIMITS]; /* edges that still have an interpolation error after subdivision, by reason */
 };
@@ -34,8 +34,8 @@ struct build_report {
     uint32_t nodes, triangles, vertices, primitives, materials, textures, degenerate_triangles, repeated_triangles, computed_normals;
     uint32_t turned_triangles, closed_gaps;
     uint32_t skipped_lines, skipped_points; /* number of primitives that were skipped because they consist of lines or points */
-    struct surface_report surface;          /* report of the surface; zero if the asset has no sensor */
-    size_t unreachable_vertices;            /* number of vertices that are not connected to any sensor */
+    struct surface_report surface;          /* numbers about the surface for the report; zero if the asset has no sensor */
+    size_t unreachable_vertices;            /* number of vertices that no path along the surface connects to a sensor */
     /* stocked: 1 if the geometry came from the cache, else 0; kept_sensors: number of sensors whose distances came from the cache */
     uint32_t stocked, kept_sensors;
     struct build_level levels[LEVELS_MAX];
@@ -45,8 +45,8 @@ struct build_report {
     size_t split_measured, split_kept;
     /* measured interpolation error of harmonic, fin and gp inside triangles; all zero: no group requests them */
     struct bend_report bend;
-    struct cloud_report cloud; /* report of distances by heat on a point cloud; zero: no group requests them */
-    /* description, for the report, of pieces that lie far from the main part (geometry/stray.h); "": there are none */
+    struct cloud_report cloud; /* numbers for the report about distances by heat on a point cloud; zero: no group requests them */
+    /* description, for the report, of triangles that lie far from the asset's main part (geometry/stray.h); "": there are none */
     char stray[STRAY_TEXT_BYTES];
     double read_s, surface_s, solve_s, levels_s, split_s;
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts a build report with a table that maps each of its numbers to a JSON name. */
+/* Converts a build report to JSON and back with a table that maps each of its numbers to a JSON name. */
 #include "preprocess/pipeline/build_report_json.h"
 
 #include <math.h>

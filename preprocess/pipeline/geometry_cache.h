@@ -8,7 +8,7 @@
 #include "preprocess/cache/build_cache.h"
 #include "preprocess/pipeline/build_io.h"
 
-/* assets with fewer triangles are not cached, because building them again takes about as long as reading the cache */
+/* minimum number of triangles of an asset that is cached, because building a smaller one again takes about as long as reading the cache */
 #define GEOMETRY_CACHE_TRIANGLES 10000u
 
 struct geometry_cache { /* mapped and checked files */
@@ -19,7 +19,7 @@ struct geometry_cache { /* mapped and checked files */
 /* Maps and checks the cache files of a geometry key. Returns false if either is missing or damaged; then geometry_cache_close() need not be
  * called. */
 bool geometry_cache_open(struct geometry_cache *cache, struct log *log, const char *folder, uint64_t key);
-/* Unmaps the files. The cache may be open or zeroed. */
+/* Unmaps the files of the geometry cache. The cache may be open or zeroed. */
 void geometry_cache_close(struct geometry_cache *cache);
 
 /* Copies geometry, levels and surface out of the cache; the caller owns all three. Returns false with nothing to free if the contents are
@@ -27,7 +27,7 @@ void geometry_cache_close(struct geometry_cache *cache);
 bool geometry_cache_unpack(const struct geometry_cache *cache, struct log *log, struct workers *workers, struct geometry *geometry,
                            struct levels *levels, struct surface **surface, enum build_cache_kind *damaged);
 
-/* Serialises geometry and levels to *parts. Must be called before the levels are subdivided. */
+/* Serialises geometry and levels of detail to *parts. Must be called before the levels are subdivided. */
 void geometry_cache_pack(struct text *parts, const struct geometry *geometry, const struct levels *levels);
 /* Writes KEY.stock from the output of geometry_cache_pack() and the report. Returns 0 or -errno. */
 int geometry_cache_write(const char *folder, uint64_t key, const void *parts, size_t size, const struct build_report *report);

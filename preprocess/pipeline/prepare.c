@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prepares all assets of a plant: computes keys, checks existing files, and builds the others, a batch of models at a time. */
+/* Prepares all assets of a plant: computes keys, checks existing asset files, and builds the others, a batch of models at a time. */
 #include "preprocess/influence/influence_file.h"
 #include "preprocess/pipeline/prepare.h"
 
@@ -30,7 +30,7 @@
 #define BATCH_TRIANGLES 4e6
 /* assets with more triangles are built one at a time with all cores, because two at a time would need twice the memory */
 #define ALONE_TRIANGLES 1e6
-/* for the estimate of the remaining time: measured cost of an asset's first sensor, as a number of triangles that cost the same */
+/* for the estimate of the remaining time: measured cost of an asset's first sensor, as a number of triangles that take as long to build */
 #define SENSORS_WORK 6e4
 
 struct prepare_run {
@@ -47,7 +47,7 @@ struct prepare_run {
     /* --- members protected by `lock` */
     struct diag *diag;
     struct progress progress;
-    /* failed: an error occurred; unusable: an error occurred for which no model is to blame, so the manifest is not written */
+    /* failed: an error occurred; unusable: an error occurred that is not the fault of a model, so the manifest is not written */
     bool failed, unusable;
 };
 
@@ -106,7 +106,7 @@ static size_t first_with_key(const struct prepare_run *run, size_t i)
     return i;
 }
 
-/* Gets an asset's geometry hash and sensor positions from the model cache. Returns false if the model must be parsed. */
+/* Gets the hash of an asset's geometry and the positions of its sensors from the model cache. Returns false if the model must be parsed. */
 static bool recall_cut(struct prepare_run *run, struct prepare_asset *asset, uint64_t *geometry)
 {
     bool known = model_cache_find(&run->known, asset->recipe, geometry);
@@ -174,8 +174,8 @@ static void take_cut(struct prepare_run *run, struct prepare_asset *asset, uint6
             model_cache_add_node(&run->cuts, asset->recipe, asset->sensors[s].node_hash, asset->sensors[s].position_m);
 }
 
-/* Computes the keys of all wanted assets of one model. Keeps the parsed model in memory for building, unless too many triangles are in
- * memory already. */
+/* Computes the keys of those assets of one model that are to be prepared. Keeps the parsed model in memory for building, unless too many
+ * triangles are in memory already. */
 static void find_keys_of_model(struct prepare_run *run, size_t number)
 {
     struct model_file *model = &run->prepare->models.at[number];
@@ -290,7 +290,7 @@ static void look_at_some(void *arg, size_t begin, size_t end)
     }
 }
 
-/* Determines which assets are up to date and which must be built, and groups the latter by model. */
+/* Determines which assets have an up-to-date file and which must be built, and groups the latter by model. */
 static void sort_out(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
@@ -320,7 +320,7 @@ static int write_file(const struct prepare_run *run, const struct prepare_asset 
     return status;
 }
 
-/* Reports the result of building an asset. Returns false if building failed. The caller holds the lock. */
+/* Reports the result of building an asset. Returns false if building failed. The caller holds run->lock. */
 static bool is_built(struct prepare_run *run, const struct prepare_asset *asset, bool good, int status, const char *why)
 {
     if (!good)
@@ -331,7 +331,7 @@ static bool is_built(struct prepare_run *run, const struct prepare_asset *asset,
     return good && status == 0;
 }
 
-/* Sends the status line to the service manager. The caller holds the lock. */
+/* Sends a status line about the progress to the service manager. The caller holds run->lock. */
 static void say_status(struct prepare_run *run)
 {
     const struct progress *progress = &run->progress;
@@ -505,8 +505,8 @@ static void warn(struct prepare_run *run, const struct prepare_asset *asset)
     }
 }
 
-/* Writes the cache of models. Entries of assets that this run does not prepare are kept. Errors are ignored: then the next run only takes
- * longer. */
+/* Writes the cache of models. Cache entries of assets that this run does not prepare are kept. Errors are ignored: then the next run only
+ * takes longer. */
 static void write_cuts(struct prepare_run *run)
 {
     bool all = !run->params->only && !run->prepare->interrupted;
@@ -545,7 +545,7 @@ static void write_manifest(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
     struct folder_entry *entries = mem_array(prepare->asset_count, sizeof(*entries));
-    /* one element per tag is enough, because each tag is a sensor of at most one asset */
+    /* one array element per tag is enough for all assets, because each tag is a sensor of at most one asset */
     const char **tags = mem_array(prepare->plant->tag_count, sizeof(*tags)), **next = tags;
     for (size_t i = 0; i < prepare->asset_count; i++) {
         const struct prepare_asset *asset = &prepare->assets[i];

@@ -15,7 +15,7 @@ enum prepare_state { PREPARE_LEFT /* not started: interrupted */, PREPARE_FAILED
 
 struct prepare_asset {
     const struct plant_asset *plant;
-    bool wanted;  /* true: the asset is to be prepared; false: no member below is set */
+    bool wanted;  /* true: the asset is to be prepared; false: no other member of this struct is set */
     size_t model; /* index in prepare.models */
     struct plant_sensor *sensors;
     size_t sensor_count;
@@ -24,7 +24,7 @@ struct prepare_asset {
     double far_m;               /* distance between a sensor and the surface, metres, above which a warning is printed */
     uint64_t recipe, key, geometry_key, distances_key; /* recipe: result of build_recipe() */
     char *missing;               /* reason why the model, or the node of a sensor, cannot be used; NULL: no such failure */
-    struct geometry_cache cache; /* the geometry cache, open while the asset is built; parts.bytes NULL: not open */
+    struct geometry_cache cache; /* cached geometry of the asset, open while the asset is built; parts.bytes NULL: not open */
     size_t same_as;              /* index of the first asset with the same key; both use that asset's file */
     enum prepare_state state;
     char *rebuilt_because; /* path of a damaged prepared file, and its defect, because of which it was built again; NULL: none */
@@ -46,7 +46,7 @@ struct prepare {
 
 struct prepare_params {
     const char *folder;
-    const char *only;                  /* id of the only asset to prepare; the manifest then stays unchanged; NULL: all assets */
+    const char *only;                  /* id of the only asset to prepare, in which case the manifest stays unchanged; NULL: all assets */
     FILE *progress;                    /* stream for progress lines; NULL: prints nothing */
     struct service_patience *patience; /* service manager that receives a status line after each asset; NULL: none */
     const atomic_bool *stop;           /* set to true by the caller to stop: no further asset is begun; NULL: never stops */

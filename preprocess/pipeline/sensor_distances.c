@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Projects sensors onto an asset's surface and computes their distances. */
+/* Projects sensors onto an asset's surface and computes the distances of all surface points from them. */
 #include "preprocess/pipeline/sensor_distances.h"
 
 #include <math.h>
@@ -64,7 +64,7 @@ static void drop_sensors(const struct sensor_distances *measured, struct workers
     workers_for(workers, input->sensor_count, 8, drop_some, &drop);
 }
 
-/* Returns the number of vertices that are not connected to any sensor. */
+/* Returns the number of vertices that no path along the surface connects to a sensor. */
 static size_t unreachable(const struct sensor_distances *measured, size_t vertex_count)
 {
     size_t count = 0, sensors = measured->field.source_count;
@@ -80,7 +80,8 @@ static size_t unreachable(const struct sensor_distances *measured, size_t vertex
     return count;
 }
 
-/* Computes the distances from all sensors. Distances from a sensor whose position has not changed come from the cache. */
+/* Computes the distances of all surface points from all sensors. Distances from a sensor whose position has not changed come from the
+ * distance cache. */
 static bool solve(struct sensor_distances *measured, struct log *log, const struct build_input *input, uint32_t triangles, uint32_t *kept)
 {
     const double(*places_m)[3] = (const double(*)[3])measured->places_m;

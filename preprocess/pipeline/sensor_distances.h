@@ -11,12 +11,12 @@ struct sensor_distances {
     struct surface *surface;
     struct surface_field field;
     struct asset_sensor *sensors;
-    double (*places_m)[3]; /* sensor positions relative to the geometry's origin */
+    double (*places_m)[3]; /* sensor positions relative to the origin of the asset's geometry */
 };
 
-/* Builds the surface unless `measured` already has one, projects the sensors onto it and computes their distances, except those that the
- * distance cache contains. Fills in the surface part of the report. Returns false with the reason in why. Call sensor_distances_finish() in
- * both cases. */
+/* Builds the asset's surface unless `measured` already has one, projects the sensors onto it and computes their distances, except those
+ * that the distance cache contains. Fills in the surface part of the report. Returns false with the reason in why. Call
+ * sensor_distances_finish() in both cases. */
 bool sensor_distances_find(struct sensor_distances *measured, struct log *log, struct workers *workers, const struct build_input *input,
                            const struct geometry *geometry, struct build_output *output, char why[MODEL_WHY_BYTES]);
 /* Returns whether any sensor has a known position. A sensor with an assumed position colours the whole asset evenly: if all positions are
