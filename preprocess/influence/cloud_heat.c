@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Implements the heat method on a point cloud: sampling, neighbours, the two linear systems, and interpolation between points. */
+/* Implements the heat method on a point cloud: sampling of points, their neighbours, the two linear systems, and interpolation between
+ * points. */
 #include "preprocess/influence/cloud_heat.h"
 
 #include <float.h>
@@ -12,10 +13,10 @@
 #include "surface/mesh/point_cloud.h"
 #include "surface/mesh/trimesh.h"
 
-#define PACKING 0.7    /* expected number of sample points (Poisson disc) in a square whose side is the spacing */
-#define HEAT_TIME 2.25 /* diffusion time t, in multiples of the squared spacing of the sample points */
-/* maximum length of a connected component, in multiples of sqrt(t); a longer component gets a larger t. Heat falls by the factor e per
- * sqrt(t), and underflows (DBL_MIN) at 708. */
+#define PACKING 0.7    /* expected number of sample points (Poisson disc) in a square whose side is the points' spacing */
+#define HEAT_TIME 2.25 /* diffusion time t of the heat method, in multiples of the squared spacing of the sample points */
+/* maximum length of a connected component of the point cloud, in multiples of sqrt(t), t: diffusion time; a longer component gets a larger
+ * t. Heat falls by the factor e per sqrt(t), and underflows (DBL_MIN) at 708. */
 #define LONGEST 400.0
 /* added to the diagonal of the Laplacian, relative to the diagonal element, so that rounding does not make the matrix singular */
 #define REGULARISATION 1e-9
@@ -32,7 +33,8 @@ struct cloud_heat {
     struct log *log;
     double spacing_m, time_m2;
     size_t count, capacity;
-    double (*points)[3], (*across)[2][3]; /* points: positions; across: two unit vectors that span the tangent plane at each point */
+    /* points: positions of the sample points; across: two unit vectors that span the tangent plane at each point */
+    double (*points)[3], (*across)[2][3];
     uint32_t *piece;                      /* connected component of each point */
     struct heat_link *links;
     size_t link_count, link_capacity;
@@ -85,8 +87,8 @@ static double area_of(const struct surface_debug_mesh *mesh, size_t t)
     return vec_length(n) / 2;
 }
 
-/* Generates candidates for sample points. The triangle corners come first, so that narrow parts keep their ends; then a lattice in each
- * triangle. */
+/* Generates candidates for sample points on the triangles of a surface. The triangle corners come first, so that narrow parts keep their
+ * ends; then a lattice in each triangle. */
 static void sample(struct cloud_heat *cloud, const struct surface_debug_mesh *mesh)
 {
     for (size_t t = 0; t < mesh->visible_count; t++)
@@ -140,8 +142,8 @@ static uint32_t other_end(const struct heat_link *link, size_t point)
     return link->from == point ? link->to : link->from;
 }
 
-/* Walks from a point to all points connected to it, breadth first. Returns the number of points reached; queue[] lists them, the farthest
- * last, and hops[] their hop counts. */
+/* Visits all points of the cloud connected to point `from`, breadth first. Returns the number of points reached; queue[] lists them, the
+ * farthest last, and hops[] the number of steps to each. */
 static size_t spread(const struct cloud_heat *cloud, uint32_t from, uint32_t *queue, uint32_t *hops)
 {
     size_t count = 1;
@@ -183,8 +185,9 @@ static double find_pieces(struct cloud_heat *cloud)
     return most * CLOUD_REACH * cloud->spacing_m;
 }
 
-/* Computes two axes of the tangent plane at a point, perpendicular to the direction of least spread. The largest cofactor vector of the
- * covariance approximates that direction if the smallest eigenvalue is near 0; inverse iteration refines it. */
+/* Computes two axes of the tangent plane at a sample point, perpendicular to the direction in which the neighbouring points spread least.
+ * The largest cofactor vector of the covariance approximates that direction if the smallest eigenvalue is near 0; inverse iteration refines
+ * it. */
 static void find_plane(struct cloud_heat *cloud, size_t point)
 {
     double c[3][3] = { { 0 } }, normal[3] = { 0, 0, 1 }, trace = 0;
@@ -384,8 +387,8 @@ struct nearby {
     int count;
 };
 
-/* Finds the PLACES sample points nearest to a position, nearest first. At least one lies within two spacings, because the candidates cover
- * the surface. */
+/* Finds the PLACES sample points nearest to position p, nearest first. At least one lies within two spacings, because the candidates for
+ * sample points cover the surface. */
 static void find_nearby(const struct cloud_heat *cloud, const double p[3], struct nearby *near)
 {
     near->count = 0;
@@ -409,7 +412,7 @@ static void find_nearby(const struct cloud_heat *cloud, const double p[3], struc
     }
 }
 
-/* Interpolates at a position: each of the nearest points extrapolates its value along its gradient, weighted by proximity. */
+/* Interpolates at position p: each of the nearest sample points extrapolates its value along its gradient, weighted by proximity. */
 static double value_at(const struct cloud_heat *cloud, const double *values, const double (*slopes)[3], const double p[3], uint32_t piece,
                        const struct nearby *near)
 {
@@ -434,8 +437,8 @@ static cholmod_dense *solve(const struct cloud_heat *cloud, cholmod_factor *fact
     return x;
 }
 
-/* Converts the heat u into the unit vectors X (cloud_heat.h): tangent vectors that point away from the source. Writes to b the right-hand
- * side of the linear system for the distances. */
+/* Converts the heat u at the sample points into the unit vectors X (cloud_heat.h): tangent vectors that point away from the source. Writes
+ * to b the right-hand side of the linear system for the distances. */
 static void flow(const struct cloud_heat *cloud, double *u, double (*slopes)[3], double *b)
 {
     for (size_t i = 0; i < cloud->count; i++)

@@ -18,8 +18,8 @@
 #define BLOCK 32 /* number of right-hand sides per solve; fixed, so that random samples do not depend on the thread count */
 #define TILE 256 /* number of mesh points that one thread processes at a time */
 #define STRIP 64 /* number of vertices that one thread processes at a time */
-/* fixed-point scale of sums of squared errors, in units of the squared standard deviation; integer sums do not depend on the order of
- * addition */
+/* fixed-point scale of the sums of the samples' squared errors, in units of the squared standard deviation; integer sums do not depend on
+ * the order of addition */
 #define FIXED 1e9
 #define FIXED_MAX 1e7
 
@@ -38,11 +38,13 @@ struct solving {
     /* by connected component: factor from the variance in the sparse system to the variance that the plant file states; 0: the component
      * has no sensor */
     double *scale;
-    double *means;             /* by sensor: its weight in the estimated mean of its body */
-    double *levels;            /* by sensor: the smallest variance that a weighted mean of its body's readings can have (mean_variance()) */
-    float *at_points;          /* [mesh point][sensor]: covariances ("kernels"), later the weights H */
-    float *taken;              /* by vertex: part of the prior variance that the sensors' readings remove */
-    _Atomic uint64_t *squares; /* by vertex: sum of squared sample errors, fixed point */
+    double *means;             /* by sensor: weight of its reading in the estimated mean of its body (connected component) */
+    /* by sensor: the smallest variance that a weighted mean of the readings on its body can have (mean_variance()) */
+    double *levels;
+    /* [mesh point][sensor]: covariances of the field at the point with the sensor's reading ("kernels"), later the weights H */
+    float *at_points;
+    float *taken;              /* by vertex: the part of the field's variance before any reading that the readings remove */
+    _Atomic uint64_t *squares; /* by vertex: sum of the squared errors of the random samples, in fixed point */
     atomic_bool failed;
 };
 
@@ -109,8 +111,8 @@ static uint32_t body_of_vertex(const struct solving *solving, size_t vertex)
 
 /* --- kernels ----------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the constant part of a body's prior covariance. Callers subtract it from each solution immediately: subtracting it from later
- * results would lose digits to cancellation. */
+/* Returns the constant part of a body's prior covariance. Callers subtract it from each solution of the sparse system immediately:
+ * subtracting it from later results would lose digits to cancellation. */
 static double constant_of(const struct solving *solving, uint32_t body)
 {
     const double k2 = 8 / (solving->params.range_m * solving->params.range_m);
@@ -126,8 +128,8 @@ static void take_covariance(const struct solving *solving, size_t sensor, const 
         solving->covariance[sensor * count + other] = solving->bodies.of_sensor[other] == body ? on_disc(solving, other, u) - constant : 0;
 }
 
-/* Converts solutions u, one column for each of the `width` sensors from index `first` on, to kernels: covariances between each mesh point
- * and the sensor's reading. Subtracts the constant part. */
+/* Converts solutions u of the sparse system, one column for each of the `width` sensors from index `first` on, to kernels: covariances
+ * between each mesh point and the sensor's reading. Subtracts the constant part. */
 static void take_kernels(const struct solving *solving, size_t first, size_t width, const double *u)
 {
     const size_t count = solving->mesh->source_count, rows = solving->laplacian.row_count;
@@ -274,7 +276,7 @@ static void weigh_strips(void *arg, size_t begin, size_t end)
         double taken[STRIP] = { 0 };
         for (size_t v = 0; v < width; v++)
             at_vertex(solving, first + v, strip_h + v * n);
-        for (size_t i = 0; i < n; i++) /* the influence H (weights of the sensors) is 0 for sensors of other bodies */
+        for (size_t i = 0; i < n; i++) /* the influence H (weights of the sensors) at a vertex is 0 for sensors of other bodies */
             for (size_t v = 0; v < width; v++)
                 if (body_of_vertex(solving, first + v) == solving->bodies.of_sensor[i])
                     taken[v] += variance_of(solving, i) * (double)solving->influence->shares[i * vertices + first + v] *
@@ -368,7 +370,7 @@ static bool take_samples(const struct solving *solving, struct gaussian_samples 
     return u != NULL;
 }
 
-/* Adds the squared errors of the samples to the sums at each vertex. */
+/* Adds the squared prediction errors of the random samples to the sums at each vertex. */
 static void add_squares(const struct solving *solving, const float *missed)
 {
     for (size_t v = 0; v < solving->influence->vertex_count; v++) {

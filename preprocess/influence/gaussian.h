@@ -22,8 +22,8 @@ struct gaussian_params {
     double range_m, noise, deviation;
 };
 
-/* Computes H, P and the standard deviation at each vertex, the latter from random samples with a fixed seed. Returns false after logging if
- * out of memory or if the system is singular. Call influence_finish() in both cases. */
+/* Computes the weights H, the precision matrix P and the standard deviation at each vertex, the latter from random samples with a fixed
+ * seed. Returns false after logging if out of memory or if the system is singular. Call influence_finish() in both cases. */
 bool gaussian_solve(struct influence *influence, const struct influence_task *task, const struct gaussian_params *params);
 
 #endif

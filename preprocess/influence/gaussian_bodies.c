@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the area of each connected component, and the component that each sensor is on. */
+/* Computes the area of each connected component of a mesh, and the component that each sensor is on. */
 #include "preprocess/influence/gaussian_bodies.h"
 
 #include "base/mem.h"

@@ -11,7 +11,7 @@ struct gaussian_bodies {
     uint32_t *of_sensor; /* component index of each sensor */
 };
 
-/* Finds the connected bodies. The caller frees the arrays with gaussian_bodies_finish(). */
+/* Finds the connected bodies of the mesh. The caller frees the arrays with gaussian_bodies_finish(). */
 void gaussian_bodies_init(struct gaussian_bodies *bodies, const struct influence_mesh *mesh, const struct laplacian *laplacian);
 /* Frees the arrays. */
 void gaussian_bodies_finish(struct gaussian_bodies *bodies);
@@ -24,7 +24,7 @@ static inline double gaussian_bodies_constant(const struct gaussian_bodies *bodi
 }
 
 /* Makes the covariance matrix [sensor][sensor] symmetric, and scales it so that the mean variance of each body's sensors is 1. Writes the
- * scale factor of each component to scale[]; 0: the component has no sensor. */
+ * scale factor of each body (connected component) to scale[]; 0: the body has no sensor. */
 void gaussian_bodies_scale(const struct gaussian_bodies *bodies, size_t count, double *covariance, double *scale);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Inverts a dense covariance by Cholesky factorisation and removes the mean of each body. */
+/* Inverts a dense covariance matrix of readings by Cholesky factorisation and removes the mean of each body. */
 #include "preprocess/influence/gaussian_contrast.h"
 
 #include <math.h>
@@ -11,7 +11,7 @@
 void dpotrf_(const char *uplo, const int *n, double *a, const int *lda, int *info, size_t uplo_length);
 void dpotri_(const char *uplo, const int *n, double *a, const int *lda, int *info, size_t uplo_length);
 
-/* Computes the Cholesky factor L with a = L L', which overwrites the lower triangle of a. */
+/* Computes the Cholesky factor L of matrix a, so that a = L L'. L overwrites the lower triangle of a. */
 static bool factor(size_t count, double *a, double *log_det)
 {
     const int n = (int)count, pitch = n > 1 ? n : 1;
@@ -23,7 +23,7 @@ static bool factor(size_t count, double *a, double *log_det)
     return info == 0 && isfinite(*log_det);
 }
 
-/* Computes the full inverse of L L' from L. */
+/* Computes the full inverse of L L' from the lower triangular factor L. */
 static bool invert(size_t count, const double *lower, double *inverse)
 {
     const int n = (int)count, pitch = n > 1 ? n : 1;

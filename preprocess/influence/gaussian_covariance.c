@@ -89,7 +89,7 @@ static cholmod_sparse *add_border(const cholmod_sparse *inner, size_t count, con
     return matrix;
 }
 
-/* Computes an elimination order of the matrix rows that keeps the factor sparse: mesh points first, sensors last. */
+/* Computes an elimination order of the rows of the bordered matrix that keeps the factor sparse: mesh points first, sensors last. */
 static cholmod_factor *analyze(cholmod_sparse *inner, cholmod_sparse *bordered, cholmod_common *common)
 {
     cholmod_factor *points = cholmod_analyze(inner, common);
@@ -171,7 +171,7 @@ struct slope {
     /* [sensor][sensor], lower triangle: D' A^-1 D (letters: gaussian_covariance.h) minus its constant part, for the lower and the upper k^2
      * of the central difference */
     double *between[2];
-    atomic_int status; /* first status other than CHOLMOD_OK that any thread got */
+    atomic_int status; /* first status other than CHOLMOD_OK that CHOLMOD returned to any thread */
 };
 
 static size_t sensor_of(const struct gaussian_covariance *covariance, const cholmod_factor *factor, int row)
@@ -179,7 +179,7 @@ static size_t sensor_of(const struct gaussian_covariance *covariance, const chol
     return (size_t)((int *)factor->Perm)[row] - covariance->row_count;
 }
 
-/* Subtracts l l' from the matrix for each column l in the sensors' block of the factor. */
+/* Subtracts l l' from the matrix `from` for each column l in the sensors' block of the factor. */
 static void take_columns(const struct gaussian_covariance *covariance, const cholmod_factor *factor, double *from)
 {
     const size_t count = covariance->count;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Searches a grid of ranges with a subset of the sensors, then refines the best range by parabolas with all sensors. For each range,
- * searches a grid of noise shares (noise / deviation) and a finer grid around the best. The deviation follows from range and noise. */
+/* Fits the parameters of a Gaussian process. Searches a grid of ranges with a subset of the sensors, then refines the best range by
+ * parabolas with all sensors. For each range, searches a grid of noise shares (noise / deviation) and a finer grid around the best. The
+ * deviation follows from range and noise. */
 #include "preprocess/influence/gaussian_fit.h"
 
 #include <math.h>
@@ -15,12 +16,13 @@
 #include "preprocess/influence/gaussian_contrast.h"
 #include "preprocess/influence/gaussian_covariance.h"
 
-#define RANGES 9  /* number of ranges in the search grid, evenly spaced in logarithms */
-#define FEW 96    /* maximum number of sensors in the grid search */
+#define RANGES 9  /* number of correlation ranges in the search grid, evenly spaced in logarithms */
+#define FEW 96    /* maximum number of sensors in the grid search of the correlation range */
 #define CLOSER 3  /* number of parabola steps */
 #define SHARES 13 /* number of noise shares (noise / deviation) in the search grid, from GAUSSIAN_LEAST_NOISE to MAX_SHARE */
 #define MAX_SHARE 3.0
-#define SAME 0.02      /* ranges whose logarithms differ by less than this count as equal, because readings cannot distinguish them */
+/* correlation ranges whose logarithms differ by less than this count as equal, because readings cannot distinguish them */
+#define SAME 0.02
 #define MIN_INSTANTS 8 /* minimum number of instants (lines of readings); fewer cannot determine three parameters */
 
 /* --- the table --------------------------------------------------------------------------------------------------------------- */
@@ -138,8 +140,8 @@ static size_t count_bodies(const uint32_t *body, size_t count)
     return bodies;
 }
 
-/* Evaluates the likelihood for the covariance s^2 (K + share^2 I), and keeps the best parameters. K: covariance for deviation 1 and no
- * noise; s: deviation, as stated in the plant file or else the most likely value; I: identity matrix. */
+/* Evaluates the likelihood of the readings for the covariance s^2 (K + share^2 I), and keeps the best parameters. K: covariance for
+ * deviation 1 and no noise; s: deviation, as stated in the plant file or else the most likely value; I: identity matrix. */
 static void try_share(struct gaussian_fit *fit, double range_m, double share, double deviation)
 {
     const size_t n = fit->table->count;
@@ -161,8 +163,8 @@ static void try_share(struct gaussian_fit *fit, double range_m, double share, do
     fit->best = (struct gaussian_params){ range_m, share * sqrt(variance), sqrt(variance) };
 }
 
-/* Finds the best noise share for a range. Parameters stated in the plant file stay fixed. With a stated noise, the search varies the
- * deviation, and the share is noise / deviation. */
+/* Finds the best noise share (noise / deviation) for a range. Parameters stated in the plant file stay fixed. With a stated noise, the
+ * search varies the deviation, and the share is noise / deviation. */
 static void try_range(struct gaussian_fit *fit, double range_m)
 {
     const struct gaussian_params *stated = fit->stated;
@@ -189,7 +191,8 @@ struct range_trial { /* result of one range */
     double log_range, likelihood;
 };
 
-/* Finds the best parameters for one range and keeps them if they are the best so far. Returns false after logging if out of memory. */
+/* Finds the best noise and deviation for one range and keeps them if they are the best so far. Returns false after logging if out of
+ * memory. */
 static bool try_one(struct gaussian_fit *fit, double log_range, struct range_trial *trial)
 {
     const struct gaussian_params best = fit->best;
@@ -206,7 +209,7 @@ static bool try_one(struct gaussian_fit *fit, double log_range, struct range_tri
     return true;
 }
 
-/* Prepares a fit. Returns false after logging if out of memory. Call finish_fit() in both cases. */
+/* Prepares a fit of the Gaussian process to readings. Returns false after logging if out of memory. Call finish_fit() in both cases. */
 static bool begin_fit(struct gaussian_fit *fit, const struct gaussian_params *stated, const struct gaussian_data *data)
 {
     const size_t n = data->table->count;
@@ -230,7 +233,7 @@ static void finish_fit(struct gaussian_fit *fit)
     mem_free(fit->means);
 }
 
-/* Writes the subset for the grid search: at most FEW sensors, evenly spaced by index. */
+/* Chooses the sensors for the grid search: at most FEW sensors, evenly spaced by index. */
 static void pick_few(const struct influence_mesh *mesh, const struct readings_table *table, struct influence_mesh *few_of_mesh,
                      struct readings_table *few_of_table)
 {
@@ -248,7 +251,7 @@ static void pick_few(const struct influence_mesh *mesh, const struct readings_ta
     }
 }
 
-/* Finds the best range of the grid with a subset of the sensors. */
+/* Finds the best range of the grid with a subset of the sensors (pick_few()). */
 static bool look_around(const struct gaussian_params *stated, const struct gaussian_data *data, double first, double step,
                         double *log_range)
 {

@@ -5,18 +5,18 @@
 #define PREPROCESS_INFLUENCE_GAUSSIAN_FIT_H
 #include "preprocess/influence/gaussian.h"
 
-struct readings_table {     /* readings at the instants at which every sensor has one */
+struct readings_table {     /* readings at those instants at which every sensor has a reading */
     size_t count, instants; /* count: number of sensors */
     double *values;         /* [instant][sensor] */
     size_t left_out;        /* number of instants left out, because a sensor has no reading then */
 };
 
-/* Reads a CSV file: a header line of names, then one line of readings per instant; only the columns of the `count` named sensors are used.
- * Returns false with file, line and name in why. The caller calls readings_table_finish() in both cases. */
+/* Reads a CSV file of readings: a header line of names, then one line of readings per instant; only the columns of the `count` named
+ * sensors are used. Returns false with file, line and name in why. The caller calls readings_table_finish() in both cases. */
 bool readings_table_read(struct readings_table *table, const char *path, const char *const *names, size_t count, char why[300]);
 void readings_table_finish(struct readings_table *table);
 
-struct gaussian_data { /* readings of the sensors on a mesh */
+struct gaussian_data { /* readings of the sensors, and the mesh of the surface that the sensors are on */
     struct log *log;
     struct workers *workers;
     const struct influence_mesh *mesh;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Solves conduction between sensor discs: one sparse Cholesky factorisation, and solves for blocks of sensors. */
+/* Solves heat conduction between the sensors' discs on a surface: one sparse Cholesky factorisation, and solves for blocks of sensors. */
 #include "preprocess/influence/influence.h"
 
 #include <math.h>
@@ -19,7 +19,8 @@
 /* minimum number of right-hand sides per solve; with more per solve, the sparse factor is read from memory less often */
 #define MIN_BLOCK 8
 #define MAX_BLOCK BEND_WIDTH
-#define BLOCK_BYTES (64 << 20) /* memory limit of a block that is larger than MIN_BLOCK; each thread has three such blocks */
+/* memory limit in bytes of a block of right-hand sides that is larger than MIN_BLOCK; each thread has three such blocks */
+#define BLOCK_BYTES (64 << 20)
 
 struct conduct {
     struct influence *influence;
@@ -32,7 +33,7 @@ struct conduct {
     atomic_bool failed;
 };
 
-/* Returns the diagonal of the system: heat loss of the wall, plus the conductance of the contacts with the sensors' discs. */
+/* Returns the diagonal of the linear system: heat loss of the wall, plus the conductance of the contacts with the sensors' discs. */
 static double *diagonal_of(const struct conduct *conduct, double decay_m)
 {
     const struct laplacian *laplacian = &conduct->laplacian;
@@ -95,7 +96,8 @@ static void take(const struct conduct *conduct, size_t sensor, const double *u)
     }
 }
 
-/* Passes a block of solutions (one column per sensor) at the mesh points to the measurement of interpolation errors (influence_bend.h). */
+/* Passes the solutions of a block of sensors (one column each) at the mesh points to the measurement of interpolation errors
+ * (influence_bend.h). */
 static void add_bend(const struct conduct *conduct, const double *u, size_t count, float *at_points)
 {
     const uint32_t *row_of = conduct->laplacian.row_of;
@@ -106,7 +108,8 @@ static void add_bend(const struct conduct *conduct, const double *u, size_t coun
     influence_bend_add(conduct->bend, at_points, count, count);
 }
 
-/* Returns the block size: limited by memory, and by the number of sensors per thread so that all threads have work. */
+/* Returns how many sensors are solved at a time: limited by memory, and by the number of sensors per thread so that all threads have
+ * work. */
 static size_t block_of(const struct conduct *conduct, const struct workers *workers)
 {
     const size_t threads = workers ? (size_t)workers_count(workers) : 1, each = (conduct->influence->count + threads - 1) / threads;

@@ -40,7 +40,7 @@ struct influence_task {
 /* Computes the influence by conduction. decay_m: decay length, INFINITY for harmonic. Returns false after logging if out of memory. Call
  * influence_finish() in both cases. */
 bool influence_conduct(struct influence *influence, const struct influence_task *task, double decay_m);
-/* Frees the arrays of a computed or zeroed struct. */
+/* Frees the arrays of a computed or zeroed struct influence. */
 void influence_finish(struct influence *influence);
 
 #endif

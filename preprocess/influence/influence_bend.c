@@ -32,7 +32,7 @@ struct finding {
     double in_plane_m, near_m;
     const struct trimesh *visible, *hidden;
     struct bvh *visible_bvh, *hidden_bvh;
-    /* state for the triangle of the asset file ("drawn triangle") that is being processed: */
+    /* State for the triangle of the asset file ("drawn triangle") that is being processed: */
     uint32_t tri;
     /* origin: of the plane's coordinates; axes: two vectors in the plane of the drawn triangle, and its normal */
     double origin[3], axes[3][3];
@@ -60,7 +60,7 @@ static void flatten(const struct finding *finding, const double point[3], double
     *off_m = fabs(vec_dot(from, finding->axes[2]));
 }
 
-/* Computes barycentric weights that are not negative and sum to 1; rounding noise becomes 0. */
+/* Computes the barycentric weights of point `at`; they are not negative and sum to 1; rounding noise becomes 0. */
 static void weights_in(const double corners[3][2], const double at[2], float weights[3])
 {
     double sum = 0, w[3], whole = polygon_cross(corners[0], corners[1], corners[2]);
@@ -73,8 +73,8 @@ static void weights_in(const double corners[3][2], const double at[2], float wei
         weights[i] = (float)(w[i] / sum);
 }
 
-/* Normalises an anchor: replaces points of zero weight by the point of largest weight. So a position on an edge or corner gets the same
- * anchor from each of the triangles there. */
+/* Normalises an anchor (three mesh points and their weights): replaces points of zero weight by the point of largest weight. So a position
+ * on an edge or corner gets the same anchor from each of the triangles there. */
 static void tidy(struct influence_anchor *anchor)
 {
     int heaviest = 0;
@@ -225,7 +225,7 @@ static size_t finest_count(const struct bend_drawn *drawn)
     return drawn->level_count > 0 ? drawn->levels[0].triangle_count : drawn->triangle_count;
 }
 
-/* Makes a triangle of the asset file the current drawn triangle. Returns its area; 0: degenerate. */
+/* Makes a triangle of the asset file the current drawn triangle. Returns its area; 0: it has no area. */
 static double take_triangle(struct finding *finding, const double p[3][3])
 {
     double along[3], off_m;
@@ -280,12 +280,13 @@ static void find_places(struct finding *finding)
 
 /* --- coarser levels ------------------------------------------------------------------------------------------------------------ */
 
-/* Barycentric weights (times 3) of the samples of a triangle: two points on each side, at its thirds, and the centre. */
+/* Barycentric weights (times 3) of the points of a triangle at which the bend is measured: two on each side, at its thirds, and the
+ * centre. */
 enum { SAMPLES = 7 };
 static const double samples[SAMPLES][3] = { { 2, 1, 0 }, { 1, 2, 0 }, { 0, 2, 1 }, { 0, 1, 2 }, { 1, 0, 2 }, { 2, 0, 1 }, { 1, 1, 1 } };
 
-/* Adds the samples of a triangle of a coarse level as places (points at which the error is measured). Counts of samples replace the areas
- * that are recorded for the finest level. */
+/* Adds sample points of a coarse level's triangle as places (points at which the error is measured). Counts of sample points replace the
+ * areas that are recorded for the finest level. */
 static void sample_triangle(struct finding *finding, const struct influence_mesh *mesh, const struct surface *surface, size_t tri,
                             double within_m)
 {

@@ -14,23 +14,23 @@
 
 struct bend_place {
     uint32_t tri;                   /* index of the drawn triangle */
-    float weights[3];               /* barycentric weights, in the drawn triangle, of the place (point at which the error is measured) */
+    float weights[3];               /* barycentric weights of the place (point at which the error is measured) in the drawn triangle */
     struct influence_anchor anchor; /* position on the mesh */
 };
 
 struct bend_level { /* one level of detail */
     size_t triangle_count;
-    double error_m; /* largest distance in metres of the level's triangles from the surface */
+    double error_m; /* largest distance in metres of the triangles of this level of detail from the surface */
 };
 
-struct bend_drawn { /* the drawn triangles: those of the asset file */
+struct bend_drawn { /* the triangles of the asset file, which are drawn */
     const float (*positions_m)[3];
-    /* vertex indices of the drawn triangles (triangles of the asset file), 3 each, level by level, finest first */
+    /* vertex indices of the drawn triangles (triangles of the asset file), 3 each; levels of detail one after the other, finest first */
     const uint32_t *triangles;
     size_t vertex_count, triangle_count;
     const struct influence_anchor *anchors; /* by vertex: its position on the mesh */
-    /* All overlap corners are found for the finest level. Triangles of coarser levels do not lie on the surface: the bend is measured at a
-     * few points of each. */
+    /* All overlap corners are found for the finest level of detail. Triangles of coarser levels do not lie on the surface: the bend is
+     * measured at a few points of each. */
     const struct bend_level *levels;
     size_t level_count; /* number of elements of `levels`; 0: all triangles belong to the finest level */
 };
@@ -45,10 +45,10 @@ struct influence_bend {
     /* by place (corner of an overlap): sums over sensors of the positive and of the negative errors of their weights, in fixed point */
     _Atomic int64_t *plus, *minus;
     struct mesh_error *mesh_error; /* sums from which the discretisation error of the finite-element solution is computed (mesh_error.h) */
-    size_t point_count;            /* number of points of the mesh */
+    size_t point_count;            /* number of points of the finite-element mesh */
 };
 
-/* Finds the places of the drawn triangles: the points at which the error is measured. The mesh, `drawn` and its arrays must outlive *bend.
+/* Finds the places of the drawn triangles: the points at which the bend is measured. The mesh, `drawn` and its arrays must outlive *bend.
  * surface: the surface that the mesh was made from. Returns false if there are more than `most` places, or out of memory. Call
  * influence_bend_finish() in both cases. Thread: one. */
 bool influence_bend_init(struct influence_bend *bend, const struct influence_mesh *mesh, const struct surface *surface,
@@ -61,13 +61,15 @@ void influence_bend_finish(struct influence_bend *bend);
 void influence_bend_add(struct influence_bend *bend, const float *at_points, size_t stride, size_t width);
 
 struct bend_report { /* results of the measurement of the bend (interpolation error in drawn triangles); all zero: no bend was measured */
-    /* number of pairs (group, interpolation): measured: those whose bend was measured; unmeasured: those with too many places (corners of
+    /* numbers of pairs (group, interpolation). measured: those whose bend was measured; unmeasured: those with too many places (corners of
      * overlaps) */
     size_t measured, unmeasured;
-    double steps;        /* bound of the deviation from linear interpolation, in steps of (MAX - MIN) / 255, for any good readings */
+    /* bound of the field's deviation from linear interpolation, in steps of (MAX - MIN) / 255, for any good readings */
+    double steps;
     double over_share;   /* share of the area covered by triangles in which the bend (interpolation error) may exceed one step */
-    double hidden_share; /* share of the area inside or against another part, where nothing is solved */
-    /* share of the area that is not on the solved surface; this area and the hidden area are excluded from `steps` and `over_share` */
+    double hidden_share; /* share of the asset's area inside or against another part, where the field is not computed */
+    /* share of the asset's area that is not on the surface on which the field was computed; this area and the hidden area are excluded from
+     * `steps` and `over_share` */
     double unknown_share;
 };
 /* Computes the error of one interpolation after the shares of all sensors were added, and resets the sums for the next one. Merges the

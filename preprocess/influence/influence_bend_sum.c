@@ -14,8 +14,8 @@
 
 typedef float shares_of[BEND_WIDTH];
 
-/* Interpolates the weights of `width` sensors at an anchor (a position on the mesh). Sets the remaining elements of the BEND_WIDTH results
- * to 0. */
+/* Interpolates the weights of `width` sensors at an anchor (three mesh points and their weights). Sets the remaining elements of the
+ * BEND_WIDTH results to 0. */
 SIMD_BODY void gather(const struct influence_anchor *anchor, const float *at_points, size_t stride, size_t width, shares_of out)
 {
     const float *a = at_points + anchor->points[0] * stride, *b = at_points + anchor->points[1] * stride;
@@ -59,8 +59,8 @@ void influence_bend_add(struct influence_bend *bend, const float *at_points, siz
     }
 }
 
-/* Returns the largest error for any readings, in colour steps. The worst readings are MAX for all sensors whose weight error is positive
- * and MIN for the others, or vice versa. plus, minus: sums of the positive and of the negative weight errors. around: see
+/* Returns the largest error of the field for any readings, in colour steps. The worst readings are MAX for all sensors whose weight error
+ * is positive and MIN for the others, or vice versa. plus, minus: sums of the positive and of the negative weight errors. around: see
  * influence_bend_measure(). */
 static double worst_of(double plus, double minus, double around)
 {
@@ -74,7 +74,8 @@ static double worst_of(double plus, double minus, double around)
 enum triangle_state { TRIANGLE_BOUNDED, TRIANGLE_HIDDEN, TRIANGLE_UNKNOWN };
 /* a triangle with more than this share of its area hidden counts as wholly hidden; below 1 because of rounding */
 #define ALL_OF_IT 0.999
-#define COARSE_UNKNOWN 0.5 /* share of samples that may be unknown in a coarse level's triangle, which does not lie on the surface */
+/* share of sample points of a coarse level's triangle whose error may be unknown, because such a triangle does not lie on the surface */
+#define COARSE_UNKNOWN 0.5
 
 static enum triangle_state state_of(const struct influence_bend *bend, size_t tri)
 {
@@ -93,8 +94,8 @@ static float mesh_error_at(const struct influence_anchor *anchor, const float *b
     return most;
 }
 
-/* Writes the error of each vertex. bends: bend of each triangle as a share of the spread of readings. Triangles hidden inside other parts
- * are visible only in sections and do not count. A vertex that only hidden triangles use gets the error 1 (unknown). */
+/* Writes the interpolation error of each vertex. bends: bend of each triangle as a share of the spread of readings. Triangles hidden inside
+ * other parts are visible only in sections and do not count. A vertex that only hidden triangles use gets the error 1 (unknown). */
 static void write_errors(struct influence_bend *bend, const float *bends, float *errors)
 {
     const struct bend_drawn *drawn = &bend->drawn;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the interpolations that each group requests, and writes all results to one file. */
+/* Computes the interpolations that each group requests, and writes all results to one influence file. */
 #include "preprocess/influence/influence_file.h"
 
 #include <math.h>
@@ -18,14 +18,14 @@
 #include "preprocess/influence/transport.h"
 #include "protocol/influence_format.h"
 
-#define EDGES 5.0     /* requested number of mesh edges along one correlation range; more make no visible difference */
+#define EDGES 5.0     /* number of mesh edges along one correlation range for which the mesh is made; more make no visible difference */
 /* minimum number of mesh edges along one correlation range; fewer would make the field seem more certain than it is */
 #define MIN_EDGES 2.0
 #define LONGEST 10.0  /* maximum correlation range, in multiples of the surface's size; longer ranges look the same */
 #define FIT_MIN 0.05  /* smallest correlation range that is fitted, in multiples of the surface's size */
 #define FIT_MAX 3.0
-/* maximum number of points at which the bend (interpolation error, influence_bend.h) is measured; with more, it is not measured, because it
- * would take too long */
+/* maximum number of points at which the bend (interpolation error, influence_bend.h) is measured; with more, nothing is measured, because
+ * it would take too long */
 enum { BEND_PLACES = 8000000 };
 
 struct influence_making {
@@ -40,8 +40,8 @@ struct influence_making {
     size_t capacity, found_capacity;
 };
 
-/* Lists the sensors of a group that have a position. Returns the number of these sensors; *places_m receives their positions, which the
- * caller frees (mem_free). */
+/* Lists the sensors of a group that have a position on the asset. Returns the number of these sensors; *places_m receives their positions,
+ * which the caller frees (mem_free). */
 static size_t places_of(const struct influence_input *input, int group, double (**places_m)[3])
 {
     size_t count = 0;
@@ -79,8 +79,8 @@ static const char **names_of(const struct influence_input *input, int group)
     return names;
 }
 
-/* Sets the parameters that the plant file does not state to their defaults, for an asset with fewer sensors than a fit needs
- * (PLANT_GP_FITTED). */
+/* Sets those parameters of the Gaussian process that the plant file does not state to their defaults, for an asset with fewer sensors than
+ * a fit needs (PLANT_GP_FITTED). */
 static void take_defaults(const struct influence_making *making, const struct plant_group *of, size_t count, struct gaussian_params *gp)
 {
     const double range = of->max - of->min;
@@ -94,7 +94,8 @@ static void take_defaults(const struct influence_making *making, const struct pl
              asset_of(making->input)->id, of->id, count, PLANT_GP_FITTED, gp->range_m, gp->noise, gp->deviation, of->unit);
 }
 
-/* Determines the parameters: those stated in the plant file, the others fitted to the readings file that it names. */
+/* Determines the parameters of a group's Gaussian process: those stated in the plant file, the others fitted to the readings file that it
+ * names. */
 static bool find_params(struct influence_making *making, int group, const double (*places_m)[3], size_t count, struct gaussian_params *gp)
 {
     const struct influence_input *input = making->input;
@@ -177,8 +178,8 @@ static bool bound_errors(const struct influence_making *making, const struct pla
     return true;
 }
 
-/* Computes one interpolation of a group and adds it to the file's entries. task->bend: measures the interpolation errors; NULL: they are
- * not measured, because there are too many places (corners of overlaps). */
+/* Computes one interpolation of a group and adds it to the entries of the influence file. task->bend: measures the interpolation errors;
+ * NULL: they are not measured, because there are too many places (corners of overlaps). */
 static bool add_entry(struct influence_making *making, int group, enum interpolation interpolation, const struct influence_task *task,
                       const struct gaussian_params *gp)
 {
@@ -257,8 +258,8 @@ static void find_by_heat(void *arg, size_t begin, size_t end)
             work->failed = true;
 }
 
-/* Computes distances by heat for a group. For the report, compares the distances of the first CLOUD_CHECKED sensors with our mesh
- * distances. */
+/* Computes distances by heat on a point cloud for a group. For the report, compares the distances of the first CLOUD_CHECKED sensors with
+ * our mesh distances. */
 static bool add_heat(struct influence_making *making, int group, const double (*places_m)[3], size_t count)
 {
     const struct influence_input *input = making->input;
@@ -345,7 +346,7 @@ static uint64_t padded(uint64_t bytes)
     return (bytes + 7) / 8 * 8;
 }
 
-/* Writes all arrays to the file, each padded to 8 bytes. Returns 0 or -errno. */
+/* Writes all arrays to the influence file, each padded to 8 bytes. Returns 0 or -errno. */
 static int write_file(struct influence_making *making)
 {
     static const char zeros[8];

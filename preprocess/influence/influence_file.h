@@ -36,7 +36,7 @@ struct influence_input {
     size_t level_count;
     const char *folder;
     uint64_t key;               /* key of the asset file */
-    struct cloud_report *cloud; /* receives a comparison of two kinds of distances if a group requests distances by heat */
+    struct cloud_report *cloud; /* receives a comparison of heat distances with mesh distances if a group requests distances by heat */
     struct bend_report *bend;   /* receives the measured interpolation errors if a group requests harmonic, fin or gp */
 };
 

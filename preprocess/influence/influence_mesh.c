@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Splits edges near sensors in halves until they are short enough, and finds the mesh points that each sensor's disc covers. */
+/* Splits mesh edges near sensors in halves until they are short enough, and finds the mesh points that each sensor's disc covers. */
 #include "preprocess/influence/influence_mesh.h"
 
 #include <math.h>
@@ -8,15 +8,15 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-/* an edge at distance D from the nearest sensor may be GRADING * D long, or half the disc's radius if that is longer */
+/* a mesh edge at distance D from the nearest sensor may be GRADING * D long, or half the disc's radius if that is longer */
 #define GRADING 0.7
-/* maximum number of points added per sensor; if the disc's radius is so small that more would be needed, edges stay longer than GRADING
- * allows */
+/* maximum number of mesh points added per sensor; if the disc's radius is so small that more would be needed, edges stay longer than
+ * GRADING allows */
 #define MAX_ADDED 1000
 /* Mesh edges are split where they cross the rim of a disc, so that the disc's points reach its rim. Points whose distance from the rim is
  * below this share of the radius count as on it, which avoids very short edges. */
 #define RIM_SLACK 0.02
-#define MAX_ADDED_EVENLY 400000 /* maximum number of points added to make edges short everywhere (edge_m below INFINITY) */
+#define MAX_ADDED_EVENLY 400000 /* maximum number of mesh points added to make edges short everywhere (edge_m below INFINITY) */
 
 /* --- refinement near sensors ------------------------------------------------------------------------------------------------- */
 
@@ -30,11 +30,11 @@ static double nearest_m(const struct influence_mesh *mesh, const double point[3]
 
 struct halving {
     struct influence_mesh *of;
-    /* radius_m: of a sensor's disc; edge_m: maximum edge length everywhere; near_m: by point, distance to the nearest sensor */
+    /* radius_m: radius of a sensor's disc; edge_m: maximum edge length everywhere; near_m: by mesh point, distance to the nearest sensor */
     double radius_m, edge_m, *near_m;
     size_t near_capacity, limit;
     struct edge_table edges; /* edges to split */
-    uint32_t *middle;        /* by edge: index of the point at its middle */
+    uint32_t *middle;        /* by edge to split: index of the mesh point that divides it */
     size_t middle_capacity;
 };
 
@@ -141,7 +141,7 @@ static void mark_rims(struct halving *halving)
         }
 }
 
-/* Splits edges where `mark` says. Returns the number of points added. */
+/* Splits the edges that the callback `mark` adds to halving->edges. Returns the number of points added. */
 static size_t split_edges(struct halving *halving, void (*mark)(struct halving *halving))
 {
     const struct trimesh *mesh = &halving->of->mesh;

@@ -15,9 +15,9 @@ struct influence_disc {
 };
 
 struct influence_mesh {
-    struct trimesh mesh; /* tri_source: the visible surface triangle that a mesh triangle is a piece of */
+    struct trimesh mesh; /* mesh.tri_source: by mesh triangle, the visible triangle of the surface that contains it */
     struct intrinsic intrinsic;
-    double (*sources_m)[3]; /* positions of the sensors on the surface */
+    double (*sources_m)[3]; /* positions of the sensors, projected onto the surface */
     uint32_t *source_tris;
     size_t source_count;
     double size_m;                  /* length of the diagonal of the surface's main part (base/math/gap_split.h), metres */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the flux imbalance at each edge from the field's values at mesh points, in which it is linear, and sums the imbalance over
- * sensors. */
+/* Computes the flux imbalance at each mesh edge from the field's values at mesh points, between which it is linear, and sums the imbalance
+ * over sensors. */
 #include "preprocess/influence/mesh_error.h"
 
 #include <math.h>
@@ -10,8 +10,9 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define SAFETY 2.0   /* safety factor 2, because the values at mesh points have an error about as large as the error between points */
-#define FIXED 0x1p40 /* fixed-point scale of an imbalance: integer sums do not depend on the order of addition */
+/* safety factor of the estimated error: 2, because the values at mesh points have an error about as large as the error between points */
+#define SAFETY 2.0
+#define FIXED 0x1p40 /* fixed-point scale of a flux imbalance: integer sums do not depend on the order of addition */
 
 /* Linear form whose value is the flux imbalance of an edge times the height of its lowest triangle. That is how far the field at this
  * triangle's tip (the corner opposite the edge) differs from a linear continuation of the other triangles at the edge. */
@@ -31,7 +32,7 @@ struct mesh_error {
     size_t edge_count;
     uint32_t (*edges_of)[3];       /* by triangle: index of the edge from each corner to the next */
     float (*heights_m)[3];         /* by triangle: its height above each of its edges; 0: the triangle has no area */
-    _Atomic int64_t *plus, *minus; /* by edge: sums over sensors of the positive and of the negative imbalances, fixed point */
+    _Atomic int64_t *plus, *minus; /* by edge: sums over sensors of the positive and of the negative flux imbalances, fixed point */
 };
 
 /* --- the mesh ----------------------------------------------------------------------------------------------------------------- */

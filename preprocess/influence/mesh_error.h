@@ -12,13 +12,13 @@ struct mesh_error;
 /* Creates zeroed error sums for a mesh, which must outlive them. Edges within a sensor's disc are ignored, because the exact solution
  * itself has a kink at the disc's rim. Returns NULL if out of memory. The caller frees the result with mesh_error_destroy(). */
 struct mesh_error *mesh_error_create(const struct influence_mesh *mesh);
-/* Frees the sums and sets *error to NULL. *error may be NULL. */
+/* Frees the error sums and sets *error to NULL. *error may be NULL. */
 void mesh_error_destroy(struct mesh_error **error);
-/* Adds the weights ("shares") of `width` sensors, at most BEND_WIDTH, to the sums. at_points: `stride` numbers for each mesh point, of
- * which the first `width` are weights. Thread: any number of concurrent calls. */
+/* Adds the weights ("shares") of `width` sensors, at most BEND_WIDTH, to the error sums. at_points: `stride` numbers for each mesh point,
+ * of which the first `width` are weights. Thread: any number of concurrent calls. */
 void mesh_error_add(struct mesh_error *error, const float *at_points, size_t stride, size_t width);
-/* Writes for each mesh point the largest error in the triangles around it, for the worst possible readings, as a fraction of the spread of
- * readings. Resets the sums to zero. */
+/* Writes for each mesh point the largest discretisation error in the triangles around it, for the worst possible readings, as a fraction of
+ * the spread of readings. Resets the sums to zero. */
 void mesh_error_take(struct mesh_error *error, float *by_point);
 
 #endif

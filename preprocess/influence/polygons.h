@@ -26,9 +26,10 @@ static inline double polygon_cross(const double a[2], const double b[2], const d
 
 double polygon_area(const struct polygon *polygon);
 double polygons_area(const struct polygons *polygons);
-/* Writes the intersection of the polygon and the triangle. Returns false with an empty result if it would have too many corners. */
+/* Writes the intersection of the polygon and the triangle. Returns false with an empty result if it would have more than POLYGON_CORNERS
+ * corners. */
 bool polygon_in_triangle(const struct polygon *polygon, const double triangle[3][2], struct polygon *out);
-/* Appends the part of the polygon outside the triangle, as convex pieces. Drops pieces of at most least_m2. */
+/* Appends to `polygons` the part of the polygon outside the triangle, as convex polygons. Drops those of at most the area least_m2. */
 void polygons_add_outside(struct polygons *polygons, const struct polygon *polygon, const double triangle[3][2], double least_m2);
 void polygons_add(struct polygons *polygons, const struct polygon *polygon);
 /* Frees the list. */

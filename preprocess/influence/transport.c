@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Solves a system with the connection Laplacian: one sparse Cholesky factorisation with two unknowns per point, and one solve per
- * sensor. */
+/* Transports tangent vectors from sensors by solving a system with the connection Laplacian (transport.h): one sparse Cholesky
+ * factorisation with two unknowns per mesh point, and one solve per sensor. */
 #include "preprocess/influence/transport.h"
 
 #include <math.h>
@@ -11,9 +11,10 @@
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
 
-#define LENGTHS 150.0 /* the diffusion length sqrt(t) is at least the surface's size divided by this, because heat underflows at e^-709 */
-/* the diffusion length sqrt(t) is at least the longest path along the surface divided by this, because heat underflows; paths on folded
- * parts are much longer than the surface's size */
+/* the diffusion length sqrt(t) is at least the surface's size divided by this number, because heat underflows at e^-709 */
+#define LENGTHS 150.0
+/* the diffusion length sqrt(t) is at least the longest path along the surface divided by this number, because heat underflows; paths on
+ * folded parts are much longer than the surface's size */
 #define LONGEST 400.0
 #define LEAST 1e-280 /* minimum length of a solved vector; a shorter one has lost its direction to rounding */
 
@@ -31,8 +32,8 @@ struct vector_heat {
 /* --- normals and path lengths on the surface
  * ------------------------------------------------------------------------------------------------------------ */
 
-/* Computes point normals: area-weighted mean of the triangles around a point, or the largest triangle's normal where the normals cancel
- * out, as on a two-sided sheet. */
+/* Computes a normal at each mesh point: the area-weighted mean of the triangles around it, or the largest triangle's normal where the
+ * normals cancel out, as on a two-sided sheet. */
 static void find_normals(struct vector_heat *transport)
 {
     const struct trimesh *mesh = &transport->mesh->mesh;
@@ -62,7 +63,7 @@ static void find_normals(struct vector_heat *transport)
 
 /* Adjacency lists: for each point, the mesh edges that end at it. */
 struct ways {
-    size_t *first; /* by point: start of its edges in `at`; one extra element at the end */
+    size_t *first; /* by point: index in `at` of its first edge; one extra element at the end */
     struct transport_edge {
         uint32_t to;
         double length_m;
@@ -94,8 +95,8 @@ static void find_ways(const struct intrinsic *in, size_t point_count, struct way
     mem_free(next);
 }
 
-/* Breadth-first search along edges from a point. Returns the number of connected points, listed in queue[]. *farthest: the point with the
- * longest path. */
+/* Breadth-first search along mesh edges from point `from`. Returns the number of connected points, listed in queue[]. *farthest: the point
+ * with the longest path. */
 static size_t spread(struct ways *ways, uint32_t from, uint32_t *farthest)
 {
     size_t count = 1;
@@ -114,8 +115,8 @@ static size_t spread(struct ways *ways, uint32_t from, uint32_t *farthest)
     return count;
 }
 
-/* Returns the approximate length of the longest path on any connected piece: finds the point farthest from an
- * arbitrary one, then the longest path from that point. */
+/* Returns the approximate length of the longest path within any connected component: finds the point farthest from an arbitrary one, then
+ * the longest path from that point. */
 static double longest_way_m(const struct intrinsic *in, size_t point_count)
 {
     struct ways ways;
@@ -165,8 +166,8 @@ static void put(struct triplets *triplets, uint32_t row, uint32_t column, double
     ((double *)triplets->list->x)[triplets->count++] = value;
 }
 
-/* Adds the matrix block of two points: weight times the rotation from the tangent plane of b to that of a. Swaps a and b if a has the lower
- * row. */
+/* Adds to the matrix the block of two points: weight times the rotation from the tangent plane of b to that of a. Swaps a and b if a has
+ * the lower row. */
 static void put_pair(const struct vector_heat *transport, struct triplets *triplets, uint32_t a, uint32_t b, double weight)
 {
     const uint32_t *row_of = transport->laplacian.row_of;
