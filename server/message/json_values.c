@@ -5,15 +5,15 @@
 
 json_t *number(double value)
 {
-    return isfinite(value) ? json_real(value + 0.0) : json_null(); /* adding 0.0 turns -0.0 into 0.0, so that JSON never has a minus sign
-                                                                      before zero */
+    /* adding 0.0 turns -0.0 into 0.0, so that JSON never has a minus sign before zero */
+    return isfinite(value) ? json_real(value + 0.0) : json_null();
 }
 
 json_t *reading_number(double value)
 {
     double size = fabs(value);
-    if (size >= 1e7 && size < 9e15 && value == trunc(value)) /* writes a large whole number as a JSON integer: json_text() rounds only real
-                                                                numbers, to a limited number of digits */
+    /* writes a large whole number as a JSON integer: json_text() rounds only real numbers, to a limited number of digits */
+    if (size >= 1e7 && size < 9e15 && value == trunc(value))
         return json_integer((json_int_t)value);
     return number(round_reading(value));
 }

@@ -218,8 +218,8 @@ struct message {
     double pixel_ratio;              /* messages hello and resize: device pixels per CSS pixel of the page; 0: not stated */
     char named[NAMED_VIEW_ID_BYTES]; /* messages hello, look and params: id of a named view; empty: no view (only in hello and params) */
     struct camera camera;            /* camera, hello */
-    uint32_t seq; /* sequence number that the client gave its message camera, ack, fit, pick or look; message hello: sequence number of its
-                     camera */
+    /* sequence number that the client gave its message camera, ack, fit, pick or look; message hello: sequence number of its camera */
+    uint32_t seq;
     struct params_change params;     /* params, hello */
     struct split_change split;       /* messages params and hello: change of the right half of a split view, applied after `params` */
     struct fit_message fit;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A queue of deferred request groups (requests whose frame cannot be drawn yet), oldest first. */
+/* A queue of deferred request groups: frame requests that one frame answers, but which cannot be drawn yet. Oldest first. */
 #include "service/deferred_requests.h"
 
 #include <string.h>

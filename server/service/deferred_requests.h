@@ -10,11 +10,11 @@ struct deferred_requests { /* zero-initialise; free with deferred_requests_finis
     /* deferred groups, oldest first; the groups from index `count` on are empty and keep their memory for reuse */
     struct request_group groups[DEFERRED_MOST];
     size_t count;
-    bool due; /* true: the next turn of the render thread belongs to a deferred group */
+    bool due; /* true: the render thread next draws for a deferred group */
 };
 
-/* Moves the group's tickets (requests) to the end of the queue and leaves the group empty. Returns false, and changes nothing, if the queue
-   is full. */
+/* Moves the group's frame requests (tickets) to the end of the queue and leaves the group empty. Returns false, and changes nothing, if the
+   queue is full. */
 bool deferred_requests_push(struct deferred_requests *deferred, struct request_group *group);
 /* Replaces the content of `group` by the oldest deferred group; there must be one. */
 void deferred_requests_pop(struct deferred_requests *deferred, struct request_group *group);

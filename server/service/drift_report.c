@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Judges sensor drift from hourly means; the expected error is the group's noise combined with the recording tolerance. */
+/* Judges from hourly means of recorded readings whether sensors drift (slowly depart from the true value). The expected error of a mean is
+   the group's sensor noise combined with the recording tolerance. */
 #include "service/drift_report.h"
 
 #include <jansson.h>
@@ -19,7 +20,8 @@ static int64_t begin_of(int64_t to_us)
     return to_us - to_us % HOUR_US - DRIFT_HOURS * HOUR_US;
 }
 
-/* Returns the expected error of a recorded value: the sensor noise combined with the deviation that recording allows. */
+/* Returns the expected error of a recorded value: the sensor noise combined with the deviation from the measured value that the recording
+   filter allows. */
 static double noise_of(const struct plant *plant, const struct history_tag *tag, int group)
 {
     const struct plant_group *of = &plant->groups[group];

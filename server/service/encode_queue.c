@@ -29,7 +29,7 @@ struct encode_queue {
     /* number of running jobs that encode frames for HTTP or frames to be signed; limited, because these frames may be large and lossless */
     int heavy;
     struct encode_job *heavy_waiting, **heavy_last;
-    struct request_group rest; /* scratch memory of encode_queue_submit() */
+    struct request_group rest; /* scratch memory of encode_queue_submit() for requests that need another encode stream */
     struct encode_plan plan;
 };
 
@@ -45,11 +45,11 @@ struct encode_job {
     bool heavy;
 };
 
-struct stream_work {                  /* queue of the stream's jobs, protected by the lock; the first job is running */
-    struct encode_job *first, **last; /* queue of jobs, protected by the lock; the first job is running */
-    /* encoder, for codecs that keep state between frames; this member and those below belong to the job that is running */
+struct stream_work {                  /* encoding jobs and encoder of one encode stream */
+    struct encode_job *first, **last; /* the stream's jobs, oldest first, protected by the lock; the first job is running */
+    /* encoder of the stream, for codecs that keep state between frames; only the running job uses this member and those below */
     struct encoder *encoder;
-    struct frame *before; /* newest frame of the stream, as encoded in this quality; clients that have all packets show it */
+    struct frame *before; /* newest frame that was encoded for this stream: clients that have all packets show it */
     struct encoder_params quality;
 };
 
@@ -199,7 +199,7 @@ static bool same_quality(const struct encoder_params *a, const struct encoder_pa
     return a->quality == b->quality && a->full_chroma == b->full_chroma;
 }
 
-/* Encodes the job's frame. Returns false on failure. *out NULL: nothing has changed since the last frame. */
+/* Encodes the job's frame. Returns false on failure. *out NULL: the picture has not changed since the stream's last frame. */
 static bool encode(struct encode_job *job, struct packet **out)
 {
     struct encode_queue *queue = job->queue;
@@ -236,7 +236,7 @@ static uint64_t still_needed(const struct encode_job *job)
 
 struct packet_run {
     struct packet *packets[ENCODE_STREAM_KEPT];
-    int count; /* number of packets to deliver; negative: some of the packets were dropped already */
+    int count; /* number of packets to deliver to the client; negative: some of the packets were dropped already */
 };
 
 static void take_run(struct encode_job *job, size_t ticket, struct packet_run *run)
@@ -271,7 +271,7 @@ static void job_destroy(struct encode_job *job)
 
 static void run_job(void *arg);
 
-/* Starts a job on a worker. Frames for HTTP and frames to be signed may use only half of the workers. */
+/* Starts an encoding job on a worker thread. Frames for HTTP and frames to be signed may use only half of the workers. */
 static void start(struct encode_queue *queue, struct encode_job *job)
 {
     int most = workers_count(queue->params.workers) / 2;
@@ -351,7 +351,7 @@ static bool same_coding(const struct request_ticket *ticket, void *arg)
            same_part(&a->part, &b->part);
 }
 
-/* Makes a job from the plan in the encode queue. The caller holds the lock. */
+/* Makes an encoding job from queue->plan. The caller holds the lock. */
 static struct encode_job *make_job(struct encode_queue *queue, struct frame *frame, struct request_group *tickets)
 {
     struct encode_plan *plan = &queue->plan;

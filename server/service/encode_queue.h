@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The encode queue: encodes frames on the worker threads, once for all clients that share an encode stream. Each client gets the packets
-   of its stream in order. Thread: any. */
+   (encoded frames) of its stream in order. Thread: any. */
 #ifndef SERVICE_ENCODE_QUEUE_H
 #define SERVICE_ENCODE_QUEUE_H
 #include "base/metrics/counters.h"
@@ -13,9 +13,9 @@ struct encode_queue_params {
     struct workers *workers;
     struct counters *counters;
     const char *h264_library; /* name of the libavcodec encoder */
-    /* Callback on a worker, for each ticket (request whose drawing has begun). It gets the packets that bring the ticket's client up to
-       date, oldest first. count 0: the client already shows this content, or, if `failed` is true, the frame could not be encoded. The
-       packets are valid only during the call. */
+    /* Callback on a worker, for each ticket (frame request whose drawing has begun). It gets the packets (encoded frames) that bring the
+       ticket's client up to date, oldest first. count 0: the client already shows this content, or, if `failed` is true, the frame could
+       not be encoded. The packets are valid only during the call. */
     void (*done)(void *arg, const struct request_ticket *ticket, struct packet *const *packets, int count, bool failed);
     void (*all_done)(void *arg); /* callback on a worker after the last ticket of a frame */
     void *done_arg;              /* argument of both callbacks */

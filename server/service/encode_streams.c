@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides which clients share which stream of packets, and which packets each client needs. */
+/* Decides which clients share one stream of packets (encoded frames), and which of these packets each client needs. */
 #include "service/encode_streams.h"
 
 #include <string.h>
@@ -8,12 +8,14 @@
 #include "base/math/search.h"
 #include "base/mem.h"
 
-/* minimum time between key frames that are made only so that clients can join a stream; the time doubles for clients that often fall
-   behind */
+/* minimum time between key frames that are encoded only so that clients can join an encode stream; the time doubles for clients that often
+   fall behind */
 static const int64_t JOIN_NS = 2 * NS_PER_S, JOIN_MAX_NS = 64 * NS_PER_S;
-/* maximum number of packets that a client may lag behind and still catch up; also the maximum number of frames planned but not encoded */
+/* maximum number of packets by which a client may be behind its stream and still get all that it missed; also the maximum number of frames
+   that are planned but not encoded yet */
 enum { MAX_LAG_PACKETS = ENCODE_STREAM_KEPT / 2 };
-/* half of the bytes of packets that a stream keeps; if the last key frame is larger, the stream keeps twice that frame's bytes */
+/* half of the number of bytes of sent packets that a stream keeps for clients that missed some; if the last key frame is larger, the stream
+   keeps twice that frame's bytes */
 static const size_t KEPT_BYTES = 64 * 1024;
 
 /* --- members of streams ----------------------------------------------------------------------------------------------- */
@@ -63,7 +65,7 @@ static bool same_coding(const struct encode_stream *stream, const struct frame *
            shown->view.width_px == frame->width_px && shown->view.height_px == frame->height_px;
 }
 
-/* Returns the sequence number of the first packet that the client needs. */
+/* Returns the sequence number of the first packet of the stream that the client has not received. */
 static uint64_t lacks(const struct encode_stream *stream, const struct encode_stream_member *link, const struct request_ticket *ticket)
 {
     uint64_t next = link && link->stream == stream && !ticket->request.alone ? link->position + 1 : 1;
@@ -78,7 +80,7 @@ static bool reaches(const struct encode_stream *stream, const struct encode_stre
 
 /* --- planning --------------------------------------------------------------------------------------------------------- */
 
-/* Returns the stream to which most of these clients already belong and from which they can still get all packets that they lack. */
+/* Returns the encode stream to which most of these clients already belong, if they can still get all packets that they missed from it. */
 static struct encode_stream *most_common(struct encode_streams *streams, const struct request_group *tickets)
 {
     struct encode_stream *best = NULL;
@@ -95,13 +97,14 @@ static struct encode_stream *most_common(struct encode_streams *streams, const s
     return best;
 }
 
-/* Returns whether a client of the group wants the frame's depth grid, which no packet of the stream's newest content contains. */
+/* Returns whether a client of the group wants a depth grid, which the frame has, but which was not sent with the stream's newest
+   content. */
 static bool brings_depth(const struct encode_stream *stream, const struct frame *frame, const struct request_group *tickets)
 {
     return frame->depth[0] && !stream->has_depth && request_group_wants_depth(tickets);
 }
 
-/* Returns whether the stream's newest content equals this frame, and the packets from the key frame on are still kept. */
+/* Returns whether the stream's newest packet shows the same picture as this frame, and the packets from the key frame on are still kept. */
 static bool shows(const struct encode_stream *stream, const struct frame *frame, const struct request_group *tickets)
 {
     const struct frame_request *request = &tickets->tickets[0].request;
@@ -109,8 +112,8 @@ static bool shows(const struct encode_stream *stream, const struct frame *frame,
            stream->content == frame->content && same_coding(stream, frame, request) && !brings_depth(stream, frame, tickets);
 }
 
-/* Returns a stream whose newest content equals this frame; NULL: there is none. whole: accepts only a stream whose newest packet is a key
-   frame. */
+/* Returns a stream whose newest packet shows the same picture as this frame; NULL: there is none. whole: accepts only a stream whose newest
+   packet is a key frame. */
 static struct encode_stream *showing(const struct encode_streams *streams, const struct frame *frame, const struct request_group *tickets,
                                      bool whole)
 {
@@ -204,7 +207,7 @@ static void join(struct encode_stream_member *link, struct encode_stream *stream
     link->join_after_ns = now_ns + link->patience_ns;
 }
 
-/* Determines the packets that each client needs to show the newest frame. A client that has received them is up to date. */
+/* Determines the packets that each client must be sent to show the newest frame, and counts these clients as up to date. */
 static void give(struct encode_streams *streams, const struct request_group *tickets, int64_t now_ns, struct encode_plan *plan)
 {
     struct encode_stream *stream = plan->stream;
@@ -237,8 +240,8 @@ static struct encode_stream *choose(struct encode_streams *streams, const struct
     return stream ? stream : add_chain(streams);
 }
 
-/* Returns whether a client of the group must get the frame again although it already shows this content (`always`). Requests that must
-   decode without earlier packets (`alone`) do not count: their clients get the packets kept, from the key frame on. */
+/* Returns whether a client of the group must get the frame although it already shows the same picture (`always`). Requests that must decode
+   without earlier packets (`alone`) do not count: their clients are sent the stored packets from the last key frame on. */
 static bool must_again(const struct request_group *tickets)
 {
     for (size_t i = 0; i < tickets->count; i++)
@@ -301,8 +304,8 @@ void encode_stream_keep(struct encode_stream *stream, struct packet *packet, uin
     while (stream->kept_count > 0 && stream->oldest < needed &&
            (key || stream->kept_count == ENCODE_STREAM_KEPT || stream->kept_bytes > most_bytes(stream)))
         drop_oldest(stream);
-    /* if all clients' needs leave the list full, the oldest packet is dropped: the list holds more packets than a client may have in
-       flight, so no client can need that one */
+    /* drops the oldest packet if clients still need all packets in the list: the list holds more packets than a client may have in flight,
+       so that one has arrived */
     if (stream->kept_count == ENCODE_STREAM_KEPT)
         drop_oldest(stream);
     stream->kept[stream->kept_count++] = packet ? packet_ref(packet) : NULL;

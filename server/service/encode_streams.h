@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encode streams: which clients share one stream of packets. A packet may depend on the previous one (H.264, or a picture of changes
-   only), so each client is a member of one stream and has a position in it. Clients of one view share a stream; a client that missed
-   packets is given them, or a key frame. Pure: the caller passes the time. Thread: under the lock of the encode queue. */
+/* Encode streams: which clients share one stream of packets (encoded frames). A packet may depend on the previous one (H.264, or a picture
+   of changes only), so each client belongs to one stream and has a position in it. Clients of one view share a stream. A client that missed
+   packets is sent them, or a key frame. Pure: the caller passes the time. Thread: under the lock of the encode queue. */
 #ifndef SERVICE_ENCODE_STREAMS_H
 #define SERVICE_ENCODE_STREAMS_H
 #include "service/request_group.h"
@@ -9,16 +9,16 @@
 enum { ENCODE_STREAM_KEPT = 32 };
 struct encode_stream {
     struct encode_stream *next;
-    void *work;                 /* data that the encode queue attaches to the stream; NULL in a new stream */
-    uint64_t planned;           /* sequence number of the newest frame planned, from 1; frames that are then not encoded count, too */
+    void *work;                 /* the encode queue's data about this stream (struct stream_work); NULL in a new stream */
+    uint64_t planned;           /* sequence number of the newest frame planned, from 1; also counts frames that were then not encoded */
     uint64_t oldest;            /* lowest sequence number of the frames whose packets are kept */
     uint64_t key;               /* sequence number of the newest key frame; 0: none */
     int64_t key_ns;             /* monotonic time when the newest key frame was planned */
-    struct frame_request shown; /* request that caused the newest frame: its view, codec and quality */
-    uint64_t content;           /* content hash of the newest frame */
-    bool has_depth;             /* true: the packets that show the newest content include a depth grid */
-    /* packets kept, of the frames with sequence numbers `oldest` to oldest + kept_count - 1; an element is NULL if nothing had changed in
-       its frame */
+    struct frame_request shown; /* request for the newest frame: its view, codec and quality */
+    uint64_t content;           /* content hash of the newest frame: equal for frames that show the same picture */
+    bool has_depth;             /* true: a depth grid was sent with the newest content */
+    /* packets kept for clients that missed some, of the frames with sequence numbers `oldest` to oldest + kept_count - 1; an element is
+       NULL if nothing had changed in its frame */
     struct packet *kept[ENCODE_STREAM_KEPT];
     int kept_count;
     size_t kept_bytes, key_bytes;
@@ -29,7 +29,7 @@ struct encode_stream {
 struct encode_stream_member {
     uint64_t client;
     struct encode_stream *stream;
-    uint64_t position; /* sequence number of the newest packet that the client was given */
+    uint64_t position; /* sequence number of the newest packet that was passed on to the client */
     /* joined_ns: when the client joined the stream; patience_ns: delay before a key frame is made for the client to join again, longer if
        it often falls behind; join_after_ns: end of that delay */
     int64_t joined_ns, join_after_ns, patience_ns;
@@ -43,7 +43,7 @@ struct encode_streams { /* zero-initialise */
 
 struct encode_plan { /* zero-initialise */
     struct encode_stream *stream;
-    bool encode;     /* true: encode the frame; false: the stream's newest packet already shows this content */
+    bool encode;     /* true: encode the frame; false: the stream's newest packet already shows the same picture */
     bool key;        /* true: encode the frame as a key frame */
     bool again;      /* true: send the frame even if its content is unchanged */
     uint64_t number; /* sequence number of the frame in its stream */
@@ -52,17 +52,17 @@ struct encode_plan { /* zero-initialise */
     size_t from_capacity;
 };
 
-/* Plans how a frame reaches the clients of tickets with one codec and quality; fills *plan. Tickets whose clients cannot share one stream
-   are moved to `rest`; the caller plans them by another call. */
+/* Plans which packets bring a frame to the clients of the requests (tickets), which all have the same codec and quality; fills *plan.
+   Tickets whose clients cannot share one stream are moved to `rest`; the caller plans them by another call. */
 void encode_streams_plan(struct encode_streams *streams, const struct frame *frame, struct request_group *tickets, int64_t now_ns,
                          struct encode_plan *plan, struct request_group *rest);
-/* Stores the stream's next packet and takes a reference to it. packet NULL: nothing had changed in the frame. Packets with a sequence
-   number below `needed`, the lowest that some client still has to get, may be dropped. */
+/* Stores the packet of the stream's next frame for clients that miss it, with a reference. packet NULL: nothing had changed in the frame.
+   Packets with a sequence number below `needed`, the lowest that some client still has to get, may be dropped. */
 void encode_stream_keep(struct encode_stream *stream, struct packet *packet, uint64_t needed);
 /* Writes the packets with sequence numbers from..to, which bring a client up to date, into `out`, oldest first, borrowed. Returns their
    count; -1: some were dropped already. */
 int encode_stream_catch_up(const struct encode_stream *stream, uint64_t from, uint64_t to, struct packet *out[ENCODE_STREAM_KEPT]);
-/* Notes that the newest frame could not be encoded: all members need a key frame. */
+/* Notes that the newest frame could not be encoded, so that all clients of the stream get a key frame next. */
 void encode_stream_break(struct encode_stream *stream);
 /* Removes a client from its encode stream. */
 void encode_streams_forget(struct encode_streams *streams, uint64_t client);

@@ -6,12 +6,12 @@
 struct content_of {
     struct render_service *service;
     uint64_t content;
-    bool gives_depth; /* true: the frame that is being shared has a depth grid */
+    bool gives_depth; /* true: the frame that is shared among clients has a depth grid */
     int64_t cost_ns; /* drawing time that is charged to each client that shares the frame */
 };
 
-/* Returns whether the ticket's client already shows the content that is being shared, with its depth grid if the client wants one. The
-   caller holds the lock. */
+/* Returns whether the ticket's client already shows the picture that is shared among clients, and has its depth grid if the client wants
+   one. The caller holds the lock. */
 static bool has_it(const struct request_ticket *ticket, void *arg)
 {
     const struct content_of *now = arg;
@@ -33,8 +33,8 @@ static bool is_overtaken(const struct request_ticket *ticket, void *arg)
     return client && client->has_content && ticket->number < client->content_number;
 }
 
-/* Stores the frame's content hash as the newest of a client that is still connected, and charges the client. Returns false if the client
-   has gone. The caller holds the lock. */
+/* Stores the frame's content hash as that of the newest frame of a client that is still connected, and charges the client for drawing.
+   Returns false if the client has gone. The caller holds the lock. */
 static bool remember(const struct request_ticket *ticket, void *arg)
 {
     const struct content_of *now = arg;
@@ -50,8 +50,8 @@ static bool remember(const struct request_ticket *ticket, void *arg)
     return true;
 }
 
-/* Submits a frame for encoding. It runs under the lock that render_service_forget() takes, so clients that were forgotten get no
-   packets. Clients that share a frame share its cost. */
+/* Submits a frame for encoding. The function holds the lock that render_service_forget() takes, so that clients that have gone get no
+   packets. Clients that share a frame share the drawing time that they are charged. */
 void frame_sharing_submit(struct render_service *service, struct frame *frame, struct request_group *group, int64_t cost_ns)
 {
     struct content_of now = { .service = service, .content = frame->content, .gives_depth = frame->depth[0] != NULL };
@@ -69,7 +69,8 @@ void frame_sharing_submit(struct render_service *service, struct frame *frame, s
     request_group_finish(&overtaken);
 }
 
-/* Answers "nothing new" to those clients of the group that already show this content, and removes them from the group. */
+/* Answers "nothing new" to the clients of the group that already show the picture with this content hash, and removes them from the
+   group. */
 static void answer_same(struct render_thread *thread, struct request_group *group, uint64_t content)
 {
     struct render_service *service = thread->service;
@@ -81,8 +82,8 @@ static void answer_same(struct render_thread *thread, struct request_group *grou
     render_service_answer_without_frame(service, &thread->same, FRAME_UNCHANGED);
 }
 
-/* Returns whether a frame that was drawn for other clients can answer the group. It cannot if a request wants the record of the frame's
-   inputs, or its depth grid, and the frame has none. */
+/* Returns whether a frame that was drawn for other clients can answer the requests of the group. It cannot if a request wants the record of
+   what the frame was drawn from, or the depth grid, and the frame has none. */
 static bool answers(const struct frame *frame, const struct request_group *group)
 {
     return frame && (frame->record || !request_group_wants_record(group)) && (frame->depth[0] || !request_group_wants_depth(group));
@@ -95,8 +96,8 @@ static void answer_with(struct render_service *service, struct frame *frame, str
         frame_sharing_submit(service, frame, group, 0);
 }
 
-/* Adds the group's requests to the submitted frame with the same content, if there is one. A submitted frame can still get the record of
-   its inputs, but no depth grid. */
+/* Adds the group's requests to a frame with the same content hash that was submitted to the GPU, if there is one. Such a frame can still
+   get the record of what it was drawn from, but no depth grid. */
 static void join_awaited(struct render_thread *thread, struct request_group *group, uint64_t content)
 {
     struct pending_readback *flight = pending_readbacks_find(&thread->in_flight, content, request_group_wants_depth(group));

@@ -14,7 +14,7 @@
 #include "history/history.h"
 
 static const int64_t SPAN_INTERVAL_NS =
-    60 * NS_PER_S; /* interval at which the beginning of recorded history is read again; long, as old files are removed rarely */
+    60 * NS_PER_S; /* interval at which the time at which recorded history begins is read again; long, as old files are removed rarely */
 /* interval at which the thread checks, while nothing is recorded yet, whether recorded history has begun */
 static const int64_t RETRY_DELAY_NS = 2 * NS_PER_S;
 
@@ -26,15 +26,15 @@ struct wanted_instant {
 struct history_loader {
     struct history_loader_params params;
     _Atomic bool stop;
-    /* reader of the history on this machine; NULL: history is read from the core. Only the loader's thread uses this member and the ones
-       below it, down to `thread` */
+    /* reader of the history that this machine recorded; NULL: history is read from the core. Only the loader's thread uses this member and
+       the ones below it, down to `thread` */
     struct history_reader *reader;
     struct core_history *core; /* link to the core; NULL: the history is on this machine */
     struct history_tag *tags;
     int64_t spanned_ns;
     struct thread thread;
     /* --- below: protected by thread.lock */
-    struct wanted_instant *wanted; /* instants that clients wait for, oldest request first */
+    struct wanted_instant *wanted; /* past instants whose readings clients wait for, oldest request first */
     size_t count, capacity;
     struct history_loader_answer *answers, **last;
     int64_t first_us;
@@ -49,7 +49,8 @@ static void remove_at(struct history_loader *loader, size_t i)
     memmove(&loader->wanted[i], &loader->wanted[i + 1], (loader->count - i) * sizeof(*loader->wanted));
 }
 
-/* Returns the index of the client's request, or the list's count if the client has none. The caller holds the lock. */
+/* Returns the index of the client's request in the list of wanted instants, or the list's count if the client has none. The caller holds
+   the lock. */
 static size_t find(const struct history_loader *loader, uint64_t client)
 {
     size_t i = 0;
@@ -136,15 +137,15 @@ static void look_at_span(struct history_loader *loader)
                             : history_span(loader->reader, &first_us, &last_us);
     if (!any) {
         first_us = 0;
-        loader->spanned_ns = 0; /* while nothing is recorded yet, spanned_ns 0 makes the thread look again soon, and at the next request */
+        loader->spanned_ns = 0; /* lets the thread look again soon, and at the next request, because nothing is recorded yet */
     }
     pthread_mutex_lock(&loader->thread.lock);
     loader->first_us = first_us;
     pthread_mutex_unlock(&loader->thread.lock);
 }
 
-/* Waits for a request. Returns false without one if the thread must stop, or if it is time to read the beginning of recorded history
-   again. */
+/* Waits until a client requests the readings of a past instant. Returns false without one if the thread must stop, or if it is time to read
+   the beginning of recorded history again. */
 static bool next_wanted(struct history_loader *loader, struct wanted_instant *out, bool *stopping)
 {
     int64_t until_ns = clock_mono_ns() + RETRY_DELAY_NS;

@@ -11,7 +11,7 @@
 struct history_loader_answer { /* free with mem_free */
     uint64_t client;
     int64_t at_us;
-    bool good; /* true: the instant is in the cache; false: history could not be read, already logged */
+    bool good; /* true: the readings of the instant are in the cache; false: history could not be read, already logged */
     struct history_loader_answer *next;
 };
 
@@ -21,7 +21,7 @@ struct history_loader_params {
     const char *folder;          /* folder of the recorded history; NULL: the core has the history */
     struct core_link *core_link; /* on a renderer: link to the core, which must outlive the loader; otherwise NULL */
     struct snapshot_cache *snapshot_cache;
-    void (*notify)(void *arg); /* callback on the loader's thread when there is an answer */
+    void (*notify)(void *arg); /* called on the loader's thread when there is an answer to collect */
     void *notify_arg;
 };
 
@@ -30,9 +30,9 @@ struct history_loader;
 struct history_loader *history_loader_create(const struct history_loader_params *params);
 /* Ends the history thread and sets *loader to NULL; accepts a pointer to NULL. */
 void history_loader_destroy(struct history_loader **loader);
-/* Requests an instant, in UTC microseconds. Replaces the client's last request if that still waits. */
+/* Requests the readings of the past instant at_us, in UTC microseconds. Replaces the client's last request if that still waits. */
 void history_loader_ask(struct history_loader *loader, uint64_t client, int64_t at_us);
-/* Drops the client's request, and answers that were not collected yet. */
+/* Drops the client's request, and answers to the client that were not collected yet. */
 void history_loader_forget(struct history_loader *loader, uint64_t client);
 /* Returns all answers so far, oldest first; the caller frees each with mem_free. NULL: no answer. */
 struct history_loader_answer *history_loader_collect(struct history_loader *loader);

@@ -16,21 +16,22 @@
 #include "service/drift_report.h"
 #include "service/remote_history.h"
 
-enum { THREADS = 2 }; /* number of threads. Each client address uses one at a time, so that its queries do not block another address */
-static const size_t PIECE_BYTES = 256 * 1024; /* size in bytes at which a piece of an answer ends, after the tag that reaches it */
-/* time after which a piece of an answer ends, after the tag that is being read then */
+/* number of threads that read history. Each client address uses one at a time, so that its queries do not block another address */
+enum { THREADS = 2 };
+/* size in bytes after which a piece of an answer ends, together with the tag that is being read */
+static const size_t PIECE_BYTES = 256 * 1024;
+/* time after which a piece of an answer ends, together with the tag that is being read */
 static const int64_t PIECE_NS = 100 * NS_PER_MS;
 
 struct pending_query {
     struct history_query query;
     int next_tag; /* index of the next tag to read; for drift queries, of the next asset */
-    /* format of the last line of CSV output, which decides how many columns the next line has: true: means of time buckets; false: single
-       values */
+    /* CSV output: whether the last line that was written has the columns for means of time buckets (true) or for single values (false) */
     bool buckets;
     bool listed;  /* true: the answer lists a drifting sensor already, so a comma comes before the next one */
     bool wanted;  /* true: the client asked for the next piece of its answer */
     bool forgotten;
-    uint64_t served; /* value of history_queries.served when the query's newest piece was begun; 0: no piece yet */
+    uint64_t served; /* value of history_queries.served when the newest piece of this query's answer was begun; 0: none was begun */
     struct pending_query *next;
 };
 
@@ -48,10 +49,11 @@ struct history_queries {
     pthread_mutex_t lock;
     pthread_cond_t wake;
     /* --- below: protected by `lock` */
-    struct pending_query *questions; /* queries that wait for a thread, newest first */
+    struct pending_query *questions; /* queries that wait for a thread, or for their client to request the next piece, newest first */
     uint64_t at_work[THREADS];       /* account (client address) of the query on which each thread works; 0: none */
     struct pending_query *working[THREADS];
-    uint64_t served; /* number of pieces begun so far, over all queries; a smaller number in a query means that it was served longer ago */
+    /* number of pieces of answers begun so far, over all queries: a counter that shows which query was served longest ago */
+    uint64_t served;
     int count;       /* number of queries that exist, including those on which a thread works */
     struct history_answer *answers, **last;
     bool stopping;
@@ -93,14 +95,14 @@ static bool fetch_tag(const struct history_queries *queries, struct core_history
                       : remote_history_json(core, query, tag, first, last, out);
 }
 
-/* Returns the number of steps of an answer that is made in pieces: one per tag or, for drift queries, per asset. Each step reads history
+/* Returns the number of steps in which the query's answer is made: one per tag or, for drift queries, per asset. Each step reads history
    once. */
 static int steps_of(const struct history_queries *queries, const struct history_query *query)
 {
     return !query->drift ? query->tag_count : query->tag >= 0 ? 1 : (int)queries->scene->asset_count;
 }
 
-/* Appends the query's next tag. Returns false if history could not be read. */
+/* Appends the recorded series of the query's next tag to the answer. Returns false if history could not be read. */
 static bool read_tag(struct history_queries *queries, struct history_reader *reader, struct pending_query *question, struct text *out)
 {
     const struct history_query *query = &question->query;
@@ -116,7 +118,7 @@ static bool read_tag(struct history_queries *queries, struct history_reader *rea
     return good;
 }
 
-/* Appends the drifting sensors of the query's next asset. Returns false if history could not be read. */
+/* Appends the drifting sensors of the query's next asset to the answer. Returns false if history could not be read. */
 static bool read_asset(struct history_queries *queries, struct history_reader *reader, struct pending_query *question, struct text *out)
 {
     const struct history_query *query = &question->query;
@@ -209,7 +211,8 @@ static uint64_t served_of(const struct history_queries *queries, const struct pe
 static bool goes_before(const struct history_queries *queries, const struct pending_query *a, const struct pending_query *b)
 {
     uint64_t a_served = served_of(queries, a), b_served = served_of(queries, b);
-    /* Among equally served queries the older one goes first. The list is newest first, so that is the later one in the list */
+    /* If two queries were served equally long ago, the older one goes first. The list is newest first, so that is the later one in the
+   list. */
     return a_served < b_served || (a_served == b_served && a->served <= b->served);
 }
 
@@ -227,7 +230,7 @@ static struct pending_query *take_next(struct history_queries *queries)
     return question;
 }
 
-/* Puts a finished piece into the list of answers. The caller holds the lock. */
+/* Puts a finished piece of a query's answer into the list from which the event loop collects. The caller holds the lock. */
 static void give(struct history_queries *queries, struct pending_query *question, struct history_answer *piece)
 {
     bool last = piece->last;
@@ -278,7 +281,7 @@ static void *history_queries_main(void *arg)
         queries->at_work[index] = 0;
         queries->working[index] = NULL;
         give(queries, question, piece);
-        /* wakes the other threads, because another query of this query's address may be served now */
+        /* wakes the other threads, because another query of the same client address may be served now */
         pthread_cond_broadcast(&queries->wake);
         pthread_mutex_unlock(&queries->lock);
         queries->notify(queries->notify_arg);

@@ -19,7 +19,7 @@ enum { HISTORY_QUERIES_MOST = 128 };
 struct history_answer { /* one piece of the answer to a query; free with history_answer_free() */
     uint64_t client;
     bool csv;
-    bool first, last; /* position of the piece in the answer. first: it is the first piece; last: no piece follows */
+    bool first, last; /* first: this is the first piece of the answer; last: no piece follows */
     char *text;       /* text of the piece; NULL: history could not be read, and no more pieces come */
     size_t length;
     struct history_answer *next;
@@ -42,7 +42,7 @@ bool history_queries_ask(struct history_queries *queries, const struct history_q
 void history_queries_continue(struct history_queries *queries, uint64_t client);
 /* Drops the client's query, and pieces of its answer that were not collected yet. */
 void history_queries_forget(struct history_queries *queries, uint64_t client);
-/* Returns all finished pieces so far, oldest first; the caller owns them. NULL: no piece. */
+/* Returns all pieces of answers that are finished, oldest first; the caller owns them. NULL: no piece. */
 struct history_answer *history_queries_collect(struct history_queries *queries);
 
 #endif

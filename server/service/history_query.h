@@ -20,19 +20,21 @@ struct history_query {
     int tag_count, max_points;
     int64_t from_us, to_us;
     bool csv;
-    bool drift;     /* instead of series, the query asks which sensors drifted in the week before to_us (service/drift_report.h) */
+    /* true: instead of series of values, the query asks which sensors drifted in the week before to_us (service/drift_report.h) */
+    bool drift;
     /* only in drift queries: index in the plant of the group whose sensors are judged, or of one tag; the other of the two is -1. In other
        queries both are -1 */
     int group, tag;
-    bool gaps;      /* instead of series, the query asks for the periods in which nothing was recorded */
-    bool journal;   /* true: instead of series, the query asks for the alarm journal, filtered by `alarms` */
+    bool gaps;      /* true: instead of series of values, the query asks for the periods in which nothing was recorded */
+    bool journal;   /* true: instead of series of values, the query asks for rows of the alarm journal, filtered by `alarms` */
     struct alarm_query alarms;
 };
 
-/* Parses the decoded arguments `tags=A,B&from=-8h&to=now&points=1000&format=csv` into *query. Returns false with *error. Pure. */
+/* Parses the arguments of a query for series of values, such as `tags=A,B&from=-8h&to=now&points=1000&format=csv`, into *query; they are
+   percent-decoded. Returns false with *error. Pure. */
 bool history_query_parse(const struct plant *plant, const char *const *args, size_t count, int64_t now_us, struct history_query *query,
                          struct message_error *error);
-/* Parses `from=-8h&to=now` into a query for recording gaps. Returns false with *error. Pure. */
+/* Parses `from=-8h&to=now` into a query for periods in which nothing was recorded. Returns false with *error. Pure. */
 bool history_query_parse_gaps(const char *const *args, size_t count, int64_t now_us, struct history_query *query,
                               struct message_error *error);
 /* Parses `group=ID` or `tag=NAME`, and optionally `to=-1d`, into a query for drifting sensors. Returns false with *error. Pure. */

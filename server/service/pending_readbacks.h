@@ -13,26 +13,27 @@ enum { PENDING_READBACKS_MAX = 3 };
 struct pending_readbacks {
     struct pending_readback {
         struct split_view *split;
-        struct request_group group; /* requests that are answered with this frame */
+        struct request_group group; /* frame requests that are answered with this frame */
         /* reference to the readings of a past instant; NULL: the readings are in `snapshot` */
         const struct historical_snapshot *historical;
         struct snapshot *snapshot;
-        uint64_t content; /* hash of the content that the frame shows */
-        bool gives_depth; /* true: the frame has a depth grid, which is read back, too */
+        uint64_t content; /* hash of what the frame shows; a request with an equal hash is answered with this frame */
+        bool gives_depth; /* true: the frame has a depth grid, which is read back from the GPU, too */
     } at[PENDING_READBACKS_MAX];
     int count;
 };
 
-/* Allocates the memory of the list's snapshots, each with tag_count readings. */
+/* Allocates the snapshots of readings in the list of frames, each with tag_count readings. */
 void pending_readbacks_init(struct pending_readbacks *in_flight, size_t tag_count);
 /* Frees the memory of the list's snapshots; no frame may be in the list. */
 void pending_readbacks_finish(struct pending_readbacks *in_flight);
-/* Adds a frame to the list, which must not be full. Takes over the frame's split view, historical snapshot and group and, if there is no
-   historical snapshot, *snapshot. Afterwards *group is empty, and *snapshot is a different one with unspecified content. */
+/* Adds a frame to the list, which must not be full. The list then owns the frame's split view, its historical snapshot, the requests in
+   *group and, if there is no historical snapshot, *snapshot. Afterwards *group is empty, and *snapshot is a different one with unspecified
+   content. */
 void pending_readbacks_push(struct pending_readbacks *in_flight, const struct pending_readback *frame, struct request_group *group,
                             struct snapshot **snapshot);
-/* Returns the frame in the list with that content hash; NULL: none. Skips frames that get an overlay and, if `depth` is true, frames
-   without a depth grid. The frame stays in the list and is valid until the next pending_readbacks_pop(). */
+/* Returns the submitted frame with that content hash; NULL: none. Skips frames that get an overlay and, if `depth` is true, frames without
+   a depth grid. The frame stays in the list and is valid until the next pending_readbacks_pop(). */
 struct pending_readback *pending_readbacks_find(struct pending_readbacks *in_flight, uint64_t content, bool depth);
 /* Returns the snapshot of readings that the frame shows. */
 const struct snapshot *pending_readbacks_readings(const struct pending_readback *frame);

@@ -28,9 +28,10 @@ void pick_queue_ask(struct pick_queue *queue, const struct pick_query *query);
 void pick_queue_forget(struct pick_queue *queue, uint64_t client);
 /* Returns whether a query waits. */
 bool pick_queue_has_query(struct pick_queue *queue);
-/* Removes the oldest query from the queue and writes it to the out parameter. Returns false if the queue is empty. */
+/* Removes the oldest query from the queue and writes it to *out. Returns false if the queue is empty. */
 bool pick_queue_take(struct pick_queue *queue, struct pick_query *out);
-/* Adds an answer. Returns true if it is the first since the last pick_queue_collect(), so that the collector must be notified. */
+/* Adds the answer to a pick query. Returns true if it is the first answer since the last pick_queue_collect(), so that the collector must
+   be notified. */
 bool pick_queue_answer(struct pick_queue *queue, const struct pick_query *query, const struct pick *pick);
 /* Returns all answers, oldest first; the caller frees each with mem_free. NULL: none. */
 struct pick_answer *pick_queue_collect(struct pick_queue *queue);

@@ -4,7 +4,7 @@
 
 #include "base/clock.h"
 
-/* maximum age of a cached frame; a client may be shown a clock and ages of readings that are too old by this much */
+/* maximum age of a cached frame: the clock and the ages of readings in the frame are wrong by up to this time */
 static const int64_t KEPT_NS = 500 * NS_PER_MS;
 #define KEPT_BYTES ((size_t)32 * 1024 * 1024) /* maximum number of bytes of all frames in the cache; a single frame may be larger */
 

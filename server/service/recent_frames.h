@@ -10,7 +10,7 @@ struct recent_frames { /* zero-initialise; free with recent_frames_finish() */
     struct {
         struct frame *frame; /* a reference; NULL: empty entry */
         int64_t drawn_ns;
-        int64_t read_ns; /* monotonic time of the snapshot of readings that the frame shows */
+        int64_t read_ns; /* monotonic time when the readings in the frame were taken */
     } kept[RECENT_FRAMES];
 };
 
@@ -18,8 +18,7 @@ struct recent_frames { /* zero-initialise; free with recent_frames_finish() */
 void recent_frames_add(struct recent_frames *recent, struct frame *frame, int64_t read_ns, int64_t now_ns);
 /* Returns the cached frame with that content hash if it is recent enough; the cache keeps the reference. NULL: none. */
 struct frame *recent_frames_find(struct recent_frames *recent, uint64_t content, int64_t now_ns);
-/* Returns a cached frame of that view whose snapshot of readings was taken at read_ns or later; the cache keeps the reference. NULL:
-   none. */
+/* Returns a cached frame of that view whose readings were taken at read_ns or later; the cache keeps the reference. NULL: none. */
 struct frame *recent_frames_find_view(struct recent_frames *recent, const struct view *view, int64_t read_ns, int64_t now_ns);
 /* Empties the cache. */
 void recent_frames_finish(struct recent_frames *recent);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A renderer's answers to history queries. Its core writes them, so they are the same bytes as on the core. Each call asks the core and
-   may block for seconds. Thread: one that reads history. */
+/* Answers history queries on a renderer (daemon that draws for a core). The core writes the answers, so they are the same bytes as on the
+   core. Each call asks the core and may block for seconds. Thread: one that reads history. */
 #ifndef SERVICE_REMOTE_HISTORY_H
 #define SERVICE_REMOTE_HISTORY_H
 #include "corelink/core_history.h"
@@ -10,8 +10,8 @@
 /* Appends the series of a tag as JSON. first: also append the beginning of the whole answer; last: also append its end. */
 bool remote_history_json(struct core_history *core, const struct history_query *query, const char *tag, bool first, bool last,
                          struct text *out);
-/* Appends the series of a tag as CSV. *buckets: true if the last line written holds means of time buckets, false if it holds single values,
-   because the two have different columns; updated. */
+/* Appends the series of a tag as CSV. *buckets: whether the last line that was written has the columns for means of time buckets (true) or
+   for single values (false); the call updates it. */
 bool remote_history_csv(struct core_history *core, const struct history_query *query, const char *tag, bool first, bool *buckets,
                         struct text *out);
 /* Appends the complete answer to a query for gaps, drifting sensors or the journal. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Answers of the render thread and of the encode queue, until the event loop collects them. */
+/* Keeps the answers of the render thread and of the encode queue until the event loop collects them. */
 #include "base/clock.h"
 #include "base/mem.h"
 #include "service/render_service_impl.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The clients of the render service, found by their id. */
+/* Finds, adds and removes clients of the render service by their id. */
 #include <string.h>
 
 #include "base/math/search.h"

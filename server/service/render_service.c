@@ -6,8 +6,8 @@
 #include "base/mem.h"
 #include "service/render_service_impl.h"
 
-/* time without a sign of life after which the render thread counts as stuck; REBUILDING_NS: the same while the thread rebuilds a lost GL
-   context */
+/* time without an answer to a check after which the render thread counts as stuck; REBUILDING_NS: the same while the thread rebuilds a lost
+   GL context */
 static const int64_t STUCK_NS = 12 * NS_PER_S, REBUILDING_NS = 120 * NS_PER_S;
 
 /* --- requests, from any thread ---------------------------------------------------------------------------------------- */

@@ -29,7 +29,8 @@ struct render_service_params {
     size_t memory_bytes;      /* limit on the daemon's memory in bytes, models included; 0: chosen for the machine */
     const char *h264_library; /* name of the libavcodec encoder; NULL: the default one */
     struct counters *counters;
-    bool keeps_records; /* true: frames with overlays include the record of their inputs (render/frame_record.h), for signing */
+    /* true: frames with overlays (texts and signs) include the record of what they were drawn from (render/frame_record.h), for signing */
+    bool keeps_records;
     /* views that render_service_create() draws once, so that their caches and shaders are ready for requests; read only during that call */
     const struct view *first;
     size_t first_count;
@@ -60,12 +61,13 @@ void render_service_wake(struct render_service *service);
 void render_service_withdraw(struct render_service *service, uint64_t client);
 /* Drops all waiting requests and encoded frames of the client. */
 void render_service_forget(struct render_service *service, uint64_t client);
-/* Makes all later frames show a mark on each tag whose measuring loop was not checked, if the server draws the markers. loop_checks must
-   outlive the service; NULL: no tag is marked. */
+/* Makes all later frames show a mark next to each tag without a successful loop check, if the server draws the sensor markers. loop_checks
+   must outlive the service; NULL: no tag is marked. */
 void render_service_set_loop_checks(struct render_service *service, const struct loop_checks *loop_checks);
-/* Copies the event loop's newest snapshot to the service, so that later frames show the same readings that the loop sends as text. */
+/* Copies the event loop's newest snapshot of readings to the service, so that later frames show the same readings that the loop sends as
+   text. */
 void render_service_set_readings(struct render_service *service, const struct snapshot *readings);
-/* Returns false while a lost GL context is being rebuilt; requests wait meanwhile. */
+/* Returns false while a lost GL context is being rebuilt; frame requests wait meanwhile. */
 bool render_service_ready(struct render_service *service);
 /* Returns whether the render thread is stuck: it has given no sign of life for 12 s, or for 2 minutes while a lost GL context is rebuilt.
    Each call requests the next sign of life, so call it every few seconds. */

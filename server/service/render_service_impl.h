@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State that the render service's callers and the render thread share. Private to this folder. */
+/* State that the render thread shares with the threads that call the render service. Private to this folder. */
 #ifndef SERVICE_RENDER_SERVICE_IMPL_H
 #define SERVICE_RENDER_SERVICE_IMPL_H
 #include <pthread.h>
@@ -13,16 +13,16 @@ struct render_client {
     bool pending;        /* true: the drawing of `request` has not begun yet */
     bool has_content;
     bool has_depth; /* true: the client has the depth grid of the content that it was last sent */
-    bool left; /* true: the client no longer wants the frame that the long job (a frame drawn in steps) draws for it */
+    bool left; /* true: the client has withdrawn, so it no longer wants the frame that the long job (a frame drawn in steps) draws for it */
     /* time that changed readings wait for the long job (a frame drawn in steps) of this client before the client gets a preview that shows
        the readings; 0: the initial time */
     int64_t patience_ns;
     struct frame_request request;
-    /* content: content hash of the newest frame drawn for the client; content_number: sequence number of the request that this frame
+    /* content: hash of what the newest frame for the client shows; content_number: sequence number of the request that this frame
        answered */
     uint64_t content, content_number;
-    int64_t spent_ns[SCHEDULER_SHARES]; /* drawing time charged to the client, indexed by share (scheduler_share()) */
-    struct time_account *account;       /* account of the client's address */
+    int64_t spent_ns[SCHEDULER_SHARES]; /* drawing time charged to the client, indexed by kind of frame (scheduler_share()) */
+    struct time_account *account;       /* account to which the drawing time of the client's address is charged */
 };
 
 struct render_service {
@@ -45,11 +45,11 @@ struct render_service {
     struct render_client **clients;        /* sorted by id, ascending */
     size_t client_count, client_capacity;
     struct time_accounts accounts;
-    /* by share (scheduler_share()): drawing time already charged to the client served last, before it was served; clients that enter the
-       queue start with at least this charge */
+    /* by kind of frame (scheduler_share()): drawing time that had been charged to the client served last, before it was served; clients
+       that enter the queue start with at least this charge */
     int64_t spent_ns[SCHEDULER_SHARES];
     struct encoded_frame *done, **done_last; /* encoded frames that the event loop has not collected yet, oldest first */
-    bool announced;                          /* params.notify was called for them */
+    bool announced;                          /* true: params.notify was called, and the event loop has not collected the frames since */
 };
 
 /* --- render_clients.c ------------------------------------------------------------------------------------------------- */
@@ -63,11 +63,11 @@ void render_service_remove_client(struct render_service *service, uint64_t id);
 
 /* --- render_answers.c ------------------------------------------------------------------------------------------------- */
 
-/* Answers each request of the group without a frame. Any thread. */
+/* Answers each request of the group without a frame; `absence` says why. Any thread. */
 void render_service_answer_without_frame(struct render_service *service, const struct request_group *group, enum frame_absence absence);
 /* Calls params.notify if encoded frames or pick answers wait for collection and notify was not called for these yet. Any thread. */
 void render_service_announce(void *service);
-/* Takes the encode queue's result for a ticket. Thread: a worker. */
+/* Takes the encoded packets for one request (ticket), or the failure, from the encode queue. Thread: a worker. */
 void render_service_on_encoded(void *service, const struct request_ticket *ticket, struct packet *const *packets, int count, bool failed);
 
 /* --- render_thread.c -------------------------------------------------------------------------------------------------- */

@@ -10,7 +10,8 @@ static const int64_t STEP_NS = 10 * NS_PER_MS;
 /* drawing time that each frame of a session with a moving camera may spend on baking the light that the session chose */
 static const int64_t LIGHT_NS = 4 * NS_PER_MS;
 static const int64_t FIELD_NS = 6 * NS_PER_MS; /* drawing time that each frame may spend on computing a field that takes long */
-static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S; /* delay between attempts to create a new GL context */
+/* delay between attempts to create a new GL context; it doubles up to the maximum */
+static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S;
 /* longest time that changed readings wait for a refined frame, if the view has had one before; after it a preview is drawn */
 static const int64_t MAX_READINGS_DELAY_NS = 4 * NS_PER_S;
 /* time to wait, after a driver restart, for a GPU of the same kind as before; after it any renderer is used */
@@ -28,7 +29,7 @@ static bool request_again(const struct request_ticket *ticket, void *arg)
     return false;
 }
 
-/* Answers the group's requests with a failure. If the cause is a lost GL context, lets the requests wait for the next context instead. */
+/* Answers the group's requests with a failure. If the GL context was lost, keeps the requests waiting for the next context instead. */
 static void fail(struct render_thread *thread, struct request_group *group)
 {
     struct render_service *service = thread->service;
@@ -74,7 +75,7 @@ static const struct loop_checks *loop_checks_now(struct render_service *service)
     return loop_checks;
 }
 
-/* Passes a finished frame to the encode queue; takes ownership of the frame. */
+/* Passes a finished frame and the requests that it answers to the encode queue; takes ownership of the frame. */
 static void deliver(struct render_thread *thread, struct frame *frame, const struct snapshot *snapshot, struct request_group *group)
 {
     struct render_service *service = thread->service;
@@ -98,7 +99,7 @@ static void deliver(struct render_thread *thread, struct frame *frame, const str
 
 /* --- submitted frames: the GPU draws one while the pixels of earlier ones are read back ------------------------------- */
 
-/* Submits a frame to the GPU; takes over the reference *historical. */
+/* Submits a frame to the GPU; takes ownership of the reference *historical. */
 static void submit(struct render_thread *thread, struct request_group *group, const struct historical_snapshot **historical,
                    const struct split_plan *plan)
 {
@@ -134,7 +135,7 @@ static void finish_oldest(struct render_thread *thread)
     drop_oldest(thread);
 }
 
-/* Passes all complete frames to the encode queue; if the list is full, waits for the oldest. */
+/* Passes all complete frames to the encode queue; if the list of submitted frames is full, waits for the oldest. */
 static void finish_complete(struct render_thread *thread)
 {
     struct pending_readbacks *in_flight = &thread->in_flight;
@@ -144,8 +145,8 @@ static void finish_complete(struct render_thread *thread)
 
 /* --- long jobs: frames drawn in steps ------------------------------------------------------------------------------------- */
 
-/* Resets the flag `left` of the group's clients. It says that the client left the previous long job (a frame drawn in steps), and must not
-   apply to the new job. */
+/* Clears the flag `left` of the group's clients, which says that a client withdrew from the last long job (a frame drawn in steps), because
+   they now wait for a new one. */
 static void stay(struct render_service *service, const struct request_group *group)
 {
     pthread_mutex_lock(&service->lock);
@@ -165,8 +166,7 @@ static void long_job_swap(struct render_thread *thread)
     thread->long_job = parked;
 }
 
-/* Suspends (parks) the running long job (a frame drawn in steps) if the frame of the group's first client is small enough to be drawn
-   before it. */
+/* Suspends the running long job (a frame drawn in steps) if the frame of the group's first client is small enough to be drawn before it. */
 static void long_job_park(struct render_thread *thread, const struct request_group *group)
 {
     struct render_service *service = thread->service;
@@ -218,8 +218,8 @@ static void long_job_begin(struct render_thread *thread, struct request_group *g
     thread->stale = true;
 }
 
-/* Draws a finished refined frame again with newer readings, because its clients may have been shown those readings in previews meanwhile.
-   Returns the new frame; NULL: not possible. */
+/* Draws a finished refined frame again with the newest readings, because previews may have shown its clients readings that are newer than
+   those in the frame. Returns the new frame; NULL: not possible. */
 static struct frame *long_job_with_new_readings(struct render_thread *thread)
 {
     struct render_service *service = thread->service;
@@ -251,7 +251,7 @@ static const struct snapshot *long_job_readings(const struct render_thread *thre
 }
 
 /* Limits how long changed readings wait before they get a preview to MAX_READINGS_DELAY_NS, for clients that just got a refined frame. The
-   delay had doubled with each refined frame that was given up before. */
+   limit had doubled with each refined frame that was given up before. */
 static void calm(struct render_service *service, const struct request_group *group)
 {
     pthread_mutex_lock(&service->lock);
@@ -325,8 +325,8 @@ static void long_job_leave(struct render_thread *thread)
     long_job_forget_instant(thread);
 }
 
-/* If the first request of the group has or_moving set, turns the group's requests for a refined frame into requests for a preview.
-   Otherwise makes them requests for a long job (a frame drawn in steps). */
+/* If the first request of the group has or_moving set, the group gets a preview in place of a refined frame. Otherwise its frame is drawn
+   in steps (a long job). */
 static void choose_other(struct request_group *group)
 {
     /* one frame answers all tickets (requests whose drawing has begun) of the group, so all get the same tier */
@@ -347,7 +347,7 @@ static void choose_other(struct request_group *group)
     }
 }
 
-/* Draws the planned frame in a single call if that is quick; otherwise begins a long job (a frame drawn in steps). */
+/* Draws the planned frame in one call if `quick` is true; otherwise begins to draw it in steps (a long job). */
 static void draw_plan(struct render_thread *thread, struct request_group *group, const struct snapshot *snapshot,
                       const struct historical_snapshot **historical, const struct split_plan *plan, bool quick)
 {
@@ -367,8 +367,8 @@ static void draw_plan(struct render_thread *thread, struct request_group *group,
         fail(thread, group);
 }
 
-/* Draws the group's frame. Returns false if the group must wait: its field is not computed yet, or another long job (a frame drawn in
-   steps) is running. */
+/* Draws the group's frame. Returns false if the group must wait, because its field (interpolated values) is not computed yet, or another
+   long job (a frame drawn in steps) is running. */
 static bool draw_of(struct render_thread *thread, struct request_group *group, const struct snapshot *snapshot,
                     const struct historical_snapshot **historical)
 {
@@ -409,7 +409,7 @@ static bool wants_depth(struct render_service *service, const struct request_gro
     return wants;
 }
 
-/* Answers the group from the cache, or draws its frame; returns the result of draw_of(). */
+/* Answers the group's requests with a cached frame, or draws their frame. Returns false if the group must wait. */
 static bool draw(struct render_thread *thread, struct request_group *group)
 {
     const struct historical_snapshot *historical;
@@ -431,8 +431,8 @@ static bool draw(struct render_thread *thread, struct request_group *group)
 
 /* --- start, main loop and end of the render thread -------------------------------------------------------------------- */
 
-/* Creates GL and everything that depends on it. kind: GL_AUTO, or the kind of the lost context; hardware true: a software renderer is not
-   accepted. Returns false on failure, logged. */
+/* Creates the GL context and everything that depends on it. kind: GL_AUTO, or the kind of the lost context. hardware true: does not accept
+   a software renderer. Returns false on failure, logged. */
 static bool gl_begin(struct render_thread *thread, enum gl_kind kind, bool hardware)
 {
     const struct render_service_params *params = &thread->service->params;
@@ -547,13 +547,14 @@ static void rebuild(struct render_thread *thread)
             hardware = false;
         }
     }
-    renderer_bake_idle(thread->renderer, INT64_MAX); /* lights are baked completely, so that frames look the same as before the loss */
+    /* bakes all lights completely, so that frames look the same as before the GL context was lost */
+    renderer_bake_idle(thread->renderer, INT64_MAX);
     set_lost(service, false);
     log_info(service->params.log, "gl: drawing with a new context after %.1f s", (double)(clock_mono_ns() - lost_ns) / NS_PER_S);
 }
 
-/* Resumes the suspended (parked) long job if no other one runs. Call it at the end of each turn: if no request comes, no further turn
-   begins. */
+/* Continues the suspended long job (a frame drawn in steps) if no other one runs. Call it at the end of each turn: if no request comes, no
+   further turn begins. */
 static void resume_parked(struct render_thread *thread)
 {
     if (!thread->long_job.split && thread->parked.split)

@@ -8,10 +8,10 @@
 #include "service/recent_frames.h"
 #include "service/render_service_impl.h"
 
-struct thread_memory { /* memory of the caches (render_thread_memory.c) */
+struct thread_memory { /* memory limit of the renderer's caches, and when to release them (render_thread_memory.c) */
     counter *stores[RENDER_STORES], *fields, *frames, *bound;
     size_t other;           /* peak, in bytes, of the memory that the process used besides models and caches; decays slowly */
-    int64_t looked_ns;      /* monotonic time when the memory in use was last measured */
+    int64_t looked_ns;      /* monotonic time when the size of the caches was last measured */
     int64_t trimmed_ns;     /* monotonic time when free heap memory was last returned to the system */
     int64_t alone_since_ns; /* monotonic time since when the service has had no client; 0: there are clients */
     bool released;          /* true: the caches were released, and no frame was drawn since */
@@ -27,7 +27,8 @@ struct long_job {                                 /* long job: a frame that is d
     int64_t px, spent_ns;     /* px: number of pixels of the frame; spent_ns: drawing time so far */
     uint64_t account;         /* time account that is charged */
     int64_t account_spent_ns; /* drawing time that had been charged to the address's account before the job began */
-    bool keeps; /* true: later frames of the same view will reuse what the job draws, so the job is continued even if readings change */
+    /* true: what the job has drawn so far is reused by later frames of the same view, so the job continues even if readings change */
+    bool keeps;
 };
 
 struct render_thread {
@@ -46,47 +47,49 @@ struct render_thread {
     bool warm;             /* the warm-up is complete */
     int64_t turn_began_ns; /* monotonic time since when the thread draws without having waited or done other work */
     struct pending_readbacks in_flight;
-    /* groups of requests that wait until their field is computed. In each turn for such a group, a part of the field is computed */
+    /* groups of requests that wait until their field (interpolated values) is computed; each time such a group is served, a part of the
+       field is computed */
     struct deferred_requests deferred;
     struct thread_memory memory;
 };
 
 /* --- frame_sharing.c: one frame for all clients that request the same content ----------------------------------------- */
 
-/* Submits the frame for encoding for all clients of the group that are still connected, and empties the group. cost_ns: drawing time,
-   charged to them in equal parts. Takes its own reference to the frame. */
+/* Submits the frame for encoding for all clients of the group that are still connected, and empties the group. cost_ns: time that drawing
+   took, charged to these clients in equal parts. Takes its own reference to the frame. */
 void frame_sharing_submit(struct render_service *service, struct frame *frame, struct request_group *group, int64_t cost_ns);
-/* Answers those requests of the group that need no drawing, and removes them. Clients that already show this content are answered without a
-   frame; others share a frame of the same content that is recent or in flight. content: content hash of the planned frame. */
+/* Answers those requests of the group that need no drawing, and removes them. Clients that already show the picture are answered without a
+   frame; others get a frame with the same content hash that is cached or being drawn. content: hash of what the planned frame shows. */
 void frame_sharing_answer_unchanged(struct render_thread *thread, uint64_t content, struct request_group *group);
-/* Answers the whole group with a recent frame of the same view, and empties the group. Does so only if the frame's readings are at least as
-   new as those that the group's clients know. Call it before the field is updated. */
+/* Answers the whole group with a cached frame of the same view, and empties the group. Does so only if the readings in the frame are at
+   least as new as those that the group's clients know. Call it before the field (interpolated values) is updated. */
 void frame_sharing_answer_from_recent(struct render_thread *thread, struct request_group *group);
 
 /* --- render_thread_memory.c: memory of the caches --------------------------------------------------------------------- */
 
 /* Registers the memory metrics with the service's counters. */
 void render_thread_memory_init(struct thread_memory *memory, struct render_service *service);
-/* Measures the caches and shrinks them to their limit. */
+/* Measures the renderer's caches, and shrinks them to the limit on memory. */
 void render_thread_bound_memory(struct render_thread *thread);
-/* Notes that caches are filled now: they are kept until 10 s have passed without clients. */
+/* Notes that the renderer's caches have content, which is kept until 10 s have passed without clients. */
 void render_thread_note_work(struct render_thread *thread);
-/* Limits the caches (at most once a second) and records that they are filled. Call it after each turn. */
+/* Shrinks the renderer's caches to their limit (at most once a second) and notes that they have content. Call it after each frame or
+   step. */
 void render_thread_check_memory(struct render_thread *thread);
 /* Returns true if the service has had no client for 10 s and the caches are not empty. Otherwise lowers *wait_until_ns to the time of the
    next check. The caller holds the service's lock. */
 bool render_thread_may_release_memory(struct render_thread *thread, int64_t *wait_until_ns);
-/* Empties all caches. No frame may be in flight. */
+/* Empties all caches of the renderer. No frame may be in flight. */
 void render_thread_release_memory(struct render_thread *thread);
 
 /* --- render_thread_warm_up.c: costs of the first frames, paid in advance ---------------------------------------------- */
 
 /* Draws the views of params.first before the first requests, so that their fields, buffers and shaders exist. */
 void render_thread_draw_first(struct render_thread *thread);
-/* Draws a small frame of that tier and discards it, which compiles the tier's shaders. */
+/* Draws a small preview or refined frame (`tier`) and discards it, so that the shaders for such frames are compiled. */
 void render_thread_warm_tier(struct render_thread *thread, enum tier tier);
-/* Works on the warm-up for some milliseconds; sets thread->warm once the warm-up is complete. Call it while there are no requests, without
-   the lock. */
+/* Prepares caches and shaders for later frames (warm-up) for some milliseconds; sets thread->warm once the warm-up is complete. Call it
+   while there are no requests, without the lock. */
 void render_thread_warm_up(struct render_thread *thread);
 
 /* --- render_thread_next.c: choice of what is drawn next --------------------------------------------------------------- */
@@ -100,9 +103,10 @@ bool render_thread_next(struct render_thread *thread, const struct scheduler *sc
 
 /* --- render_thread_readings.c ----------------------------------------------------------------------------------------- */
 
-/* Makes thread->snapshot a copy of the event loop's newest snapshot, or a new one if that is older than SNAPSHOT_MAX_AGE_NS. */
+/* Makes thread->snapshot a copy of the event loop's newest snapshot, or of all present readings if that snapshot is older than
+   SNAPSHOT_MAX_AGE_NS. */
 void render_thread_refresh(struct render_thread *thread);
-/* Returns the readings that a view shows: those of its instant, with a reference in *historical (release it with snapshot_cache_give),
+/* Returns the readings that a view shows: those of its past instant, with a reference in *historical (release it with snapshot_cache_give),
    or the newest ones, with *historical NULL. Returns NULL if the instant is no longer in the cache; then no client waits for that view. */
 const struct snapshot *render_thread_readings(struct render_thread *thread, const struct view *view,
                                               const struct historical_snapshot **historical);

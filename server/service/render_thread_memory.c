@@ -8,8 +8,9 @@
 
 static const int64_t MEASURE_INTERVAL_NS = 1 * NS_PER_S; /* interval between measurements */
 static const int64_t IDLE_TIMEOUT_NS = 10 * NS_PER_S;    /* time without clients after which the renderer's caches are released */
-static const double FIELD_SHARE = 0.3; /* part of the memory limit that values and weights of all fields together may take */
-/* Minimum reserved for memory other than models and caches: shaders, threads, the plant, and temporary memory of a frame or a light. */
+static const double FIELD_SHARE = 0.3; /* part of the caches' memory that interpolated values and weights of all fields together may take */
+/* Minimum reserved for memory other than models and caches: shaders, threads, the plant, and temporary memory for drawing a frame or baking
+   a light. */
 static const size_t OTHER_BYTES = (size_t)576 << 20;
 /* number of bytes, free in the heap but still resident, above which the heap is trimmed (free memory is returned to the system) */
 static const size_t FREE_BYTES = (size_t)64 << 20;
@@ -35,8 +36,8 @@ void render_thread_memory_init(struct thread_memory *memory, struct render_servi
                                  "Limit in bytes of all caches together (--memory); the picture being drawn is not included.");
 }
 
-/* Returns the recent peak of memory that the process needs besides `counted`, the bytes of models and caches. If memory is close to the
-   limit `all`, first returns free heap memory to the system. */
+/* Returns the recent peak of the memory that the process needs in addition to models and caches, whose bytes are `counted`. If memory is
+   close to the limit `all`, first returns free heap memory to the system. */
 static size_t other_bytes(struct thread_memory *memory, size_t all, size_t counted)
 {
     struct memory_use use;
@@ -59,7 +60,8 @@ static size_t other_bytes(struct thread_memory *memory, size_t all, size_t count
     return memory->other > OTHER_BYTES ? memory->other : OTHER_BYTES;
 }
 
-/* Returns the bytes that remain for caches: `all` less models and other memory, but at least a quarter of `all`. */
+/* Returns the bytes that the caches may take: `all` (the limit of the process) less models and other memory, but at least a quarter of
+   `all`. */
 static size_t bound_of(size_t all, size_t models, size_t other)
 {
     return models + other < all - all / 4 ? all - models - other : all / 4;
@@ -75,7 +77,7 @@ void render_thread_bound_memory(struct render_thread *thread)
         counted += bytes[i];
     all = all ? all : memory_default_bytes();
     size_t bound = bound_of(all, bytes[STORE_MODELS], other_bytes(memory, all, counted));
-    /* memory of frames is subtracted instead of limited: the number of frames follows from the number of sessions */
+    /* the memory of frames cannot be limited, because the number of frames follows from the number of sessions; so it is subtracted */
     size_t caches = bound > 2 * frames ? bound - frames : bound / 2;
     field_set_cache_limit(thread->field, (size_t)(FIELD_SHARE * (double)caches));
     renderer_bound_memory(thread->renderer, caches - (size_t)(FIELD_SHARE * (double)caches));

@@ -3,8 +3,8 @@
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
 
-/* Time that changed readings wait for a refined frame of the same client. After that time, the refined frame is given up for a preview, and
-   the time doubles, so that a refined frame is finished eventually. */
+/* Time for which a client's changed readings wait for the refined frame that is being drawn for the client. After that time, that frame is
+   given up for a preview with the new readings, and the time doubles, so that a refined frame is finished eventually. */
 static const int64_t OWN_DATA_NS = 1 * NS_PER_S, OWN_DATA_MAX_NS = 16 * NS_PER_S;
 /* minimum ratio of pixels between a long job (a frame drawn in steps) and a frame that may overtake it: memory suffices for another frame
    if that is small, but not for two large ones */
@@ -46,8 +46,8 @@ bool render_thread_overtakes(const struct render_thread *thread, const struct re
     return px * OVERTAKE_SMALLER <= long_job->px && client->account->spent_ns[kind] < long_job->account_spent_ns + long_job->spent_ns;
 }
 
-/* Returns whether the client is served before the other client, because less drawing time was charged to it. kind: share of drawing time
-   (scheduler_share()). The caller holds the lock. */
+/* Returns whether the client is served before the other client, because less drawing time was charged to it. kind: kind of frames whose
+   time is compared (scheduler_share()). The caller holds the lock. */
 static bool has_had_less(const struct render_client *client, const struct render_client *other, int kind)
 {
     return time_claim_before(&(struct time_claim){ client->account, client->spent_ns[kind], client->request.asked_ns },
@@ -67,8 +67,9 @@ static bool goes_before(const struct render_thread *thread, const struct render_
     return !other || has_had_less(client, other, scheduler_share(urgency));
 }
 
-/* Refined frames and snapshots are charged to one share, so only one of both goes first. Otherwise the refined frames of an address, one
-   after the other, would keep its snapshots waiting as long as another address's large frame is drawn. The caller holds the lock. */
+/* If one client waits for a refined frame and another for a snapshot over HTTP, keeps only the one to be served first, because both kinds
+   of frames are charged together. Otherwise the refined frames of an address, one after the other, would keep its snapshots waiting as
+   long as another address's large frame is drawn. The caller holds the lock. */
 static void choose_long(struct render_client **first)
 {
     struct render_client **refined = &first[URGENCY_REFINE], **snapshot = &first[URGENCY_SNAPSHOT];
@@ -103,8 +104,8 @@ static struct render_turn next_turn(const struct render_thread *thread, const st
     return turn;
 }
 
-/* Adjusts the time that changed readings wait for a refined frame of the client. An input of the user resets it to its initial value;
-   giving up a refined frame for readings doubles it. The caller holds the lock. */
+/* Adjusts the time for which changed readings wait for the client's refined frame that is being drawn. An input of the user resets it to
+   its initial value; giving up a refined frame for readings doubles it. The caller holds the lock. */
 static void change_patience(const struct render_thread *thread, struct render_client *client)
 {
     int64_t twice_ns = 2 * (client->patience_ns ? client->patience_ns : OWN_DATA_NS);
@@ -114,8 +115,8 @@ static void change_patience(const struct render_thread *thread, struct render_cl
         client->patience_ns = twice_ns < OWN_DATA_MAX_NS ? twice_ns : OWN_DATA_MAX_NS;
 }
 
-/* Begins the client's request. The long job (a frame drawn in steps) that runs for the client is then no longer wanted, unless it will show
-   the new readings, too. The caller holds the lock. */
+/* Moves the client's request to the group of requests that are drawn now. The long job (a frame drawn in steps) that runs for the client is
+   then no longer wanted, unless it will show the new readings, too. The caller holds the lock. */
 static void begin(const struct render_thread *thread, struct render_client *client, struct request_group *group, int64_t now_ns)
 {
     enum urgency urgency = client->request.urgency;
@@ -128,7 +129,8 @@ static void begin(const struct render_thread *thread, struct render_client *clie
                                                        .wait_ns = now_ns - client->request.view.input_ns });
 }
 
-/* Begins the client's request, and all other requests that the same frame answers. The caller holds the lock. */
+/* Moves the client's request, and all other requests that the same frame answers, to the group of requests that are drawn now. The caller
+   holds the lock. */
 static void begin_all(const struct render_thread *thread, struct render_client *first, struct request_group *group)
 {
     struct render_service *service = thread->service;

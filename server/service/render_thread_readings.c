@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Readings that the render thread draws: those that the event loop sends as text, unless these are old. */
+/* Decides which readings the render thread draws: those that the event loop sends as text, unless these are old. */
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
 

@@ -14,7 +14,7 @@ static void draw_for_nobody(struct render_thread *thread, const struct view *vie
         frame_unref(&frame);
 }
 
-/* Compiles the shaders of a tier by drawing a small frame. */
+/* Compiles the shaders for previews or refined frames (`tier`) by drawing a small frame. */
 void render_thread_warm_tier(struct render_thread *thread, enum tier tier)
 {
     struct view view;

@@ -12,12 +12,13 @@ enum urgency { URGENCY_INPUT, URGENCY_DATA, URGENCY_REFINE, URGENCY_SNAPSHOT, UR
 
 struct scheduler {             /* zero-initialise */
     int64_t input_ns, long_ns; /* monotonic times when frames were last finished: a frame for an input; a long-running frame */
-    bool data_next, step_next; /* true: the next turn belongs to changed readings, or to a step of a long-running frame */
+    /* data_next: the next frame is for changed readings; step_next: a step of a long-running frame is drawn next */
+    bool data_next, step_next;
 };
 
-/* Drawing time is charged in two separate shares: one for frames for inputs and readings, one for long-running frames. */
+/* Kinds of frames whose drawing time is charged separately: previews for inputs and readings; long-running frames. */
 enum { SCHEDULER_MOVING, SCHEDULER_LONG, SCHEDULER_SHARES };
-/* Returns the index of the share (separate account of drawing time) to which frames of that urgency are charged. */
+/* Returns the kind of frames (SCHEDULER_MOVING or SCHEDULER_LONG) under which the drawing time of such a request is charged. */
 int scheduler_share(enum urgency urgency);
 /* Returns the charge with which a client enters the queue: its own drawing time charged so far, but no less than that of the client served
    last. Time that the client left unused earlier thus gives it no advantage. */

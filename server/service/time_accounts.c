@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Keeps the drawing time charged to each address. An account exists while its address has clients, or as long as it has been charged more
-   than the others. */
+/* Keeps how much drawing time each client address was charged. An account exists while its address has clients, or as long as it has been
+   charged more than the others. */
 #include "service/time_accounts.h"
 
 #include "base/mem.h"

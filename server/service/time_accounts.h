@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Time accounts: how much of the render thread's time each address was charged. Time is shared among addresses first, then among the
-   clients of each address. Pure. Thread: under the lock of the render service. */
+/* Time accounts: how much of the render thread's time each client address was charged for drawing. Time is shared among addresses first,
+   then among the clients of each address. Pure. Thread: under the lock of the render service. */
 #ifndef SERVICE_TIME_ACCOUNTS_H
 #define SERVICE_TIME_ACCOUNTS_H
 #include <stddef.h>
@@ -8,7 +8,7 @@
 #include "service/scheduler.h"
 
 struct time_account {
-    uint64_t id; /* number of the address's account */
+    uint64_t id; /* id of the account: each client address has one */
     int clients;
     int64_t spent_ns[SCHEDULER_SHARES]; /* by scheduler_share() */
 };
@@ -16,14 +16,14 @@ struct time_account {
 struct time_accounts { /* zero-initialise; free with time_accounts_finish() */
     struct time_account **all;
     size_t count, capacity;
-    /* by share (scheduler_share()): drawing time already charged to the account served last, before it was served */
+    /* by kind of frame (scheduler_share()): drawing time already charged to the account served last, before it was served */
     int64_t served_ns[SCHEDULER_SHARES];
 };
 
 /* Adds a client to the account with that id; creates the account if needed. Returns it; time_accounts_leave() releases it. */
 struct time_account *time_accounts_join(struct time_accounts *accounts, uint64_t id);
-/* Removes a client from the account and sets *account to NULL. An account without clients is kept until as much time was charged to the
-   others, so that a client cannot clear its charge by reconnecting. */
+/* Removes a client from the account and sets *account to NULL. An account without clients is kept until as much drawing time was charged to
+   other accounts, so that a client cannot clear its charge by reconnecting. */
 void time_accounts_leave(struct time_accounts *accounts, struct time_account **account);
 /* Call it when a client of the account makes a request. It raises the account's charge to that of the account served last, so that time
    left unused earlier gives no advantage. */
@@ -31,11 +31,11 @@ void time_accounts_asked(const struct time_accounts *accounts, struct time_accou
 /* Call it when a request of the account is drawn next. The account's charge then becomes the least charge with which other accounts enter
    the queue. */
 void time_accounts_served(struct time_accounts *accounts, const struct time_account *account, int share);
-/* Charges drawing time to the account with that id. The account may have no clients any more, for example after its last client gave up a
-   frame. */
+/* Charges drawing time to the account with that id. The account may have no clients any more, for example if the last client left while its
+   frame was drawn. */
 void time_accounts_charge(struct time_accounts *accounts, uint64_t id, int share, int64_t ns);
 
-struct time_claim { /* claim of one client's request to be served, which is compared with claims of others */
+struct time_claim { /* how much drawing time a client was charged and how long its request waits: decides which client is served first */
     const struct time_account *account;
     /* spent_ns: drawing time charged to the client itself, not to its address; asked_ns: when the client made the request */
     int64_t spent_ns, asked_ns;

@@ -230,8 +230,8 @@ static void on_note(struct session *session, const struct message *message, int6
 {
     const struct session_context *context = session->context;
     const struct kept_action action = session_kept_begin(session);
-    char *what = session_note_what(session, message); /* describes the note first: note_do() may remove it, and then its author is not known
-                                                         any more */
+    /* describes the note first: note_do() may remove it, and then its author is not known any more */
+    char *what = session_note_what(session, message);
     char *answer = note_do(context->services->notes, context->plant, message, session_who(session),
                            session->identity.role >= ROLE_ENGINEER, now_utc_ns / 1000);
     session_kept_reply(session, &action, "note", what, answer);

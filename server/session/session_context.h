@@ -56,8 +56,8 @@ struct session_context {
     int64_t lock_ns;                       /* monotonic duration without user activity after which the user must sign in again; 0: never */
     struct login_throttle *login_throttle; /* counter of wrong tokens in `hello` messages, by address; NULL: not counted */
     struct audit *audit;                   /* writer of the audit trail; NULL: nothing is recorded */
-    struct file_writer *file_writer;       /* background writer of views, notes, walls, pairings and loop checks; NULL: these are written at
-                                              once */
+    /* background writer of views, notes, walls, pairings and loop checks; NULL: these are written at once */
+    struct file_writer *file_writer;
     /* list of answers that wait for the disk, shared by all sessions; NULL: session_destroy() drops such answers */
     struct kept_answers *kept_answers;
     struct resumes *resumes;           /* changed by hello */

@@ -100,8 +100,8 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded)
     note_refined(session, &encoded->request);
     if (session_is_tile(session))
         session_tile_came(session, &encoded->request, encoded->made_ns);
-    if (encoded_frame_stands_alone(encoded)) /* drops the frames that are ready but not sent yet, because the new frame decodes without them
-                                                and replaces them */
+    /* drops the frames that are ready but not sent yet, because the new frame decodes without them and replaces them */
+    if (encoded_frame_stands_alone(encoded))
         session_drop_ready(session);
     struct encoded_frame **last = &session->delivery.ready;
     while (*last)

@@ -79,8 +79,8 @@ struct frame_demand {
     int64_t input_ns;               /* monotonic time of the newest change of the view */
     int64_t data_ns;                /* monotonic time of the oldest changed reading for which no frame was requested */
     int64_t preview_ns, refined_ns; /* monotonic times when the newest preview, and the newest refined frame, was requested */
-    enum { REFINED_NOT, REFINED_DRAFT, REFINED_FULL } refined; /* quality of the best refined frame that was requested for the present
-                                                                  view */
+    /* quality of the best refined frame that was requested for the present view */
+    enum { REFINED_NOT, REFINED_DRAFT, REFINED_FULL } refined;
     /* true: a refined frame is requested and has not arrived; the render thread draws it between other sessions' frames, which may take a
        minute */
     bool refining;
@@ -101,8 +101,8 @@ struct frame_delivery {
     struct encoded_frame *ready;     /* frames to be sent next, oldest first; a frame that decodes on its own replaces all before it */
     bool measured;                   /* true: the client acknowledged frame pacer.acked, and session_take_shown() has not returned it yet */
     struct depth_grid *depth[2];     /* newest depth grids sent to the client, of a frame or of both halves of a split view; NULL: none */
-    int steps[QUALITY_LADDER_STEPS]; /* number of sessions that show this view, this session included, by the quality step that each
-                                        needs */
+    /* number of sessions that show this view, this session included, by the quality step that each needs */
+    int steps[QUALITY_LADDER_STEPS];
     int common_step;                 /* ladder step that all viewers share; negative: each viewer uses its own */
 };
 
@@ -211,8 +211,8 @@ struct session_stats { /* counts of messages and errors, for the log and the met
 /* Restrictions of a narrowed token, which allows only some views or one display (session_scope.c). */
 struct session_scope {
     char named[NAMED_VIEW_ID_BYTES]; /* id of the plant file's view that is shown; "": none */
-    bool *tags; /* by tag: whether this paired display shows the tag; NULL: no restriction (the display shows pictures, or the session is no
-                   display) */
+    /* by tag: whether this paired display shows the tag; NULL: no restriction (the display shows pictures, or the session is no display) */
+    bool *tags;
 };
 
 struct session {

@@ -5,8 +5,9 @@
 #include "base/clock.h"
 
 static const int64_t RTT_WINDOW_NS =
-    15 * NS_PER_S; /* length of a window for which the minimum round-trip time is kept; a round trip counts in the window in which it was
-                      measured and in the next one */
+    /* length of a window for which the minimum round-trip time is kept; a round trip counts in the window in which it was measured and in
+       the next one */
+    15 * NS_PER_S;
 /* upper limit of a measured round trip; a longer one is caused by a queue somewhere, not by the network's delay */
 static const int64_t MAX_RTT_NS = 1 * NS_PER_S;
 /* lower limit of a measured transfer time; a faster transfer only shows that bandwidth is plentiful */

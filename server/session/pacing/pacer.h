@@ -10,8 +10,8 @@
 enum { PACER_LEAST = 2, PACER_MOST = 8 };
 
 struct pacer_note {    /* facts about a sent frame that are needed when the frame is acknowledged */
-    bool moving, full; /* moving: the frame is a preview, drawn at step `step` of the quality ladder; full: the frame is refined, in full
-                          quality */
+    /* moving: the frame is a preview, drawn at step `step` of the quality ladder; full: the frame is refined, in full quality */
+    bool moving, full;
     int step;
     bool of_data; /* true: the frame was made because a reading changed; false: because of an input */
     /* input_ns: monotonic time of the input or of the changed reading; made_ns: monotonic time when the frame was encoded */
