@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Turns readings into vectors, and sums the vectors at points of the surface. */
+/* Interpolates directions (directions.h): converts the readings and directions of sensors to vectors, and sums the vectors at points of the
+   surface. */
 #include "field/directions.h"
 
 #include <math.h>
@@ -77,8 +78,8 @@ size_t directions_read(const struct scene *scene, int asset, int group, const st
 
 /* --- finding directions at positions on the surface ------------------------------------------------------------------------- */
 
-/* A sensor's vector on the surface: its angle to the sensor's reference vector, which parallel transport moves along the surface, and
-   its length along the surface. */
+/* A sensor's vector, projected to the surface: `turn` is its angle to the sensor's reference vector, which parallel transport moves along
+   the surface; `length` is its length. */
 struct spread {
     double turn, length;
     bool configured, known, uncertain;

@@ -27,20 +27,20 @@ size_t directions_read(const struct scene *scene, int asset, int group, const st
 struct direction_place { /* a point of a triangle of the asset file */
     uint32_t corners[3];
     float weights[3], normal[3];
-    uint32_t triangle; /* index of the triangle, in the caller's own counting; directions_find() ignores it */
+    uint32_t triangle; /* index of the triangle, for the caller's use; directions_find() ignores it */
 };
 struct direction {
     float along[3]; /* unit tangent vector, in the axes of the asset file */
     bool known, uncertain;
 };
-struct direction_sources { /* vectors of an asset's sensors, from which directions at other places are found */
+struct direction_sources { /* vectors of an asset's sensors, from which directions at other points are interpolated */
     const struct scene *scene;
     int asset;
     const struct field_params *params;
     const struct sensor_direction *sensors; /* from directions_read() */
     size_t sensor_count;
 };
-/* Finds the direction at each of the `count` places. */
+/* Computes the interpolated direction at each of `count` points of the surface. */
 void directions_find(const struct direction_sources *sources, const struct direction_place *places, size_t count, struct direction *out);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measures the error of linear interpolation within triangles: samples triangles where sensors' weights may be curved, more densely near
-   sensors. */
+/* Measures the error of linear interpolation within triangles: compares it with the field at sample points. Samples only triangles in which
+   weights may be curved, more densely near sensors. */
 #include "field/drawn_error.h"
 
 #include <math.h>
@@ -11,8 +11,8 @@
 #include "plant/exact.h"
 #include "plant/singles.h"
 
-/* GROUP: triangles evaluated together; GRAIN: triangles per job of a worker thread; MAX_PIECES: pieces that one triangle is halved into
-   at most. */
+/* GROUP: number of triangles evaluated together. GRAIN: number of triangles per job of a worker thread. MAX_PIECES: largest number of
+   pieces into which one triangle is halved repeatedly. */
 enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 /* largest length of a piece (part of a triangle), relative to its distance to the nearest sensor; longer pieces are halved */
 #define STEP 0.3f
@@ -26,7 +26,7 @@ enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 /* smallest power of shepard whose errors of distances are measured; below it, they changed no value by a colour step in tests */
 #define AMPLIFYING_POWER 8
 #define STEP_OF_COLOR (1 / 255.0f)
-#define BORDER_SLACK 4  /* tolerated displacement of the border between data and no data, in steps of struct scalar's `lacking` */
+#define BORDER_SLACK 4  /* tolerated displacement of the border between data and no data in the picture, in steps of scalar.lacking */
 #define MARK_ALL 0.75   /* if at least this fraction of a level's area has interpolation errors, the whole level is marked */
 #define MIN_ERROR 1e-4f /* interpolation errors smaller than this are stored as 0 */
 
@@ -61,7 +61,7 @@ struct drawn_error_job {
     const double *ones;
     uint32_t first;       /* number of the first triangle */
     float *errors;        /* error of each triangle */
-    float *vertex_errors; /* error of each vertex by errors of distances; NULL: not measured */
+    float *vertex_errors; /* error of each vertex's value that errors of geodesic distances cause; NULL: not measured */
 };
 
 /* --- weights at points ------------------------------------------------------------------------------------------------------ */
@@ -93,8 +93,8 @@ static void sampler_finish(struct sampler *sampler)
     mem_free(sampler->queue);
 }
 
-/* Evaluates all sensors' weights at the sampled points. A sensor's weight at a point is its column's element divided by the point's
-   total. */
+/* Evaluates all sensors' weights at the sampled points. A sensor's final weight at a point is its element in sampler->weights divided by
+   the point's element in `total`. */
 static void evaluate(struct sampler *sampler, size_t count)
 {
     struct weights *weights = sampler->weights;
@@ -229,16 +229,16 @@ static void sample_group(struct sampler *sampler, float step)
 
 /* --- errors of distances ---------------------------------------------------------------------------------------------------- */
 
-/* Returns whether errors of distances change values noticeably. */
+/* Returns whether errors of geodesic distances change the field's values noticeably, which a high power causes. */
 static bool amplifies_distances(const struct weights *weights)
 {
     return weights->distance != DISTANCE_EUCLIDEAN && weights->interpolation == INTERPOLATION_SHEPARD && weights->power >= AMPLIFYING_POWER;
 }
 
 /* Writes the error that errors of distances cause at each vertex of some blocks. If the weights of some sensors grow by the factor 1 + e
-   and those of the others shrink by as much, the value changes by up to 2 e a (1 - a) times the spread of the readings, where `a` is the
-   former sensors' share of the weights. The nearest sensor's share `a` gives the largest change if it is at least 1/2, else a = 1/2. Errors
-   below half a colour step are left out: added to errors of interpolation just below a step, they would mark most of the surface. */
+   and those of all others shrink by 1 - e, the value changes by up to 2 e a (1 - a) times the spread of the readings. `a` is the share of
+   the sensors whose weights grow. The nearest sensor's share `a` gives the largest change if it is at least 1/2, else a = 1/2. Errors below
+   half a colour step are left out: added to errors of interpolation just below a step, they would mark most of the surface. */
 static void amplify_some(void *arg, size_t begin, size_t end)
 {
     const struct drawn_error_job *job = arg;
@@ -283,7 +283,7 @@ static void measure_some(void *arg, size_t begin, size_t end)
     uint32_t *indices = (uint32_t *)job->weights->layout->file->view.indices;
     bool good = sampler_init(sampler, job);
     float step = STEP * fminf(1, MAX_POWER / job->weights->power);
-    /* memory is short: the errors are unknown, so all are set to the maximum */
+    /* out of memory: the errors are unknown, so all are set to the maximum */
     for (size_t t = job->first + begin; t < job->first + end && !good; t++)
         job->errors[t] = 1;
     for (size_t t = job->first + begin; t < job->first + end && good; t++) {
@@ -373,7 +373,8 @@ static void spread(struct weights *weights, float *errors, const float *at_verti
         }
 }
 
-/* resolved: preparation left no interpolation error, so only errors of distances are measured. */
+/* Measures the errors of all triangles of one level of detail. resolved true: preparation left no interpolation error, so only the effect
+   of errors of distances is measured. */
 static void measure_level(struct drawn_error_job *job, const struct asset_level *level, bool resolved, struct workers *workers)
 {
     struct weights *weights = job->weights;

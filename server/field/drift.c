@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds drift by weighted least squares with orthogonalised columns; a column that is a combination of others is dropped. Jumps are
-   searched for in the residuals without the line in time, since a drift changes little within hours. */
+/* Finds drift (drift.h) by weighted least squares with orthogonalised columns; drops columns that are combinations of others. Jumps are
+   searched in the residuals of the fit without the straight line in time, since a drift changes little within hours. */
 #include "field/drift.h"
 
 #include <math.h>
@@ -11,13 +11,15 @@
 #include "base/mem.h"
 
 enum { JUMPS = 2, COLUMNS = 3 + DRIFT_NEAREST + JUMPS, MIN_SENSORS = 3, ROUNDS = 20 };
-/* number of hours before and after an hour from which the plant's speed of change at that hour is computed */
+/* The plant's speed of change at an hour is the mean change of the prediction per hour, from CHANGE_BEFORE hours before to CHANGE_AFTER
+   hours after that hour. */
 enum { CHANGE_BEFORE = 3, CHANGE_AFTER = 1 };
 static const double FAST_FACTOR = 2;  /* an hour in which the plant changes by this multiple of the usual change has half the weight */
 static const double STILL_PART = 0.1; /* a change per hour below this multiple of the noise counts as no change */
 static const double MEAN_PART = 0.25; /* noise of an hourly mean relative to the noise of one reading: 1/4 if the mean has at least 16
                                          independent readings */
-/* numbers of hours: averaged on each side of a possible jump; left out between the two averages */
+/* A jump shows in the difference between two averages of residuals. First: number of hours in each average. Second: number of hours between
+   the two averages, which are left out. */
 enum { BESIDE = 3, WITHIN = 2 };
 static const double MIN_JUMP_FACTOR = 6;     /* smallest jump, relative to the usual change of residuals over the same number of hours */
 static const double LAG_HOURS = 12;          /* time constant of the low-pass filter that models how long heat takes from the other
@@ -32,7 +34,8 @@ struct week {                                   /* hourly data of one sensor */
     double noise, root[DRIFT_HOURS]; /* root: square root of each hour's weight in the fit */
 };
 
-/* the equations of the fit, one per hour in which all needed values exist; each is multiplied by the square root of the hour's weight */
+/* The equations (rows) of the least-squares fit, one per hour in which all needed values exist. Each is multiplied by the square root of
+   the hour's weight. */
 struct drift_rows {
     double at[COLUMNS][DRIFT_HOURS], time[DRIFT_HOURS], value[DRIFT_HOURS];
     double counted; /* sum of the hours' weights */
@@ -47,7 +50,7 @@ static double dot(const double *a, const double *b, int count)
     return sum;
 }
 
-/* Subtracts the component along `unit`. */
+/* Subtracts from the vector `of` its component along the unit vector `unit`. */
 static void take_out(double *of, const double *unit, int count)
 {
     double part = dot(of, unit, count);
@@ -98,8 +101,8 @@ static int reduce(struct drift_rows *rows, double largest)
         for (int k = 0; k < kept; k++)
             take_out(column, rows->at[k], n);
         double length = sqrt(dot(column, column, n));
-        /* Drops a column of which only rounding errors are left, as happens when readings are nearly constant. The first column is all 1
-           and always stays. */
+        /* Drops a column if only rounding errors are left in the column, for example because readings are nearly constant. The first
+           column, which is all 1, always stays. */
         if (c > 0 && !(length > 1e-9 * sqrt(n) * (1 + largest)))
             continue;
         for (int i = 0; i < n; i++)
@@ -147,7 +150,8 @@ static int find_jump(const struct drift_rows *rows, double noise)
     return at;
 }
 
-/* Computes each hour's weight: 1/2 where the prediction changes FAST_FACTOR times as much as usual, 1 where it is constant. */
+/* Computes each hour's weight in the fit: 1 where the sensor's prediction is constant, 1/2 where it changes FAST_FACTOR times as fast as
+   usual. */
 static void weigh(struct week *week)
 {
     double change[DRIFT_HOURS], sorted[DRIFT_HOURS];
@@ -170,8 +174,8 @@ static void weigh(struct week *week)
         week->root[h] = 1 / hypot(1, change[h] / (FAST_FACTOR * usual));
 }
 
-/* Collects the rows and makes their columns orthonormal. Then adds a column for each jump found, which is 0 before the jump and 1 after
-   it. Returns the number of columns kept. */
+/* Collects the rows (hours) of the fit and makes their columns (terms of the model) orthonormal. Then adds a column for each jump found,
+   which is 0 before the jump and 1 after it. Returns the number of columns kept. */
 static int reduce_with_jumps(const struct week *week, struct drift_rows *rows)
 {
     double largest = 0;
@@ -285,7 +289,7 @@ struct drift_search {
     double *said; /* predictions by [sensor][hour] */
 };
 
-/* Predicts every sensor, also drifting ones, from those not found to drift. */
+/* Predicts the readings of every sensor, also of drifting ones, from the sensors that are not found to drift. */
 static void predict(const struct drift_search *search, const struct drift *drifts)
 {
     const double level = neighbours_level(search->neighbours);
@@ -303,7 +307,7 @@ static void predict(const struct drift_search *search, const struct drift *drift
     mem_free(said);
 }
 
-/* Copies a sensor's readings; fills gaps with predictions, shifted by the sensor's mean difference from its predictions. */
+/* Copies a sensor's hourly readings to `out`. Fills gaps with predictions, shifted by the sensor's mean difference from its predictions. */
 static void read_filled(const struct drift_search *search, size_t sensor, double *out)
 {
     const double *said = search->said + sensor * (size_t)search->hours;
@@ -329,7 +333,8 @@ static bool is_of_use(const struct drift_search *search, size_t sensor, const st
     return drift->verdict != DRIFT_FOUND && 2 * known >= search->hours;
 }
 
-/* Judges all sensors not yet found to drift. Returns the index of the sensor that drifts most clearly, or `count` if none drifts. */
+/* Fits the model to all sensors that are not yet found to drift. Returns the index of the sensor that drifts most clearly, or `count` if
+   none drifts. */
 static size_t judge(const struct drift_search *search, const double *noise, struct drift *out)
 {
     double own[DRIFT_HOURS], nearest[DRIFT_NEAREST * DRIFT_HOURS];

@@ -33,20 +33,19 @@ struct drift {
     enum drift_verdict verdict;
     double change;  /* drift over the week, in the reading's unit; NaN: unknown */
     double error;   /* standard error of `change` */
-    double scatter; /* standard deviation of readings from the model, noise included */
+    double scatter; /* standard deviation of the differences between readings and model, noise included */
     int hours;      /* number of hours used */
 };
 
-/* Returns what is missing for a verdict (static text, without commas); "": there is a verdict. sensors: number of sensors that were
-   compared. */
+/* Returns why there is no verdict (static text, without commas); "": there is a verdict. sensors: number of sensors that were compared. */
 const char *drift_unknown_cause(const struct drift *drift, size_t sensors);
 /* Decides whether one sensor drifts. values, predicted: by hour; NaN: no value. nearest: [nearest_count][hours], readings of at most
    DRIFT_NEAREST nearest sensors. noise: error and recording resolution of a reading, above 0. */
 void drift_fit(const double *values, const double *predicted, const double *nearest, int nearest_count, int hours, double noise,
                struct drift *out);
-/* Decides for all sensors that can be predicted whether they drift. values: [hour][sensor]; noise: by sensor; out: by sensor. predicted:
-   [hour][sensor], receives predictions from sensors that do not drift, including each sensor's own offset; may be NULL. Takes (hours *
-   sensors * sensors) steps, and as many again for each drifting sensor. */
+/* Decides for all sensors of a group, as far as they can be predicted, whether they drift. values: [hour][sensor]; noise: by sensor; out:
+   by sensor. predicted: [hour][sensor], receives predictions from sensors that do not drift, including each sensor's own offset; may be
+   NULL. Takes (hours * sensors * sensors) steps, and as many again for each drifting sensor. */
 void drift_find(const struct neighbours *neighbours, const double *values, int hours, const double *noise, struct drift *out,
                 double *predicted);
 

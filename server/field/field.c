@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the scalars of assets on request: finds or creates the cached states and weights, and updates them. */
+/* Computes the fields (scalars) of assets on request: finds or creates an asset's cached state and weights, and updates the state to new
+   readings. */
 #include "field/field.h"
 
 #include <math.h>
@@ -173,8 +174,7 @@ static const struct scalars *distance_scalars(struct field *field, int asset, co
 bool field_covers(struct field *field, int asset, const struct field_params *params)
 {
     const struct field_layout *layout = field_layout(field, asset, params);
-    /* with assumed sensor positions there is no uncertainty and no blind spots to show, because both depend on the sensors' real
-       positions */
+    /* SHOW_UNCERTAINTY and SHOW_BLIND have nothing to show if sensor positions are assumed, because both depend on the real positions */
     if (field_params_cover(params) && layout && layout->assumed)
         return false;
     return params->show == SHOW_DISTANCE ? find_sensor(layout, params->sensor) >= 0 : layout != NULL;
@@ -218,8 +218,8 @@ bool field_begin_update(struct field *field, struct field_state *state, const st
     return true;
 }
 
-/* Updates the field of one asset. Returns NULL if there is nothing to show, or out of memory. *done: receives true if the field is up to
-   date, false if more calls are needed. */
+/* Updates the field of one asset for about `work` nanoseconds. Returns NULL if the asset has no field to show, or out of memory. *done:
+   receives true if the field is up to date, false if more calls are needed. */
 static const struct scalars *advance(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot,
                                      size_t count, double work, bool *done)
 {

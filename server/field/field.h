@@ -52,7 +52,7 @@
 struct field;
 /* Creates an empty field. workers and scene must outlive it. The caller destroys it. */
 struct field *field_create(struct workers *workers, const struct scene *scene);
-/* Frees the field and its cache. &NULL is fine; sets it to NULL. */
+/* Frees the field and its cache. Accepts a pointer to NULL; sets the pointer to NULL. */
 void field_destroy(struct field **field);
 /* Returns the scene with which the field was created. */
 const struct scene *field_scene(const struct field *field);
@@ -67,11 +67,12 @@ void field_set_trials(struct field *field, struct trials *trials);
 /* Returns the parameters under which this asset's field is cached: params or a modified copy in *room. The copy lacks a trial that moves
    nothing on this asset. If the positions of all sensors are assumed, it has the parameters of a constant field. */
 const struct field_params *field_params_of(struct field *field, int asset, const struct field_params *params, struct field_params *room);
-/* Returns the trial that params name; the caller releases it with field_give_trial(). NULL: they name none, or it no longer exists. */
+/* Returns the trial (set of moved sensors) whose id is params->trial; the caller releases it with field_give_trial(). NULL: the id is 0, or
+   the trial no longer exists. */
 const struct trial *field_take_trial(struct field *field, const struct field_params *params);
-/* Releases a trial. &NULL is fine; sets it to NULL. */
+/* Releases a trial. Accepts a pointer to NULL; sets the pointer to NULL. */
 void field_give_trial(struct field *field, const struct trial **trial);
-/* Looks up the baseline of a difference into *out. Returns false if params show no difference or the baseline was forgotten. */
+/* Writes the baseline that a difference is taken from to *out. Returns false if params show no difference or the baseline was forgotten. */
 bool field_baseline(const struct field *field, const struct field_params *params, struct baseline *out);
 #define FIELD_DEFAULT_BYTES ((size_t)512 << 20)
 /* Sets the limit of the cache in bytes; initially FIELD_DEFAULT_BYTES. The field of the parameters requested last is kept even if it
@@ -79,13 +80,13 @@ bool field_baseline(const struct field *field, const struct field_params *params
 void field_set_cache_limit(struct field *field, size_t bytes);
 /* Returns the bytes that the field's cache takes now. */
 size_t field_bytes(const struct field *field);
-/* Drops everything that is cached. */
+/* Frees all cached fields and weights. */
 void field_clear_cache(struct field *field);
 
 /* Brings the scalars of one asset up to date with the snapshot and returns them. They are owned by the field, shared by all callers with
    equal parameters, and valid until the next call with other parameters. scalars->version grows only when a value or flag really changed.
-   Distances have no data where no path leads (their value there is the largest). Returns NULL if the asset has no sensor of the group (for
-   a distance: not that sensor), or when out of memory. */
+   For SHOW_DISTANCE, vertices to which no path leads have no data (their stored value is the largest distance). Returns NULL if the asset
+   has no sensor of the group (for a distance: not that sensor), or when out of memory. */
 const struct scalars *field_scalars(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot);
 
 /* Like field_scalars(), but updates only the first `count` vertices, which are those of one level of detail: the first scalars->ready
@@ -97,8 +98,9 @@ const struct scalars *field_scalars_of(struct field *field, int asset, const str
    in `assets`. */
 void field_update_all(struct field *field, const int *assets, const size_t *counts, size_t asset_count, const struct field_params *params,
                       const struct snapshot *snapshot);
-/* Does about `work` nanoseconds (of one core) of what field_scalars_of() does, so that a large update blocks nobody. Returns true when
-   the update is complete. While it returns false, the update uses the readings of the first call, and the scalars must not be read. */
+/* Does the work of field_scalars_of() in steps of about `work` nanoseconds (of one core), so that a large update does not block the thread.
+   Returns true when the update is complete. While it returns false, the update uses the readings of the first call, and the scalars must
+   not be read. */
 bool field_advance(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot, size_t count,
                    double work);
 
@@ -137,8 +139,9 @@ struct field_sensor {
     bool configured, usable, uncertain; /* configured: the sensor would contribute if its quality were good; usable: it contributes;
                                            uncertain: its quality is Uncertain */
 };
-/* Lists the inputs of the field on an asset, as the last field_scalars() with these parameters used them. *radius_m receives the radius
-   R of Algorithm 1 (Kim & Suh). Returns the number of inputs; 0: no sensor contributes. The caller frees *out (mem_free). */
+/* Lists the sensors of an asset's field with their inputs (struct field_sensor), as the last field_scalars() with these parameters used
+   them. *radius_m receives the radius R of Algorithm 1 (Kim & Suh). Returns the number of inputs; 0: no sensor contributes. The caller
+   frees *out (mem_free). */
 size_t field_sensors(struct field *field, int asset, const struct field_params *params, struct field_sensor **out, float *radius_m);
 /* Fills *out with the sensors and readings from which renderers evaluate the field at each pixel, as the last field_scalars() with these
    parameters took them. out->count is 0 if the field must be interpolated between vertices, or is the same everywhere. The caller frees

@@ -35,7 +35,8 @@ void field_update_all(struct field *field, const int *assets, const size_t *coun
         if (field_begin_update(field, state, snapshot, counts[i]) && state->update)
             together.states[begun++] = state;
     }
-    /* decided only after all updates have begun, because beginning an update may evict cached columns that another update needs */
+    /* update_is_light() is called only after all updates have begun, because beginning an update may evict cached weights that another
+       update needs */
     for (size_t i = 0; i < begun; i++)
         if (update_is_light(together.states[i]))
             together.states[together.count++] = together.states[i];

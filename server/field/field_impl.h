@@ -23,17 +23,17 @@ struct field {
         struct trial_layout *next;
     } * tried;
     size_t bytes, bound;
-    uint64_t tick; /* counts calls; serves as the clock ("ticks") for evicting the least recently used entries */
+    uint64_t tick; /* number of calls so far; the time ("tick") by which the least recently used cache entries are found */
     uint64_t versions;
 };
 
-/* Returns the layout of the sensors of params' group on the asset, created if needed. NULL: there are none. params must come from
-   field_params_of(). */
+/* Returns the layout (positions and distances) of the sensors of group params->group on the asset; creates it if needed. NULL: there are
+   none. params must come from field_params_of(). */
 struct field_layout *field_layout(struct field *field, int asset, const struct field_params *params);
 /* Frees all trial layouts. */
 void field_trials_finish(struct field *field);
-/* Returns the state for these parameters, found or created, without updating it. NULL if the asset has no sensor of the group, or when out
-   of memory. */
+/* Returns the asset's state (computed field) for these parameters, from the cache or newly created, without updating it. NULL if the asset
+   has no sensor of the group, or when out of memory. */
 struct field_state *field_state(struct field *field, int asset, const struct field_params *params);
 
 /* Reads the snapshot into the state and begins the necessary update. Returns false when out of memory; the state is then freed. */
@@ -54,7 +54,7 @@ bool field_cache_make_room(struct field *field, size_t need, const struct field_
 /* Starts caching the columns of these weights (each sensor's weights at all vertices) if they are summed for at least the second time.
    previous: tick of their previous use. */
 void field_cache_keep_columns(struct field *field, struct weights *weights, const struct field_params *params, uint64_t previous);
-/* Drops every state and weights object made from this trial's layout. */
+/* Frees every state and weights object that was made from this trial's layout. */
 void field_forget_trial_layout(struct field *field, const struct trial_layout *tried);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the field at one point from the sensors. */
+/* Computes the field at one point of the surface from the sensors' readings (field_at()). */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -23,7 +23,8 @@ static void point_drawn(const struct scalars *scalars, const struct field_place 
     *out = (struct field_point){ .value = value, .no_data = no_data > 0.5, .uncertain = uncertain > 0.5 };
 }
 
-/* Returns the largest error of the triangles around the corners, since any level of detail may be drawn there. */
+/* Returns the largest interpolation error of the triangles around the point's three corners, since any level of detail may be drawn
+   there. */
 static double error_near(const struct field_state *state, const struct field_place *place)
 {
     double most = 0;
@@ -61,7 +62,8 @@ static void point_distance(const struct field_state *state, const struct single_
     out->value = out->no_data ? out->value : far_m;
 }
 
-/* Sums the sensors' weights at the point, multiplied by the readings that the scalars show, with the same arithmetic as at vertices. */
+/* Computes the value at the point as the weighted sum of the readings that the state's scalars show, with the same arithmetic as at
+   vertices. */
 static void point_sum(const struct field_state *state, const struct single_point *point, struct field_point *out)
 {
     const size_t sensors = point->layout.sensor_count;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lists the sensors and values that enter the sums of the field. */
+/* Lists the sensors and values from which an asset's field is computed, for callers that evaluate the field themselves. */
 #include <math.h>
 #include <string.h>
 

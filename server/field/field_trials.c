@@ -39,7 +39,8 @@ void field_trials_finish(struct field *field)
         tried_remove(field, &field->tried);
 }
 
-/* Frees the layouts of dropped trials except trial `keep`. Each step of dragging a sensor creates a trial, and its layout would stay. */
+/* Frees the layouts of dropped trials except trial `keep`. Without this, layouts would pile up, because each step of dragging a sensor
+   creates a trial. */
 static void forget_dropped(struct field *field, uint32_t keep)
 {
     for (struct trial_layout **link = &field->tried; *link;)

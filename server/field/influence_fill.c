@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the values of lost sensors with a dense Cholesky factor of their block of the precision matrix. */
+/* Computes the values of lost sensors (influence_fill.h) with a dense Cholesky factor of the lost sensors' block of the precision
+   matrix. */
 #include "field/influence_fill.h"
 
 #include <math.h>
@@ -7,8 +8,8 @@
 
 #include "base/mem.h"
 
-/* smallest valid pivot of the factorisation, relative to the sensor's precision. With a smaller pivot no used sensor determines the lost
-   sensor, and the lost sensor's value is set to 0 */
+/* Smallest valid pivot of the factorisation, as a fraction of the sensor's precision. A smaller pivot means that no used sensor determines
+   the lost sensor, whose value is then set to 0. */
 #define MIN_PIVOT_PART 1e-9
 
 struct influence_fill {

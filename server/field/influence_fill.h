@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Values of lost sensors under a prepared interpolation: with precision P over all sensors, lost ones L and used ones U, P_LL v_L = -P_LU
-   v_U. With these values, the weights prepared for all sensors give the field of the used ones alone. Thread: any; immutable once made. */
+/* Values of lost sensors (without usable reading) for a prepared interpolation. With P the precision matrix of all sensors, L the lost and
+   U the used ones, the values v_L solve P_LL v_L = -P_LU v_U. With these values, the weights prepared for all sensors give the field of the
+   used ones alone. Thread: any; immutable once made. */
 #ifndef FIELD_INFLUENCE_FILL_H
 #define FIELD_INFLUENCE_FILL_H
 #include <stddef.h>
@@ -8,9 +9,10 @@
 
 struct influence_fill;
 
-/* Factors P_LL. precision: [sensor][sensor], must outlive the result; used: by sensor, 1 if used. The caller destroys the result. */
+/* Computes the Cholesky factor of P_LL. precision: [sensor][sensor], must outlive the result; used: by sensor, 1 if used. The caller
+   destroys the result. */
 struct influence_fill *influence_fill_create(const double *precision, size_t count, const uint8_t *used);
-/* Frees the factor. &NULL is fine; sets it to NULL. */
+/* Frees the factorisation. Accepts a pointer to NULL; sets the pointer to NULL. */
 void influence_fill_destroy(struct influence_fill **fill);
 /* Replaces the elements of lost sensors in `values` by the values that follow from the used sensors. Takes (lost * sensors) steps. */
 void influence_fill_values(const struct influence_fill *fill, double *values);

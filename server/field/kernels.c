@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The field's inner loops: branch-free, elementwise, in the order of sensors, so that every machine and every division into blocks gives
-   identical bits. */
+/* The field's inner loops. They are branch-free and sum in the order of sensors at each vertex, so that every machine and every division
+   into blocks gives identical bits. */
 #include "field/kernels.h"
 
 #include <assert.h>
@@ -14,7 +14,7 @@
 #define KERNEL SIMD_CLONES("avx512f", "avx2")
 
 #if defined(__GNUC__) && !defined(__clang__)
-/* floating-point exceptions do not matter, so the compiler may evaluate both sides of a choice, as SIMD code must */
+/* lets the compiler evaluate both sides of a conditional expression, as SIMD code must: floating-point exceptions do not matter here */
 #pragma GCC optimize("no-trapping-math")
 #endif
 #include "field/weight_formula.h" /* after the pragma, which must hold for these functions, too */
@@ -143,7 +143,7 @@ KERNEL static void add_one(double *restrict sum, const float *restrict a, double
         sum[j] += (double)a[j] * factor;
 }
 
-/* Adds KERNEL_COLUMNS columns. */
+/* Adds KERNEL_COLUMNS columns, each multiplied by its factor, to the vertices begin..end-1 of `sum`. */
 SIMD_BODY void add_eight(double *restrict sum, const float *const *columns, const double *factors, size_t begin, size_t end)
 {
     const float *restrict a = columns[0], *restrict b = columns[1], *restrict c = columns[2], *restrict d = columns[3];
@@ -205,8 +205,8 @@ KERNEL void kernel_value(const struct kernel_value *rule, const double *restrict
         value[j] = value_of(&own, sum[j], weight[j]);
 }
 
-/* Stores a value, reading and writing the scalar as one 64-bit number: the value is its lower half, and the flags in the upper half
-   stay. Returns the bits of the absolute change, which sort as integers like the changes themselves (kernel_largest). */
+/* Stores a value in a scalar. Reads and writes the scalar as one 64-bit number: the value is the lower half, and the flags in the upper
+   half stay unchanged. Returns the bits of the absolute change, which sort as integers like the changes themselves (kernel_largest). */
 static inline int32_t put(struct scalar *restrict at, float value)
 {
     _Static_assert(sizeof(*at) == 8 && offsetof(struct scalar, value) == 0 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "value first");
@@ -249,7 +249,7 @@ struct few {
     double factor[KERNEL_COLUMNS - 1];
 };
 
-/* column_count: a constant after inlining. */
+/* Does the work of kernel_few() for a block. column_count: a constant after inlining, so that the compiler unrolls the loops. */
 SIMD_BODY int32_t put_few(const struct few *few, size_t column_count, const float *restrict weight, size_t count,
                           struct scalar *restrict at)
 {

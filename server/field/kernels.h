@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #define KERNEL_BLOCK 256         /* number of vertices processed at a time, so that their data stays in the L1 cache */
-#define KERNEL_COLUMNS 8         /* columns added at a time */
+#define KERNEL_COLUMNS 8         /* number of columns (one column: one sensor's weights) that are added in one pass */
 #define KERNEL_LINE 16           /* floats per cache line */
 #define KERNEL_FACTOR_LIMIT 1e4f /* largest strength and decay; beyond it exponents would overflow the loops' integer conversions */
 
@@ -23,8 +23,8 @@ void kernel_nearest(const float *restrict distance_m, size_t count, float *restr
 /* Returns the largest finite distance, or most_m if that is larger. */
 float kernel_largest(const float *distance_m, size_t count, float most_m);
 
-/* For one sensor, raises top[i] to its strength if the sensor is the nearest one to vertex i. After a call for each sensor, top[i] is
-   the largest strength among equally near nearest sensors; kernel_shepard() divides by it, so that weights cannot overflow. */
+/* For one sensor: raises top[i] to the sensor's strength if no sensor is nearer to vertex i. After a call for each sensor, top[i] is the
+   largest strength among equally near nearest sensors; kernel_shepard() divides by it, so that weights cannot overflow. */
 void kernel_top_shepard(const float *restrict distance_m, const float *restrict near_m, size_t count, float strength, float *restrict top);
 /* Raises top[i] to one sensor's exponent of the paper's Algorithm 1 (Kim & Suh 2025), max(0, 1 - distance / radius) strength / ln 2 (a
    power of 2), if that is larger and the sensor contributes. A sensor contributes within its reach. If no sensor reaches vertex i, the

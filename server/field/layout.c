@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sensors of one group on one asset, and their distances. */
+/* Layouts (layout.h): lists the sensors of one group on one asset, and computes their distances to vertices. */
 #include "field/layout.h"
 
 #include <float.h>

@@ -39,7 +39,7 @@ struct field_layout {
     size_t sensor_count, vertex_count;
     const struct layout_points *points; /* points whose distances are requested; NULL: the asset file's vertices */
     bool assumed; /* true: the positions of all sensors are assumed, so one sensor gives the value of the whole asset (field.h) */
-    float largest_m[DISTANCES]; /* largest distance of a vertex from a sensor, by distance_mode; 0: not computed yet */
+    float largest_m[DISTANCES]; /* largest distance between a vertex and a sensor, by enum distance_mode; 0: not computed yet */
     uint32_t trial;             /* id of the trial that moved some of these sensors (field/trials.h); 0: none */
 };
 
@@ -48,10 +48,11 @@ struct field_layout {
 struct field_layout *layout_create(const struct scene *scene, int asset, int group, const struct trial *trial);
 /* Returns whether the trial adds, removes or moves sensors of the group on the asset. */
 bool layout_is_touched(const struct scene *scene, int asset, int group, const struct trial *trial);
-/* Frees the layout. &NULL is fine; sets it to NULL. */
+/* Frees the layout. Accepts a pointer to NULL; sets the pointer to NULL. */
 void layout_destroy(struct field_layout **layout);
-/* Returns a sensor's geodesic distances of each vertex by this mode; if that mode's were not prepared (trial sensors), returns those of the
-   other geodesic mode. NULL: the mode is straight-line, or the distances are in the asset file or not known yet. */
+/* Returns the geodesic distance of each vertex from a sensor, by this mode (along triangles or by heat). If distances of that mode were not
+   prepared (trial sensors), returns those of the other geodesic mode. NULL: the mode is straight-line, or the distances are in the asset
+   file or not known yet. */
 const float *layout_along(const struct layout_sensor *sensor, enum distance_mode mode);
 /* Returns true if renderers evaluate the sum over the sensors at each pixel instead of interpolating between vertices (plant/exact.h). */
 bool layout_is_exact(const struct field_layout *layout, enum interpolation interpolation, enum distance_mode mode);

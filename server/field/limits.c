@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts readings to positions between alarm limits. */
+/* Converts readings to positions between the alarm limits of their tags (limits.h). */
 #include "field/limits.h"
 
 #include <math.h>
@@ -22,8 +22,8 @@ static double middle_of(const struct plant_group *group, const struct limit_side
     return group->max > l ? group->max : l + range / 2;
 }
 
-/* Returns a value's position on the scale of its side. value, inner and outer are measured from the middle of the range, whose position
-   is 0. */
+/* Returns a value's position between the limits of one side (high or low). value, inner and outer are measured from the middle of the
+   range, which has the position 0. */
 static double side_place(double value, double inner, double outer)
 {
     if (!isfinite(inner) && !isfinite(outer))

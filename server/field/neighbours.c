@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Predicts sensors from each other, by a prepared precision matrix or by distances. */
+/* Predicts each sensor's reading from the other sensors (neighbours.h), by a prepared precision matrix or by distances. */
 #include "field/neighbours.h"
 
 #include <math.h>
@@ -104,7 +104,7 @@ static void predict_by_distance(const struct neighbours *neighbours, const uint8
             if (j == i || !used[j] || !(away_m <= layout->group->reach_m) || !isfinite(away_m) || other->strength <= 0)
                 continue;
             away_m = fmax(away_m, AT_ONE_PLACE);
-            double near = least_m / away_m; /* divides by the least distance so far, so that no power of the quotient overflows */
+            double near = least_m / away_m; /* relative to the least distance so far, so that its power does not overflow */
             if (away_m < least_m) {
                 double scale = isfinite(least_m) ? pow(away_m / least_m, layout->group->power) : 0;
                 sum *= scale;

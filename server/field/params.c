@@ -12,7 +12,7 @@
 #include "field/limits.h"
 #include "plant/influence.h"
 
-static const double DIFFERENCE_PART = 0.25; /* for differences: part of the group's range that is shown on either side of 0 */
+static const double DIFFERENCE_PART = 0.25; /* colour range of differences on either side of 0, as a fraction of the group's range */
 
 void field_params_default(const struct plant *plant, int group, struct field_params *params)
 {

@@ -19,7 +19,7 @@ struct field_override {
 #define FIELD_AS_CONFIGURED (-1.0f)
 enum { FIELD_OVERRIDES = 256 };
 
-/* A session's choices about its field. Compared byte by byte: zero-initialise, then call field_params_default(). */
+/* A session's choices about its field. Compared byte by byte, so zero-initialise all bytes, then call field_params_default(). */
 struct field_params {
     int group;
     enum field_show show;
@@ -47,7 +47,7 @@ void field_params_default(const struct plant *plant, int group, struct field_par
 void field_params_set_show(const struct plant *plant, struct field_params *params, enum field_show show);
 /* Returns whether two sets of parameters are equal. */
 bool field_params_equal(const struct field_params *a, const struct field_params *b);
-/* Returns whether each sensor that the parameters name has a position in the shown group. */
+/* Returns whether each sensor that the parameters name (`sensor`, overrides) belongs to the shown group and has a position. */
 bool field_params_placed(const struct plant *plant, const struct field_params *params);
 /* Checks the parameters: 0 <= strength, decay <= 100; 0.5 <= power <= 16; radius 0 or 1e-3..1e6 m; reach > 0. Returns NULL if they are
    valid, else a static text that says what is wrong. */

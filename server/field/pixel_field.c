@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Evaluates a pixel field at one point, by sums over all its sensors. */
+/* Evaluates a field by straight-line distances (pixel_field.h) at one point, by sums over all its sensors. */
 #include "field/pixel_field.h"
 
 #include <math.h>
@@ -35,8 +35,8 @@ static struct nearest nearest_of(const struct pixel_field *field, const float po
     return nearest;
 }
 
-/* Returns a sensor's weight; *term receives the weight of its value. near_log2: log2 of near_m. top: for interpolation paper, the largest
-   exponent of all sensors at this point, which prevents overflow. */
+/* Returns a sensor's weight; *term receives the factor of the sensor's value in the sum. near_log2: log2 of near_m. top: for interpolation
+   paper, the largest exponent of all sensors at this point, which prevents overflow. */
 static float weight_of(const struct pixel_field *field, const struct pixel_sensor *sensor, float distance_m, float near_m, float near_log2,
                        float top, float *term)
 {

@@ -27,11 +27,12 @@ struct scalars {
        contents */
     uint64_t version;
     uint64_t flags_version; /* version of the last change of a flag */
-    /* sum, over all versions so far, of the largest change of a value: scalars uploaded at travel t err by at most travel - t */
+    /* sum, over all versions so far, of the largest change of a value in each: a copy of the scalars made when `travel` was t is wrong by
+       at most travel - t */
     double travel;
     size_t count;   /* number of vertices in the asset file */
     size_t ready;   /* the first `ready` vertices are up to date: as many as the requested levels of detail need */
-    uint64_t grown; /* counts how often `ready` grew */
+    uint64_t grown; /* number of times that `ready` has grown */
     const struct scalar *at;
     /* error bound of interpolation within triangles, in the unit of values, if it exceeds 1/255 of the range on a large part of the
        surface; else 0. Vertices with such errors are marked uncertain in either case */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads each sensor's input to the sums, and decides whether the shown scalars are out of date. */
+/* Reads from a snapshot what each sensor contributes to the field, and decides whether the computed scalars are out of date. */
 #include "field/state.h"
 
 #include <float.h>
@@ -51,8 +51,8 @@ void state_destroy(struct field_state **state_ptr)
     *state_ptr = NULL;
 }
 
-/* Returns true if sums are stored between updates. With few sensors they are not, because summing again takes no longer than reading and
-   writing them. */
+/* Returns true if the state stores its sums over sensors between updates. With few sensors it does not, because summing again takes no
+   longer than reading and writing the sums. */
 static bool keeps_sums(const struct field_state *state)
 {
     return state->layout->sensor_count > KERNEL_COLUMNS;
@@ -215,7 +215,7 @@ void state_fill(struct field_state *state)
         doubts[i] = state->now[i].uncertain;
     }
     influence_fill_values(weights->fill, values);
-    influence_fill_values(weights->fill, doubts); /* computes the fraction of each lost sensor's value that rests on Uncertain readings */
+    influence_fill_values(weights->fill, doubts); /* computes which fraction of each lost sensor's value comes from Uncertain readings */
     for (size_t i = 0; i < state->layout->sensor_count; i++)
         if (!weights->takes_part[i]) {
             state->now[i].value = limited(values[i], -READING_LIMIT, READING_LIMIT);

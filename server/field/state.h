@@ -26,9 +26,10 @@ struct field_state {
     unsigned errors_version; /* value of weights->errors_version for which the flags were set */
     double error_scale;      /* factor from weights->errors to the largest error drawn */
     unsigned added;          /* number of updates since the sums were last recomputed in full */
-    struct state_input *now, *shown; /* by sensor of the layout: inputs that are requested now, and inputs that the scalars contain */
+    /* by sensor of the layout. now: inputs from the newest snapshot; shown: inputs from which the scalars were computed */
+    struct state_input *now, *shown;
     uint8_t *usable;                 /* by sensor of the layout: whether the input in `now` is used (enum sensor_use) */
-    /* storage for struct weights_terms. Element 0: the sensors whose input changed; element 1: all sensors in the sum */
+    /* memory of the lists of sensors to sum (struct weights_terms). Element 0: sensors whose input changed; element 1: all sensors */
     struct state_list {
         uint32_t *members;
         double *factors;
@@ -43,13 +44,14 @@ struct field_state {
 /* Creates the state, never NULL, without room for vertices (state_grow). Copies params; the layout must outlive the state. The caller
    destroys it. */
 struct field_state *state_create(int asset, struct field_layout *layout, const struct field_params *params);
-/* Frees the state. &NULL is fine; sets it to NULL. */
+/* Frees the state. Accepts a pointer to NULL; sets the pointer to NULL. */
 void state_destroy(struct field_state **state);
 /* Returns the bytes that the state takes. */
 size_t state_bytes(const struct field_state *state);
 /* Returns by how many bytes the state would grow with room for the first `count` vertices. */
 size_t state_more_bytes(const struct field_state *state, size_t count);
-/* Makes room for the first `count` vertices; distant assets need few. Returns false when out of memory, with nothing changed. */
+/* Allocates memory for the first `count` vertices; assets far from the camera need few. Returns false when out of memory, with nothing
+   changed. */
 bool state_grow(struct field_state *state, size_t count);
 
 /* Reads the snapshot into state->now, state->usable and the ages. baseline: subtracted for a difference; NULL: unknown. */
@@ -57,9 +59,9 @@ void state_read(struct field_state *state, const struct snapshot *snapshot, cons
 /* For prepared interpolations: gives lost sensors in state->now the values that follow from the other sensors. The state's weights must
    be for the qualities in state->now. */
 void state_fill(struct field_state *state);
-/* Returns whether the state's weights are for a set of usable sensors that differs from that of state->now. */
+/* Returns whether state->weights must be replaced, because other sensors are usable in state->now than when they were computed. */
 bool state_needs_weights(const struct field_state *state);
-/* Returns true if the scalars show other inputs than state->now has. */
+/* Returns true if the state's scalars are out of date: they were computed from other inputs than state->now. */
 bool state_is_behind(const struct field_state *state);
 /* For SHOW_DISTANCE, instead of state_read() and an update: fills the scalars once with the distances from one sensor of the layout. */
 void state_measure(struct field_state *state, size_t sensor, uint64_t *versions);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Registry of sets of trial sensor positions. */
+/* Registry of trials: sets of sensor positions that users try out (trials.h). */
 #include "field/trials.h"
 
 #include <pthread.h>
@@ -93,7 +93,7 @@ void trials_destroy(struct trials **pointer)
     *pointer = NULL;
 }
 
-/* Frees dropped trials beyond the newest TRIALS_KEPT, except trials that a caller holds (trials_take). Call under the lock. */
+/* Frees dropped trials except the newest TRIALS_KEPT, and except trials that a caller holds (trials_take). Call with the lock held. */
 static void sweep(struct trials *trials)
 {
     int dropped = 0;
@@ -127,7 +127,7 @@ uint32_t trials_put(struct trials *trials, const struct trial_sensor *sensors, s
     return id;
 }
 
-/* Finds a trial. Call under the lock. */
+/* Returns the trial with this id, or NULL. Call with the lock held. */
 static struct kept_trial *find(const struct trials *trials, uint32_t id)
 {
     struct kept_trial *kept = trials->kept;

@@ -13,7 +13,7 @@ enum { TRIAL_SENSORS = 64 };
 struct trial_reach;
 /* Makes a reference-counted object of distance_m and takes ownership of the array (mem_free). Returns one reference. */
 struct trial_reach *trial_reach_create(float *distance_m);
-/* Drops a reference. &NULL is fine; sets it to NULL. */
+/* Drops a reference. Accepts a pointer to NULL; sets the pointer to NULL. */
 void trial_reach_unref(struct trial_reach **reach);
 
 struct trial_sensor {
@@ -40,19 +40,19 @@ const float *trial_distances(const struct trial_sensor *sensor);
 struct trials;
 /* Creates an empty registry of trials. The caller destroys it. */
 struct trials *trials_create(void);
-/* Frees the registry. &NULL is fine; sets it to NULL. */
+/* Frees the registry. Accepts a pointer to NULL; sets the pointer to NULL. */
 void trials_destroy(struct trials **trials);
 /* Adds a trial of 1..TRIAL_SENSORS sensors; copies them and takes references of its own. Returns the trial's id, never 0. */
 uint32_t trials_put(struct trials *trials, const struct trial_sensor *sensors, size_t count);
 enum { TRIALS_KEPT = 16 };
-/* Marks a trial as no longer wanted. The newest TRIALS_KEPT such trials are kept, because frames being drawn may use them. id 0 is a
-   no-op. */
+/* Marks a trial as dropped: its user no longer needs it. The newest TRIALS_KEPT dropped trials are kept, because frames that are being
+   drawn may use them. id 0 is a no-op. */
 void trials_drop(struct trials *trials, uint32_t id);
 /* Returns whether the trial exists and was not dropped. */
 bool trials_live(struct trials *trials, uint32_t id);
 /* Returns the trial, held until trials_give(). NULL: there is none. */
 const struct trial *trials_take(struct trials *trials, uint32_t id);
-/* Releases a trial. &NULL is fine; sets it to NULL. */
+/* Releases a trial. Accepts a pointer to NULL; sets the pointer to NULL. */
 void trials_give(struct trials *trials, const struct trial **trial);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Updates scalars block by block (KERNEL_BLOCK vertices): sums the weights of all sensors, or adds only the changes of those whose
-   reading changed. */
+/* Updates the scalars of a field, a block of KERNEL_BLOCK vertices at a time: sums the weighted readings of all sensors, or adds only the
+   changes of readings that changed. */
 #include "field/update.h"
 
 #include <float.h>
@@ -15,7 +15,7 @@
 
 #define FLAG 255
 #define DRAWN_ERROR (1 / 255.0) /* fraction of the range; a vertex whose triangles may be drawn with a larger error is marked uncertain */
-/* factor by which a newly chosen error limit is stricter than necessary, so that it survives small changes of readings */
+/* factor by which a newly chosen error limit is stricter than necessary, so that it stays valid when readings change slightly */
 #define ERROR_MARGIN 1.1
 #define ERROR_SLACK 1.5  /* an error limit that is stricter than necessary by more than this factor is replaced */
 #define MAX_BLIND 1000.0 /* largest height of a hot spot that is shown, in multiples of the group's range */
@@ -33,8 +33,8 @@ struct update {
     struct field_state *state;
     struct weights_terms all, changed;
     struct kernel_value rule;
-    /* indices of blocks of vertices. next: to update next; old: end of the blocks that were shown before; end: end of the blocks to be
-       shown */
+    /* indices of blocks of vertices. next: block to update next; old: end of the blocks that already had values before; end: end of the
+       blocks that need values */
     size_t next, old, end;
     bool anew;  /* true: sums the weights of all sensors; false: in blocks below `old`, adds only the changes of changed readings */
     bool flags; /* true: qualities changed, so flags of all blocks are set; false: flags in blocks below `old` stay */
@@ -52,7 +52,7 @@ static size_t blocks_of(size_t vertex_count)
 
 /* --- choosing the work ------------------------------------------------------------------------------------------------------ */
 
-/* Lists the sensors to sum: all members of the sum, or only those whose input changed. */
+/* Lists the sensors to sum: all sensors of the weights, or only those whose input changed. */
 static struct weights_terms choose_terms(struct field_state *state, bool all)
 {
     const struct weights *weights = state->weights;
@@ -112,8 +112,8 @@ void update_rule(const struct field_state *state, const struct state_input *inpu
     rule->empty = difference || places ? 0 : (float)group->min;
 }
 
-/* Returns the factor from an error of the weights to the largest error of a value. The errors of the weights at a point add up to 0, so
-   only the spread of the readings matters; with fin they do not, and ambient counts as one more reading. */
+/* Returns the factor that converts an error of the weights (weights->errors) to the largest error of a value. The errors of all weights at
+   a point add up to 0, so the factor is the spread of the readings; with `fin` they do not, so ambient counts as one more reading. */
 static double error_scale(const struct field_state *state)
 {
     double low = INFINITY, high = -INFINITY;
@@ -186,7 +186,7 @@ void update_begin(struct field_state *state, size_t count)
     update->anew = !state->sums || update->flags || state->added >= MAX_ADDED || !steps_are_small(update);
     for (size_t i = 0; i < update->all.count; i++)
         update->marks |= update->all.marked[i];
-    /* no input changed: blocks shown before stay unchanged, and only new blocks are computed */
+    /* no input changed: blocks that have values stay unchanged, and only new blocks are computed */
     if (!update->anew && update->changed.count == 0)
         update->next = update->old;
     update_rule(state, state->now, &update->rule);
@@ -212,7 +212,7 @@ static uint8_t uncertain_of(double marked, double total, uint8_t filled)
 void update_flags(const struct field_state *state, const struct weights *weights, size_t vertex, double total, double marked,
                   struct scalar *at)
 {
-    bool blind = state->params.show == SHOW_BLIND; /* true: SHOW_BLIND, which has data around lost sensors, too */
+    bool blind = state->params.show == SHOW_BLIND; /* SHOW_BLIND has data around lost sensors, too */
     bool fill = blind || state->params.fill == FILL_NEIGHBOURS, filled = fill && weights->place[vertex] == PLACE_LOST;
     at->no_limits = weights->place[vertex] == PLACE_NO_LIMITS ? FLAG : 0;
     at->no_data = weights->place[vertex] == PLACE_GOOD || filled || at->no_limits ? 0 : FLAG;
@@ -257,7 +257,7 @@ static bool sum_block(const struct update *update, size_t block, size_t begin, s
     weights_add(weights, begin, count, &update->all, &sums);
     for (size_t j = 0; total_wanted && j < count; j++)
         weights->total[begin + j] = (float)total[j];
-    if (total_wanted) /* totals (sums of weights) that are complete are not written again, because other threads may be reading them */
+    if (total_wanted) /* known totals (sums of weights) are not written again, because other threads may be reading them */
         weights->known[block] |= KNOWN_TOTAL;
     return flags && set_flags(update, begin, count, total, marked);
 }
@@ -268,8 +268,8 @@ float update_blind(const struct plant_group *group, float near_m)
     return (float)fmin(PLANT_SEEN_PART * (group->max - group->min) * exp(far * far / 2), most);
 }
 
-/* Fills a block of uncertainty or blind spots, which depend on which sensors are good and not on their readings. Returns true if a flag
-   changed. */
+/* Computes a block of SHOW_UNCERTAINTY or SHOW_BLIND, which depend on which sensors are good and not on their readings. Returns true if a
+   flag changed. */
 static bool map_block(const struct update *update, size_t begin, size_t count, float *values)
 {
     const struct field_state *state = update->state;
@@ -361,9 +361,10 @@ void update_run(struct field_state *state)
     update->next = update->end;
 }
 
-/* A legend states an error bound only if more than this part of an asset's surface errs by more than 1/255 of the range. Preparation does
-   not subdivide triangles that nobody sees (inside bodies, and at jumps of distance), up to a quarter of the surface of the demo's
-   machines. These triangles are marked and picks report them, but a number in the legend would warn of errors that no frame shows. */
+/* A legend states an error bound only if values on more than this fraction of an asset's surface may be wrong by more than 1/255 of the
+   range. Preparation does not subdivide triangles that nobody sees (inside bodies, and at jumps of distance), up to a quarter of the
+   surface of the demo's machines. These triangles are marked and picks report them, but a number in the legend would warn of errors that no
+   frame shows. */
 static const float MIN_LEGEND_SHARE = 0.3f;
 
 static double drawn_error(const struct field_state *state)

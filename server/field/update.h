@@ -20,7 +20,7 @@ void update_run(struct field_state *state);
 void update_end(struct field_state *state, uint64_t *versions);
 /* Returns whether the readings of state->now differ by no more than the range that preparation assumed. */
 bool update_is_in_range(const struct field_state *state);
-/* Abandons the update in progress, if any. */
+/* Abandons the state's update in progress, if there is one. */
 void update_forget(struct field_state *state);
 
 /* *rule receives the rule that turns sums into values. inputs: by sensor of the layout. */

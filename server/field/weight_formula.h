@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The weight of one sensor at one point, by straight-line or surface distance: the one definition for columns of vertices (kernels.c) and
-   for single points (pixel_field.c). render/soft/pixel_lanes.h has it for eight squared distances. Branch-free, so that loops become SIMD
-   code. All distances in metres; near_m: distance of the nearest sensor. Pure. */
+/* The weight of one sensor at one point, by straight-line or surface distance: kernels.c uses these formulas for many vertices at a time,
+   pixel_field.c for single points. render/soft/pixel_lanes.h has a SIMD version for squared distances. Branch-free, so that loops become
+   SIMD code. All distances in metres; near_m: distance of the nearest sensor. Pure. */
 #ifndef FIELD_WEIGHT_FORMULA_H
 #define FIELD_WEIGHT_FORMULA_H
 #include <float.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes G, the weight of each sensor at each vertex, block by block. One sensor's weights are a column of G: distances give columns,
-   and these are summed. */
+/* Computes the matrix G, the weight of each sensor at each vertex, a block of vertices at a time. A column of G holds one sensor's weights,
+   which follow from the sensor's distances. */
 #include "field/weights.h"
 
 #include <math.h>
@@ -22,7 +22,8 @@
    are all lost, it would otherwise be unbounded */
 #define MAX_DEVIATIONS 4.0
 
-struct key_head { /* bytes of the key that are the same for all sensors. Must have no padding, because keys are compared as bytes */
+/* first bytes of a struct weights_key: what does not differ between sensors. Must have no padding, because keys are compared as bytes */
+struct key_head {
     const struct asset *file;
     uint32_t interpolation, distance;
     float power, reach_m, radius_m;
@@ -142,14 +143,14 @@ static bool take_errors(struct weights *weights, const float *errors)
         for (int b = 0; b < WEIGHTS_ERRING; b++)
             erring[b] += errors[v] >= ldexpf(1, -b);
     }
-    for (int b = 0; b < WEIGHTS_ERRING; b++) /* counted as integers, because a float counter stops growing at 2^24 vertices */
+    for (int b = 0; b < WEIGHTS_ERRING; b++) /* `erring` counts in integers, because a float counter stops growing at 2^24 vertices */
         weights->erring[b] = (float)((double)erring[b] / (double)weights->layout->vertex_count);
     weights->errors_version = 1;
     return weights->errors;
 }
 
-/* Uses the columns of the influence file, which are not divided by their sum: at a vertex where they add up to less than 1, the rest of
-   the weight is ambient's. */
+/* Uses the weights of the influence file as they are, not divided by their sum: where the weights at a vertex add up to less than 1,
+   ambient has the remaining weight. */
 static bool take_prepared(struct weights *weights, const struct influence_entry *entry)
 {
     const struct field_layout *layout = weights->layout;
@@ -238,7 +239,8 @@ void weights_copy_known(struct weights *weights, const struct weights *from)
     if (!same_sensors(weights, from))
         return;
     unsigned shared = KNOWN_NEAR;
-    /* At this point only decay may differ. The weights of `paper` do not depend on decay, so their totals are equal, too. */
+    /* With equal strengths, only power and decay may differ, on which `top` does not depend. The totals of `paper` do not depend on these
+       two either. */
     if (same_strengths(weights, from))
         shared |= KNOWN_TOP | (weights->interpolation == INTERPOLATION_PAPER ? KNOWN_TOTAL : 0);
     for (size_t block = 0, at = 0; at < weights->layout->vertex_count; block++, at += KERNEL_BLOCK) {
@@ -480,8 +482,8 @@ struct workroom {
     float near_log2[KERNEL_BLOCK], distance_m[KERNEL_BLOCK], weights[KERNEL_COLUMNS][KERNEL_BLOCK], terms[KERNEL_COLUMNS][KERNEL_BLOCK];
 };
 
-/* Computes one member's column for a block. term: receives the factor of the reading; weight: for paper, receives the weight, which
-   lacks the factor d^decay. weight NULL: only the term is wanted. */
+/* Computes one sensor's column (weights) for a block of vertices. term: receives the factor of the reading; weight: for `paper`, receives
+   the weight, which lacks the factor d^decay. weight NULL: only the term is wanted. */
 static void make_column(const struct weights *weights, uint32_t member, size_t begin, size_t count, struct workroom *room, float *weight,
                         float *term)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* G of the linear form: the weight of each usable sensor at each vertex, for one set of parameters and one set of usable sensors. Nothing
-   in it depends on readings, so instances of one asset and sessions with equal parameters share it. Columns of G may be cached or
-   recomputed for each sum, with bit-identical results. Thread: one, but weights_prepare() and weights_add() may run on different blocks in
-   parallel. */
+/* The matrix G: the weight of each usable sensor at each vertex of an asset, for one set of parameters and one set of usable sensors
+   (field.h). G does not depend on readings, so instances of one asset and sessions with equal parameters share it. Columns of G may be
+   cached or recomputed for each sum, with bit-identical results. Thread: one, but weights_prepare() and weights_add() may run on different
+   blocks in parallel. */
 #ifndef FIELD_WEIGHTS_H
 #define FIELD_WEIGHTS_H
 #include "field/params.h"
@@ -25,7 +25,8 @@ enum place {
     PLACE_NO_LIMITS /* the nearest sensor within reach is good, but its tag has no alarm limits (SENSOR_NO_LIMITS) */
 };
 
-/* bits for the arrays of a block that are filled. KNOWN_NEAR: near_m and place; KNOWN_TOP: top; KNOWN_TOTAL: total */
+/* bits that say which arrays of struct weights are filled for a block of vertices. KNOWN_NEAR: near_m and place; KNOWN_TOP: top;
+   KNOWN_TOTAL: total */
 enum weights_known { KNOWN_NEAR = 1, KNOWN_TOP = 2, KNOWN_TOTAL = 4 };
 
 struct weights_key { /* key of cached weights: the bytes of everything that the sensors' weights at all vertices depend on */
@@ -72,11 +73,11 @@ struct weights {
     float *errors;           /* for each vertex: largest error of linear interpolation within the adjacent triangles; unit and method in
                                 drawn_error.h; NULL: not measured */
     float largest_error;     /* largest element of `errors` */
-    /* [b]: fraction of the surface whose interpolation error is at least 2^-b, the largest of all measured levels of detail. For
-       prepared interpolations the fraction of the vertices */
+    /* erring[b]: fraction of the surface (of the vertices for prepared interpolations) whose interpolation error is at least 2^-b; the
+       largest such fraction of all measured levels of detail */
     float erring[WEIGHTS_ERRING];
     uint64_t measured_levels; /* bits of the levels of detail whose triangles `errors` covers */
-    unsigned errors_version;  /* counts changes of `errors` */
+    unsigned errors_version;  /* number of changes of `errors` so far */
     float *beyond_m;          /* for interpolations fin and gp, by vertex: metres beyond the border of the area with data; else NULL */
     float *columns; /* cached weights, [block][member][KERNEL_BLOCK], of the first kept_blocks blocks, or NULL; those of other blocks are
                        computed for each sum */
@@ -100,10 +101,10 @@ bool weights_key_equal(const struct weights_key *a, const struct weights_key *b)
    destroys them. */
 struct weights *weights_create(const struct field_layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
                                struct weights_key *key);
-/* Copies from other weights, which have been summed, the arrays that are equal for the parameters of both. While a user drags one
-   parameter, these are most arrays. */
+/* Copies those arrays from other weights, already computed, that are equal for the parameters of both. While a user drags one parameter,
+   these are most arrays. */
 void weights_copy_known(struct weights *weights, const struct weights *from);
-/* Frees the weights. &NULL is fine; sets it to NULL. */
+/* Frees the weights. Accepts a pointer to NULL; sets the pointer to NULL. */
 void weights_destroy(struct weights **weights);
 /* Returns the bytes that weights for this layout take, without cached columns (each sensor's weights at all vertices). */
 size_t weights_bytes(const struct field_layout *layout);
@@ -127,7 +128,7 @@ void weights_prepare(struct weights *weights, size_t begin, size_t count);
    by preparation. Takes (lost * lost) steps per vertex. Thread: any. */
 void weights_deviations(const struct weights *weights, size_t begin, size_t count, float *out);
 
-/* Columns of G (sensors' weights at a block of vertices) to add, each with a factor. */
+/* List of columns of G (a column: one sensor's weights at a block of vertices) that weights_add() adds, each multiplied by a factor. */
 struct weights_terms {
     const uint32_t *members;
     const double *factors;
@@ -144,7 +145,7 @@ struct weights_sums {
 /* Adds columns of G with their factors to the sums of a prepared block. Computes columns that are not cached, and caches them if caching
    is on. Thread: any, on different blocks. */
 void weights_add(struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, const struct weights_sums *sums);
-/* Returns one sensor's weights in a block, which must be cached. */
+/* Returns the cached weights of one sensor at a block of vertices. */
 const float *weights_column(const struct weights *weights, size_t begin, uint32_t member);
 /* Returns true if the weights of all sensors in a block are cached. */
 bool weights_has_columns(const struct weights *weights, size_t begin);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds the surface in the background, and computes the distances of moved sensors on it, one request after the other. */
+/* Live sensor relocation (relocation.h): builds an asset's surface in the background, and computes the distances of moved sensors on the
+   surface, one request after the other. */
 #include "surface/relocation.h"
 
 #include <math.h>
@@ -36,8 +37,8 @@ struct relocation {
     /* --- below: under lock */
     enum relocation_state state;
     struct surface *surface; /* surface of the asset; readable without the lock once the state is ready */
-    /* positions, on the surface, of the vertices of the shape; readable without the lock once the state is ready; NULL: not needed, because
-       the surface was built from these vertices */
+    /* positions of the shape's vertices on the surface; readable without the lock once the state is ready; NULL: not needed, because the
+       surface was built from these vertices */
     struct vertex_embedding *embedding;
     struct relocation_ask *asks; /* requests that wait or are being computed, oldest first */
     uint64_t last_ticket;
@@ -144,7 +145,8 @@ static void end_job(struct relocation *relocation)
     pthread_mutex_unlock(&relocation->lock);
 }
 
-/* Returns the oldest request that is not running, and marks it as running. Returns NULL if no request waits, because it was cancelled. */
+/* Returns the oldest request that is not running, and marks it as running. Returns NULL if no request waits: the one for which this job was
+   submitted was cancelled. */
 static struct relocation_ask *begin_ask(struct relocation *relocation)
 {
     pthread_mutex_lock(&relocation->lock);
@@ -186,7 +188,8 @@ static void solve_next(void *arg)
     end_job(relocation);
 }
 
-/* Reads the surface that plantcast-prep stored. Returns NULL if there is no file, or its content is not valid. */
+/* Reads the surface that plantcast-prep stored in the file relocation->surface_path. Returns NULL if there is no file, or its content is
+   not valid. */
 static struct surface *read_surface(const struct relocation *relocation, struct vertex_embedding **embedding)
 {
     struct cache_file kept = { 0 };

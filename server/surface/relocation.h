@@ -15,7 +15,8 @@ struct relocation;
 /* triangles of an asset's finest level; the arrays must outlive the relocation object */
 struct relocation_shape {
     const float (*positions_m)[3];
-    /* vertex normals, by which vertices of coarser levels are assigned to a side of a wall; NULL: they are assigned to the nearest face */
+    /* vertex normals, which tell on which side of a thin wall a vertex of a coarser level of detail is; NULL: such vertices are assigned to
+       the nearest face */
     const float (*normals)[3];
     size_t vertex_count;
     const uint32_t *triangles; /* three vertex indices each */
@@ -46,7 +47,7 @@ enum relocation_state {
 /* Returns the state of the surface: being built, ready, or impossible to build. */
 enum relocation_state relocation_state(struct relocation *relocation);
 
-/* result of placing a sensor on the asset */
+/* result of relocation_place(): the surface point nearest to the requested position */
 struct relocation_place {
     double surface_m[3]; /* nearest point on the asset; once the surface is built, hidden surfaces inside other parts are excluded */
     double distance_m;   /* distance from the requested point to surface_m, metres */

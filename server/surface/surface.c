@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds a surface for distances from a model's triangles: weld, repair, sample. */
+/* Builds the surface on which distances are computed from a model's triangles: welds vertices, repairs cracks, samples (surface.h). */
 #include "surface/surface.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@
 #define WELD_OF_SIZE 1e-6
 #define TOLERANCE_OF_SIZE 5e-4
 #define SAMPLES 15000.0        /* number of points that sampling aims at, in addition to the model's vertices */
-#define SPACING_GROWTH 1.25    /* factor by which the spacing of samples grows in each attempt, as long as sampling gives too many points */
+#define SPACING_GROWTH 1.25    /* if sampling gives too many points, it is repeated with a spacing larger by this factor */
 #define POINTS_PER_SPACING 2.7 /* number of points that sampling by halving edges gives in a square whose side is the spacing; measured */
 
 static double seconds_since(int64_t *since_ns)
@@ -144,8 +144,8 @@ static size_t sort_hidden(struct trimesh *mesh, char *hidden)
     return front;
 }
 
-/* Merges crossing points (mesh repair inserts one where an edge passes through a face) at the same position. Where two edges cross, each
- * face got a point of its own; two points would leave a crack that paths on the surface go around. */
+/* Merges crossing points (mesh repair inserts one where an edge passes through a face) at the same position. Where two edges cross, repair
+   made a separate point for each face; two points would leave a crack in the surface. */
 static void merge_twins(struct surface *surface, uint32_t *crossings, size_t crossing_count)
 {
     uint32_t *target = mem_array(surface->mesh.point_count, sizeof(*target));

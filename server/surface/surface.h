@@ -1,22 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Geodesic distances on CAD surfaces as they are in practice. Layer: after base and plant; used by plantcast-prep, and by the daemon when a
- * sensor moves.
- * The paper (Kim & Suh 2025, section 3.3) discards the mesh: samples and vertices become a point cloud, kNN connects them, and the heat
- * method runs on that graph. On clean CAD this loses the mesh's connectivity (neighbours reach through thin walls and across narrow slots);
- * on broken CAD it still works. This folder does the following instead:
- * 1. The mesh's connectivity is kept: vertices at one position are welded, repeated faces dropped (trimesh.h).
- * 2. Defects are bridged: borders are joined within one tolerance, and so are parts that touch or cross each other or themselves.
- * Candidates on borders come from the point cloud by kNN (point_cloud.h, repair.h). Triangles inside another closed part, or between two
- * parts that touch face to face, are hidden (parts.h, interior.h).
- * 3. The surface is sampled evenly: edges are split until none is longer than the spacing (trimesh.h).
- * 4. The heat method (Crane, Weischedel, Wardetzky 2013) runs with the cotangent Laplacian of the intrinsic Delaunay triangulation, which
- * has no negative weights inside a patch (intrinsic.h, heat.h). Diffusion time: 3 times the mean edge squared, more where the surface is so
- * long that the heat would underflow. The gradient is taken of the logarithm of heat, which is nearly linear within a triangle, unlike
- * heat.
- * 5. The heat method errs by 0.05 to 0.4 % on average and up to 4 % at borders and ridges. So the distances returned come from propagation
- * over the same triangulation (propagation.h), with errors of 0.01 to 0.12 % on average. surface_check() compares some distances with the
- * heat method, which has only the mesh in common with propagation; the report states differences of more than a few percent. Distances are
- * stored at the model's own vertices. */
+   sensor moves. The paper (Kim & Suh 2025, section 3.3) discards the mesh: samples and vertices become a point cloud, kNN connects them,
+   and the heat method runs on that graph. On clean CAD this loses the mesh's connectivity (neighbours reach through thin walls and across
+   narrow slots); on broken CAD it still works. This folder does the following instead:
+   1. The mesh's connectivity is kept: vertices at one position are welded, repeated faces dropped (trimesh.h).
+   2. Defects are bridged: borders are joined within one tolerance, and so are parts that touch or cross each other or themselves. Pairs of
+   border points to join come from a kNN search in the point cloud (point_cloud.h, repair.h). Triangles inside another closed part, or
+   between two parts that touch face to face, are hidden (parts.h, interior.h).
+   3. The surface is sampled evenly: edges are split until none is longer than the spacing (trimesh.h).
+   4. The heat method (Crane, Weischedel, Wardetzky 2013) runs with the cotangent Laplacian of the intrinsic Delaunay triangulation, which
+   has no negative weights inside a patch (intrinsic.h, heat.h). Diffusion time: 3 times the mean edge squared, more where the surface is so
+   long that the heat would underflow. The gradient is taken of the logarithm of heat, which is nearly linear within a triangle, unlike
+   heat.
+   5. The heat method errs by 0.05 to 0.4 % on average and up to 4 % at borders and ridges. So the distances returned come from propagation
+   over the same triangulation (propagation.h), with errors of 0.01 to 0.12 % on average. surface_check() compares some distances with the
+   heat method, which has only the mesh in common with propagation; the report states differences of more than a few percent. Distances are
+   stored at the model's own vertices. */
 #ifndef SURFACE_SURFACE_H
 #define SURFACE_SURFACE_H
 #include <stdbool.h>
@@ -28,7 +27,7 @@
 
 struct surface;
 
-struct surface_params { /* zero: chosen from the model */
+struct surface_params { /* all zero: the program chooses the values from the model */
     double tolerance_m; /* largest gap in metres that is closed; if the program chooses it, it is smaller at thin parts (parts.h) */
     double spacing_m;   /* maximum length in metres of an edge after sampling */
     char *why;          /* buffer of SURFACE_WHY_BYTES for the reason if no surface can be built; NULL: the reason is logged instead */
@@ -41,7 +40,7 @@ struct surface_report {
     size_t triangles, welded_vertices, degenerate_triangles, repeated_triangles;
     size_t border_edges, border_edges_after; /* number of edges with one face, before and after gaps were bridged */
     size_t components, components_after;     /* number of connected components, before and after gaps were bridged */
-    size_t bridges;                          /* number of points that were joined to another point of the surface */
+    size_t bridges;                          /* number of points that repair joined to another point of the surface */
     double longest_bridge_m;
     int k;                  /* largest number of neighbours that was requested for a point (point_cloud.h); 0: there was no gap to bridge */
     size_t samples;         /* points added */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compares distances with those of the heat method. */
+/* Compares the distances computed by propagation with those of the heat method (surface_check()). */
 #include <stdatomic.h>
 #include <string.h>
 
@@ -10,11 +10,11 @@
 #include "surface/surface_impl.h"
 
 #define TIME_OF_SPACING 3.0 /* diffusion time t of the heat method, in multiples of the squared mean edge length */
-/* upper limit on the size of the surface (largest distance), in multiples of sqrt(t): a larger surface gets a larger t, so that heat does
-   not underflow */
+/* sqrt(t) is at least the size of the surface (largest distance) divided by this: on larger surfaces, t is enlarged so that heat does not
+   underflow */
 #define MAX_DECAY 500.0
 #define MAX_SOURCES 32 /* number of sources that are checked; they are spread evenly over all sources */
-#define BLOCK 8        /* right-hand sides solved together */
+#define BLOCK 8        /* number of sources for which the heat method solves at a time */
 
 /* Returns the approximate size of the surface: in the component with most triangles, the distance from an arbitrary point to the point
  * farthest from it. */

@@ -58,7 +58,7 @@ static void take_rows(const struct solve *solve, const float *block, size_t firs
             solve->field->distances_m[p * solve->field->source_count + first + s] = block[s * points + p];
 }
 
-struct abreast { /* sources whose distances one thread computes alternately, to hide memory latency (PROPAGATION_ABREAST) */
+struct abreast { /* up to PROPAGATION_ABREAST sources whose distances one thread computes alternately, to hide memory latency */
     struct propagation_front fronts[PROPAGATION_ABREAST];
     struct propagation_source from[PROPAGATION_ABREAST];
     size_t source[PROPAGATION_ABREAST], count;
@@ -197,7 +197,8 @@ static struct edge_window sight_of(double ab, double to_a, double to_b)
 }
 
 /* Returns the smaller one of best2 and the squared length of the straight path from the source through the edge to the point. da, db:
- * distances of the edge's ends from the source, which is placed beyond the edge to fit both. A path that misses the edge is ignored. */
+   distances of the edge's ends from the source, which is placed beyond the edge to fit both. Ignores a path that does not pass through the
+   edge. */
 SIMD_BODY float through_edge(const struct edge_window *sight, float da, float db, float best2)
 {
     const float x = sight->x, y = sight->y;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Projects points onto a surface. */
+/* Projects points onto a surface: finds the nearest surface point, optionally with a fitting normal or on given model triangles. */
 #include <math.h>
 #include <string.h>
 
@@ -7,13 +7,13 @@
 #include "surface/surface_impl.h"
 
 #define SPOT_ON_SURFACE 1e-3 /* distance from a triangle below which a point counts as lying on it, in multiples of the mean edge length */
-/* distance from the best triangle so far below which the search for a nearer one ends, in multiples of the mean edge length */
+/* the search ends when a triangle is found within this distance of the point, in multiples of the mean edge length */
 #define ON_PIECE 1e-5
-#define MAX_TRIED_PIECES 24 /* maximum number of surface triangles of one model triangle that are tried one by one */
+#define MAX_TRIED_PIECES 24 /* a model triangle is searched piece by piece if it has at most this many pieces in the surface */
 /* maximum distance of a triangle with a fitting normal, as a multiple of the distance of the nearest triangle, at which the former is
    preferred */
 #define FACING_FACTOR 4.0
-#define ROUNDING 1e-9 /* allowance for rounding errors in a distance, relative to it */
+#define ROUNDING 1e-9 /* relative allowance for rounding errors in a distance */
 
 void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Packs those data of a surface that are slow to compute. surface_unpack() computes all other data again. */
+/* Serialises a surface (surface_store.h): packs only the data that are slow to compute; surface_unpack() computes all other data again. */
 #include "surface/surface_store.h"
 
 #include "base/mem.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the surface point or triangle at the position of each vertex. */
+/* Finds, for each vertex of an asset file, the surface point or triangle at its position (vertex_embedding.h). */
 #include "surface/vertex_embedding.h"
 
 #include <math.h>

@@ -11,8 +11,8 @@
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
 
-/* Fraction of the area matrix M, relative to the component's area, that is added to the Laplacian L. L alone is singular on each connected
-   component; the sum is regular, and distances change by only a millionth. */
+/* This fraction of the area matrix M, divided by the area of the connected component, is added to the Laplacian L. L alone is singular on
+   each connected component of the surface; the sum is regular, and distances change by only a millionth. */
 #define REGULARISATION 1e-6
 
 struct heat {
@@ -94,7 +94,7 @@ static void flow(const struct heat *heat, double *u, double *b)
     const struct intrinsic *in = heat->in;
     memset(b, 0, heat->laplacian.row_count * sizeof(*b));
     for (size_t i = 0; i < heat->laplacian.row_count; i++)
-        u[i] = -log(max_of(u[i], DBL_MIN)); /* Varadhan: distance divided by sqrt(t) */
+        u[i] = -log(max_of(u[i], DBL_MIN)); /* approximates distance / sqrt(t), by Varadhan's formula */
     for (size_t t = 0; t < in->tri_count; t++) {
         const struct laplacian_slope *s = &heat->laplacian.slopes[t];
         const uint32_t r0 = heat->laplacian.row_of[in->points[t][0]], r1 = heat->laplacian.row_of[in->points[t][1]],

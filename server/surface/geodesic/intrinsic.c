@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Connects triangles to patches across edges with two faces, and flips these edges until the triangulation is Delaunay (as far as edges can
- * be flipped). */
+/* Builds the intrinsic Delaunay triangulation (intrinsic.h): connects triangles to patches across edges with two faces, and flips these
+   edges until the triangulation is Delaunay, as far as edges can be flipped. */
 #include "surface/geodesic/intrinsic.h"
 
 #include <math.h>
@@ -40,8 +40,8 @@ static uint32_t turned_side(uint32_t side, const signed char *facing)
     return facing[side / 3] < 0 ? side - side % 3 + 2 - side % 3 : side;
 }
 
-/* Glues (connects for flips) the two sides at each edge with two faces, if they run in opposite directions. Sides that run in the same
- * direction, as on a Moebius strip, stay unglued, so their edge is never flipped. */
+/* Records in in->glue, for each edge with two faces, that its two sides are adjacent, if they run in opposite directions. Sides that run in
+   the same direction, as on a Moebius strip, are not recorded, so their edge is never flipped. */
 static void glue_sides(struct intrinsic *in, const struct tri_edges *edges, const signed char *facing)
 {
     for (uint32_t side = 0; side < 3 * in->tri_count; side++) {

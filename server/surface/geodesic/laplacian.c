@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Assembles finite element matrices from the contributions of single triangles. */
+/* Assembles the finite element matrices of the heat method (laplacian.h) from the contributions of single triangles. */
 #include "surface/geodesic/laplacian.h"
 
 #include <dlfcn.h>
@@ -48,7 +48,7 @@ static void measure(struct laplacian *laplacian)
     for (size_t t = 0; t < in->tri_count; t++) {
         double x, y, a = in->lengths[t][0];
         intrinsic_layout(in->lengths[t], &x, &y);
-        y = max_of(y, 1e-6 * a); /* a triangle that rounding flattened */
+        y = max_of(y, 1e-6 * a); /* limits the height of a triangle that rounding made flat, because it is divided by below */
         laplacian->slopes[t] = (struct laplacian_slope){ .x1 = 1 / a, .y1 = -x / (a * y), .y2 = 1 / y, .area = a * y / 2 };
         for (int i = 0; i < 3; i++)
             laplacian->mass_m2[laplacian->row_of[in->points[t][i]]] += a * y / 6;
@@ -99,7 +99,8 @@ cholmod_sparse *laplacian_assemble(const struct laplacian *laplacian, const doub
                 rows[n] = a > b ? a : b;
                 columns[n] = a > b ? b : a;
                 values[n] = stiffness * s->area * (gx[i] * gx[j] + gy[i] * gy[j]);
-                if (i != j && a == b) /* edge flips can create an edge from a point to itself, whose weight counts for both corners */
+                /* edge flips can create an edge from a point to itself, whose matrix element counts for both corners */
+                if (i != j && a == b)
                     values[n] *= 2;
             }
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prepares a mesh for propagation: builds the fan of triangles around each point. */
+/* Prepares a mesh for the propagation of distances: lists the triangles around each point in order (its fan). */
 #include "surface/geodesic/propagation.h"
 
 #include <string.h>
@@ -13,8 +13,8 @@
 #define STEPS_PER_EDGE 512.0
 #define NEAR_EDGES 5.0
 #define MAX_BUCKETS (1u << 16)
-/* maximum number of triangles that are tested in the search for the triangle adjacent to the last one of a row; if none of these is
- * adjacent, the row ends */
+/* maximum number of triangles tested to find the one adjacent to the last triangle of a row around a point; if none is adjacent, the row
+   ends */
 #define MAX_TRIED 64
 
 /* Returns the corners of triangle t: a triangle of the intrinsic triangulation, or, for indices after those, an interior (hidden) triangle.

@@ -7,7 +7,7 @@
 
 #define PROPAGATION_FAN 8 /* number of neighbours of a point that are processed together, one per lane of a vector register */
 
-/* data about a mesh that all propagations share: the fan of neighbours and triangles around each point */
+/* Data about a mesh that all propagations share: around each point, its neighbours and triangles in angular order (fans). */
 struct propagation {
     const struct trimesh *mesh;
     const struct intrinsic *in;
@@ -24,19 +24,19 @@ struct propagation {
     } * fans;
     size_t fan_count, fan_capacity;
     char *hidden;      /* by point: 1 if the point belongs to no visible triangle */
-    float steps_per_m; /* buckets per metre of distance */
+    float steps_per_m; /* number of buckets of the priority queue per metre of distance */
     double near_m;     /* radius around the source within which points are tested for a straight line of sight to the source */
     uint32_t bucket_count;
 };
-/* Builds the fans. Visible triangles (the first visible_count) are used in their intrinsic Delaunay form, which has few obtuse ones.
- * Propagation continues from visible into interior (hidden) triangles, so that a triangle that passes through a surface also has distances
- * at its hidden end. It never returns from interior to visible triangles. mesh and in must outlive the propagation. Free with
- * propagation_finish(). */
+/* Builds the fans (neighbours and triangles around each point). Visible triangles (the first visible_count) are used in their intrinsic
+   Delaunay form, which has few obtuse ones. Propagation continues from visible into interior (hidden) triangles, so that a triangle that
+   passes through a surface also has distances at its hidden end. It never returns from interior to visible triangles. mesh and in must
+   outlive the propagation. Free with propagation_finish(). */
 void propagation_init(struct propagation *propagation, const struct trimesh *mesh, size_t visible_count, const struct intrinsic *in);
 /* Frees the fans. */
 void propagation_finish(struct propagation *propagation);
 
-/* state of one propagation, used by one thread; initialise with zeros; may be reused */
+/* State of one propagation (from one source), used by one thread. Initialise with zeros; may be reused for further sources. */
 struct propagation_front {
     float *distance_m; /* per point; INFINITY: not reached */
     float *straight_m; /* by point: straight-line distance from the source in metres */

@@ -11,10 +11,11 @@
 /* smallest barycentric weight of a source; if the source lies on a corner or edge, it is moved into the triangle so that all weights have
    at least this value */
 #define MIN_WEIGHT 1e-6
-/* fraction of the way from a corner to the middle of the opposite side; a straight line aims there to check that the triangles reach the
- * corner */
+/* A straight line that checks whether triangles reach a corner aims at a point near that corner: at this fraction of the way from the
+   corner to the middle of the opposite side. */
 #define CORNER_OFFSET 1e-3
-/* number of buckets out of order in which points may be processed; distances are final up to the current one plus this many buckets */
+/* Points whose distances differ by up to this many buckets of the priority queue may be processed in any order. Distances count as final up
+   to the current bucket plus this many. */
 #define ANY_ORDER 2
 #define MAX_DEPTH 32     /* maximum number of triangles through which a straight line near the source is followed */
 #define NO_LENGTH 1e-300 /* avoids division by 0 */
@@ -78,7 +79,7 @@ static inline void offer(const struct propagation *propagation, struct propagati
         return;
     if (front->item_count == front->item_capacity)
         mem_grow(&front->items, &front->item_capacity, front->item_count + 1, sizeof(*front->items));
-    /* conversion to unsigned by way of int64_t, which takes a single instruction; correct, because the value is not negative */
+    /* converts by way of int64_t, which takes a single instruction; correct, because the value is not negative */
     uint64_t number = (uint64_t)(int64_t)(distance_m * propagation->steps_per_m);
     uint32_t *bucket = &front->buckets[(number > front->at ? number : front->at) & (propagation->bucket_count - 1)];
     front->items[front->item_count] = (struct propagation_item){ point, *bucket };
@@ -151,7 +152,7 @@ SIMD_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes 
     choose(&less, &through, &along, out);
 }
 
-/* Progress of a front. */
+/* State of a front (the propagation from one source) while its current point is processed. */
 struct front_turn {
     struct propagation_front *front;
     /* fan being processed (up to PROPAGATION_FAN neighbours of the current point), and end of the current point's fans */
@@ -160,7 +161,7 @@ struct front_turn {
     lanes d, reached;
     uint32_t empty;                   /* number of consecutive empty buckets */
     float offered_m[PROPAGATION_FAN]; /* offers to the fan's points */
-    uint32_t takes;                   /* bit mask of lanes whose neighbour's distance the offer lowers */
+    uint32_t takes;                   /* bit mask of lanes in which the offered distance is shorter than the neighbour's present distance */
 };
 
 /* Takes the next point from the buckets and makes its fans (neighbours and triangles around it) the current ones. Returns false if all
@@ -270,13 +271,14 @@ static void look_through(const struct propagation *propagation, struct propagati
     }
 }
 
-/* triangle placed in a plane in which the source is at (0, 0) */
+/* a triangle unfolded into a plane in which the source is at (0, 0) */
 struct laid {
     uint32_t tri; /* number in the intrinsic triangulation */
     double corners[3][2];
 };
 
-/* Places in the plane a triangle none of whose edges was flipped. given: its corners in the mesh. Returns false if an edge was flipped. */
+/* Unfolds the source's triangle into the plane. given: its corners in the mesh. Returns false if one of the triangle's edges was flipped:
+   then `given` is not a triangle of the intrinsic triangulation. */
 static bool lay_out_kept(const struct intrinsic *in, const uint32_t given[3], uint32_t tri, const double weights[3], struct laid *laid)
 {
     const uint32_t *v = in->points[tri];
@@ -378,8 +380,8 @@ static bool lay_out_flipped(const struct propagation *propagation, const uint32_
     return false;
 }
 
-/* Sets the distances of points near the source that a straight line on the unfolded surface reaches. Propagation alone would be wrong
- * there: a ray may pass between two points that are farther from the source than the ray's end, so they are processed after it. */
+/* Sets the exact distances of points near the source that a straight line on the unfolded surface reaches. Propagation alone would be wrong
+   there: a ray may pass between two points that are farther from the source than the ray's end, so they are processed after it. */
 static void look_around(const struct propagation *propagation, struct propagation_front *front, uint32_t tri, const double weights[3])
 {
     const struct intrinsic *in = propagation->in;

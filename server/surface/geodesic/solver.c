@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Solves with cholmod_solve2(), whose work memory is reused from call to call. */
+/* Solves linear systems with cholmod_solve2(), and reuses its working memory from call to call. */
 #include "surface/geodesic/solver.h"
 
 #include <string.h>

@@ -23,11 +23,10 @@ struct bvh_place {
 void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
                  const void *arg, struct bvh_place *place);
 
-/* Sets the label of each triangle of the mesh, for bvh_nearest_other() and similar queries. The array `label` must outlive the
-   hierarchy. */
+/* Sets a number (label) for each triangle of the mesh, for bvh_nearest_unlike(). The array `label` must outlive the hierarchy. */
 void bvh_set_labels(struct bvh *bvh, const uint32_t *label);
-/* Finds the nearest point as bvh_nearest() does, on triangles with another label than this one. Skips nodes whose triangles all have this
-   label. */
+/* Finds the nearest point as bvh_nearest() does, on triangles whose label (bvh_set_labels) differs from `label`. Skips nodes whose
+   triangles all have this label. */
 void bvh_nearest_unlike(const struct bvh *bvh, const double point[3], double limit_m, uint32_t label,
                         bool (*allowed)(const void *arg, uint32_t tri), const void *arg, struct bvh_place *place);
 

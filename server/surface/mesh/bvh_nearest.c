@@ -11,13 +11,13 @@
 #include "base/mem.h"
 #include "surface/mesh/bvh_impl.h"
 
-/* margin by which float boxes are larger, relative to the largest coordinate: four rounding errors, so that each point of the double box is
-   also in the float box */
+/* margin by which bounding boxes are enlarged when they are converted from double to float, relative to the largest coordinate: four
+   rounding errors */
 #define BOX_MARGIN 2.4e-7
-#define MARGIN 1e-5 /* margin for comparing squared distances in floats, relative to them; much larger than the rounding error */
+#define MARGIN 1e-5 /* relative margin for comparing squared distances in floats; much larger than their rounding error */
 /* smallest squared area of a triangle, relative to the squares of its sides, at which barycentric weights are exact to eight digits */
 #define EXACT_AREA 1e-8
-/* barycentric weight above which a weight is certainly positive despite rounding errors, if the triangle's area exceeds EXACT_AREA */
+/* a computed barycentric weight above this is certainly positive despite rounding errors, if the triangle's area exceeds EXACT_AREA */
 #define SURELY_POSITIVE 1e-6
 
 static void weights_on_edge(const double p[3], const double a[3], const double b[3], double *wa, double *wb)
@@ -202,7 +202,7 @@ struct nearest_search {
     struct bvh_place *place;
 };
 
-/* Returns the squared limit as a float, rounded up so that float arithmetic never excludes a point within the limit. */
+/* Returns the squared search limit as a float, rounded up so that float arithmetic never excludes a point within the limit. */
 static inline float in_floats(double best2)
 {
     double most = best2 * (1 + MARGIN) + (double)FLT_MIN;

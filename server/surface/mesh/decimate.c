@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Collapses edges onto one of their ends where this leaves the shape of the surface unchanged and only lowers the number of triangles. */
+/* Decimates a mesh (decimate.h): collapses an edge onto one of its ends where this only lowers the number of triangles and leaves the shape
+   of the surface unchanged. */
 #include "surface/mesh/decimate.h"
 
 #include <string.h>
@@ -7,7 +8,7 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define MAX_STAR 48 /* maximum number of triangles around a point that may be removed; points with more triangles stay */
+#define MAX_STAR 48 /* only points with at most this many triangles around them are removed */
 /* smallest height of a triangle that a collapse creates, relative to its longest side, unless the triangle that it replaces was thinner */
 #define MIN_HEIGHT 0.02
 #define ROUNDING_OF_AREA 1e-9
@@ -45,7 +46,7 @@ static uint32_t corner_of(const struct thin *thin, const struct star_face *face,
     return thin->mesh->tris[face->tri][(face->corner + after) % 3];
 }
 
-/* Collects the triangles around a point. Returns false if there are none, or more than MAX_STAR. */
+/* Collects the star of a point: the triangles around it. Returns false if there are none, or more than MAX_STAR. */
 static bool collect_star(const struct thin *thin, uint32_t point, struct star *star)
 {
     star->point = point;
@@ -88,8 +89,8 @@ static bool same_part(const struct thin *thin, uint32_t s, uint32_t t)
     return thin->params->part[s] == thin->params->part[t];
 }
 
-/* Returns whether collapsing an edge changes neither the visible nor the hidden area of any part. grown: by triangle around the removed
-   point, the change of its doubled area. enough: tolerance. */
+/* Returns whether collapsing an edge changes neither the visible nor the hidden area of any part. grown: change of the doubled area of each
+   triangle around the removed point. enough: tolerance of the sum of these changes. */
 static bool keeps_areas(const struct thin *thin, const struct star *star, const double grown[MAX_STAR], double enough)
 {
     for (size_t i = 0; i < star->count; i++) {
@@ -205,7 +206,7 @@ static void list_corners(struct thin *thin)
     }
 }
 
-/* Removes deleted triangles and points. */
+/* Removes the triangles and points that are marked as deleted from the mesh's arrays, and renumbers the others. */
 static void compact(struct thin *thin, uint32_t *target)
 {
     struct trimesh *mesh = thin->mesh;

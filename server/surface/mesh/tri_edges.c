@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Collects edges with a hash table, and finds the triangle on the other side of an edge. */
+/* Collects the edges of triangles in a hash table, finds the triangle on the other side of an edge, and orients triangles. */
 #include "surface/mesh/tri_edges.h"
 
 #include "base/mem.h"

@@ -257,7 +257,7 @@ static uint32_t tri_number(struct edge_table *pairs, struct edge_table *seen, co
     uint32_t v[3] = { tri[0], tri[1], tri[2] };
     sort3(v);
     uint32_t pair = edge_table_add(pairs, v[0], v[1]);
-    /* the table ignores the order of its two keys, so keys that contain a pair are even and keys of single points are odd */
+    /* the table ignores the order of its two keys, so keys from pairs are made even and keys from single points odd */
     return edge_table_add(seen, pair * 2u, v[2] * 2u + 1u);
 }
 
@@ -364,8 +364,8 @@ double trimesh_tri_area(const struct trimesh *mesh, size_t tri)
     return vec_length(n) / 2;
 }
 
-/* Points inserted on edges. By index of the edge: the first inserted point, and the number of equal parts into which the points divide the
- * edge. The points of an edge have consecutive indices, from the edge's end with the lower index. */
+/* Points that sampling inserts on edges. first, parts: by index of the edge, its first inserted point, and the number of equal parts into
+   which the points divide the edge. The points of an edge have consecutive indices, from the edge's end with the lower index. */
 struct cuts {
     struct edge_table edges;
     uint32_t *first, *parts;
@@ -396,7 +396,7 @@ static void cut_edge(struct trimesh *mesh, struct cuts *cuts, uint32_t a, uint32
     }
 }
 
-/* Lists the points along the edge from a to b, including a, excluding b. Returns their number. */
+/* Lists the points along the edge from a to b, inserted ones included, with a but without b. Returns their number. */
 static size_t side_points(const struct cuts *cuts, uint32_t a, uint32_t b, uint32_t *out)
 {
     uint32_t e = edge_table_find(&cuts->edges, a, b);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangle mesh with shared points, whose edges may have any number of faces. Surfaces have this form from welding to the computation of
- * distances. Thread: one; a const mesh can be read from any. */
+/* Triangle mesh with shared points, whose edges may have any number of faces. All steps of building a surface (surface.h), from welding to
+   sampling, work on such a mesh. Thread: one; a const mesh can be read from any. */
 #ifndef SURFACE_MESH_TRIMESH_H
 #define SURFACE_MESH_TRIMESH_H
 #include <stdbool.h>
@@ -44,8 +44,8 @@ void trimesh_add_tri(struct trimesh *mesh, uint32_t a, uint32_t b, uint32_t c, u
 /* Writes to target[point] the index of an earlier point within within_m of the point, or the point's own index if there is none. A point
  * that is another's target is its own target. Returns false if out of memory. */
 bool trimesh_find_twins(const struct trimesh *mesh, double within_m, uint32_t *target);
-/* Replaces each point i by target[i], and drops triangles that lost their area (adding to *degenerate) or became duplicates (adding to
- * *repeated). */
+/* Replaces each point i by point target[i]. Drops triangles that lost their area (adds their number to *degenerate) or became duplicates
+   (adds to *repeated). */
 void trimesh_rename(struct trimesh *mesh, const uint32_t *target, size_t *degenerate, size_t *repeated);
 
 /* Adds points until no edge is longer than spacing_m or the mesh has point_limit points. First halves triangles whose height exceeds

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds border edges (edges with one face), and edges that became borders because triangles at them were hidden. */
+/* Finds the border edges of a mesh (edges with one face), or only those that became borders because neighbouring triangles were hidden. */
 #include "surface/repair/borders.h"
 
 #include <math.h>

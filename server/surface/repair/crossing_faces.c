@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tests pairs of faces. Two faces do not cross if the plane of one separates them. They do not cross either if the line where one cuts the
- * plane of the other lies beyond one of the other's sides. */
+/* Finds faces of a model that may cross other faces (crossing_faces.h), by testing pairs. Two faces do not cross if the plane of one face
+   separates them, or if the segment in which one face cuts the plane of the other is outside one side of that other face. */
 #include "surface/repair/crossing_faces.h"
 
 #include "base/math/vec.h"
 #include "base/mem.h"
 #include "surface/mesh/bvh.h"
 
-/* rounding allowance relative to the largest coordinate: much larger than the distance by which surface sampling moves a point */
+/* allowance for rounding errors of positions, relative to the largest coordinate */
 #define ROUNDING 1e-10
-/* minimum height of a face above its longest side, relative to the model's size; for flatter faces, the computed plane is not reliable */
+/* faces whose height above the longest side is smaller than this (relative to the model's size) are slivers: their computed plane is not
+   reliable */
 #define SLIVER 1e-5
 #define BESIDE 1e-4 /* allowance for rounding errors in the intersection of a face with a plane, relative to the face's longest side */
 

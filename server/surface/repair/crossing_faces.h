@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the faces of a model that may pass through others, before the surface is sampled. Sampling cuts each face into pieces (dozens in a
- * coarse model), and only the pieces of these faces need to be tested against each other. */
+/* Finds the faces of a model that may pass through others, before the surface is sampled. Sampling later cuts each face into pieces (dozens
+   in a coarse model), and only pieces of the faces found here must be tested for crossings. */
 #ifndef SURFACE_REPAIR_CROSSING_FACES_H
 #define SURFACE_REPAIR_CROSSING_FACES_H
 #include "surface/repair/parts.h"
 
-/* minimum distance of both ends of an edge from the plane of a face, for the edge to cross the face if both belong to one part; as a
-   fraction of the part's reach (distance up to which it counts as touching, parts.h) */
+/* An edge counts as crossing a face of its own part only if both its ends are at least this far from the face's plane. Unit: the part's
+   reach (distance up to which it counts as touching, parts.h). */
 #define CROSSING_CLEAR 0.05
 
 /* Returns an array by model triangle: 1 if an edge of its triangles in parts->solid may pass through another face, else 0. May flag a face

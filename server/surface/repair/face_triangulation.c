@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Inserts points into the triangulation of one face, and edges between these points. */
+/* Inserts points, and edges between these points, into the triangulation of one face of the mesh (face_triangulation.h). */
 #include "surface/repair/face_triangulation.h"
 
 #include <math.h>
@@ -9,8 +9,8 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define ON_EDGE 1e-9 /* largest barycentric weight of a corner at which a point counts as lying on the opposite edge */
-#define ON_WAY 1e-6  /* maximum distance of a point from a straight line at which it counts as on the line, relative to the line's length */
+#define ON_EDGE 1e-9 /* a point lies on an edge if the barycentric weight of the opposite corner is at most this */
+#define ON_WAY 1e-6  /* a point within this distance of a straight line, relative to the line's length, counts as on the line */
 
 void face_triangulation_finish(struct face_triangulation *face)
 {

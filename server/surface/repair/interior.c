@@ -11,8 +11,8 @@
 
 #define RAYS 5
 #define RAYS_INSIDE 4 /* minimum number of rays, out of RAYS, by which a point must be inside a part to count as inside */
-/* a region is a set of points connected without passing another part. One in VOTE_EVERY triangles of a region is tested; if the results
-   agree, they hold for the whole region */
+/* A region is a set of points that are connected without passing another part. Only one in VOTE_EVERY triangles of a region is tested for
+   being inside; if the results agree, they hold for the whole region. */
 #define VOTE_EVERY 16
 /* distance of test points from a triangle that lies on another part's surface, to both sides; in multiples of the reach (distance up to
    which a part counts as touching, parts.h) */
@@ -41,7 +41,7 @@ struct solids {
     struct solid *at;
     size_t count;
     uint32_t (*tris)[3];    /* triangles of all parts, sorted by part */
-    signed char *sides;     /* the same for sides */
+    signed char *sides;     /* orientations of all these triangles (body_parts.side), in the same order */
     struct solid **of_part; /* by part: the part's entry in `at`; NULL: the part is not closed */
 };
 
@@ -115,7 +115,7 @@ struct interior_search {
     char *hidden;
 };
 
-/* directions of the test rays; the numbers are irregular, because hardly any model has faces along such directions */
+/* directions of the test rays; irregular numbers, so that hardly any model has faces parallel to them */
 static const double directions[RAYS][3] = {
     { 0.3572, 0.6129, 0.7048 },    { -0.7741, 0.2417, 0.5851 }, { 0.1693, -0.8846, 0.4345 },
     { -0.4419, -0.3251, -0.8361 }, { 0.8523, 0.2951, -0.4318 },
@@ -229,8 +229,8 @@ static char is_hidden_by(const struct interior_face *face, const struct solid *s
     double length = vec_length(n);
     for (int axis = 0; axis < 3; axis++)
         n[axis] /= length;
-    /* lies: the tested face lies on a face of the part; flush: it may lie on it, as far as that can be known, because the normal of a
-       sliver is arbitrary */
+    /* lies: the tested face lies on a face of the part, by their normals; flush: the same, but true also for slivers, whose normals are
+       arbitrary */
     bool lies = fabs(vec_dot(n, face->normal)) > FLUSH, flush = lies || face->height_m < SLIVER * reach_m;
     if (face->own && flush && is_between(face, n, solid, face->own, BESIDE * reach_m, BARELY * reach_m))
         return INTERIOR_INSIDE;
@@ -350,9 +350,9 @@ static void ask(struct interior_search *search, struct workers *workers, const s
     workers_for(workers, count, 256, search_some, search);
 }
 
-/* Corrects regions (sets of connected points) in which only a sample of the triangles was tested, and a few others differ. Wherever hidden
-   and visible triangles of a region meet at a point, tests all triangles at that point. Repeats this until all triangles at such points are
-   tested. */
+/* Corrects regions (sets of connected points) in which only some triangles were tested, and a few untested ones differ from these. Wherever
+   hidden and visible triangles of a region meet at a point, tests all triangles at that point. Repeats this until all triangles at such
+   points are tested. */
 static void ask_beside(struct interior_search *search, struct workers *workers, const char *mixed, size_t *asked, char *was_asked)
 {
     const struct trimesh *mesh = search->mesh;
@@ -379,7 +379,7 @@ static void ask_beside(struct interior_search *search, struct workers *workers, 
     mem_free(kinds);
 }
 
-struct region_vote { /* votes of a region */
+struct region_vote { /* results of the tests in one region: number of its triangles, tested ones, and hidden ones */
     size_t seen, asked, hidden;
     char most;
 };

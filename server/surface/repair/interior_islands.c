@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hides small groups of visible triangles that are left among hidden ones. */
+/* Decides about visible triangles that are left among hidden ones: hides small groups (interior_islands), and resolves INTERIOR_ACROSS. */
 #include <math.h>
 
 #include "base/math/vec.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tests whether a point of one surface faces another surface. */
+/* Finds the point of another body that a point of the mesh faces (line_of_sight.h). */
 #include "surface/repair/line_of_sight.h"
 
 #include <math.h>
@@ -99,8 +99,8 @@ static void block(void *arg, uint32_t tri, double t)
     ray->is_blocked = ray->is_blocked || (t > NEXT_TO && t < 1 + NEXT_TO && ray->sight->body[tri] == ray->own);
 }
 
-/* Returns whether the point's own body blocks the view of the other point. Without this test, a wall between two bodies of one part would
- * be joined to objects behind one of these bodies. */
+/* Returns whether the body `own` of the point `from` blocks the view along `way` to the other point. Without this test, a wall between two
+   bodies of one part would be joined to objects behind one of these bodies. */
 static bool is_blocked(const struct line_of_sight *sight, const double from[3], const double way[3], uint32_t own)
 {
     struct sight_ray ray = { sight, own, false };

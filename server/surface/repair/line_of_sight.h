@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the point of another body that a point faces. Mesh repair joins thin parts to the bodies that they face. It does so beyond the
- * parts' reach (distance up to which a part counts as touching), which is only half of their thickness. */
+/* Finds the point of another body that a point faces. Mesh repair joins thin parts to the bodies that they face. It does so even beyond the
+   parts' reach (distance up to which a part counts as touching), which is only half of a thin part's thickness. */
 #ifndef SURFACE_REPAIR_LINE_OF_SIGHT_H
 #define SURFACE_REPAIR_LINE_OF_SIGHT_H
 #include "surface/mesh/bvh.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Inserts points into edges and faces of the mesh, and triangulates the triangles that contain them again. */
+/* Applies a batch of edits (mesh_edit.h): inserts points into edges and faces of the mesh, and divides the faces concerned into new
+   triangles. */
 #include "surface/repair/mesh_edit.h"
 
 #include <math.h>
@@ -71,7 +72,8 @@ static void find_targets(const struct mesh_edit *edit, size_t point_count, uint3
         target[i] = trimesh_root(target, i);
 }
 
-struct crossing_lists { /* insertions grouped for lookup: by edge, sorted by t from the edge's end with the lower index; and by triangle */
+/* insertions of points, grouped by edge (sorted by their position from the end with the lower index) and by triangle */
+struct crossing_lists {
     struct edge_table edges;
     /* by edge index (edge_first) or triangle (tri_first): index of its first insertion; one additional element at the end */
     uint32_t *edge_first, *tri_first;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A batch of edits that join a mesh to itself: points to merge, points to insert into edges or faces, edges to add. Edits are collected
- * first, and mesh_edit_apply() applies them together. */
+/* A batch of edits by which mesh repair joins parts of one mesh: points to merge, points to insert into edges or faces, edges to add. Edits
+   are collected first, and mesh_edit_apply() applies them together. */
 #ifndef SURFACE_REPAIR_MESH_EDIT_H
 #define SURFACE_REPAIR_MESH_EDIT_H
 #include "surface/mesh/trimesh.h"

@@ -10,8 +10,8 @@
 #include "base/mem.h"
 #include "surface/repair/parts_impl.h"
 
-/* a wall is a face where two bodies touch. Minimum fraction of its area whose triangles must occur twice in the model; below 1, because a
-   slit in one of the two layers leaves single triangles */
+/* A wall is a face where two bodies touch, so its triangles occur twice in the model. At least this fraction of its area must; below 1,
+   because a slit in one of the two layers leaves single triangles. */
 #define MIN_DOUBLED_SHARE 0.75
 #define OF_THICKNESS 0.5
 #define MIN_REACH 0.05 /* smallest reach, in tolerances */
@@ -50,8 +50,8 @@ static void face_outwards(struct parts_finding *f)
 }
 
 /* Finds walls: faces where two bodies touch with identical vertices, so that welding left one face of two. A wall is a patch (triangles
- * connected by edges with two faces) that ends at edges with three or more faces. Its triangles occur twice as often in the model as the
- * others of its part. Walls, and fins that stand on a surface, bound nothing: sets their side to 0. */
+   connected by edges with two faces) that ends at edges with three or more faces. Its triangles occur twice as often in the model as the
+   others of its part. Walls, and fins that stand on a surface, are no boundary of a body: sets body_parts.side to 0 for them. */
 static void drop_walls(struct parts_finding *f, const uint32_t *times)
 {
     struct body_parts *parts = f->parts;

@@ -5,15 +5,16 @@
 #include "surface/mesh/trimesh.h"
 
 /* A part is a set of triangles connected by edges (sharing a point is not enough). A patch is a set of triangles connected by edges with
- * exactly two faces. An edge may have more faces, two of which belong to one patch. The other faces then only stand on that patch, like a
- * fin. This does not make two closed bodies one part. */
+   exactly two faces. An edge may have more faces, two of which belong to one patch. The other faces then only stand on that patch, like a
+   fin. Such an edge does not make two closed bodies one part. */
 struct body_parts {
     struct trimesh solid;
     uint32_t *of_tri; /* part of each triangle of `solid` */
     /* by triangle of `solid`: 1 if its winding faces outwards, -1 if reversed; 0: the triangle bounds nothing (a wall between two bodies,
      * or a fin: a sheet that stands on a body) */
     signed char *side;
-    /* by model triangle: its part, and its body; the two differ only where a few edges join two bodies to one part by mistake */
+    /* by model triangle: number of its part, and number of its body. Part and body differ only where a few edges join two bodies to one
+       part by mistake of the model */
     uint32_t *of_source, *body_of_source;
     signed char *side_of_source; /* per model triangle: side */
     char *closed;                /* by part: 1 if it is closed, which means that its open edges are short compared with its size */

@@ -14,7 +14,9 @@ struct parts_finding {
         /* open_m: total length of the patch's edges with one face; branching_m: total length of its edges with three or more faces, of
          * which only one belongs to the patch */
         double open_m, branching_m, area_m2;
-        double doubles_m2; /* area of triangles that the model contains at least twice as often as the rarest triangle of the part */
+        /* area of those triangles of the patch that occur in the model at least twice as often as the part's triangle that occurs least
+           often */
+        double doubles_m2;
         bool loose;        /* true: the patch is open and only stands on other patches, like a fin on a tube */
     } * patches;
 };

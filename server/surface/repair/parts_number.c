@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds which triangles make up a part: patches (triangles connected by edges with two faces), fins that stand on them, and how patches are
- * connected. */
+/* Divides the mesh into parts (parts.h): finds patches (triangles connected by edges with two faces), fins that stand on patches, and which
+   patches form a part. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,11 +9,11 @@
 #include "base/mem.h"
 #include "surface/repair/parts_impl.h"
 
-/* maximum total length of the open edges of a part that still counts as closed, relative to the square root of its area: more than the
-   remnants of a hair gap, less than the end of a pipe */
+/* A part counts as closed if its open edges are together at most this long, relative to the square root of its area: longer than the
+   remnants of a hair gap, shorter than the rim of a pipe's end. */
 #define MAX_OPEN_OF_SIZE 0.05
-/* maximum total length of all edges at which a patch (triangles connected by edges with two faces) ends, relative to the square root of its
-   area, for the patch to count as a body of its own */
+/* A patch (triangles connected by edges with two faces) counts as a body of its own if the edges at which it ends are together at most this
+   long, relative to the square root of its area. */
 #define MAX_BODY_OPEN_OF_SIZE 0.5
 
 static double edge_length(const struct trimesh *mesh, size_t t, int i)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Closes seams: gaps between border edges (edges with one face), including edges that became borders because triangles at them were
- * hidden. */
+/* Mesh repair: closes seams, which are gaps between border edges (edges with one face), also between edges that became borders because
+   triangles next to them were hidden. */
 #include "surface/repair/repair.h"
 
 #include <math.h>
@@ -16,8 +16,8 @@
 
 #define GAP_OF_EDGE 0.45 /* maximum distance of two points that are merged, as a fraction of the shortest edge at either point */
 #define EXACT_OF_TOLERANCE 0.01
-/* maximum deviation from a straight line that welding may cause, in multiples of the tolerance; distinct points of a border are farther
-   apart */
+/* a border counts as straight if it deviates from a line by at most this, in multiples of the tolerance; welding may cause such deviations,
+   and different points of a border are farther apart */
 #define STRAIGHT 0.1
 /* minimum cosine between the directions of two faces for them to count as lying on each other, and of two edges to count as running along
    each other */
@@ -33,7 +33,7 @@ struct seams {
        round */
     double tolerance_m, end_m;
     bool fits;            /* true: the current round closes exact fits only, in which the gap is nearly zero */
-    struct nearest_edge { /* by border point: the nearest position on those border edges that do not end at the point */
+    struct nearest_edge { /* by border point: the nearest position on the border edges, except those that end at the point */
         double distance_m, t;
         uint32_t edge;
     } * nearest;
@@ -64,8 +64,8 @@ static bool lie_on_each_other(const struct seams *s, uint32_t e, uint32_t f)
 }
 
 /* Returns whether merging border points i and j would join an edge of one with an edge of the other although their faces lie on each other.
- * Such faces belong to two bodies that touch. Joining them would use up the edges, so that neither body could be joined to the surface on
- * the other side of the gap. */
+   Such faces belong to two bodies that touch. If they were joined, their edges would be no borders any more, so that neither body could be
+   joined to the surface on the other side of the gap. */
 static bool would_fold(const struct seams *s, size_t i, size_t j)
 {
     const struct borders *b = s->borders;
@@ -102,8 +102,9 @@ static uint32_t beyond(const struct seams *s, uint32_t n, uint32_t p)
     return edge[edge[0] == p];
 }
 
-/* Returns whether the border at point p runs along edge e, which means that a neighbour of p on the border is on the line of e too. A
- * single point may be near an edge by chance, where cracks are many. towards: required direction of the border from p; NULL: either. */
+/* Returns whether the border at point p runs along edge e, which means that a neighbour of p on the border is on the line of e too.
+   Required because a single point may be near an edge by chance in a model with many cracks. towards: required direction of the border from
+   p; NULL: either. */
 static bool runs_along(const struct seams *s, uint32_t p, uint32_t e, const double towards[3], double within_m)
 {
     const struct borders *b = s->borders;
@@ -140,8 +141,8 @@ static bool have_an_edge(const struct seams *s, uint32_t p, uint32_t q)
     return false;
 }
 
-/* Returns whether p, distance_m away from an end of edge e, counts as that end. Hanging vertices (vertices on an edge of which they are no
- * end) in one line stay separate points, however near each other they are. */
+/* Returns whether point p, at distance_m from an end of edge e, is treated as that end of the edge. Hanging vertices (vertices on an edge
+   of which they are no end) in one line stay separate points, however near each other they are. */
 static bool is_at_end(const struct seams *s, uint32_t p, uint32_t e, uint32_t end, double distance_m, double length_m)
 {
     if (distance_m > max_of(REPAIR_AT_END * length_m, s->end_m))
@@ -271,7 +272,7 @@ void repair_join_points(struct trimesh *mesh, double tolerance_m, uint32_t *targ
 
 /* --- rims ------------------------------------------------------------------------------------------------------------------- */
 
-/* Copies to `to` the triangles with hidden[tri] == which. */
+/* Copies the triangles with hidden[tri] == which to the mesh `to`. */
 static void copy_triangles(struct trimesh *to, const struct trimesh *from, const char *hidden, char which)
 {
     *to = (struct trimesh){ .points = from->points, .point_count = from->point_count };

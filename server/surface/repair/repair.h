@@ -5,12 +5,13 @@
 #define SURFACE_REPAIR_H
 #include "surface/repair/parts.h"
 
-/* bridge across a crack: a point of the surface, and the point to which it was joined; both are equal where an edge crosses a face */
+/* bridge across a crack: a point of the surface, and the position of the point to which repair joined it; both are equal where an edge
+   crosses a face */
 struct crack_bridge {
     double from_m[3], to_m[3];
 };
 
-/* counts and lengths of what mesh repair has done, summed over several calls */
+/* counts and lengths of the changes that mesh repair has made, summed over several calls */
 struct repair_report {
     size_t bridges;
     struct crack_bridge *made; /* all bridges; free with mem_free */

@@ -39,8 +39,8 @@ static void place_of(const struct trimesh *mesh, const struct mesh_edit_insertio
         place[axis] = w[0] * mesh->points[v[0]][axis] + w[1] * mesh->points[v[1]][axis] + w[2] * mesh->points[v[2]][axis];
 }
 
-/* Records a bridge for each merged or inserted point. Points with index first_new or higher are crossings. The edit contains each crossing
- * twice: first inserted into an edge, then into a face, or merged with a corner of the face. */
+/* Records a bridge for each merged or inserted point. Points with index first_new or higher are crossings (an edge passes through a face).
+   The edit contains each crossing twice: first inserted into an edge, then into a face, or merged with a corner of the face. */
 static void note_bridges(struct repair_report *report, const struct mesh_edit *edit, const struct trimesh *mesh, uint32_t first_new)
 {
     uint32_t last_new = TRIMESH_NONE;

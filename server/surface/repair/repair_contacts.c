@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Joins parts that touch or cross. */
+/* Mesh repair: joins parts of the mesh that touch or cross each other (repair_contacts()). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +13,7 @@
 #include "surface/repair/repair.h"
 #include "surface/repair/repair_impl.h"
 
-#define PARALLEL 1e-4 /* squared sine of an angle between two edges below which the edges count as parallel */
+#define PARALLEL 1e-4 /* two edges count as parallel if the squared sine of the angle between them is below this */
 
 struct contacts {
     struct trimesh *mesh;
@@ -72,7 +72,7 @@ static void visit_crossed(void *arg, uint32_t tri)
         return;
     double length = vec_distance(p, q), reach_m = min_of(c->parts->reach_m[c->own], reach_of(c, tri));
     if (t * length < reach_m || (1 - t) * length < reach_m || (own && !stands_clear(c, v)))
-        return; /* not a crossing: only an end of the edge is at the triangle; find_touches() handles such contacts */
+        return; /* not a crossing, because only an end of the edge touches the triangle; find_touches() handles such contacts */
     struct contact_crossing *found = add_crossing(c);
     *found = (struct contact_crossing){ .tri = tri, .a = c->edge[0], .b = c->edge[1], .t = t, .own = own };
     memcpy(found->weights, w, sizeof(w));
@@ -155,7 +155,7 @@ static void find_touch(const struct contacts *c, const double point_m[3], struct
 
 /* Finds points that touch another body, and requests that they are inserted there. A surface within the reach of a thin part (half of its
    thickness) touches the part, from either side. A surface beyond the reach touches only if both face each other: the distance is then a
-   gap to bridge. The part covers nothing there, so rims and intersections do not use such touches. */
+   gap to bridge. Rims and intersections do not use such touches, because the part does not cover the other surface there. */
 static void find_touches(struct contacts *c)
 {
     struct line_of_sight sight;
@@ -249,8 +249,8 @@ static void find_rims(struct contacts *c)
         }
 }
 
-/* Adds a mesh point for each crossing, and requests that it is inserted on both sides. Points are added only after all searches, because
- * the searches read the array of points. */
+/* Adds a mesh point for each crossing, and requests that the point is inserted into both the edge and the triangle (or other edge). Points
+   are added only after all searches, because the searches read the array of points. */
 static void set_crossings(struct contacts *c, struct repair_report *report)
 {
     for (size_t i = 0; i < c->crossing_count; i++) {
@@ -272,7 +272,7 @@ static void set_crossings(struct contacts *c, struct repair_report *report)
 
 /* --- the lines along which triangles intersect --------------------------------------------------------------------------------- */
 
-struct meeting {             /* point at which two triangles intersect, where an edge of one passes through the other */
+struct meeting {             /* a point at which two triangles intersect: there, an edge of one passes through the other */
     uint32_t tris[2], point; /* tris: the lower one first */
 };
 

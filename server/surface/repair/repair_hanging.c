@@ -12,7 +12,8 @@
 #include "surface/repair/borders.h"
 #include "surface/repair/repair_impl.h"
 
-/* maximum number of rounds; an edge whose faces are all split at different points takes one round fewer than it has faces */
+/* maximum number of rounds of insertions; if all faces at an edge are split at different points, the edge needs one round fewer than it has
+   faces */
 #define MAX_ROUNDS 4
 
 struct hanging {
@@ -116,7 +117,7 @@ static bool set_hanging(struct trimesh *mesh, const struct borders *borders, dou
             uint32_t a = mesh->tris[t][i], b = mesh->tris[t][(i + 1) % 3], number;
             if (!is_at_border(&h, a, b) || !odd[number = edge_table_find(&edges, a, b)])
                 continue;
-            odd[number] = 0; /* each edge once */
+            odd[number] = 0; /* handles each edge only once */
             look_from(&h, a, b, number);
             look_from(&h, b, a, number);
         }
