@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rules of access: addresses, host names, origins and header lists. */
+/* Decides which listen addresses, host names, page origins and proxies are allowed, and reads header lists. */
 #include "access/access.h"
 
 #include <arpa/inet.h>
@@ -72,7 +72,7 @@ bool access_name_is_address(const char *name)
     return inet_pton(AF_INET, name, &any) == 1 || inet_pton(AF_INET6, name, &any) == 1;
 }
 
-/* Reads a numeric address; IPv4 addresses as ::ffff:a.b.c.d. Returns false if the text is none. */
+/* Parses a numeric IP address into 16 bytes, IPv4 as ::ffff:a.b.c.d. Returns false if the text is not an address. */
 static bool read_address(const char *text, uint8_t out[16])
 {
     static const uint8_t mapped[12] = { [10] = 0xff, [11] = 0xff };
@@ -162,7 +162,8 @@ char *access_content_policy(const struct access_params *params)
 
 /* --- lists in headers ---------------------------------------------------------------------------------------------------------- */
 
-/* Returns the next word of a comma-separated list and advances *at behind it; *n receives the word's length. NULL: no more words. */
+/* Returns the next word of a header's comma-separated list and advances *at past the word; *n receives the word's length. NULL: there
+   are no more words. */
 static const char *next_word(const char **at, size_t *n)
 {
     *at += strspn(*at, " ,\t");
@@ -194,7 +195,8 @@ bool access_list_rest(const char *list, const char *prefix, char *out, size_t si
     return false;
 }
 
-/* Reads one entry of X-Forwarded-For: an address, an IPv6 address also without brackets, an IPv4 address also with a port. */
+/* Parses one entry of X-Forwarded-For into `out`: an IP address. An IPv6 address may have brackets, and an IPv4 address may have a port.
+   Returns false if the entry is not an address. */
 static bool read_forwarded(const char *at, size_t n, char *out, size_t size)
 {
     char word[64];

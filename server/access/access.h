@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rules of access: where the daemon may listen, which host names and pages may use it, and what its own pages may load. What each role
-   may do is in message/role.h. Pure; any thread. */
+/* Rules of access to the daemon: where it may listen, which host names and pages may use it, and what its own pages may load.
+   message/role.h says what each role may do. No input or output except access_notice_read(). Thread: any. */
 #ifndef ACCESS_ACCESS_H
 #define ACCESS_ACCESS_H
 #include "access/quota.h"
@@ -15,25 +15,26 @@ struct access_network {
 };
 
 struct access_params {
-    bool open_viewers; /* true: clients without a token get pictures and nothing else */
-    /* true: a proxy on this machine forwards connections of other clients, so a loopback address does not prove that a client is local */
+    bool open_viewers; /* true: clients without a token may see pictures, and nothing else */
+    /* true: a proxy on this machine forwards connections of other clients. A connection from a loopback address may then come from
+       elsewhere */
     bool behind_proxy;
-    struct access_network proxies[ACCESS_MAX_NAMES]; /* reverse proxies on other machines whose X-Forwarded-For is believed */
+    struct access_network proxies[ACCESS_MAX_NAMES]; /* reverse proxies on other machines, whose X-Forwarded-For header is trusted */
     int proxy_count;
-    bool trust_local;                         /* true: clients on this machine need no token, although others do */
-    const char *tokens_path;                  /* file of tokens; NULL: tokens are not used */
+    bool trust_local;                         /* true: clients on this machine need no token, although clients on others do */
+    const char *tokens_path;                  /* path of the file of tokens; NULL: tokens are not used */
     const char *openid_path;                  /* path of the file of --openid; NULL: no sign-in with OpenID Connect */
-    const char *tls_cert_path, *tls_key_path; /* NULL: no TLS */
-    const char *hosts[ACCESS_MAX_NAMES];      /* additional host names that clients may use in the Host header */
-    const char *origins[ACCESS_MAX_NAMES];    /* origins of pages on other hosts that may connect, as SCHEME://HOST[:PORT] */
+    const char *tls_cert_path, *tls_key_path; /* paths of certificate and private key; NULL: no TLS */
+    const char *hosts[ACCESS_MAX_NAMES];      /* host names that clients may use in the Host header, in addition to this machine's own */
+    const char *origins[ACCESS_MAX_NAMES];    /* origins of web pages on other hosts that may connect, as SCHEME://HOST[:PORT] */
     int host_count, origin_count;
-    const char *notice_path; /* path of a text file that is shown before users sign in; NULL: none */
+    const char *notice_path; /* path of the text file of --notice, shown to users before they sign in; NULL: none */
     double lock_min;         /* minutes without user activity after which the user must sign in again; 0: never */
     struct quotas quotas;
 };
 
-/* Returns true if the daemon may listen with these parameters. loopback: whether the address to listen at is a loopback address. If not,
-   *why (static text) names the broken rule. */
+/* Returns true if the daemon may listen with these parameters. loopback: true if the daemon would listen on a loopback address only. On
+   false, *why (static text) names the broken rule. */
 bool access_allowed_at(const struct access_params *params, bool loopback, const char **why);
 
 /* Writes the host name of a Host header ("name", "name:80", "[::1]:80") to out, in lower case and without brackets. Returns false if it
@@ -43,26 +44,27 @@ bool access_host_name(const char *host, char *out, size_t size);
 bool access_name_is_local(const char *name);
 /* Returns whether the name is a numeric IP address. */
 bool access_name_is_address(const char *name);
-/* Returns whether a page of that origin may connect to that host: it is the same host with the same scheme, or an origin named in
-   params. An empty origin is allowed, because then no browser sent the request. secure: the connection uses TLS. */
+/* Returns whether a web page of that origin may connect to that host: the page is from the same host with the same scheme, or its origin
+   is in params->origins. An empty origin is allowed, because such a request does not come from a browser. secure: the connection uses
+   TLS. */
 bool access_origin(const struct access_params *params, const char *origin, const char *host, bool secure);
-/* Reads the text of --notice: UTF-8, 4 kB at most. The caller frees it with mem_free. NULL on failure, already logged. */
+/* Reads the text file of --notice: UTF-8, 4 kB at most. The caller frees the text with mem_free. NULL on failure, already logged. */
 char *access_notice_read(struct log *log, const char *path);
-/* Returns the Content-Security-Policy of the daemon's pages: they load from this server only, and only the named origins may show them
-   in a frame. The caller frees it with mem_free. */
+/* Returns the Content-Security-Policy header of the daemon's pages: they load from this server only, and only pages of params->origins
+   may show them in a frame. The caller frees the text with mem_free. */
 char *access_content_policy(const struct access_params *params);
-/* Returns true if a header's comma-separated list has that word. */
+/* Returns true if a header's comma-separated list contains that word. */
 bool access_list_has(const char *list, const char *word);
-/* Finds the word of a comma-separated list that begins with the prefix and writes the rest of that word to out. Returns false if there
-   is none. */
+/* Finds the word of a header's comma-separated list that begins with the prefix, and writes the rest of that word to `out`. Returns
+   false if there is none. */
 bool access_list_rest(const char *list, const char *prefix, char *out, size_t size);
-/* Parses ADDRESS or ADDRESS/BITS and adds the network to params->proxies. A network that has a loopback address also sets behind_proxy.
-   Returns false if the text is no network, if BITS is 0, or if there are too many. */
+/* Parses ADDRESS or ADDRESS/BITS (option --trusted-proxy) and adds the network to params->proxies. A network that contains a loopback
+   address also sets behind_proxy. Returns false if the text is invalid, if BITS is 0, or if there are too many networks. */
 bool access_add_proxy(struct access_params *params, const char *text);
-/* Returns whether the X-Forwarded-For header of a peer with this numeric address is believed. */
+/* Returns true if the peer with this numeric address is a known proxy, so that its X-Forwarded-For header is trusted. */
 bool access_is_proxy(const struct access_params *params, const char *address);
-/* Writes the client's address from an X-Forwarded-For header to out: the last one that is not an address of params->proxies, since each
-   proxy appends its peer. Returns false if there is none. */
+/* Writes the client's address from an X-Forwarded-For header to `out`. That is the last address in the header that is not in
+   params->proxies, because each proxy appends the address of its peer. Returns false if there is none. */
 bool access_forwarded(const struct access_params *params, const char *list, char *out, size_t size);
 /* Returns true if a query argument is a token. Tokens are refused in URLs, because logs and browser histories keep URLs. */
 bool access_argument_is_token(const char *argument);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pairing of wall displays. Waiting devices (with digits, not approved yet) are kept in memory only: after a restart a device gets new
-   digits. */
+/* Pairs devices that show a wall's display. Devices that wait for approval are in memory only: after a restart each gets new digits. */
 #include "access/pairings.h"
 
 #include <openssl/crypto.h>
@@ -25,11 +24,11 @@ struct pending_pairing {
 };
 
 struct pairings {
-    struct kept_list kept; /* paired devices as in devices.json: { id, hash, wall, display, from, by, time_us } */
+    struct kept_list kept; /* content of devices.json, the paired devices: { id, hash, wall, display, from, by, time_us } each */
     struct pending_pairing waiting[PAIRINGS];
     size_t count;
-    uint64_t number;  /* counts changes of the list of waiting devices */
-    int64_t wrong_ns; /* monotonic time of the first wrong digits of the current minute */
+    uint64_t number;  /* increases with each change of the list of waiting devices */
+    int64_t wrong_ns; /* monotonic start of the minute in which wrong digits are counted */
     int wrong;
 };
 
@@ -85,7 +84,8 @@ enum refusal_code pairings_refusal(const struct pairings *pairings)
 
 /* --- paired devices ------------------------------------------------------------------------------------------------------------- */
 
-/* Finds a device by hash in a list of paired devices; takes the same time for every hash, so that timing reveals nothing. */
+/* Finds a device in a list of paired devices by the hash of its secret. Takes the same time for every hash, so that timing reveals
+   nothing about the stored hashes. */
 static const json_t *find_device(const json_t *list, const uint8_t hash[TOKEN_HASH_BYTES])
 {
     char text[HASH_CHARS + 1];
@@ -159,7 +159,7 @@ static struct pending_pairing *find_digits(struct pairings *pairings, const char
     return NULL;
 }
 
-/* Returns the index of the waiting device with that display and hash of its secret; pairings->count if there is none. */
+/* Returns the index of the waiting device with that hash of its secret that shows that display; pairings->count if there is none. */
 static size_t find_waiting(const struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct wall_place *place)
 {
     size_t i = 0;
@@ -172,7 +172,7 @@ static size_t find_waiting(const struct pairings *pairings, const uint8_t hash[T
     return i;
 }
 
-/* Draws six digits that no waiting device has. Returns false if the system has no randomness. */
+/* Draws six random digits that no other waiting device shows. Returns false if the system's random number generator failed. */
 static bool draw_digits(struct pairings *pairings, char digits[PAIRING_DIGITS + 1])
 {
     do {
@@ -192,9 +192,9 @@ static size_t count_from(const struct pairings *pairings, const uint8_t address[
     return from;
 }
 
-/* Frees an entry when all entries for waiting devices are taken. Drops the newest waiting device of the address that has the most,
-   if that is at least two more than `from`, the number of waiting devices of the requesting address. So a few addresses cannot keep
-   others out. Returns false if no address has that many. */
+/* Frees an entry of the full table of waiting devices, so that a few addresses cannot keep others out. Drops the newest waiting device
+   of the address that has the most, if that is at least two more than `from`, the number of waiting devices of the requesting address.
+   Returns false if no address has that many. */
 static bool make_room(struct pairings *pairings, size_t from)
 {
     size_t most = from + 1, victim = pairings->count;
@@ -215,7 +215,7 @@ static bool make_room(struct pairings *pairings, size_t from)
     return true;
 }
 
-/* Adds a waiting device. Returns NULL if too many wait. */
+/* Adds a device to those that wait for approval. Returns NULL if too many wait, or the system's random number generator failed. */
 static struct pending_pairing *begin(struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct pairing_request *request,
                                      int64_t now_ns)
 {
@@ -250,8 +250,8 @@ static void tell_digits(const struct pending_pairing *waiting, int64_t now_ns, c
     *left_s = (int)((waiting->begun_ns + PAIRING_S * NS_PER_S - now_ns) / NS_PER_S);
 }
 
-/* Answers the request of a device that asks for its digits or its approval. Identifies the device by `hash`, not by the secret in the
-   request, because a renderer's request has no secret. */
+/* Returns the state of a device that asks for its digits or its approval, and adds it to the waiting devices if it is new. Identifies
+   the device by `hash`, because a request that a renderer forwards does not contain the secret. */
 static enum pairing ask(struct pairings *pairings, const uint8_t hash[TOKEN_HASH_BYTES], const struct pairing_request *request,
                         int64_t now_ns, char digits[PAIRING_DIGITS + 1], int *left_s)
 {
@@ -260,7 +260,7 @@ static enum pairing ask(struct pairings *pairings, const uint8_t hash[TOKEN_HASH
         return paired;
     digits[0] = 0;
     *left_s = 0;
-    /* the device was approved, but is not on disk yet: its digits are no longer valid */
+    /* the device was approved, but devices.json with it is not on disk yet: its digits are no longer valid */
     if (find_device(kept_list_newest(&pairings->kept), hash))
         return PAIRING_WAITS;
     forget_old(pairings, now_ns);
@@ -295,7 +295,7 @@ static enum refusal_code keep(struct pairings *pairings, const struct pending_pa
     return kept_list_put(&pairings->kept, list);
 }
 
-/* Returns false if this minute already had ten wrong attempts to enter digits. With a million possible digits, guessing then takes
+/* Returns false if an engineer has entered wrong digits ten times in this minute. With a million possible digits, guessing then takes
    weeks. */
 static bool may_try(struct pairings *pairings, int64_t now_ns)
 {

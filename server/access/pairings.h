@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pairing of devices that show a wall's display, without a token being typed in there. A device makes a secret of its own and shows six
-   digits. An engineer who reads the digits approves the device, and the secret's hash is stored in devices.json in the folder of the
-   history until it is revoked. The secret then grants the role viewer, for that display only. Thread: the event loop. */
+/* Pairing of devices that show a wall's display, so that nobody needs to type a token there. A device makes a secret of its own and
+   shows six digits that this daemon gives it. An engineer who reads the digits approves the device. Then the secret's hash is stored in
+   devices.json in the history folder until it is revoked. The secret grants the role viewer, for that display only. Thread: the event
+   loop. */
 #ifndef ACCESS_PAIRINGS_H
 #define ACCESS_PAIRINGS_H
 #include <jansson.h>
@@ -14,10 +15,10 @@
 enum {
     PAIRING_DIGITS = 6,
     PAIRING_S = 300,      /* seconds for which a device's digits are valid */
-    PAIRING_QUIET_S = 60, /* seconds without a request of the device after which its digits expire earlier */
-    PAIRINGS = 64,        /* maximum number of waiting devices of all addresses */
-    PAIRINGS_FROM = 8,    /* maximum number of waiting devices of one address */
-    PAIRING_WRONG = 10,   /* maximum number of wrong digits within a minute, in total */
+    PAIRING_QUIET_S = 60, /* seconds without a request of a waiting device after which its digits expire early */
+    PAIRINGS = 64,        /* maximum number of devices that wait for approval, of all addresses */
+    PAIRINGS_FROM = 8,    /* maximum number of devices that wait for approval, of one address */
+    PAIRING_WRONG = 10,   /* maximum number of wrong digits that engineers may enter within a minute, in total */
     PAIRED_DEVICES = 256,
 };
 #define PAIRINGS_FILE "devices.json"
@@ -32,17 +33,17 @@ struct pairing_request {
 };
 
 struct pairings;
-/* Reads the paired devices. folder: folder of the history, must outlive the result; NULL: no device can be paired. If the file cannot be
-   read (logged), no device is accepted, and the file is not overwritten. Never returns NULL. */
+/* Reads the paired devices from devices.json. folder: history folder, must outlive the result; NULL: no device can be paired. If the
+   file cannot be read (logged), no device is accepted, and the file is not overwritten. Never returns NULL. */
 struct pairings *pairings_open(struct log *log, const char *folder, struct file_writer *writer);
 void pairings_close(struct pairings **pairings); /* frees the pairings and sets *pairings to NULL; accepts a pointer to NULL */
-/* Returns true if the secret has the form of a token (tokens_make) with 256 bits. */
+/* Returns true if the secret has the form of a token of tokens_make(), which has 256 random bits. */
 bool pairings_secret_valid(const char *secret);
 /* Returns the reason why this daemon cannot pair devices, or REFUSAL_NONE. */
 enum refusal_code pairings_refusal(const struct pairings *pairings);
-/* Returns the state of a device. PAIRING_DONE: it is paired. PAIRING_WAITS: it waits; the digits and their remaining seconds are
-   returned. PAIRING_FULL: too many devices wait. PAIRING_OTHER: it is paired with another display, and a secret works for one display
-   only. now_ns: monotonic. */
+/* Returns the state of a device that asks for it, and adds a new device to those that wait. PAIRING_DONE: paired. PAIRING_WAITS: not
+   approved yet; `digits` and their remaining seconds are set. PAIRING_FULL: too many devices wait. PAIRING_OTHER: paired with another
+   display, and a secret works for one display only. now_ns: monotonic. */
 enum pairing pairings_ask(struct pairings *pairings, const struct pairing_request *request, int64_t now_ns, char digits[PAIRING_DIGITS + 1],
                           int *left_s);
 /* Pairs the waiting device that shows those digits. who: the approving engineer; now_us: UTC. Returns REFUSAL_NONE with the device's id,
@@ -51,25 +52,27 @@ enum refusal_code pairings_approve(struct pairings *pairings, const char *digits
                                    char id[TOKEN_NAME_BYTES]);
 /* Revokes a paired device. Returns REFUSAL_NONE, or why it was refused. */
 enum refusal_code pairings_revoke(struct pairings *pairings, const char *id);
-/* Finds a paired device by the hash of its secret; a tokens_find_device for tokens_set_pairings(). pairings: a struct pairings. Returns
-   false if there is none. */
+/* Finds a paired device by the hash of its secret. Has the type tokens_find_device, so that tokens_set_pairings() can use it. pairings:
+   a struct pairings. Returns false if there is none. */
 bool pairings_find(const void *pairings, const uint8_t hash[TOKEN_HASH_BYTES], struct token_holder *out);
-/* Returns the paired devices as JSON, without their hashes; the caller frees the text with mem_free. */
+/* Returns the paired devices as JSON, without the hashes of their secrets; the caller frees the text with mem_free. */
 char *pairings_text(const struct pairings *pairings);
 
 /* --- for a renderer, whose core approves devices --------------------------------------------------------------------------------- */
 
 /* Returns a sequence number that increases with each change of the lists of paired and waiting devices. */
 uint64_t pairings_number(const struct pairings *pairings);
-/* Returns the paired and the waiting devices as JSON for renderers: { devices, waiting }, with hashes; the caller owns it. */
+/* Returns the paired and the waiting devices as JSON for renderers and a standby: { devices, waiting }, with the hashes of their
+   secrets; the caller owns it. */
 json_t *pairings_told(const struct pairings *pairings, int64_t now_ns);
-/* Replaces the devices on a renderer or a standby core by those of the core. Returns false if the JSON is invalid. */
+/* Replaces the lists of devices on a renderer or a standby core by the core's lists. Returns false if the JSON is invalid. */
 bool pairings_mirror(struct pairings *pairings, const json_t *told, int64_t now_ns);
-/* Like pairings_ask(), but on a renderer, from the lists that its core sent. Until the core has sent them, the digits are empty. */
+/* Returns the state of a device like pairings_ask(), but on a renderer, from the lists that its core sent. Until the core has sent the
+   device's digits, `digits` is empty. */
 enum pairing pairings_look(const struct pairings *pairings, const struct pairing_request *request, int64_t now_ns,
                            char digits[PAIRING_DIGITS + 1], int *left_s);
-/* Returns the request that a renderer sends its core for a device: JSON without the secret; the caller frees it with mem_free. On the
-   core, pairings_ask_for() carries out such a request. */
+/* Returns the request that a renderer forwards to its core for a device: JSON without the device's secret; the caller frees it with
+   mem_free. On the core, pairings_ask_for() carries out such a request. */
 char *pairings_request_text(const struct pairing_request *request);
 void pairings_ask_for(struct pairings *pairings, const json_t *request, int64_t now_ns);
 

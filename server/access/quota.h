@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Quotas: limits on clients' resources and on programs that read models (option --limit NAME=N). Pure; any thread. */
+/* Quotas: limits on what clients and programs that read models may use (option --limit NAME=N). No input or output except
+   quotas_print(). Thread: any. */
 #ifndef ACCESS_QUOTA_H
 #define ACCESS_QUOTA_H
 #include <stdbool.h>
@@ -35,8 +36,8 @@ enum quota {
 
 struct quotas {
     int64_t at[QUOTA_COUNT];
-    bool given[QUOTA_COUNT]; /* true for a limit set on the command line; a limit per address that is set also applies to addresses of
-                                this machine */
+    /* true: the limit was set on the command line. A limit per address that is set there also applies to clients on this machine */
+    bool given[QUOTA_COUNT];
 };
 
 /* Returns the default limits. */

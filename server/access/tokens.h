@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The file of tokens: one per line, `ROLE NAME SHA-256 [until YYYY-MM-DD] [unattended] [views ID,... | display WALL:NUMBER] [plant
+/* The file of tokens: one in a line, `ROLE NAME SHA-256 [until YYYY-MM-DD] [unattended] [views ID,... | display WALL:NUMBER] [plant
    PLANT]`. A token that is not in the file, or is for another plant, is refused. All tokens are refused if the file is missing or other
    users may write it. Thread: one. */
 #ifndef ACCESS_TOKENS_H
@@ -14,63 +14,63 @@ enum { TOKEN_HASH_BYTES = 32, TOKEN_NAME_BYTES = 64, TOKEN_PLANT_BYTES = 128, TO
 struct token_holder {
     enum role role;
     char name[TOKEN_NAME_BYTES];
-    uint8_t hash[TOKEN_HASH_BYTES]; /* SHA-256 of the token; all 0: no holder */
-    int64_t until_utc_ns;           /* expiry; INT64_MAX: never */
+    uint8_t hash[TOKEN_HASH_BYTES]; /* SHA-256 of the token; all 0: no token */
+    int64_t until_utc_ns;           /* end of validity (UTC); INT64_MAX: never */
     char plant[TOKEN_PLANT_BYTES];  /* name of the only plant for which the token is valid; empty: any plant */
-    /* comma-separated ids of views: the token is only for pictures of these; empty: not restricted */
+    /* comma-separated ids of saved views: the token grants pictures of these only; empty: not restricted */
     char views[TOKEN_VIEWS_BYTES];
-    bool unattended;                /* true: token of a wall or a program, which is not locked when there is no user activity */
-    bool signed_in;                 /* true: a person signed in at the identity provider; `hash` is that of the session cookie */
-    char wall[NAMED_VIEW_ID_BYTES]; /* id of the wall whose display is the only one for which the token is valid; empty: not restricted */
-    int display;                    /* number of the display of `wall`, from 1; 0: not restricted */
+    bool unattended;                /* true: token of a wall or a program, which is not signed out when there is no user activity */
+    bool signed_in;                 /* true: a user who signed in at the identity provider; `hash` is the hash of the session cookie */
+    char wall[NAMED_VIEW_ID_BYTES]; /* id of the wall that has the only display for which the token is valid; empty: not restricted */
+    int display;                    /* number of that display on the wall, from 1; 0: not restricted */
 };
 
 struct tokens;
-/* Reads the file. Returns NULL if it cannot be read, or if users other than its owner may write it; the reason is logged. Invalid lines
-   are logged and skipped. */
+/* Reads the file of tokens. Returns NULL if it cannot be read, or if users other than its owner may write it; the reason is logged.
+   Invalid lines are logged and skipped. */
 struct tokens *tokens_create(struct log *log, const char *path);
-/* Sets the name of this plant, which is copied: tokens for other plants are refused. */
+/* Sets the name of this plant, which is copied: tokens for other plants are refused from now on. */
 void tokens_set_plant(struct tokens *tokens, const char *plant);
-/* Makes tokens_find() also accept paired devices, which it looks up with find(pairings, ...): pairings_find() and its struct pairings.
-   pairings must stay valid until the next call. */
+/* Makes tokens_find() also accept paired devices (access/pairings.h). `find` is pairings_find(), and `pairings` its struct pairings,
+   which must stay valid until the next call. */
 typedef bool tokens_find_device(const void *pairings, const uint8_t hash[TOKEN_HASH_BYTES], struct token_holder *out);
 void tokens_set_pairings(struct tokens *tokens, tokens_find_device *find, const void *pairings);
 void tokens_destroy(struct tokens **tokens); /* frees the tokens and sets *tokens to NULL; accepts a pointer to NULL */
-/* Reads the file again if it changed and has stopped changing. Returns true if it was read. */
+/* Reads the file of tokens again if it has changed and is no longer being written. Returns true if it was read. */
 bool tokens_look(struct tokens *tokens);
-/* Returns the number of valid tokens. */
+/* Returns the number of tokens in the file. */
 size_t tokens_count(const struct tokens *tokens);
-/* Returns whether a token of the file has that name. */
+/* Returns true if the file has a token with that holder's name. */
 bool tokens_has_name(const struct tokens *tokens, const char *name);
 
-/* Looks a token up in the file and among paired devices, and writes its holder to *out. Returns false if it is in neither (then
-   out->role is ROLE_NOBODY), or has expired. */
+/* Finds the holder of a token, in the file or among paired devices, and writes it to *out. Returns false if there is none (then
+   out->role is ROLE_NOBODY), or if the token has expired. */
 bool tokens_find(const struct tokens *tokens, const char *token, int64_t now_utc_ns, struct token_holder *out);
 /* Returns the role that a token's holder has now; ROLE_NOBODY: the token was revoked, has expired, or is now restricted to other views
    or another display. */
 enum role tokens_role(const struct tokens *tokens, const struct token_holder *holder, int64_t now_utc_ns);
 
 /* --- for `plantcast token` --- */
-/* Parses a line of the file into *out. Returns 1 on success, 0 for an empty line or a comment, -1 with *why (static text) for an invalid
-   line. */
+/* Parses a line of the file of tokens into *out. Returns 1 on success, 0 for an empty line or a comment, -1 with *why (static text) for
+   an invalid line. */
 int tokens_parse_line(const char *line, struct token_holder *out, const char **why);
-/* Writes the SHA-256 of a token. */
+/* Computes the SHA-256 hash by which a token is stored and found. */
 void tokens_hash(const char *token, uint8_t hash[TOKEN_HASH_BYTES]);
-/* Makes a token of 256 random bits. Returns false if the system has no randomness. */
+/* Makes a token of 256 random bits. Returns false if the system's random number generator failed. */
 bool tokens_make(char token[TOKEN_MAX_CHARS + 1]);
-/* Appends the line that the file needs for a holder. */
+/* Appends the holder's line of the file of tokens. */
 void tokens_print_line(struct text *out, const struct token_holder *holder);
-/* Returns whether a holder may have that name. */
+/* Returns true if a token's holder may have that name. */
 bool tokens_name_valid(const char *name);
-/* Returns true if a token may be restricted to a plant of that name: the name must fit into one line of the file. */
+/* Returns true if a token may be restricted to a plant of that name: the name must fit into one line of the file of tokens. */
 bool tokens_plant_valid(const char *plant);
-/* Returns whether the text is a valid list of views: ids separated by commas. */
+/* Returns true if the text is a valid list of saved views for a token: ids separated by commas. */
 bool tokens_views_valid(const char *views);
 /* Parses WALL:NUMBER, the display to which a token is restricted, into *out. Returns false if the text is invalid. */
 bool tokens_parse_display(const char *text, struct token_holder *out);
-/* Returns the role that the holder effectively has: ROLE_OPEN (pictures only) if the token is restricted to views. */
+/* Returns the role that the holder effectively has: ROLE_OPEN (pictures only) if the token is restricted to some saved views. */
 enum role tokens_role_of(const struct token_holder *holder);
-/* Returns whether the holder may see that view. */
+/* Returns true if the holder may see that saved view. */
 bool tokens_may_see(const struct token_holder *holder, const char *view);
 /* Parses YYYY-MM-DD, the last day (UTC) on which a token is valid. Returns false if it is not a date. */
 bool tokens_parse_day(const char *text, int64_t *until_utc_ns);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that evaluates alarms. */
+/* The thread that evaluates the alarms of a running plant. */
 #include "alarm/alarm_service.h"
 
 #include <errno.h>
@@ -12,7 +12,7 @@
 #include "base/mem.h"
 #include "base/thread.h"
 
-enum { MAX_ROWS = 2048 /* number of journal rows kept in memory, to be sent to a standby that connects */ };
+enum { MAX_ROWS = 2048 /* number of the newest journal rows kept in memory; a standby that connects receives them */ };
 enum { QUEUE_MAX = 1000000 /* maximum number of samples queued between two evaluations (a tenth of a second) */, RATE_SLOTS = 60 };
 static const int64_t TICK_NS = NS_PER_S / 10, RATE_NS = 600 * NS_PER_S;
 
@@ -34,15 +34,15 @@ struct alarm_service {
     int64_t counted_ns;
     int raised[RATE_SLOTS]; /* ring buffer: number of alarms raised in each time slot of RATE_NS / RATE_SLOTS */
     int64_t slot;
-    pthread_mutex_t queue_lock; /* lock of the sample queue; a thread that holds the store's lock may take it */
+    pthread_mutex_t queue_lock; /* lock of the queue of samples; a thread that holds the store's lock may take it */
     /* --- below: protected by queue_lock */
     struct alarm_event_queue queue;
-    struct thread thread; /* lock of the alarms; a thread that holds it may take the store's lock */
+    struct thread thread; /* contains the lock of the alarms; a thread that holds this lock may take the store's lock */
     /* --- below: protected by thread.lock */
     struct alarms *alarms;
     int raised_now;
     struct journal_entry *rows; /* ring buffer of the newest journal rows; NULL: there is no journal */
-    uint64_t row_count;         /* total number of journal rows since the start, including those no longer in the ring buffer */
+    uint64_t row_count;         /* number of journal rows since the start, including those no longer in the ring buffer */
     bool ending, lost;          /* ending: the journal is being closed; lost: it was closed although some rows are not on disk */
     void (*changed)(void *arg); /* listener, called after alarms changed; NULL: none */
     void *changed_arg;
@@ -132,7 +132,7 @@ static void keep_all(struct alarm_service *service)
     }
 }
 
-/* Writes to the journal the present state of every alarm that has changed since the plant's change number was `number`. */
+/* Writes to the journal the present state of every alarm that has changed since alarms_number() was `number`. */
 static void keep_since(struct alarm_service *service, uint64_t number)
 {
     for (int i = service->journal ? alarms_newest(service->alarms) : -1; i >= 0; i = alarms_at(service->alarms, i)->older) {
@@ -143,7 +143,7 @@ static void keep_since(struct alarm_service *service, uint64_t number)
     }
 }
 
-/* Calls the listeners if any alarm has changed since the plant's change number was `number`. */
+/* Calls the listeners if any alarm has changed since the last call. number: present change number of the alarms. */
 static void tell(struct alarm_service *service, uint64_t number)
 {
     if (atomic_exchange(&service->number, number) == number)
@@ -361,8 +361,8 @@ void alarm_service_end(struct alarm_service *service, struct settling_ticket *ti
     pthread_mutex_lock(&service->thread.lock);
     if (service->journal)
         journal_end(service->journal, ticket);
-    /* The service was halted after alarm_service_begin() and its journal is closed. Whether the ticket's rows were written is unknown, so
-       they must not count as saved. */
+    /* The service was halted after alarm_service_begin(), and its journal is closed. It is unknown whether the caller's changes were
+       written, so they must not count as saved. */
     else if (service->ending || service->lost)
         ticket->last = UINT64_MAX;
     pthread_mutex_unlock(&service->thread.lock);
@@ -409,7 +409,7 @@ void alarm_service_mirror_row(struct alarm_service *service, const struct journa
         return;
     journal_add_entry(service->journal, row);
     pthread_mutex_lock(&service->thread.lock);
-    /* keeps the row in memory, because the former leader may lack it when it returns as a standby */
+    /* keeps the row in memory: when the former leader returns as a standby, it may lack the row */
     service->rows[++service->row_count % MAX_ROWS] = *row;
     pthread_mutex_unlock(&service->thread.lock);
 }

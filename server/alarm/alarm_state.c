@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State machine of one alarm. */
+/* State machine of one alarm: how events change its state. */
 #include "alarm/alarm_state.h"
 
 #include <string.h>
@@ -12,7 +12,7 @@ const char *alarm_event_name(enum alarm_event event)
     return event_names[event];
 }
 
-/* Annunciates the alarm. */
+/* Makes an alarm demand attention: it must be acknowledged, and it is latched if its rule says so. */
 static void call(struct alarm_state *state, const struct alarm_rule *rule)
 {
     state->unacknowledged = rule->acknowledges;
@@ -51,7 +51,8 @@ static enum alarm_outcome acknowledge(struct alarm_state *state)
     return ALARM_CHANGED;
 }
 
-/* Resets a latched alarm (one that stays after its cause ended). Refused while it is unacknowledged, so that no alarm disappears unseen. */
+/* Resets a latched alarm (one that remains after its cause ended). Refused while it is unacknowledged, so that no alarm disappears
+   unseen. */
 static enum alarm_outcome reset(struct alarm_state *state)
 {
     if (!state->latched || state->active || state->unacknowledged || state->aside)
@@ -69,8 +70,8 @@ static enum alarm_outcome set_aside(struct alarm_state *state, int how)
     return ALARM_CHANGED;
 }
 
-/* Ends one reason for which the alarm is not annunciated: suppressed, shelved or out of service. An alarm that is active and has no such
-   reason left is annunciated as if it were new. */
+/* Ends one reason for which the alarm is not shown: suppressed, shelved or out of service. An alarm that is active and has no such
+   reason left is shown as if it were new. */
 static enum alarm_outcome bring_back(struct alarm_state *state, const struct alarm_rule *rule, int how)
 {
     if (!(state->aside & how))

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State machine of one alarm (ISA-18.2, alarm state transition diagram). Pure. Thread: any. */
+/* State machine of one alarm (ISA-18.2, alarm state transition diagram). No input or output. Thread: any. */
 #ifndef ALARM_ALARM_STATE_H
 #define ALARM_ALARM_STATE_H
 #include <stdbool.h>
@@ -8,42 +8,43 @@
 #include "value/alarm.h"
 
 enum alarm_event {
-    ALARM_RAISE, /* the alarm's cause is present */
+    ALARM_RAISE, /* the alarm's cause is present, for example a value beyond the limit */
     ALARM_CLEAR,
     ALARM_ACKNOWLEDGE,
     ALARM_RESET,    /* resets a latched alarm */
-    ALARM_SHELVE,   /* shelves the alarm; allowed for a shelved alarm too, to change when shelving ends */
+    ALARM_SHELVE,   /* silences the alarm for a time; also allowed for a shelved alarm, to change when shelving ends */
     ALARM_UNSHELVE, /* ends shelving, by hand or because the shelving time is over */
     ALARM_SUPPRESS,
     ALARM_UNSUPPRESS,
     ALARM_TAKE_OUT, /* an operator takes the alarm out of service */
     ALARM_PUT_BACK,
-    ALARM_CARRY, /* suppresses the alarm, because the alarm of its device reports the failure */
-    ALARM_CALL,  /* ends ALARM_CARRY, because the device's alarm no longer reports this failure */
+    ALARM_CARRY, /* suppresses the BAD alarm of a tag, because the alarm of the tag's device reports the failure */
+    ALARM_CALL,  /* ends ALARM_CARRY, because the device's alarm no longer reports the tag's failure */
     ALARM_EVENTS
 };
 
 enum { ALARM_ASIDE_SHELVED = 1, ALARM_ASIDE_SUPPRESSED = 2, ALARM_ASIDE_OUT = 4, ALARM_ASIDE_CARRIED = 8, ALARM_ASIDE_ALL = 15 };
 
-struct alarm_state {     /* zero-initialised: normal */
-    bool active;         /* the alarm's cause is present */
-    bool unacknowledged; /* true: the alarm's cause is present */
+struct alarm_state {     /* zero-initialised: a normal alarm */
+    bool active;         /* true: the alarm's cause is present */
+    bool unacknowledged; /* true: an operator must still acknowledge the alarm */
     bool latched;
-    uint8_t aside; /* bit mask of ALARM_ASIDE_...: reasons why the alarm is not annunciated; 0: the alarm is annunciated */
+    uint8_t aside; /* bit mask of ALARM_ASIDE_...: reasons why the alarm is not shown to operators as active; 0: it is */
 };
 
 struct alarm_rule {
-    bool acknowledges; /* true: the alarm must be acknowledged; false: the alarm only knows the states active and normal */
+    bool acknowledges; /* true: operators must acknowledge the alarm; false: the alarm is either active or normal */
     bool latches;
-    bool forgets; /* true: the alarm becomes normal when its cause ends, even if it was not acknowledged */
-    bool carried; /* true: when the alarm is raised now, the device's alarm already reports the failure, so this alarm is suppressed */
+    bool forgets; /* true: the alarm becomes normal when its cause ends, even if nobody has acknowledged it */
+    /* true: if the alarm is raised now, it is suppressed, because the alarm of the tag's device already reports the failure */
+    bool carried;
 };
 
-enum alarm_outcome { ALARM_CHANGED, ALARM_AS_IT_WAS, ALARM_REFUSED /* not possible in this state */ };
+enum alarm_outcome { ALARM_CHANGED, ALARM_AS_IT_WAS, ALARM_REFUSED /* the present state does not allow the event */ };
 
 /* Applies an event to an alarm's state. Returns whether the state changed, remained the same, or does not allow the event. */
 enum alarm_outcome alarm_state_step(struct alarm_state *state, const struct alarm_rule *rule, enum alarm_event event);
-/* Returns the state as one word of ISA-18.2. */
+/* Returns the alarm's state as one of the states of ISA-18.2. */
 enum alarm_status alarm_state_status(const struct alarm_state *state, const struct alarm_rule *rule);
 const char *alarm_event_name(enum alarm_event event); /* returns the event's name, such as "acknowledge" (static text) */
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* All alarms of a plant, driven by samples, time and operators' actions. Pure: time is an argument, and changes are reported to a
-   listener. Thread: one at a time. */
+/* All alarms of a plant, driven by samples, time and operators' actions. No input or output: time is an argument, and changes are
+   reported to a listener. Thread: one at a time. */
 #ifndef ALARM_ALARMS_H
 #define ALARM_ALARMS_H
 #include <stddef.h>
@@ -20,40 +20,40 @@ struct instant {
 };
 
 struct alarm {
-    const char *name; /* name of the alarm's tag, or of its device (alarm/devices.h) */
-    int tag;          /* index of the tag; -1: the alarm belongs to a device, and kind is ALARM_LINK */
+    const char *name; /* name of the alarm's tag or, for a LINK alarm, of its device (alarm/devices.h) */
+    int tag;          /* index of the alarm's tag; -1: the alarm belongs to a device, and kind is ALARM_LINK */
     enum alarm_kind kind;
     int priority; /* 1 is the most urgent */
-    double limit; /* limit value; NaN: none */
+    double limit; /* limit beyond which the tag's value raises the alarm; NaN: the alarm has no limit */
     struct alarm_rule rule;
     struct alarm_state state;
-    bool acknowledged_there;                                /* true: a bit of the mirrored alarm system says that the alarm is
-                                                               acknowledged there */
-    bool held;                                              /* true: the measurement is bad, so the alarm keeps its last state */
-    double value;                                           /* value when the alarm was raised; NaN: no value */
+    /* true: the other alarm system, from which this alarm is mirrored, reports the alarm as acknowledged */
+    bool acknowledged_there;
+    bool held;                                              /* true: the tag's value is Bad, so the alarm keeps its last state */
+    double value;                                           /* the tag's value when the alarm was raised; NaN: no value */
     int64_t raised_utc_ns;                                  /* UTC time when the alarm was last raised; 0: never */
-    int64_t changed_utc_ns;                                 /* UTC: when it last changed */
+    int64_t changed_utc_ns;                                 /* UTC time when the alarm's state last changed */
     struct instant until;                                   /* when shelving of the alarm ends; 0: the alarm is not shelved */
-    char who[ALARM_NAME_BYTES], reason[ALARM_REASON_BYTES]; /* operator and reason of the last action on the alarm; empty: none */
-    uint64_t number; /* change number of the alarm's newest change, counted over all alarms of the plant; 0: the alarm never changed */
+    char who[ALARM_NAME_BYTES], reason[ALARM_REASON_BYTES]; /* operator who last acted on the alarm, and the reason given; empty: none */
+    uint64_t number; /* number that the alarm's last change has among the changes of all alarms of the plant; 0: the alarm never changed */
     /* --- below: private to alarms*.c */
     struct condition condition;
     struct condition_delays delays;
-    /* raised_mono_ns: monotonic time when the alarm was last raised; recent_ns: ring buffer of the times of the newest raises */
+    /* raised_mono_ns: monotonic time when the alarm was last raised; recent_ns: ring buffer with the times when it was last raised */
     int64_t raised_mono_ns, recent_ns[ALARM_RECENT];
     unsigned raised_count;
-    int older, newer; /* indices of the neighbours in the list of alarms sorted by change number; -1: none */
+    int older, newer; /* indices of the neighbours in the list of alarms sorted by last change; -1: none */
     bool timed;       /* true: the passing of time alone may change the alarm, so its index is in alarms->timed */
 };
 
 /* One change of one alarm, as alarms_listener receives it. */
 struct alarm_change {
-    const struct alarm *alarm; /* the alarm after the change */
+    const struct alarm *alarm; /* the alarm, in its state after the change */
     enum alarm_event event;
     enum alarm_status before, after;
     int64_t utc_ns;
     double value;             /* value of the sample that caused the change; NaN: none */
-    const char *who, *reason; /* "": no operator, no reason */
+    const char *who, *reason; /* operator who made the change, and reason; "": none */
 };
 
 struct alarms_listener {
@@ -64,13 +64,14 @@ struct alarms_listener {
 };
 
 struct alarms;
-/* Creates the alarms of a plant, all normal. plant must outlive them; the listener is copied. Never returns NULL. */
+/* Creates the alarms of a plant, all normal. `plant` must outlive them; the listener is copied. Never returns NULL. */
 struct alarms *alarms_create(const struct plant *plant, const struct alarms_listener *listener);
 void alarms_destroy(struct alarms **alarms); /* frees the alarms and sets *alarms to NULL; accepts a pointer to NULL */
 
-/* Applies sample events of the store, in the order of the array. */
+/* Evaluates sample events of the store, in the order of the array. */
 void alarms_put(struct alarms *alarms, const struct sample_event *event, size_t count);
-/* Applies the passing of time: ends delays and shelving, and treats readings that became stale as bad, since no event reports that. */
+/* Applies the passing of time: ends delays and shelving. Readings in `now` that have become stale count as Bad samples, because no event
+   reports that. */
 void alarms_tick(struct alarms *alarms, const struct snapshot *now);
 
 struct alarm_act {
@@ -84,22 +85,24 @@ enum refusal_code alarms_act(struct alarms *alarms, int index, const struct alar
 /* --- queries --- */
 size_t alarms_count(const struct alarms *alarms);
 const struct alarm *alarms_at(const struct alarms *alarms, int index);
-int alarms_find(const struct alarms *alarms, int tag, enum alarm_kind kind); /* returns the index, or -1 */
-/* returns the index of an alarm, or -1. name: name of the tag; for a LINK alarm, of the device */
+int alarms_find(const struct alarms *alarms, int tag, enum alarm_kind kind); /* returns the index of a tag's alarm of that kind, or -1 */
+/* Returns the index of an alarm, or -1. name: name of the tag; for a LINK alarm, of the device. */
 int alarms_find_named(const struct alarms *alarms, const char *name, enum alarm_kind kind);
-const char *alarm_unit(const struct alarms *alarms, const struct alarm *alarm); /* returns the unit of value and limit; "": none */
+/* returns the unit of the alarm's value and limit; "": none */
+const char *alarm_unit(const struct alarms *alarms, const struct alarm *alarm);
 enum alarm_status alarm_status_of(const struct alarm *alarm); /* returns the alarm's state as one of the words of ISA-18.2 */
-uint64_t alarms_number(const struct alarms *alarms);          /* returns the newest change number of any alarm */
-/* Returns the index of the alarm that changed last, or -1; its member `older` is the index of the alarm that changed before it. */
+uint64_t alarms_number(const struct alarms *alarms);          /* returns the number of alarm changes so far */
+/* Returns the index of the alarm that changed last, or -1 if none has changed; its member `older` is the index of the alarm that changed
+   before. */
 int alarms_newest(const struct alarms *alarms);
 
 struct alarm_counts {
     int statuses[ALARM_STATUSES];
-    int active;     /* number of alarms that are annunciated while their cause is present */
-    int standing;   /* number of alarms that have been active for longer than a day; they are also counted in `active` */
+    int active;     /* number of alarms that are shown to operators while their cause is present */
+    int standing;   /* number of alarms that have been active for longer than a day; these are also counted in `active` */
     int chattering; /* number of alarms raised three times or more within the last minute */
     int held;
-    int priorities[ALARM_PRIORITIES]; /* number of annunciated alarms of each priority; index 0 is priority 1 */
+    int priorities[ALARM_PRIORITIES]; /* numbers of alarms shown to operators by priority; index 0 is priority 1 */
 };
 #define ALARM_STANDING_NS (86400 * INT64_C(1000000000))
 #define ALARM_CHATTERING_NS (60 * INT64_C(1000000000))
@@ -107,17 +110,18 @@ struct alarm_counts {
 void alarms_counts(const struct alarms *alarms, int64_t now_mono_ns, struct alarm_counts *out);
 
 /* --- restoring --- */
-/* Returns an alarm's value or limit in another unit; NaN if the units cannot be converted. A blank unit fits every unit. */
+/* Converts an alarm's value or limit from the unit `was` to the unit `is`; NaN if the units cannot be converted. A blank unit fits every
+   unit. */
 double alarm_value_in_unit(double value, const char *was, const char *is);
-/* Sets an alarm to a state from the journal. Of the listener only of_tag is called (the alarm that the tag shows), not the callback for
-   changes. States that do not exist in this plant's alarm mode are dropped. */
+/* Sets an alarm to a state that was saved in the journal. Calls the listener's of_tag() (the most urgent alarm of the tag), but not
+   changed(). Drops parts of the state that the plant's present alarm settings do not have. */
 void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved, struct instant now);
-/* Sets alarms, found by name and kind, to another daemon's states, in the order of `list`. whole: all alarms that are not in `list`
+/* Sets alarms, found by name and kind, to the states of another daemon, in the order of `list`. whole: all alarms that are not in `list`
    become normal. Returns false if an alarm does not exist; then nothing changed. */
 bool alarms_mirror(struct alarms *alarms, const struct alarm *list, size_t count, bool whole);
-/* Ends mirroring: alarms continue from their mirrored states; each keeps its state until its tag's next sample. */
+/* Ends mirroring of another daemon's alarms. Each alarm keeps its mirrored state until its tag's next sample. */
 void alarms_lead(struct alarms *alarms, struct instant now);
-/* Takes over states and running delays of the old plant's alarms, for alarms with the same tag and kind. */
+/* After a reload: takes over states and running delays of the old plant's alarms, for alarms with the same name and kind. */
 void alarms_adopt(struct alarms *alarms, const struct alarms *before);
 
 #endif

@@ -6,7 +6,7 @@
 #include "alarm/devices.h"
 
 enum feed_role { FEED_VALUE, FEED_BIT, FEED_BADNESS, FEED_ACKNOWLEDGED, FEED_SUPPRESSES };
-struct feed { /* says that an alarm depends on the samples of a tag, and how */
+struct feed { /* a feed: says that an alarm depends on the samples of a tag, and in which role */
     int tag, alarm;
     enum feed_role role;
 };
@@ -28,21 +28,21 @@ struct alarms {
     struct feed *feeds; /* sorted by tag */
     size_t feed_count, feed_capacity;
     int *by_tag; /* indices of alarms, sorted by tag */
-    /* index by tag, with one extra element at the end: position of the tag's first entry in `feeds`, and in by_tag */
+    /* by index of the tag, with one extra element at the end: position of the tag's first entry in `feeds`, and in by_tag */
     int *first_feed, *first_alarm;
     struct last_sample *seen;
     struct devices *devices;
-    struct sample_event *noticed; /* scratch memory of alarms_tick() for at most one event per tag */
+    struct sample_event *noticed; /* scratch memory of alarms_tick(): sample events that it creates, at most one for each tag */
     struct gravest *gravest;
-    int *timed; /* indices of the alarms with a running delay and of the shelved alarms */
+    int *timed; /* indices of the alarms that time alone can change: those with a running delay and shelved ones */
     size_t timed_count, timed_capacity;
-    int carried; /* number of BAD alarms that are suppressed because the LINK alarm of their device covers them */
+    int carried; /* number of BAD alarms that are suppressed because the LINK alarm of their device reports the failure */
     uint64_t number;
     int newest;
     int64_t begun_ns; /* monotonic time of the first call of alarms_tick(); 0: none yet */
 };
 
-void alarms_touch(struct alarms *alarms, int index); /* gives the alarm the next change number */
-void alarms_watch(struct alarms *alarms, int index); /* adds the alarm to `timed` if the passing of time can change it */
+void alarms_touch(struct alarms *alarms, int index); /* gives the alarm the next change number, because its state has changed */
+void alarms_watch(struct alarms *alarms, int index); /* adds the alarm to `timed` if the passing of time alone can change it */
 
 #endif

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Restores alarm states of an earlier run, of the plant before a reload, or of another daemon; and counts alarms by state. */
+/* Restores alarm states of an earlier run, of the plant before a reload, or of another daemon. Also counts alarms by state. */
 #include <math.h>
 #include <string.h>
 
 #include "alarm/alarms_impl.h"
 #include "base/mem.h"
 
-/* Adapts a restored state to the plant's alarm mode. Without operators' actions (by_hand false), shelving and out-of-service are
-   dropped, because no operator could end them. */
+/* Adapts a restored alarm state to the plant's alarm settings. If operators cannot act on alarms (by_hand false), shelving and
+   out-of-service are dropped, because no operator could end them. */
 static void fit_to_rule(struct alarm *alarm, bool by_hand)
 {
     if (!alarm->rule.acknowledges)
@@ -45,9 +45,9 @@ static void take(struct alarms *alarms, int index, const struct alarm *from)
 void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved, struct instant now)
 {
     struct alarm from = *saved;
-    if (from.until.utc_ns) /* if the shelving time is already over, shelving ends 1 ns from now, so that the next tick ends it */
+    if (from.until.utc_ns) /* if the shelving time is over already, shelving ends 1 ns from now, so that the next alarms_tick() ends it */
         from.until.mono_ns = now.mono_ns + (from.until.utc_ns > now.utc_ns ? from.until.utc_ns - now.utc_ns : 1);
-    /* except for BAD and LINK alarms, the alarm keeps its state until the next sample of its tag */
+    /* the alarm keeps its restored state until its tag's next sample, except BAD and LINK alarms */
     alarms->list[index].held = alarms->list[index].kind != ALARM_BAD && alarms->list[index].kind != ALARM_LINK;
     alarms->list[index].raised_mono_ns = now.mono_ns - (from.raised_utc_ns ? now.utc_ns - from.raised_utc_ns : 0);
     take(alarms, index, &from);
@@ -58,7 +58,7 @@ static bool same_limit(const struct alarm *a, const struct alarm *b)
     return !memcmp(&a->limit, &b->limit, sizeof(a->limit)) && !memcmp(&a->delays, &b->delays, sizeof(a->delays));
 }
 
-/* Takes over the newest sample of each tag from the old plant's alarms, and from them the states of devices. */
+/* Takes over the newest sample of each tag, and the states of devices, from the alarms of the old plant. */
 static void adopt_seen(struct alarms *alarms, const struct alarms *before)
 {
     for (size_t i = 0; i < before->plant->tag_count; i++) {

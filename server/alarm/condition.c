@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Evaluates limits, deadbands and delays. */
+/* Evaluates the condition of an alarm: its limit, deadband and delays. */
 #include "alarm/condition.h"
 
 enum condition_side condition_side(enum alarm_kind kind, double limit, double deadband, double value)

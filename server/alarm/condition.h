@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The condition of an alarm: a limit with a deadband, and with delays before it becomes active (on delay) and inactive (off delay). When
-   it changes depends only on the samples and their times, not on how often it is evaluated. Pure; times are monotonic. Thread: any. */
+   the condition changes depends only on the samples and their times, not on how often it is evaluated. No input or output; times are
+   monotonic. Thread: any. */
 #ifndef ALARM_CONDITION_H
 #define ALARM_CONDITION_H
 #include <stdbool.h>
@@ -8,7 +9,7 @@
 
 #include "value/alarm.h"
 
-struct condition { /* zero-initialised: inactive */
+struct condition { /* zero-initialised: an inactive condition without a running delay */
     bool active;
     enum { CONDITION_RESTS, CONDITION_COMES, CONDITION_GOES } pending; /* running delay: none, on delay, off delay */
     int64_t since_ns;                                                  /* monotonic: when the delay began */
@@ -18,14 +19,16 @@ struct condition_delays {
     int64_t on_ns, off_ns;
 };
 
-enum condition_side { CONDITION_CLEAR, CONDITION_BETWEEN /* within the deadband */, CONDITION_BEYOND };
+enum condition_side { CONDITION_CLEAR, CONDITION_BETWEEN /* within the deadband of the limit */, CONDITION_BEYOND };
 
-/* Returns the side of the limit on which a value is. */
+/* Returns on which side of the limit a value is. */
 enum condition_side condition_side(enum alarm_kind kind, double limit, double deadband, double value);
-/* Ends a running delay that is over at the given time. Returns true if one ended, so the condition changed; *at_ns receives the time. */
+/* Ends a running delay that is over at now_ns. Returns true if one ended, so that the condition changed; *at_ns receives the time at
+   which the delay was over. */
 bool condition_advance(struct condition *condition, const struct condition_delays *delays, int64_t now_ns, int64_t *at_ns);
-/* Applies a sample; call condition_advance() with the sample's time first. Returns true if the condition changed. */
+/* Applies a sample to the condition. side: of the sample's value. Call condition_advance() with the sample's time first. Returns true if
+   the condition changed. */
 bool condition_put(struct condition *condition, const struct condition_delays *delays, enum condition_side side, int64_t now_ns);
-void condition_hold(struct condition *condition); /* stops a running delay, because the measurement is unknown from now on */
+void condition_hold(struct condition *condition); /* stops a running delay, because the tag's value is unknown from now on */
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Assigns tags to devices, and keeps the status of each device. */
+/* Finds out which device each tag is read from, and keeps the status of each device. */
 #include "alarm/devices.h"
 
 #include <string.h>
@@ -12,7 +12,8 @@ static int unit_of(const struct plant *plant, const struct plant_tag *tag)
     return tag->signal.modbus_unit >= 0 ? tag->signal.modbus_unit : plant->sources[tag->source].unit;
 }
 
-/* Returns the index of a device, or -1. Searches from the newest device back, because tags of one device mostly follow each other. */
+/* Returns the index of the device with that source and unit, or -1. Searches from the newest device back, because tags of one device
+   mostly follow each other. */
 static int find(const struct devices *devices, int source, int unit)
 {
     int i = (int)devices->count - 1;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The devices from which tags are read: each unit of each source. A device that fails as a whole raises one alarm instead of one for
-   each of its tags. Pure. Thread: one at a time. */
+/* The devices from which tags are read: each unit of each source. A device that does not answer raises one alarm, instead of one for
+   each of its tags. No input or output. Thread: one at a time. */
 #ifndef ALARM_DEVICES_H
 #define ALARM_DEVICES_H
 #include "plant/plant.h"
@@ -9,10 +9,10 @@ enum device_status { DEVICE_UNKNOWN, DEVICE_USABLE, DEVICE_GONE /* DEVICE_GONE: 
                                                                    stopped */, DEVICE_OTHER };
 
 struct alarm_device {
-    char *name; /* name of the source, with the unit if the source has several: "plc1", "gateway/7" */
+    char *name; /* name of the source, followed by the unit if the source has several: "plc1", "gateway/7" */
     int source, unit;
-    int usable, gone; /* numbers of the device's tags with status DEVICE_USABLE and DEVICE_GONE */
-    int64_t back_ns;  /* monotonic time since which a tag of the device is usable; 0: none is */
+    int usable, gone; /* number of the device's tags with status DEVICE_USABLE, and with DEVICE_GONE */
+    int64_t back_ns;  /* monotonic time since which a tag of the device has been usable; 0: none is */
     int alarm;        /* index of the device's LINK alarm; -1: none */
     bool changed;     /* true: the device changed since alarms.c last evaluated it */
 };
@@ -20,21 +20,21 @@ struct alarm_device {
 struct devices {
     struct alarm_device *list;
     size_t count, capacity;
-    int *of_tag;       /* index in `list` of each tag's device, by tag; -1: none */
-    uint8_t *statuses; /* enum device_status by tag */
+    int *of_tag;       /* by index of the tag: index of its device in `list`; -1: none */
+    uint8_t *statuses; /* by index of the tag: its enum device_status */
 };
 
-/* lists the plant's devices; plant must outlive the result; never returns NULL */
+/* Lists the devices of the plant; `plant` must outlive the result. Never returns NULL. */
 struct devices *devices_create(const struct plant *plant);
 /* frees the devices and sets *devices to NULL; accepts a pointer to NULL */
 void devices_destroy(struct devices **devices);
-int devices_find(const struct devices *devices, const char *name); /* returns the index, or -1 */
+int devices_find(const struct devices *devices, const char *name); /* returns the index of the device with that name, or -1 */
 
-/* Returns what a tag's quality says about its device: DEVICE_USABLE, DEVICE_GONE or DEVICE_UNKNOWN. */
+/* Returns what a tag's quality says about the tag's device. */
 enum device_status device_status_of(uint32_t quality);
-/* Records the status that a tag has from mono_ns on. */
+/* Records the status that a tag gives its device from mono_ns on. */
 void devices_put(struct devices *devices, int tag, enum device_status status, int64_t mono_ns);
-/* returns whether the device has failed: no tag is usable, and at least one is gone */
+/* Returns true if the device does not answer as a whole: no tag is usable, and the status of at least one is DEVICE_GONE. */
 bool device_is_lost(const struct alarm_device *device);
 
 #endif

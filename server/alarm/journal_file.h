@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The journal's SQLite file. Functions that return int return 0 or -errno, already logged. Thread: one per file. */
+/* The alarm journal's SQLite file. Functions that return int return 0 or -errno, already logged. Thread: one per file. */
 #ifndef ALARM_JOURNAL_FILE_H
 #define ALARM_JOURNAL_FILE_H
 #include "alarm/alarms.h"
@@ -9,8 +9,8 @@
 enum { JOURNAL_VERSION = 2, JOURNAL_UNIT_BYTES = 64 };
 
 struct journal_entry {
-    struct alarm alarm; /* the alarm at that time */
-    bool changed;       /* true: the entry is a change, with its event; false: it is only an alarm's present state */
+    struct alarm alarm; /* the alarm, in its state at utc_ns */
+    bool changed;       /* true: the entry is a change of the alarm; false: it is only the alarm's present state */
     enum alarm_event event;
     enum alarm_status before, after;
     int64_t utc_ns;
@@ -28,22 +28,23 @@ struct journal_row {
 };
 struct journal_query {
     int64_t from_us, to_us;
-    int64_t before_id; /* only rows with a smaller id than this; INT64_MAX: all rows */
-    const char *tag;   /* NULL: all tags */
+    int64_t before_id; /* only rows with a smaller id than this (the page of rows before); INT64_MAX: all rows */
+    const char *tag;   /* only rows of this tag; NULL: of all tags */
     int limit;         /* maximum number of rows to return, newest first */
 };
 
 struct journal_file;
-/* Opens the file for writing; creates folder and file if missing. *renewed true: a damaged file was renamed, and the opened one is
-   empty. Returns NULL with *error on failure. */
+/* Opens the journal's file for writing; creates folder and file if missing. *renewed true: a damaged file was renamed, and the opened
+   one is empty. Returns NULL with *error on failure. */
 struct journal_file *journal_file_open(struct log *log, const char *folder, bool *renewed, int *error);
-/* Opens the file for reading. Returns NULL with *error on failure; *error 0: the file does not exist. */
+/* Opens the journal's file for reading. Returns NULL with *error on failure; *error 0: the file does not exist. */
 struct journal_file *journal_file_read(struct log *log, const char *folder, int *error);
 void journal_file_close(struct journal_file **file); /* closes the file and sets *file to NULL; accepts a pointer to NULL */
-/* Writes all entries in one transaction, without the changes that the file already has. Returns -EBADMSG if the file is damaged. */
+/* Writes all entries in one transaction, except changes that the file already has. Returns -EBADMSG if the file is damaged. */
 int journal_file_write(struct journal_file *file, const struct journal_entry *entries, size_t count);
-int journal_file_forget(struct journal_file *file, int64_t before_us); /* deletes rows older than before_us */
-/* Calls each() for the stored state of every alarm, as of the last write to the journal. unit: of the alarm's value; NULL: not known. */
+int journal_file_forget(struct journal_file *file, int64_t before_us); /* deletes rows of changes before before_us */
+/* Calls each() for the stored state of every alarm that was not normal at the last write to the journal. unit: of the alarm's value;
+   NULL: not known. */
 int journal_file_states(struct journal_file *file,
                         void (*each)(void *arg, const char *tag, const char *unit, const struct alarm *alarm), void *arg);
 int journal_file_rows(struct journal_file *file, const struct journal_query *query, void (*each)(void *arg, const struct journal_row *row),

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* ID tokens of OpenID Connect: checks the signature, then the claims (OpenID Connect Core 1.0, 3.1.3.7). Only public-key algorithms are
-   accepted, so neither `none` nor an HMAC made with a public key passes. Pure: the caller passes the time. Any thread. */
+/* Verifies ID tokens of OpenID Connect: the signature, then the claims (OpenID Connect Core 1.0, 3.1.3.7). Only public-key algorithms
+   are accepted, so neither the algorithm `none` nor an HMAC made with a public key passes. No input or output; the caller passes the
+   time. Thread: any. */
 #ifndef OPENID_ID_TOKEN_H
 #define OPENID_ID_TOKEN_H
 #include <jansson.h>
@@ -11,27 +12,29 @@ enum { ID_TOKEN_BYTES = 64 * 1024, ID_TOKEN_SKEW_S = 60 };
 
 struct id_token_expected {
     const struct openid_config *config;
-    const json_t *jwks; /* the provider's public keys */
-    const char *nonce;  /* nonce that the token must have; NULL: not checked, because a refreshed token need not have one */
-    const char *sub;    /* subject (user id at the provider) that the token must have; NULL: not known yet */
+    const json_t *jwks; /* the identity provider's public keys */
+    const char *nonce;  /* nonce that the token must contain; NULL: not checked, because a token from a refresh need not contain one */
+    const char *sub;    /* subject (user id at the provider) that the token must contain; NULL: not known yet */
     int64_t now_s;      /* UTC */
-    int64_t patience_s; /* seconds for which a token is accepted after its `exp` */
+    int64_t patience_s; /* seconds for which a token is still accepted after its expiry (claim `exp`) */
 };
 
 enum id_token_fault {
     ID_TOKEN_GOOD,
     ID_TOKEN_BAD,
-    ID_TOKEN_NO_KEY, /* the token's key is not among the provider's known keys: the provider may have a new key */
+    ID_TOKEN_NO_KEY, /* the token is signed with a key that is not in `jwks`: the provider may have a new key */
 };
 
-/* Verifies a token. If it is good, *claims receives its claims (json_decref); otherwise *why (static text) says what is wrong. */
+/* Verifies an ID token. If it is good, *claims receives its claims (free with json_decref()); otherwise *why (static text) says what is
+   wrong. */
 enum id_token_fault id_token_verify(const char *token, const struct id_token_expected *expected, json_t **claims, const char **why);
-/* Returns the highest role that the claims' groups give; the name of the groups claim may be a path with dots. */
+/* Returns the highest role that the user's groups give. config->groups_claim, which names the claim with the groups, may be a path with
+   dots. */
 enum role id_token_role(const struct openid_config *config, const json_t *claims);
-/* Returns whether the claims contain groups at all. */
+/* Returns true if the claims contain the user's groups. */
 bool id_token_has_groups(const struct openid_config *config, const json_t *claims);
-/* Writes the person's name for lists and journals: the name claim, else e-mail, else sub. Returns false if no such claim can be
-   displayed. */
+/* Writes the user's name for lists and journals: the name claim, else the e-mail address, else the claim `sub`. Returns false if no such
+   claim can be displayed. */
 bool id_token_name(const struct openid_config *config, const json_t *claims, char *out, size_t size);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the file of --openid. */
+/* Reads the configuration file of --openid. */
 #include "access/openid/openid_config.h"
 
 #include <inttypes.h>
@@ -14,7 +14,7 @@
 static const double CHECK_S = 30, HOURS = 12;
 enum { MAX_GROUPS = 200 };
 
-/* Returns whether the URL is unencrypted and not local, so that secrets sent there could be read on the way. */
+/* Returns true if the URL is neither https nor on this machine, so that secrets sent there could be read on the way. */
 static bool is_unsafe(const char *url)
 {
     char host[256], name[256];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* HTTP requests to the identity provider. Each blocks for 7 s at most. Thread: any. */
+/* HTTP requests to the identity provider. Each call blocks for 7 s at most. Thread: any. */
 #ifndef OPENID_OPENID_HTTP_H
 #define OPENID_OPENID_HTTP_H
 #include <jansson.h>
@@ -9,21 +9,21 @@
 
 struct openid_reply {
     int status;    /* HTTP status; 0: no answer */
-    json_t *json;  /* parsed body; NULL: none */
+    json_t *json;  /* parsed body of the answer; NULL: none */
     char why[256]; /* reason why the provider gave no answer */
 };
 
 /* openid_get() and openid_post() return true if the provider answered, even with an error status; free the answer with
-   openid_reply_finish(). stop: a flag; when it becomes true, the request is abandoned. */
+   openid_reply_finish(). stop: when this flag becomes true, the request is aborted. */
 /* Requests a URL with GET and reads the JSON answer. bearer: an access token; NULL: none. */
 bool openid_get(const struct openid_config *config, const char *url, const char *bearer, const _Atomic bool *stop,
                 struct openid_reply *reply);
-/* Sends a form with POST. Authenticates this server with the client secret, by HTTP Basic or, if in_form, as a field of the form. */
+/* Sends a form with POST. Authenticates this server with its client secret, by HTTP Basic or, if in_form, as a field of the form. */
 bool openid_post(const struct openid_config *config, const char *url, const char *form, bool in_form, const _Atomic bool *stop,
                  struct openid_reply *reply);
 void openid_reply_finish(struct openid_reply *reply);
 
-/* Appends `&name=value` (without `&` at the beginning), percent-encoded. */
+/* Appends `&name=value` to a form or query, percent-encoded; without `&` if `out` is empty. */
 void openid_add_argument(struct text *out, const char *name, const char *value);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The state behind openid.h. Private to openid*.c. */
+/* The state behind openid.h, and functions that the files openid*.c share. Private to them. */
 #ifndef OPENID_OPENID_IMPL_H
 #define OPENID_OPENID_IMPL_H
 #include <jansson.h>
@@ -9,13 +9,15 @@
 #include "access/openid/id_token.h"
 #include "access/openid/openid.h"
 
-/* maximum numbers of authorization codes that wait to be exchanged for tokens: in total, and of one address */
+/* maximum number of authorization codes that wait to be exchanged for tokens: in total, and from one address */
 enum { OPENID_CODES = 64, OPENID_CODES_OF_ADDRESS = 16 };
 
-struct openid_job { /* one queued request to the provider: to exchange the code that a browser brought back, or to revoke a token */
+struct openid_job { /* a queued request to the provider: exchange the authorization code that a browser brought back, or revoke a token */
     uint64_t request;
     struct sign_in sign_in;
-    char *code, *from, *revoke; /* revoke: the refresh token to revoke; NULL: the job exchanges `code` for tokens */
+    /* code: authorization code; from: address of the client as text; revoke: refresh token to revoke, NULL: the job exchanges `code` for
+       tokens */
+    char *code, *from, *revoke;
     struct openid_job *next;
 };
 
@@ -33,12 +35,13 @@ struct openid {
     pthread_t thread; /* thread that starts the requests to the identity provider when they are due */
     bool started;
     counter *good, *people, *refused, *foreign;
-    /* changed: a user's rights changed since the last openid_take_changed(); failing: the log already has a line that the provider fails */
+    /* changed: a user's rights changed since the last openid_take_changed(); failing: the log already says that the provider fails */
     _Atomic bool stopping, changed, failing;
-    pthread_mutex_t asking; /* held while metadata and keys are requested from the provider; must not be locked by a thread that holds
-                               `lock` */
+    /* held while the provider's metadata and keys are requested; must not be locked by a thread that holds `lock` */
+    pthread_mutex_t asking;
     /* --- below: protected by `asking` */
-    int64_t jwks_ns, discovered_ns; /* monotonic time when keys (jwks) and metadata (discovered) were last requested; 0: never */
+    /* monotonic times when the provider's keys (jwks) and metadata (discovered) were last requested; 0: never */
+    int64_t jwks_ns, discovered_ns;
     /* --- below: protected by `lock` */
     pthread_mutex_t lock;
     pthread_cond_t wake;
@@ -46,31 +49,31 @@ struct openid {
     struct sign_ins *table;
     struct openid_jobs codes, revocations;
     int running[OPENID_TASKS];
-    int64_t discover_ns; /* monotonic time when metadata and keys must be checked again */
+    int64_t discover_ns; /* monotonic time when the provider's metadata and keys must be requested again */
     struct openid_answer *answers;
-    int64_t error_ns; /* monotonic time when an error of the provider was last recorded; 0: never */
+    int64_t error_ns; /* monotonic time when an error of the provider was last recorded in the audit trail; 0: never */
 };
 
 /* --- openid_work.c --- */
 
-/* Main function of the thread that starts requests to the identity provider; its argument is the struct openid. Returns once
+/* Main function of the thread that starts due requests to the identity provider; its argument is the struct openid. Returns once
    openid->stopping is set and no request runs. */
 void *openid_run(void *arg);
-/* Queues an answer; takes ownership of the text `why`. The caller holds the lock. */
+/* Queues the result of a log-in for openid_collect(); takes ownership of the text `why`. The caller holds the lock. */
 void openid_add_answer(struct openid *openid, const struct openid_job *job, enum openid_result result, const char *cookie, char *why);
-/* openid_record() writes an entry to the audit trail; openid_say_refused() also logs and counts the refusal. */
+/* openid_record() writes an entry to the audit trail. openid_say_refused() also logs and counts a refused log-in. */
 void openid_record(struct openid *openid, const char *event, const char *result, const struct token_holder *holder, const char *from,
                    const char *what, const char *why);
 void openid_say_refused(struct openid *openid, const char *from, const char *why);
 
 /* --- functions of openid_jobs.c; the caller holds the lock, except for openid_free_job() --- */
 
-/* Queues a job; takes ownership of its texts. */
+/* Queues a request to the provider; takes ownership of its texts. */
 void openid_add_job(struct openid *openid, struct openid_jobs *jobs, const struct openid_job *job);
 void openid_free_jobs(struct openid_jobs *jobs);
 /* Queues the revocation of a refresh token, which is copied, if the provider supports revocation. NULL is a no-op. */
 void openid_revoke_later(struct openid *openid, const char *refresh_token);
-/* Removes the oldest job, which the caller owns (openid_free_job). The queue must not be empty. */
+/* Removes the oldest job from the queue and returns it; the caller frees it with openid_free_job(). The queue must not be empty. */
 struct openid_job *openid_take_job(struct openid_jobs *jobs);
 void openid_free_job(struct openid_job *job);
 
@@ -80,27 +83,27 @@ void openid_free_job(struct openid_job *job);
 bool openid_knows(struct openid *openid);
 /* Requests the provider's metadata and keys if they are unknown or old. Returns true if they are known. */
 bool openid_discover(struct openid *openid);
-/* Reports in the log and the metrics whether the provider answers. why NULL: the provider answers. */
+/* Reports in the log and the metrics whether the provider answers. why: the error; NULL: the provider answers. */
 void openid_say(struct openid *openid, const char *why);
 /* Returns the provider's URL for an endpoint from its metadata (mem_free); NULL: the provider has no such endpoint. */
 char *openid_endpoint(struct openid *openid, const char *name);
-/* Verifies an ID token; fetches the provider's keys if the token's key is unknown. Returns its claims (json_decref); NULL with *why
-   (static text). *unsure true: the token may be good, but its key is unknown and the keys could not be fetched. */
+/* Verifies an ID token; fetches the provider's keys if the token's key is unknown. Returns the token's claims (free with json_decref());
+   NULL with *why (static text). *unsure true: the token may be good, but its key is unknown and the keys could not be fetched. */
 json_t *openid_verify(struct openid *openid, const char *token, const char *nonce, const char *sub, bool *unsure, const char **why);
-/* Adds claims from the provider's UserInfo endpoint if groups or name are missing. Returns false if the provider refuses. *told true:
-   the claims are complete now. *told false: groups may be missing only because the provider was not asked or did not answer. */
+/* Adds claims from the provider's UserInfo endpoint if the user's groups or name are missing. Returns false if the provider refuses.
+   *told true: the claims are complete now. *told false: groups may be missing only because the provider was not asked or did not answer. */
 bool openid_complete(struct openid *openid, json_t *claims, const char *access_token, bool *told);
 
 /* --- functions of openid_tokens.c; called by any thread, without the lock --- */
 
-/* Redeems a code at the provider. Returns the person, who is not in the table of signed-in people yet; NULL with *result and *why
-   (mem_free) if the log-in failed. */
+/* Exchanges an authorization code at the provider for tokens. Returns the user who logged in, not yet in the table of signed-in users;
+   NULL with *result and *why (mem_free) if the log-in failed. */
 struct person *openid_redeem(struct openid *openid, const struct openid_job *job, enum openid_result *result, char **why);
 enum openid_rights { RIGHTS_UNKNOWN, RIGHTS_GONE, RIGHTS_SAME };
-/* Checks a person's rights again at the provider. Updates role and tokens of `person`, a copy that owns its texts. Returns
+/* Checks a signed-in user's rights again at the provider. Updates role and tokens of `person`, a copy that owns its texts. Returns
    RIGHTS_UNKNOWN if the provider does not answer. *why: static text. */
 enum openid_rights openid_check(struct openid *openid, struct person *person, const char **why);
-/* Revokes a refresh token, if the provider supports that. */
+/* Revokes a refresh token at the provider, if the provider supports that. */
 void openid_revoke(struct openid *openid, const char *token);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fetches and keeps data about the identity provider: its endpoints, its keys, and its reports about a person. */
+/* Requests and keeps data of the identity provider: its endpoints, its keys, and its claims about a user. */
 #include <stdio.h>
 #include <string.h>
 
@@ -9,8 +9,8 @@
 #include "base/mem.h"
 
 static const int64_t MAX_AGE_NS = 3600 * NS_PER_S, RETRY_NS = 5 * NS_PER_S;
-/* minimum time between two requests for keys. Without it, outsiders could cause any number of requests with tokens that name unknown
-   keys */
+/* Minimum time between two requests for the provider's keys. Without it, anyone could cause any number of requests with tokens that name
+   unknown keys. */
 static const int64_t KEYS_INTERVAL_NS = 10 * NS_PER_S;
 
 void openid_say(struct openid *openid, const char *why)
@@ -119,8 +119,8 @@ static json_t *take_keys(struct openid *openid)
     return keys;
 }
 
-/* Fetches the provider's keys, unless they were fetched within KEYS_INTERVAL_NS or another thread has already replaced `keys`. Returns
-   false if newer keys than `keys` are not available. */
+/* Requests the provider's keys, unless they were requested within KEYS_INTERVAL_NS or another thread has already replaced `keys`.
+   Returns false if no newer keys than `keys` are available. */
 static bool renew_keys(struct openid *openid, const json_t *keys)
 {
     pthread_mutex_lock(&openid->asking);
@@ -155,7 +155,8 @@ bool openid_complete(struct openid *openid, json_t *claims, const char *access_t
     bool lacks = !id_token_has_groups(openid->config, claims) || !json_object_get(claims, openid->config->name_claim) ||
                  !id_token_name(openid->config, claims, name, sizeof(name));
     bool asks = url && access_token && lacks;
-    /* the provider was not asked: the claims count as complete only if they come from an ID token (these have `iss`) */
+    /* the provider was not asked: the claims count as complete only if they come from an ID token (those have `iss`), not from a refresh
+       without one */
     *told = !asks && json_object_get(claims, "iss");
     if (asks && openid_get(openid->config, url, access_token, &openid->stopping, &reply) && reply.status == 200) {
         const char *sub = json_string_value(json_object_get(claims, "sub")), *its = json_string_value(json_object_get(reply.json, "sub"));

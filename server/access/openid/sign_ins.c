@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tables of log-ins in progress and of signed-in people. */
+/* Tables of log-ins in progress and of signed-in users. */
 #include "access/openid/sign_ins.h"
 
 #include <openssl/crypto.h>
@@ -10,12 +10,12 @@
 #include "base/clock.h"
 #include "base/mem.h"
 
-static const int64_t LOG_IN_TIMEOUT_NS = 600 * NS_PER_S; /* maximum time for a user to log in at the provider */
+static const int64_t LOG_IN_TIMEOUT_NS = 600 * NS_PER_S; /* maximum time that a user may take to log in at the provider */
 
 struct sign_ins {
     struct sign_in *begun;
     size_t begun_count, begun_capacity;
-    struct person *people; /* signed-in people in the order in which they signed in */
+    struct person *people; /* signed-in users in the order in which they signed in */
     size_t count, capacity;
     uint64_t next_number;
 };
@@ -31,7 +31,7 @@ static void to_base64url(const uint8_t bytes[32], char out[SIGN_IN_SECRET_CHARS 
     out[SIGN_IN_SECRET_CHARS] = 0;
 }
 
-/* Writes 256 random bits in base64url. Returns false if the system has no randomness. */
+/* Writes a secret of 256 random bits in base64url. Returns false if the system's random number generator failed. */
 static bool make_secret(char out[SIGN_IN_SECRET_CHARS + 1])
 {
     uint8_t bytes[32];
@@ -87,7 +87,7 @@ void sign_ins_destroy(struct sign_ins **pointer)
     *pointer = NULL;
 }
 
-/* Returns the entry for a new log-in of that address: an unused one or, if the address has too many or all are used, the oldest entry
+/* Returns the entry for a new log-in from that address: an unused one or, if the address has too many or all are used, the oldest entry
    that may be replaced. */
 static struct sign_in *find_place(struct sign_ins *table, const uint8_t address[16], int64_t now_ns)
 {
@@ -155,8 +155,8 @@ void sign_ins_remove(struct sign_ins *table, struct person *person)
     memmove(person, person + 1, (table->count - i) * sizeof(*person));
 }
 
-/* Makes room for one more session: removes the oldest session of the person, or of all people, if there are too many. *left receives its
-   refresh token. */
+/* Makes room for one more session: if the user has too many sessions, removes the user's oldest one; if all users together have too
+   many, the oldest of all. *left receives the removed session's refresh token, to be revoked. */
 static void make_room(struct sign_ins *table, const char *sub, char **left)
 {
     struct person *same = NULL;
