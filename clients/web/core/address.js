@@ -5,7 +5,7 @@ import { clipText, numbersText, readNumbers, readSensors, sensorsText } from './
 import { ENGINEERS } from './session.js';
 
 const CHOICES = {
-    // parameter -> its valid names; null: any name, which the server checks
+    // parameter of the view -> its valid names; null: any name, which the server checks
     group : null,
     interpolation : null,
     distance : null,
@@ -18,13 +18,15 @@ const CHOICES = {
     environment : null,
 };
 const SETS = { hide: 'hidden', only: 'isolate', ghost: 'ghost' }; // lists of assets
-const LISTS = { range: 2, light: 3, breaks: null, isolines: null }; // parameter -> number of values that it must have; null: any number
-const FACTORS = { strength: 1, decay: 1, power: null, radius: 0, reach: null }; // parameter -> default value; null: the group's default
+// parameter with a list of numbers -> how many numbers it must have; null: any number
+const LISTS = { range: 2, light: 3, breaks: null, isolines: null };
+// numeric parameter -> default value, which the address leaves out; null: the default of the shown sensor group
+const FACTORS = { strength: 1, decay: 1, power: null, radius: 0, reach: null };
 const PARAMS = { radius: 'radius_m', reach: 'reach_m' };
 const HALF = ['group', 'show', 'distance', 'interpolation', 'colormap', 'look'];
 
-// Returns the fragment for a view. own: default values of parameters, such as those of a group; parameters with these values are left out.
-// named: id of the saved view from which the server takes the parameters that only engineers may send.
+// Returns the fragment for a view. own: default values of parameters, such as those of the sensor group; parameters with these values are
+// left out. named: id of the saved view from which the server takes the parameters that only engineers may send.
 export function writeAddress({ camera, params: all = {}, tag = null, time = null, own = {}, named = null }) {
     const params = named ? Object.fromEntries(Object.entries(all).filter(([name]) => !ENGINEERS.includes(name))) : all;
     const parts = [], differs = (name) => JSON.stringify(params[name]) !== JSON.stringify(own[name]);
@@ -56,7 +58,7 @@ export function writeAddress({ camera, params: all = {}, tag = null, time = null
     if (params.selected)
         put('asset', params.selected);
     for (const [name, param] of Object.entries(SETS)) {
-        if (params[param] && differs(param)) // an empty list is written, too, if the plant's default is not empty
+        if (params[param] && differs(param)) // an empty list of assets is written, too, if the plant file's default list is not empty
             put(name, params[param].join(','));
     }
     if (params.clip)
@@ -97,7 +99,8 @@ function readCamera(text) {
     return (n.length === 10 || n.length === 11) && valid(camera) ? camera : null;
 }
 
-// Parses a fragment, skipping invalid parts. Returns { camera or null, params (only those given), tag or null, time: { atUs } if given }.
+// Parses a fragment, skipping invalid parts. Returns { camera or null, params (only those in the fragment), tag or null, time: { atUs } if
+// the fragment has an instant }.
 export function readAddress(hash) {
     const fields = new URLSearchParams(hash.replace(/^#/, ''));
     const params = {};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Actions on alarms by the user's role and the alarm's state, and the list of shelved, suppressed and out-of-service alarms.
+// Says which actions on an alarm (acknowledge, shelve, ...) a user may do, by role and the alarm's state, and lists the alarms that are
+// shelved, suppressed or out of service.
 import { calls, isGone } from './alarms.js';
 
 const ACTIONS = { // actions by alarm state, for alarms that Plantcast manages itself
@@ -9,7 +10,7 @@ const ACTIONS = { // actions by alarm state, for alarms that Plantcast manages i
 };
 const ROLES = { in_service: ['engineer'] };
 
-// Returns the actions that a role may do to an alarm. mode: the plant's alarm mode.
+// Returns the actions that a role may do to an alarm in this state. mode: the plant's alarm mode.
 export function actionsFor({ state }, mode, role) {
     const may = (action) => (ROLES[action] ?? ['operator', 'engineer']).includes(role);
     return mode === 'local' ? (ACTIONS[state] ?? []).filter(may) : [];
@@ -19,7 +20,7 @@ export function actionsFor({ state }, mode, role) {
 export const asideOf = ({ rows }) =>
     [...rows.values()].filter(({ state }) => !calls(state)).sort((a, b) => (a.tag.index ?? -1) - (b.tag.index ?? -1));
 
-// Returns all alarms of a row in the alarm list: the alarm that the tag shows, and the tag's other alarms.
+// Returns all alarms of a row in the alarm list: the alarm shown in the row, and the other alarms of its tag.
 export const allOf = (row) => [row, ...(row.others ?? [])];
 
 // Returns those alarms of a row to which an action applies.
@@ -32,13 +33,13 @@ const IS = { // predicates by filter choice
     all: () => true, waiting: ({ waiting }) => waiting, active: ({ state }) => !isGone(state), gone: ({ state }) => isGone(state),
 };
 
-// Returns true if a row passes the filter. which: a key of IS, or a priority; words: each must occur in the text of the row.
+// Returns true if a row of the alarm list passes the filter. which: a key of IS, or a priority; words: each must occur in the row's text.
 export function passes(row, text, { which, words }) {
     const is = IS[which] ?? (({ priority }) => priority === Number(which)), lower = text.toLowerCase();
     return is(row) && words.toLowerCase().split(/\s+/).every((word) => lower.includes(word));
 }
 
-// Splits a list of alarms into lists that are small enough for one message each.
+// Splits a list of alarms into lists of at most MOST_AT_ONCE, each small enough for one message to the server.
 const MOST_AT_ONCE = 256;
 export function inMessages(alarms) {
     const out = [];

@@ -20,7 +20,7 @@ export class AlarmCall {
         return alarms.filter((alarm) => !isGone(alarm.state) && nowUs - alarm.raisedUs <= FLOOD_US).length > FLOOD;
     }
 
-    // Returns the alarm to show, or null. alarms: those that are annunciated, one per tag; nowMs: monotonic time.
+    // Returns the alarm to show, or null. alarms: the annunciated ones, one per tag; nowMs: monotonic time; nowUs: the server's time.
     next(alarms, nowMs, nowUs) {
         const waiting = this.isFlood(alarms, nowUs) ? [] : alarms.filter(({ tag, waiting: calls }) =>
             calls && tag.asset && tag.position).sort((a, b) => isGone(a.state) - isGone(b.state) || byGravity(a, b));
@@ -35,11 +35,11 @@ export class AlarmCall {
     }
 }
 
-// Returns the equipment that has alarms, the most urgent first: [{ asset, count, worst }].
+// Returns the equipment with alarms, the most urgent first: [{ asset, count (of alarms), worst (most urgent alarm) }].
 export function byEquipment(alarms) {
     const all = new Map();
     for (const alarm of alarms) {
-        const key = alarm.tag.asset ?? alarm.tag.name; // a device, or a tag without equipment, has an entry of its own
+        const key = alarm.tag.asset ?? alarm.tag.name; // alarms of a device, or of a tag without equipment, get an entry of their own
         const known = all.get(key) ?? { asset: alarm.tag.asset, count: 0, worst: alarm };
         all.set(key, { ...known, count: known.count + 1, worst: byGravity(alarm, known.worst) < 0 ? alarm : known.worst });
     }

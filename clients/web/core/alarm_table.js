@@ -16,13 +16,13 @@ const ORDERS = {
 
 export const sortable = (name) => name in ORDERS;
 
-// Returns the rows in the order of a column. by null: the rows keep their order. Rows that are equal in the column keep their order.
+// Returns the rows sorted by a column. by null: the rows keep their order. Rows with equal values in the column keep their order.
 export function sortRows(rows, { by, down }) {
     const order = ORDERS[by], sign = down ? -1 : 1;
     return order ? [...rows].sort((a, b) => sign * order(a, b)) : rows;
 }
 
-// Returns the next order after a click on a column's title: the column, the column reversed, then the order in which rows came.
+// Returns the sort order after a click on a column's title. Clicks switch from this column, to this column reversed, to the server's order.
 export const nextSort = ({ by, down }, name) =>
     (by !== name ? { by: name, down: false } : down ? { by: null, down: false } : { by: name, down: true });
 
@@ -47,7 +47,7 @@ export function journalRow(model, { id, time_us: us, tag: name, kind, event, sta
         area: areaOf(model, tag), about: tag.description ?? '' };
 }
 
-// A cell that a spreadsheet would run as a formula gets an apostrophe, as in the CSV of the server.
+// A cell that a spreadsheet would run as a formula gets an apostrophe in front, as in the server's own CSV files.
 function csvCell(value) {
     const text = String(value), safe = typeof value === 'string' && /^[=+\-@\t\r]/.test(text) ? `'${text}` : text;
     return /[,"\n\r]/.test(safe) ? `"${safe.replaceAll('"', '""')}"` : safe;

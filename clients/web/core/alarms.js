@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Keeps the alarms that are not normal, as the server sends them, and selects one annunciated alarm per tag.
+// Stores the alarms that are not in the state "normal", as the server sends them, and selects one annunciated alarm per tag.
 
-// [background, text] by priority: colours that no colour map comes near (tests/web/alarm_colours.test.mjs)
+// [background, text] by priority. No colour map of the picture has similar colours (tests/web/alarm_colours.test.mjs).
 export const ALARM_COLOURS = [['#af0c4a', '#fff'], ['#ffff96', '#1b1300'], ['#b646aa', '#fff'], ['#1e00f5', '#fff']];
 
 const CALLS = ['unacknowledged', 'active', 'returned', 'latched', 'acknowledged']; // annunciated states
@@ -9,23 +9,25 @@ const CALLS = ['unacknowledged', 'active', 'returned', 'latched', 'acknowledged'
 export const calls = (state) => CALLS.includes(state);
 export const isWaiting = (state) => state === 'unacknowledged' || state === 'returned';
 export const isGone = (state) => state === 'returned' || state === 'latched'; // returned to normal: drawn hollow
-// Makes an object that takes the place of a tag in the alarms of a device.
+// Makes an object for the alarm of a device, which has no tag, with the members that a tag has.
 const deviceOf = (name) => ({ name, index: null, group: null, asset: null, description: '' });
 
 const isOuter = ({ kind }) => kind === 'HH' || kind === 'LL';
-// Compares two alarms for sorting: active before cleared, then the more urgent one, then the outer limit (HH, LL), whose alarm implies that
-// of the inner one.
+// Compares two alarms for sorting: active before returned, then the more urgent one, then the outer limit (HH, LL), whose alarm implies
+// that of the inner limit (H, L).
 export const graver = (a, b) => isGone(a.state) - isGone(b.state) || a.priority - b.priority || isOuter(b) - isOuter(a) ||
     isWaiting(b.state) - isWaiting(a.state) || b.raisedUs - a.raisedUs;
 
 export class Alarms {
     constructor(tags) {
         Object.assign(this, { tags, mode: 'display', known: false, raised: [] });
-        // tag or device name -> times of its annunciated alarms, also of an earlier connection (session.js); null: none are known yet
+        // tag or device name -> raise times of its annunciated alarms, also from an earlier connection (session.js); null before the first
+        // list of alarms
         this.times = null;
         this.rows = new Map(); // "tag index/kind" -> alarm
         this.then = null; // readings of the past instant that is shown, which then determine each tag's alarm; null: the present is shown
-        // tag index or device name -> its most urgent annunciated alarm; `waiting` true: any of its alarms is unacknowledged
+        // tag index or device name -> its most urgent annunciated alarm. Its member `waiting` is true if any alarm of the tag is
+        // unacknowledged,
         this.byTag = new Map();
         // and `others` (its other alarms)
     }
@@ -51,13 +53,13 @@ export class Alarms {
             [key, { ...gravest, others, waiting: [gravest, ...others].some(({ state }) => isWaiting(state)) }]));
         const list = this.list();
         this.times = new Map(list.map((one) => [one.tag.name, [one, ...one.others].map(({ raisedUs }) => raisedUs)]));
-        // alarms raised since the previous message, also since one of an earlier connection: one per tag, the most urgent first; not those
-        // that only changed their state
+        // alarms raised since the previous `alarms` message, also if that came over an earlier connection: one per tag, the most urgent
+        // first. Alarms that only changed their state do not count.
         this.raised = list.filter(({ tag, state, raisedUs }) => before && !isGone(state) && state !== 'acknowledged' &&
             !before.get(tag.name)?.some((us) => us >= raisedUs));
     }
 
-    // Returns one alarm per tag: active before cleared, then unacknowledged first, then by priority, then newest first.
+    // Returns one alarm per tag, sorted: active before returned, then unacknowledged first, then by priority, then newest first.
     list() {
         return [...this.byTag.values()].sort((a, b) => isGone(a.state) - isGone(b.state) || b.waiting - a.waiting ||
             a.priority - b.priority || b.raisedUs - a.raisedUs);
@@ -71,8 +73,8 @@ export class Alarms {
         return this.byTag.get(index) ?? null;
     }
 
-    // Returns how many tags and devices have alarms: { active, waiting (unacknowledged), latched, of: active ones by priority, gone: those
-    // that returned to normal, by priority }
+    // Returns how many tags and devices have alarms: { active, waiting (unacknowledged), latched, of (active ones by priority), gone (those
+    // that returned to normal, by priority) }
     counts() {
         const list = this.list(), of = [0, 0, 0, 0], gone = [0, 0, 0, 0];
         for (const { priority, state } of list)

@@ -4,15 +4,14 @@ import { isParallel, projector, validOr } from './camera.js';
 import { corners, distance, face, orbit } from './camera_moves.js';
 import { along, length, subtract, unit } from './vector.js';
 
-// distance of the camera as a multiple of the middle side (PART) and of the longest side (LONG_PART) of the equipment's box; the larger
-// distance counts
+// The camera's distance is the larger of PART times the middle side and LONG_PART times the longest side of the equipment's bounding box.
 const PART = 1.1, LONG_PART = 0.7;
-const LEAST_M = 0.2, MOST_M = 16; // bounds of the camera's distance in plants of usual size
-// bounds of the camera's distance in very small and very large plants, as parts of the plant's diagonal
+const LEAST_M = 0.2, MOST_M = 16; // least and largest distance of the camera in plants of usual size, in metres
+// bounds of the camera's distance in very small and very large plants, as fractions of the plant's diagonal
 const LEAST_PART = 1 / 200, MOST_PART = 1 / 20;
-const FILL = 0.42; // part of the picture that the equipment's box fills, if no bound prevents it
-// A side is narrow if the camera comes nearer there than NARROW times its largest distance at the first FRONT sides. Narrow sides are tried
-// last, because they show little: of a pump, only the motor's fan cover.
+const FILL = 0.42; // fraction of the picture that the equipment's box fills, unless the bounds of the distance prevent it
+// A side of the equipment is narrow if the camera must be nearer there than NARROW times its largest distance at the first FRONT sides.
+// Narrow sides are tried last, because they show little: of a pump, only the motor's fan cover.
 const NARROW = 0.75, FRONT = 9;
 const STEPS = 16;  // bisections of the distance
 const TURNS = [ // degrees: about the vertical, up
@@ -20,7 +19,7 @@ const TURNS = [ // degrees: about the vertical, up
     [180, 0], [70, 30], [-70, 30], [180, 30], [50, -20], [-50, -20], [0, -45], [90, -45], [-90, -45], [180, -45],
 ];
 
-// Returns the bounds { least, most } of a camera's distance from a sensor, in metres.
+// Returns the bounds { least, most } of a camera's distance from a sensor, in metres. The argument is the plant's bounds.
 export function distanceBounds({ min, max }) {
     const size = length(subtract(max, min));
     return { least: Math.min(LEAST_M, size * LEAST_PART), most: Math.max(MOST_M, size * MOST_PART) };
@@ -34,7 +33,8 @@ export function approachDistance({ min, max }, { least, most }) {
     return wanted < most ? Math.max(least, wanted) : most;
 }
 
-// Returns the part of the picture, 0 to 1, that the rectangle around a box fills. A box that reaches behind the camera counts as 1.
+// Returns the fraction of the picture (0 to 1) that the bounding rectangle of a projected box fills. A box that reaches behind the camera
+// counts as 1.
 export function fillOf(camera, box, aspect) {
     const places = corners(box).map(projector(camera, aspect, 1));
     if (places.includes(null))
@@ -53,7 +53,7 @@ export function atDistance(camera, metres) {
     return validOr({ ...camera, ...lens, eye: along(camera.target, back, metres) }, camera);
 }
 
-// Returns the camera, moved nearer until the box fills FILL of the picture, but not below the distance `least`.
+// Returns the camera, moved nearer until the box fills the fraction FILL of the picture, but no nearer than `least` metres.
 function nearer(camera, box, aspect, least) {
     let near = least, far = distance(camera);
     if (fillOf(camera, box, aspect) >= FILL)
@@ -70,12 +70,12 @@ function nearer(camera, box, aspect, least) {
 
 const isIn = (point, { min, max }) => point.every((m, i) => m > min[i] && m < max[i]);
 
-// Returns whether other assets stand within the bounds of an asset, as in a building.
+// Returns true if the bounds of an asset contain other assets, as those of a building do.
 export const isRoom = ({ id, bounds }, assets) =>
     assets.some((other) => other.id !== id && isIn(other.bounds.min, bounds) && isIn(other.bounds.max, bounds));
 
 // Returns the cameras to try, in order, for a point on equipment with the bounds `box`. aspect: width of the picture divided by its height;
-// whole: bounds of the plant; solid true: leaves out cameras whose eye is within `box`, except the first.
+// whole: bounds of the plant; solid true: leaves out cameras whose eye is within `box`, except the first camera.
 export function approaches({ camera, point, box, aspect, whole, solid }) {
     const bounds = distanceBounds(whole), first = face(camera, point, box, approachDistance(box, bounds));
     const all = TURNS.map(([azimuth, rise]) => nearer(orbit(first, azimuth, rise, point), box, aspect, bounds.least));

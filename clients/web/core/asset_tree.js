@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tree of equipment as a list of rows (areas, assets, their tags, and tags without an asset), and which rows are expanded.
+// The tree of equipment as a list of rows: areas, assets, their tags, and tags without an asset. It also stores which rows are expanded.
 
-// A row is { kind: area | asset | tag, level, id, open (of areas and assets: expanded), item (asset or tag), text (of an area), setSize,
-// place }.
+// A row is { kind: area | asset | tag, level (depth in the tree), id, open (area or asset: it is expanded), item (the asset or tag), text
+// (of an area), setSize, place (number of siblings and position among them, for screen readers) }.
 export class Tree {
-    // loose: heading above the tags without equipment.
+    // loose: text of the heading above the tags without equipment.
     constructor(model, loose) {
         this.folded = new Set(); // ids of collapsed areas
         this.open = new Set();   // ids of expanded assets
@@ -36,8 +36,8 @@ export class Tree {
         this.folded.delete(asset.area ?? '');
     }
 
-    // Returns the rows. find(asset) is a search function (search.js) that returns { asset, tags, byTag }, or null for an asset to leave
-    // out; find null: no search.
+    // Returns the rows. find(asset) is the search of search.js: it returns { asset, tags, byTag }, or null for an asset to leave out. find
+    // null: no search is active.
     rows(find = null) {
         const rows = [];
         for (const { name, assets } of this.areas) {

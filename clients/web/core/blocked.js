@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds out why no WebSocket opens although the page was loaded from the same server. Usually a proxy in between does not pass WebSockets
-// on: the message names the proxy and the settings that it needs.
+// Finds out why no WebSocket opens although the same server delivered the page. Usually a proxy in between does not forward WebSockets: the
+// message names the proxy and the settings that it needs.
 import { put } from './refusals.js';
 import { say } from './words.js';
 
 const ANSWER_MS = 5000;
 const NGINX = 'proxy_http_version 1.1; proxy_set_header Upgrade $http_upgrade; proxy_set_header Connection "upgrade";';
 
-// Returns the proxy's name from the headers of an HTTP answer; our server sends none of these headers.
+// Returns the name of a proxy from the headers of an HTTP answer. Our own server sends none of these headers.
 const proxyOf = (headers) => headers.get('server')?.split(/[/ ]/)[0] || /^\S+ ([^ ,]+)/.exec(headers.get('via') ?? '')?.[1] || '';
 
 // Returns the reason why the WebSocket at `url` does not open; '' if the server does not answer over HTTP either.
 async function whyBlocked(url) {
     const address = new URL(url.replace(/^ws/, 'http'));
-    address.search = '?why'; // with ?why the server does not log this request as a failed WebSocket
+    address.search = '?why'; // with ?why the server does not log this HTTP request as a failed WebSocket
     const answer = await fetch(address, { cache: 'no-store', signal: AbortSignal.timeout(ANSWER_MS) });
     if (answer.status >= 500)
         return '';
@@ -25,7 +25,7 @@ async function whyBlocked(url) {
     return put('page.blocked', { proxy: proxy || put('page.blocked_proxy'), needs });
 }
 
-// Finds the reason over HTTP and stores it in connection.blocked.
+// Finds out over HTTP why the WebSocket does not open, and stores the reason in connection.blocked.
 export async function explain(connection) {
     const tried = connection.unopened;
     connection.blocked = await whyBlocked(connection.url).catch(() => '');

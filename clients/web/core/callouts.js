@@ -3,24 +3,24 @@
 // together share one, a call-out (protocol/LABELS.md).
 import { boxAt, CLEARANCE, hasArea, meets, SLOTS } from './labels.js';
 
-// distances in units (CSS pixels, more on a wall): rings closer than CLOSE share a call-out; rings that share one already do so up to
-// STILL_CLOSE
+// Distances in units (CSS pixels, more on a wall). Rings closer than CLOSE get one call-out together. Rings that already share one keep it
+// up to the distance STILL_CLOSE.
 const CLOSE = 26, STILL_CLOSE = 34;
-// MOST_GROUPS: maximum number of labels; the distances grow by the factor FARTHER until the number is met
-const MOST_GROUPS = 24, FARTHER = 1.25; // more rings than MOST_GROUPS are a flood
+// MOST_GROUPS: maximum number of labels. As long as there are more, the distances above are multiplied by FARTHER.
+const MOST_GROUPS = 24, FARTHER = 1.25; // more rings than MOST_GROUPS count as a flood of alarms
 const MOST_LEADS = 4; // maximum number of leader lines of a call-out; if more rings are within FARTHEST, only the nearest has one
-const STEP_X = 24, STEP_Y = 15, STEPS = 60; // units: spacing of the grid of candidate positions around the centre of the rings
+const STEP_X = 24, STEP_Y = 15, STEPS = 60; // units: spacing of the grid of candidate positions for a label, around the centre of its rings
 // units: largest distance of a label from the bounding box of its rings, unless it is the only label that remains; also the largest
 // distance from a call-out to the centre of a ring with a leader line
 const FARTHEST = 60;
-const MOST_GROWTHS = 100;                   // maximum number of times that the distances grow; by then they exceed any picture
+const MOST_GROWTHS = 100;                   // maximum number of times that the distances grow; after that they exceed any picture
 
-const OFFSETS = []; // candidate positions [x, y, squared distance], nearest first
+const OFFSETS = []; // candidate positions for a label relative to the centre of its rings: [x, y, squared distance], nearest first
 for (let j = -STEPS; j <= STEPS; j++) {
     for (let i = -STEPS; i <= STEPS; i++)
         OFFSETS.push([i * STEP_X, j * STEP_Y, (i * STEP_X) ** 2 + (j * STEP_Y) ** 2]);
 }
-OFFSETS.sort((a, b) => a[2] - b[2]); // sort() is stable, so equally distant positions stay in the order of rows
+OFFSETS.sort((a, b) => a[2] - b[2]); // sort() is stable, so positions at the same distance stay in the order of the grid's rows
 
 // Returns the connected components of a graph as [[index, ...], ...], each ascending, in the order of their first index. linked(i, k), for
 // k < i, returns whether nodes i and k are joined.
@@ -48,8 +48,8 @@ function boundsOf(members) {
     return [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
 }
 
-// Returns for each item the position by which it is grouped: its own, or in a flood the centre of all rings of its equipment, so that they
-// share a call-out.
+// Returns for each ring the position by which it is grouped: its own, or in a flood of alarms the centre of all rings of its equipment, so
+// that these share a call-out.
 function anchorsOf(items) {
     const all = new Map();
     for (const item of items.length > MOST_GROUPS ? items : [])
@@ -64,7 +64,7 @@ function anchorsOf(items) {
 function group(members, measure) {
     const [left, right, top, bottom] = boundsOf(members);
     const [one] = members, alone = members.length === 1, { width, height } = alone ? one : measure(members);
-    // the ring whose previous position is reused: its previous label was of the same kind (own label or call-out)
+    // the ring whose previous label position is reused: its previous label was of the same kind (own label or call-out)
     const before = members.find(({ callout }) => (callout === undefined) === alone);
     return {
         members, x: (left + right) / 2, y: (top + bottom) / 2, across: (right - left) / 2, down: (bottom - top) / 2, width, height,
@@ -85,7 +85,7 @@ const placeable = (items, area, unit) => (hasArea(area) && unit > 0 && unit < In
     ? items.filter(({ x, y, width, height }) => [x, y, width, height].every(Number.isFinite)) : []);
 
 // Places labels. all: items with rings, the most important first; measure(members) returns { width, height } of their call-out; taken:
-// occupied space (labels.js). Returns [{ members, box, slot, leads }, ...]; each item at a finite position is a member of one. leads: the
+// occupied space (labels.js). Returns [{ members, box, slot, leads }, ...]. Each item at a finite position is a member of one label. leads:
 // Set of those members of a call-out that have a leader line. In an area of 0x0 there are no labels.
 export function placeRings(all, { area, unit, taken, measure }) {
     const order = placeable(all, area, unit);
@@ -113,11 +113,11 @@ export function placeRings(all, { area, unit, taken, measure }) {
         const joined = components(groups.length, (i, k) => mates.get(i) === k || mates.get(k) === i)
             .map((list) => group(order.filter((item) => list.some((i) => groups[i].members.includes(item))), measure)).filter(hasFiniteBox);
         if (joined.length >= groups.length)
-            return out.map(withLeads); // no groups are left to merge, so those without room get no label
+            return out.map(withLeads); // no groups are left to merge, so groups for which there is no room get no label
         groups = joined;
     }
 
-    // Adds the members of a call-out that have a leader line: those near its box, or the nearest if none or too many are near. More or
+    // Chooses which members of a call-out have a leader line: those near its box, or only the nearest if none or too many are near. More or
     // longer lines would hide the plant.
     function withLeads(one) {
         const { members, box } = one, far = members.map(({ x, y }) =>
@@ -127,13 +127,14 @@ export function placeRings(all, { area, unit, taken, measure }) {
         return members.length > 1 ? { ...one, leads: new Set(members.filter((_, i) => far[i] <= most)) } : one;
     }
 
-    // Returns whether a box is near the rings of a group.
+    // Returns whether a label's box is near the rings of a group.
     function isNear({ x, y, across, down }, { left, top, right, bottom }) {
         const aside = Math.max(0, Math.max(left - x, x - right) - across), away = Math.max(0, Math.max(top - y, y - bottom) - down);
         return Math.hypot(aside, away) <= FARTHEST * unit;
     }
 
-    // Returns the index of a free position; null: none is free nearby; Infinity: none is free, and there is no other label to merge with.
+    // Returns the index in OFFSETS of a free position for a label. null: none is free nearby; Infinity: none is free, and there is no other
+    // label to merge with.
     function find(one, out, alone) {
         const free = (slot, more, over) => {
             const box = boxOf(one, slot, unit), owner = slot < SLOTS.length ? one.owner : null;
@@ -160,7 +161,7 @@ export function placeRings(all, { area, unit, taken, measure }) {
         return alone ? Infinity : null;
     }
 
-    // Returns the index of a position inside the area, which may cover other things.
+    // Returns the index in OFFSETS of a position inside the area, where the label may cover other things.
     function forced(one) {
         const left = Math.max(area.left, Math.min(area.right - one.width, one.x - one.width / 2));
         const top = Math.max(area.top, Math.min(area.bottom - one.height, one.y - one.height / 2));

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cameras (camera_moves.js moves them). A camera is { eye, target, up, fov }: positions in metres in plant coordinates, fov vertical in
-// degrees; target is the centre of orbits. A camera with height_m (height of the picture in metres) is orthographic and only keeps fov.
-// Every function returns a new camera. Positions in the picture are pixels from the top left.
+// Cameras (camera_moves.js moves them). A camera is { eye, target, up, fov }: positions in metres in plant coordinates, fov is the vertical
+// field of view in degrees, target is the centre of orbits. A camera with height_m (height of the picture in metres) is orthographic and
+// does not use its fov. Every function returns a new camera. Positions in the picture are pixels from the top left.
 import { along, cross, dot, finite, length, middle, subtract, unit } from './vector.js';
 
 export const RADIANS = Math.PI / 180;
-export const LEAST_M = 1e-5; // smallest distance, or height of a picture, that the server accepts
+// smallest distance from eye to target, and smallest height_m, that the server accepts, in metres
+export const LEAST_M = 1e-5;
 export const MAX_COORDINATE_M = 1e7;
 export const USUAL_FOV = 45;
 
@@ -30,7 +31,8 @@ export function same(a, b) {
     return a === b || (sameLens && ['eye', 'target', 'up'].every((k) => a[k].every((x, i) => x === b[k][i])));
 }
 
-// Returns the picture's unit vectors: `forward` into the picture, `right`, and `up` within it (camera.up is the plant's vertical instead).
+// Returns the unit vectors of the picture: `forward` into the picture, `right`, and `up` in the picture's plane (camera.up is the plant's
+// vertical instead).
 export function basis(camera) {
     const forward = unit(subtract(camera.target, camera.eye));
     const right = unit(cross(forward, camera.up));
@@ -40,7 +42,7 @@ export function basis(camera) {
 // Returns true if the camera is orthographic.
 export const isParallel = (camera) => camera.height_m !== undefined;
 
-// heightAt() returns the picture's height in metres at a depth along the view; metresPerPixel() returns the metres per pixel there.
+// heightAt() returns the height in metres that the picture covers at a depth; metresPerPixel() returns the metres per pixel at that depth.
 export const heightAt = (camera, depth) => camera.height_m ?? 2 * depth * Math.tan((camera.fov * RADIANS) / 2);
 export const metresPerPixel = (camera, heightPx, depth) => heightAt(camera, depth) / heightPx;
 
@@ -68,8 +70,8 @@ export function projector(camera, widthPx, heightPx) {
     };
 }
 
-// Returns the part of the picture that the legend leaves free, in coordinates from -1 to 1. lies: true: the legend is a strip of 28 px
-// across the top. title: length of the legend's title in letters.
+// Returns the part of the picture that the legend leaves free, in coordinates from -1 to 1. lies true: the legend is a strip of 28 px
+// across the top. title: number of letters of the legend's title.
 export const besideLegend = (width, height, lies, title = 14) => (lies ? { top: 1 - 2 * share(32, height) }
     : { right: 1 - 2 * share(Math.max(128, 7.6 * title + 24) + (height <= 320 ? 110 : 28), width) });
 const share = (part, whole) => (whole > 0 && part / whole <= 0.4 ? part / whole : 0.4);
@@ -92,8 +94,8 @@ function fitPoints(camera, points, aspect, { left = -1, right = 1, bottom = -1, 
     return { ...camera, eye: along(target, axes.forward, -back), target };
 }
 
-// Returns the camera of the home view, which shows the whole plant. A home camera from the plant file is used as it is if everything that
-// it shows at 16:9 is visible here, or else moved back.
+// Returns the camera of the home view, which shows the whole plant. The plant file's home camera is used unchanged if everything that it
+// shows at 16:9 is visible in this window, otherwise it is moved back.
 export function home({ home: { given, ...view }, outline }, width, height, window = {}) {
     const aspect = width / height, sees = (shape, { right = 1, top = 1 }) => {
         const project = projector(view, 2 * shape, 2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Flies a camera from one view to another: keeps the horizon level and turns the shorter way.
+// Computes the cameras of a flight from one view to another. The horizon stays level, and the camera turns the shorter way.
 import { isParallel, valid } from './camera.js';
 import { distance, toParallel, toPerspective } from './camera_moves.js';
 import { add, cross, dot, mix, scale, subtract, unit } from './vector.js';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Camera moves: orbit, pan, zoom, look around, fit. Each move returns a new camera, or the given one if the server would not accept the new
-// one. Positions in the picture are pixels from the top left.
+// Camera moves: orbit, pan, zoom, look around, fit. Each move returns a new camera, or the unchanged camera if the server would reject the
+// new one. Positions in the picture are pixels from the top left.
 import { basis, heightAt, isParallel, LEAST_M, MAX_COORDINATE_M, metresPerPixel, RADIANS, USUAL_FOV, validOr } from './camera.js';
 import { add, along, cross, dot, length, middle, scale, subtract, unit } from './vector.js';
 
@@ -85,7 +85,7 @@ export function lookAround(camera, dxPx, dyPx, heightPx) {
 // Returns the depth of a point: its distance along the viewing direction.
 export const depthOf = (camera, point) => dot(subtract(point, camera.eye), basis(camera).forward);
 
-// toParallel() and its inverse return the camera with the other projection, which shows the same at the depth of the target.
+// toParallel() returns an orthographic camera, its inverse a perspective one; both show the same at the depth of the target.
 export function toParallel(camera) {
     return validOr({ ...camera, height_m: heightAt(camera, distance(camera)) }, camera);
 }
@@ -97,7 +97,7 @@ export function toPerspective(camera) {
     return validOr({ ...rest, fov, eye: along(rest.target, basis(camera).forward, -back) }, camera);
 }
 
-// Pans so that a point at `depth` follows the pointer exactly.
+// Moves the camera sideways so that a point at `depth` follows the pointer exactly.
 export function pan(camera, dxPx, dyPx, heightPx, depth = distance(camera)) {
     const { right, up } = basis(camera);
     const step = metresPerPixel(camera, heightPx, depth);
@@ -105,7 +105,8 @@ export function pan(camera, dxPx, dyPx, heightPx, depth = distance(camera)) {
     return validOr({ ...camera, eye: add(camera.eye, move), target: add(camera.target, move) }, camera);
 }
 
-// Returns the viewing ray through a pixel: { origin, direction }. `direction` is as long as is needed to advance by one metre of depth.
+// Returns the viewing ray through a pixel: { origin, direction }. `direction` is scaled so that one step along it advances by one metre of
+// depth.
 export function sight(camera, xPx, yPx, widthPx, heightPx) {
     const { forward, right, up } = basis(camera);
     const step = metresPerPixel(camera, heightPx, 1);
@@ -122,8 +123,8 @@ function zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx, { near_m, far
     return validOr({ ...zoomed, eye: add(camera.eye, move), target: add(camera.target, move) }, camera);
 }
 
-// Zooms; a factor below 1 moves nearer. The point under (xPx, yPx), at `depth`, stays there. The target moves to that depth, so that the
-// next orbit turns about that point.
+// Zooms; a factor below 1 moves nearer. The point under (xPx, yPx), at `depth`, stays under the pointer. The target moves to that depth, so
+// that the next orbit turns about that point.
 export function zoom(camera, factor, xPx, yPx, widthPx, heightPx, depth = distance(camera), limits = USUAL_LIMITS) {
     if (isParallel(camera))
         return zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx, limits);
@@ -155,8 +156,8 @@ export function depthAt(camera, xPx, yPx, widthPx, heightPx, boxes) {
     return Number.isFinite(depth) && depth > LEAST_M ? depth : null;
 }
 
-// Returns a camera that looks at a point of equipment from that side, slightly from above: along the normal of the ellipsoid in the
-// bounding box.
+// Returns a camera that looks at a point of equipment from outside, slightly from above. The direction is the normal at that point of the
+// ellipsoid in the bounding box.
 export function face(camera, point, box, distanceM, elevationDeg = 20) {
     const vertical = unit(camera.up), centre = middle(box.min, box.max);
     const outwards = point.map((x, i) => (x - centre[i]) / Math.max(1e-6, (box.max[i] - box.min[i]) ** 2));

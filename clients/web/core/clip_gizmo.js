@@ -7,8 +7,9 @@ import { add, along, cross, dot, finite, length, middle, mix, scale, subtract, u
 
 // LEAST_BOX_M: smallest side of a box; MARGIN: a plane stays inside the plant's bounds by at least this fraction of their size
 const LEAST_BOX_M = 0.05, MARGIN = 1e-3;
-const NEAR_M = 0.02; // metres; of a line, the part nearer to the camera than this is cut off
-const STEEP = 0.03;                      // smallest squared sine of the angle between view and handle direction at which a drag is defined
+const NEAR_M = 0.02; // metres: parts of a handle's line that are nearer to the camera are cut off
+// a drag is undefined if the squared sine of the angle between viewing ray and handle direction is smaller
+const STEEP = 0.03;
 
 const isSound = ({ direction, at, low, high, corners }) => [at, low, high].every(Number.isFinite) && [direction, ...corners].every(finite);
 // Returns the moved clip, or `before` if the moved one is not finite.
@@ -20,7 +21,7 @@ const middleOf = (points) => scale(points.reduce(add), 1 / points.length);
 const cornersOf = ({ min, max }) =>
     [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? max[i] : min[i])));
 
-// Returns the corners of the polygon in which the plane p·direction = at cuts a box, in order around it.
+// Returns the corners of the polygon in which the plane p·direction = at cuts a box, in order around the polygon.
 function crossing(direction, at, box) {
     const corners = cornersOf(box), found = [];
     for (let a = 0; a < 8; a++) {
@@ -64,8 +65,8 @@ function sideGrip(box, index, high, bounds) {
         high: high ? Math.max(bounds.max[index] + more, box.max[index]) : box.max[index] - LEAST_BOX_M };
 }
 
-// Returns the handles of a clip that are finite: [{ id, axis (null: oblique), turned (true: keeps the side of smaller coordinates),
-// direction (unit vector), at (position in metres along `direction`), low, high (limits of `at`), corners }].
+// Returns the finite handles of a clip: [{ id, axis (null: oblique), turned (true: keeps the side of smaller coordinates), direction (unit
+// vector), at (position in metres along `direction`), low, high (limits of `at`), corners }].
 export function gripsOf(clip, bounds) {
     if (clip?.planes)
         return clip.planes.map((plane, index) => planeGrip(plane, index, bounds)).filter(isSound);
@@ -85,27 +86,27 @@ export function moveGrip(clip, { index, size, turned, direction, low, high }, to
     return soundOr({ box }, clip);
 }
 
-// Returns the handle of a whole box, at its centre; null if the clip is not a finite box.
+// Returns the handle that moves a whole clip box, at the box's centre; null if the clip is not a finite box.
 export function wholeOf(clip) {
     const centre = clip?.box ? middle(clip.box.min, clip.box.max) : null;
     return finite(centre) ? { id: 'whole', corners: [centre], direction: [0, 0, 0], low: 0, high: 0 } : null;
 }
 
-// Returns the clip with the whole box moved, but its centre inside the plant.
+// Returns the clip with the whole box moved by a vector in metres. The box's centre stays inside the plant's bounds.
 export function moveBox(clip, by, bounds) {
     const { box } = clip, at = middle(box.min, box.max);
     const way = by.map((m, i) => Math.max(bounds.min[i] - at[i], Math.min(bounds.max[i] - at[i], m)));
     return soundOr({ box: { min: add(box.min, way), max: add(box.max, way) } }, clip);
 }
 
-// Returns where a viewing ray meets the plane through `point` that is parallel to the picture; `point` itself if it does not.
+// Returns where a viewing ray meets the plane through `point` that is parallel to the picture; `point` itself if the ray misses the plane.
 export function facing(camera, point, { origin, direction }) {
     const { forward } = basis(camera);
     const met = along(origin, direction, dot(subtract(point, origin), forward) / dot(direction, forward));
     return finite(met) ? met : point;
 }
 
-// Returns candidate positions for a handle on its plane, the centre first.
+// Returns positions on a handle's plane at which its knob may be shown, the centre first.
 export function spotsOf({ corners }) {
     if (corners.length === 0)
         return [];
@@ -114,18 +115,18 @@ export function spotsOf({ corners }) {
     return [middle, ...[0.3, 0.6, 0.9].flatMap((part) => around.map((p) => mix(middle, p, part)))].filter(finite);
 }
 
-// Returns how many metres along `direction` from `point` a viewing ray passes nearest; null if they are almost parallel.
+// Returns at how many metres along `direction` from `point` a viewing ray passes nearest to that line; null if both are almost parallel.
 export function alongSight(point, direction, { origin, direction: towards }) {
     const w = subtract(point, origin), c = dot(towards, towards), b = dot(direction, towards), sine2 = 1 - (b * b) / c;
     if (sine2 < STEEP)
         return null;
-    // distance along the viewing ray; if positive, in front of the camera
+    // distance along the viewing ray; positive means in front of the camera
     const ahead = (dot(w, towards) - b * dot(w, direction)) / (c * sine2);
     const way = (b * dot(w, towards) - c * dot(w, direction)) / (c * sine2);
     return ahead > 0 && Number.isFinite(way) ? way : null;
 }
 
-// Returns the part of a line that is in front of the camera; null if there is none.
+// Returns the part of the line from a to b that is in front of the camera; null if the whole line is behind the camera.
 export function beforeEye(camera, a, b) {
     if (isParallel(camera))
         return [a, b];

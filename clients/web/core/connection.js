@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A WebSocket that reconnects after increasing waits, checks that the server still answers, and reports its state to the page.
+// A WebSocket that reconnects after increasing waits, checks that the server still answers, and reports its own state to the page.
 import { SUBPROTOCOL } from './wire.js';
 import { say } from './words.js';
 
 export const FIRST_WAIT_MS = 500, LONGEST_WAIT_MS = 8000, JITTER = 0.25;
-// longest wait during the first EAGER_MS after a good connection was lost, because another core leads within 5 s
+// longest wait between attempts during the first EAGER_MS after the loss of a good connection, because another core takes over within 5 s
 export const EAGER_WAIT_MS = 1500, EAGER_MS = 15000;
-// interval of pings, which an idle server answers, too
+// interval of pings, which a server without other messages answers, too
 export const PING_MS = 2000;
 export const QUIET_MS = 5000;
-// silence of the server after which the page reconnects; deploy/pages/CAPACITY.md explains how this adds to the duration of a failover
+// If the server is silent for so many milliseconds, the page reconnects. deploy/pages/CAPACITY.md explains how this adds to the duration of
+// a failover.
 export const DEAD_MS = 7000, CHECK_MS = 500;
-// timeout for opening the WebSocket, and for the server's first message, which may have long lists
+// timeout for opening the WebSocket, and for the server's first message, which may contain long lists of tags
 export const OPENING_MS = 10000;
 
 const GOING = 1001, FULL = 1013, FULL_MS = 10000, ANSWER_MS = 1000;
@@ -20,29 +21,29 @@ const CLOSE_REASONS = {
 };
 
 export class Connection {
-    // stopped | connecting | open | waiting | barred (until retryNow() is called)
+    // stopped | connecting | open | waiting (for the next attempt) | barred (no attempts until retryNow() is called)
     state = 'stopped';
     // open, but silent for QUIET_MS
     quiet = false;
     // Why the last connection ended.
     reason = '';
-    // Number of failed attempts since the last good connection.
+    // Number of failed attempts since the last connection that worked.
     tries = 0;
     retryAt = null;
-    // Milliseconds to wait at least before the next attempt, as the server asked.
+    // Least wait before the next attempt in milliseconds, as the server asked.
     leastWait = 0;
-    // Time when the last good connection ended; undefined: none has, or the server works again.
+    // Time when the last connection that worked ended; undefined: there was none, or a new connection works.
     lostAt;
     // Time of the last user activity, by Date.now(), which continues while a machine sleeps.
     activeAt = Date.now();
-    // Maximum random addition to the first wait after a loss.
+    // Maximum random addition to the first wait after a lost connection.
     spreadMs = 0;
     unopened = 0;
     blocked = '';
 
     // open(url, protocol) creates a WebSocket. clock: { now(), setTimeout(f, ms), clearTimeout(id) }. Handlers: onState(connection),
-    // onOpen(), onText(string), onBytes(ArrayBuffer), onUnopened(): a second WebSocket in a row did not open; `blocked` has the reason to
-    // show.
+    // onOpen(), onText(string), onBytes(ArrayBuffer), onUnopened(): a second WebSocket in a row did not open, so its handler should set
+    // `blocked` to the reason to show.
     constructor({ url, open, clock, random = Math.random }) {
         Object.assign(this, { url, openSocket: open, clock, random });
         this.onState = this.onOpen = this.onText = this.onBytes = this.onUnopened = () => {};
@@ -58,13 +59,13 @@ export class Connection {
         this.become('stopped');
     }
 
-    // Tries to connect without waiting: the network is back, or the user asks.
+    // Tries to connect without waiting, because the network is back or the user asks.
     retryNow() {
         if (this.state === 'waiting' || this.state === 'barred')
             this.connect();
     }
 
-    // Sets the milliseconds to wait at least before the next attempt, as a full server asks.
+    // Sets the least wait before the next attempt in milliseconds. A server without room for more sessions asks for it.
     hold(ms) {
         this.leastWait = ms;
     }
@@ -76,7 +77,7 @@ export class Connection {
         this.become('barred');
     }
 
-    // Resets the increasing waits, once the server has proved that it works.
+    // Resets the increasing waits to the first one, once the server has proved that it works.
     settle() {
         this.tries = 0;
         this.lostAt = undefined;
@@ -120,7 +121,7 @@ export class Connection {
             if (back)
                 this.leastWait = back[1] * 1000;
             const known = CLOSE_REASONS[event.code];
-            // onUnopened() is not called after the first failure, because a server that restarts is back by the second attempt
+            // onUnopened() is not called after the first failure, because a server that restarts is reachable again by the second attempt
             const again = this.state === 'connecting' && !known && this.unopened++;
             this.lose(known ? say(known) : event.reason || this.blocked || say('reason.unreachable'));
             if (again)
@@ -140,7 +141,7 @@ export class Connection {
         this.nextPing = this.lastHeard + PING_MS;
         this.watch();
         this.state = 'open';
-        // onOpen() discards the state of the previous connection, which must happen before onState reports `open`
+        // onOpen() discards the state of the previous connection, which must happen before onState() reports the state `open`
         this.onOpen();
         this.become('open');
     }
@@ -173,8 +174,8 @@ export class Connection {
         }, wait);
     }
 
-    // Sends a ping if one is due. Returns for how long the server has not answered a ping; not simply the time since its last message,
-    // because timers of a hidden page may pause for a minute.
+    // Sends a ping if one is due. Returns for how many milliseconds the server has not answered a ping. The time since the server's last
+    // message would be wrong, because timers of a hidden page may pause for a minute.
     ask() {
         const now = this.clock.now();
         if (now >= this.nextPing) {
@@ -185,7 +186,7 @@ export class Connection {
         return this.pingAt !== null && now - this.pingAt >= ANSWER_MS ? now - this.lastHeard : 0;
     }
 
-    // Treats the server as silent until it answers: after a sleep, or if it may be gone for another reason.
+    // Treats the server as silent until it answers: after the device slept, or if the server may be unreachable for another reason.
     doubt() {
         if (this.state !== 'open')
             return;
@@ -195,7 +196,7 @@ export class Connection {
         this.watch();
     }
 
-    // Drops the socket without closing it in order, which can take minutes over a dead connection.
+    // Drops the socket without the closing handshake, which can take minutes over a dead connection.
     drop() {
         this.clock.clearTimeout(this.timer);
         const socket = this.socket;

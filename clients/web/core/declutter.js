@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Thins out markers where they are dense (protocol/LABELS.md).
+// Thins out sensor markers where they are dense (protocol/LABELS.md).
 
-// MOST: maximum number of markers within NEAR units; HELD: factor on NEAR for a marker drawn in the previous picture, so that it tends to
-// stay
+// MOST: maximum number of markers within NEAR units of each other; HELD: factor on NEAR for a marker drawn in the previous picture, so that
+// it tends to stay
 const MOST = 6, NEAR = 30, HELD = 0.8;
 
 // items: { x, y, depth, occluded, kept (always drawn), held (drawn in the previous picture) }. Returns the items to draw, in the same
@@ -31,7 +31,7 @@ export function thinOut(items, unit = 1) {
         return false;
     };
     drawn.forEach(put);
-    const others = items.filter(({ kept }) => !kept); // sort() is stable, so that ties stay in the order of items
+    const others = items.filter(({ kept }) => !kept); // sort() is stable, so that equal markers stay in the order of `items`
     others.sort((a, b) => a.occluded - b.occluded || b.held - a.held || a.depth - b.depth);
     for (const item of others) {
         if (!isCrowded(item)) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Queue of frames to decode. One frame is being decoded; of those that wait, only the newest key frame and the frames after it are kept. So
-// a slow decoder lowers the picture rate without adding delay.
+// Queue of frames to decode. One frame is being decoded. Of the waiting frames, only the newest key frame and the frames after it are kept,
+// so that a slow decoder lowers the picture rate without adding delay.
 
 export class DecodeQueue {
-    // decode(frame) returns a promise of a picture. ready(frame, picture, decodeMs) is called in order of the frames, failed(frame, error)
-    // after a failure. now() returns milliseconds.
+    // decode(frame) returns a promise of a picture. ready(frame, picture, decodeMs) is called in the order of the frames, failed(frame,
+    // error) after a failure. now() returns milliseconds.
     constructor({ decode, ready, failed, now }) {
         Object.assign(this, { decode, ready, failed, now });
         this.waiting = [];
@@ -23,7 +23,7 @@ export class DecodeQueue {
             this.run();
     }
 
-    // Drops all frames, also the one being decoded, because their connection is gone.
+    // Drops all frames, also the one being decoded, because their connection is closed.
     clear() {
         this.waiting = [];
         this.generation++;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Chooses hardware or software decoding of H.264: tests once and stores the result; falls back after failures. The page loads this file
-// only after a number of JPEG pictures (app/main.js), since H.264, which encodes only differences, saves data only with many pictures.
+// Chooses hardware or software decoding of H.264: tests the decoders once, stores the result, and falls back after failures. The page loads
+// this file only after a number of JPEG pictures (app/main.js). H.264 encodes differences between pictures, so it saves data only if many
+// pictures are shown.
 import { hasGpu } from './gpu.js';
 import { H264Decoder, whatIsWrong } from './h264.js';
 
 const ACCELERATIONS = ['no-preference', 'prefer-software']; // hardware first
 const KEPT = 'plantcast.h264';
 
-// Returns the stored result of the test for this browser version: an acceleration mode, 'none', or null.
+// Returns the stored result of the decoder test for this browser version: an acceleration mode of VideoDecoder, 'none', or null.
 function remembered({ store, agent }) {
     try {
         const known = JSON.parse(store?.getItem(KEPT) ?? 'null');
@@ -25,8 +26,8 @@ function remember({ store, agent }, way) {
     }
 }
 
-// Returns a decoder. Without a GPU, Chromium keeps up to 512 MB of pixels of VideoFrames that a canvas has drawn, also if they are drawn as
-// ImageBitmaps. It keeps none if the page copies the pixels.
+// Returns a decoder. Without a GPU, Chromium keeps up to 512 MB of pixels of VideoFrames that a canvas has drawn, also if the page draws
+// them as ImageBitmaps. Chromium keeps none if the page copies the pixels.
 function decoderOf({ api }, acceleration) {
     const copies = Boolean(api.OffscreenCanvas) && !hasGpu(new api.OffscreenCanvas(1, 1));
     return new H264Decoder({ acceleration, copies, api });
@@ -53,7 +54,7 @@ function use(decoding, decoder) {
     remember(env, acceleration);
 }
 
-// Falls back from hardware to software decoding of H.264, and from software to JPEG.
+// Falls back from hardware to software decoding of H.264, and from software decoding to JPEG.
 export function demote(decoding) {
     const next = ACCELERATIONS[ACCELERATIONS.indexOf(decoding.acceleration) + 1];
     decoding.h264.close();

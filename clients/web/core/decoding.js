@@ -5,25 +5,27 @@ export const PLAIN = ['jpeg', 'png'];
 const MIME = { jpeg: 'image/jpeg', png: 'image/png' };
 const AGAIN_MS = 10000; // two failures within this time count as a broken decoder
 
-// Turns frames into drawable pictures. onCodecs(list) is called with the codecs to request from now on, onLost() when a key frame is
-// needed.
+// Decodes frames to pictures that a canvas can draw. onCodecs(list) is called with the codecs to request from now on, onLost() when a key
+// frame is needed.
 export class Decoding {
-    // env: { api (may have VideoDecoder), store, agent, now, makeBitmap(blob), tryOut(decoder) (optional) }.
+    // env: { api (the browser's objects, perhaps with VideoDecoder), store (localStorage), agent (browser version), now, makeBitmap(blob),
+    // tryOut(decoder) (optional) }.
     constructor(env) {
         Object.assign(this, { env, h264: null, lost: false, failedAt: -Infinity });
-        this.codecs = this.plain = PLAIN; // plain: the codecs that need no VideoDecoder
+        // plain: the codecs that need no VideoDecoder (JPEG, PNG)
+        this.codecs = this.plain = PLAIN;
         this.onCodecs = this.onLost = () => {};
     }
 
     // Tests whether H.264 works here.
     async probe() {
         if (this.env.api.VideoDecoder)
-            // without this module, which cannot be loaded while the server is unreachable, the page stays with JPEG
+            // while the server is unreachable, decoder_fallback.js cannot be loaded, and the page continues with JPEG
             this.fallback = await import('./decoder_fallback.js').catch(() => null);
         await this.fallback?.probe(this);
     }
 
-    // Returns a promise of a picture that a canvas can draw and that has close().
+    // Returns a promise of a picture that a canvas can draw and that has a method close().
     async decode(frame) {
         if (this.lost && !frame.key)
             throw new Error('the picture that it changes is missing');

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parses depth grids (protocol/PROTOCOL.md): the coarse depth of a picture, from which warp_mesh.js builds a mesh.
+// Parses depth grids (protocol/PROTOCOL.md). A depth grid has the depth of each small square cell of a picture, as an integer code.
+// warp_mesh.js builds a mesh from the grid.
 
 const HEADER_BYTES = 44, ENCODING = 2, FLAG_PARALLEL = 1, FLAG_MORE = 2, MAX_LEVELS = 4095, LONG = 255;
 const MAX_CELLS = 1 << 20, MAX_MASK_PX = 1 << 24;
@@ -9,7 +10,7 @@ function need(condition, what) {
         throw new Error(`depth grid: ${what}`);
 }
 
-// Returns the header of a depth grid, with its compressed payload. Throws if a field has an impossible value.
+// Returns the header of a depth grid and its compressed payload. Throws if a field has an impossible value.
 export function readHeader(data) {
     need(data.length > HEADER_BYTES, `${data.length} bytes`);
     const view = new DataView(data.buffer, data.byteOffset, data.length);
@@ -28,13 +29,14 @@ export function readHeader(data) {
     need(columns === Math.ceil(width / cellPx) && rows === Math.ceil(height / cellPx), `${columns}x${rows} cells`);
     need(columns * rows <= MAX_CELLS && columns * rows * maskSide * maskSide <= MAX_MASK_PX, `masks of ${maskSide}`);
     need(grid.levels >= 1 && grid.levels <= MAX_LEVELS, `${grid.levels} levels`);
-    // Codes grow towards the eye: 1/z grows in a perspective picture, z shrinks in an orthographic one.
+    // Depth codes grow towards the eye: 1/z grows in a perspective picture, z shrinks in an orthographic one.
     need(Number.isFinite(base) && Number.isFinite(unit) && (grid.parallel ? unit < 0 : unit > 0), `depths from ${base} by ${unit}`);
     need(Number.isFinite(base + grid.levels * unit), 'depths beyond all numbers');
     return grid;
 }
 
-// Reads the codes of cells from bytes: a symbol has the difference from a predicted code, or announces the code itself in two bytes.
+// Reads the depth codes of cells from bytes. A symbol has the difference from a predicted code, or announces that the code itself follows
+// in two bytes.
 class Symbols {
     constructor(bytes, at, levels) {
         Object.assign(this, { bytes, at, levels });
@@ -47,21 +49,22 @@ class Symbols {
             code = this.bytes[this.at] | (this.bytes[this.at + 1] << 8);
             this.at += 2;
         }
-        need(code >= 0 && code <= this.levels, `code ${code}`); // also refuses NaN, which undefined bytes beyond the end of the data give
+        // this comparison also refuses NaN, which reading beyond the end of the bytes gives
+        need(code >= 0 && code <= this.levels, `code ${code}`);
         return code;
     }
 }
 
-// Predicts a cell's code from the codes of its left, upper and upper left neighbours, 0 for a missing one: the median of left, up and left
-// + up - corner (the plane through all three), as in JPEG-LS.
+// Predicts a cell's depth code from the codes of its left, upper and upper left neighbours (0 for a missing one): the median of left, up
+// and left + up - corner (the plane through all three), as in JPEG-LS.
 function predicted(left, up, corner) {
     if (!left || !up || !corner)
         return left || up;
     return Math.max(Math.min(left, up), Math.min(Math.max(left, up), left + up - corner));
 }
 
-// Returns by cell `near` (code of the nearest surface), `far` (code behind a step; -1: the cell has no step) and `back` (code of the
-// farthest surface); and `at`, the byte position after the codes.
+// Returns arrays with an entry for each cell: `near` (depth code of the nearest surface), `far` (code of the surface behind a step in
+// depth; -1: the cell has no step) and `back` (code of the farthest surface). Also returns `at`, the byte position after the codes.
 function readCodes({ columns, rows, levels }, bytes) {
     const count = columns * rows, back = new Int16Array(count), far = new Int16Array(count).fill(-1), bits = Math.ceil(count / 8);
     const symbols = new Symbols(bytes, bits, levels);
@@ -81,12 +84,12 @@ function readCodes({ columns, rows, levels }, bytes) {
     return { near, far, back, at: symbols.at };
 }
 
-// Reads the masks of divided cells (cells with a near and a far surface). A mask says which of its pixels show the near one.
+// Reads the masks of divided cells (cells with a near and a far surface). A mask says which of the cell's pixels show the near surface.
 class Masks {
     constructor({ columns, rows, maskSide }, { near, far, back }) {
         Object.assign(this, { columns, maskSide, near, far, back, wide: columns * maskSide });
-        this.bits = new Uint8Array(this.wide * rows * maskSide); // one byte per mask bit: 255 where the picture shows the near surface
-        this.row = new Uint8Array(maskSide); // mask bits of the row above the row being read
+        this.bits = new Uint8Array(this.wide * rows * maskSide); // one byte for each mask bit: 255 where the picture shows the near surface
+        this.row = new Uint8Array(maskSide); // mask bits of the row of bits above the one being read
     }
 
     // Returns null if the neighbour of cell `i` has a mask. Otherwise returns to which side of the step in cell `i` the neighbour's only
@@ -131,7 +134,8 @@ function readMasks(grid, bytes, codes) {
     return masks.bits;
 }
 
-// Parses the inflated payload of a grid. Returns the grid with `near` and `far` (codes by cell; far -1: one surface) and `masks`.
+// Parses the inflated payload of a grid. Returns the grid with `near` and `far` (depth codes by cell; far -1: the cell shows one surface)
+// and `masks`.
 export function readGrid(header, bytes) {
     need(bytes.length === header.dataBytes, `${bytes.length} bytes, ${header.dataBytes} stated`);
     const codes = readCodes(header, bytes), { near, far } = codes;
@@ -154,7 +158,7 @@ async function inflate(payload, most) {
     }
 }
 
-// Decodes a binary message with a depth grid. Rejects if it is not one.
+// Decodes a binary message with a depth grid. Returns a promise, which rejects if the bytes are not a valid grid.
 export async function decodeGrid(bytes) {
     const header = readHeader(bytes), most = 3 * MAX_CELLS + MAX_MASK_PX;
     need(header.dataBytes <= most, `${header.dataBytes} bytes`);

@@ -10,7 +10,7 @@ export function unitText(unit) {
     return UNITS[unit] ?? (unit ?? '').replace(/\^?2\b/, '²').replace(/\^?3\b/, '³').replace(/\bu(?=m\b)/, 'µ');
 }
 
-// Returns the number of decimals for values of a range: one for a range of 160, two for 16.
+// Returns the number of decimals for values that span `range`: one for a range of 160, two for a range of 16.
 export function decimalsFor(range) {
     return range > 0 && Number.isFinite(range) ? Math.max(0, Math.min(6, 2 - Math.floor(Math.log10(range / 4)))) : 2;
 }
@@ -32,7 +32,7 @@ export const numberText = (value, decimals) => (known(value) ? inLocale(plainTex
 export const shortNumberText = (value, decimals) =>
     (known(value) ? inLocale(plainText(value, decimals).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '')) : '–');
 
-// Formats a difference, with its sign.
+// Formats a difference between two values, with its sign.
 export function changeText(value, decimals) {
     const text = numberText(value, decimals);
     return text === '–' ? 'Δ –' : `Δ ${/[1-9]/.test(text) && value > 0 ? '+' : ''}${text}`;
@@ -62,7 +62,7 @@ export function zoneClock(timeZone) {
     return clocks.get(timeZone);
 }
 
-// Returns the zone, or UTC if the browser does not know it.
+// Returns the time zone with that IANA name, or UTC if the browser does not know it.
 export function zoneOf(name) {
     try {
         return new Intl.DateTimeFormat('en', { timeZone: name }).resolvedOptions().timeZone;
@@ -92,7 +92,7 @@ export const qualityText = (quality) => say(QUALITIES.includes(quality) ? `quali
 
 export const title = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
-// Returns the name of a group's quantity, translated if it is a common one.
+// Returns the name of a sensor group's quantity, translated if it is a common quantity.
 export const quantityText = ({ quantity, id }) => sayIfKnown(`quantity.${(quantity || id).toLowerCase()}`, title(quantity || id));
 
 export const worst = (qualities) => QUALITIES[Math.max(-1, ...qualities.map((q) => QUALITIES.indexOf(q)))] ?? null;

@@ -11,7 +11,7 @@ const WHEEL_PER_PX = 0.0016, PINCH_PER_PX = 0.01, MOST_PER_EVENT = 0.5;
 const centre = (all) => ['x', 'y'].map((axis) => all.reduce((sum, p) => sum + p[axis], 0) / all.length);
 const apart = ([a, b]) => Math.hypot(a.x - b.x, a.y - b.y);
 const angle = ([a, b]) => Math.atan2(b.y - a.y, b.x - a.x) * (180 / Math.PI);
-const TWIST_DEG = 8; // a twist of two fingers below this angle is taken for a tremble
+const TWIST_DEG = 8; // a smaller twist of two fingers, in degrees, is taken for a tremble and ignored
 
 export class Gestures {
     constructor() {
@@ -47,13 +47,13 @@ export class Gestures {
         return this.pointers.size === 2 ? this.pinch(before) : this.lookAround(before);
     }
 
-    // Three fingers turn the view about the eye; further fingers are ignored.
+    // Three fingers turn the view about the camera's eye; further fingers are ignored.
     lookAround(before) {
         const from = centre(before.slice(0, 3)), to = centre([...this.pointers.values()].slice(0, 3));
         return [{ look: [to[0] - from[0], to[1] - from[1]] }];
     }
 
-    // Two fingers pan and zoom so that each stays on its point of the plant. A twist also turns the plant about the vertical.
+    // Two fingers pan and zoom so that each finger stays on its point of the plant. A twist also turns the plant about the vertical.
     pinch(before) {
         const then = before.slice(0, 2), now = [...this.pointers.values()].slice(0, 2);
         const from = centre(then), to = centre(now);

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// H.264 by the browser's VideoDecoder: one frame in, one picture out; with a self-test.
+// H.264 by the browser's VideoDecoder: each frame gives one picture. Has a self-test with known frames.
 import { decodeBase64 } from './wire.js';
 
 const ANSWER_MS = 2000;
 const SPS = 7;
 
-// Test frames from the server's own encoder: four squares of one colour each. The second frame changes the third square.
+// Test frames (base64) from the server's own encoder. The picture has four squares of one colour each; the second frame changes the third
+// square.
 const PROOF_SIDE = 64, PROOF_TOLERANCE = 16;
 const PROOF_KEY = 'AAAAAWdCwAraEJpuAhoMgAAAAwCAAAA8R4kTUAAAAAFozg/IAAAAAWWIhBaEYoAAhvxwABA1jgACG1JxGKAAIP0cY4AAjAydddPXNigACAzHAAEQ6OAA' +
     'IjdrFEigACUVEAAEAYAAQC0GAAIBIADgACAlEATIgCZEATJwEyC4Ai1guAi1guAItYvAEWsOtq65n/mJmTA=';
 const PROOF_CHANGE = 'AAAAAUGaIFoSLxQABKEjgACE3HAAEHXELZ/P3A==';
 const PROOF_COLOURS = [[200, 40, 40], [40, 160, 60], [240, 200, 40], [220, 220, 220]];
 
-// Returns the sequence parameter set in Annex B bytes, or null.
+// Returns the sequence parameter set of an H.264 stream in Annex B bytes; null: none found.
 export function findSps(bytes) {
     for (let i = 0; i + 6 < bytes.length && i < 4096; i++) {
         if (bytes[i] === 0 && bytes[i + 1] === 0 && bytes[i + 2] === 1 && (bytes[i + 3] & 31) === SPS) {
@@ -29,12 +30,12 @@ const hex = (bytes) => [...bytes].map((byte) => byte.toString(16).padStart(2, '0
 export const codecName = (sps) => `avc1.${hex(sps.subarray(1, 4))}`;
 
 export class H264Decoder {
-    // acceleration: a VideoDecoder's hardwareAcceleration. copies: decode() returns ImageBitmaps instead of VideoFrames. api: {
+    // acceleration: hardwareAcceleration of the VideoDecoder. copies: decode() returns ImageBitmaps instead of VideoFrames. api: {
     // VideoDecoder, EncodedVideoChunk, ImageData, createImageBitmap }.
     constructor({ acceleration = 'no-preference', copies = false, api = globalThis, clock = globalThis }) {
         Object.assign(this, { acceleration, copies, api, clock });
         this.pixels = new Uint8ClampedArray(0); // of the last copied picture
-        this.waiting = null; // { resolve, reject } of the picture being decoded
+        this.waiting = null; // { resolve, reject } of the promise for the picture being decoded
         this.sps = '';
         this.count = 0;
     }
@@ -78,7 +79,8 @@ export class H264Decoder {
         });
     }
 
-    // Returns a promise of an ImageBitmap with the pixels of a VideoFrame, or of the VideoFrame if the browser cannot copy them as RGBA.
+    // Returns a promise of an ImageBitmap with the pixels of a VideoFrame, or of the VideoFrame itself if the browser cannot copy it as
+    // RGBA.
     async copyOf(picture) {
         const { width, height } = picture.visibleRect, options = { format: 'RGBA' };
         try {
@@ -137,7 +139,7 @@ function squares(picture, makeCanvas) {
     });
 }
 
-// Decodes both test frames and compares their colours. Returns null, or what is wrong.
+// Decodes both test frames and compares the colours of their squares. Returns null, or a text that says what is wrong.
 export async function whatIsWrong(decoder, makeCanvas = (w, h) => new OffscreenCanvas(w, h)) {
     try {
         (await decoder.decode({ key: true, payload: decodeBase64(PROOF_KEY) })).close();

@@ -5,14 +5,15 @@ import { fieldInstant, fieldText } from './instant.js';
 const WORKED = { acknowledge: 'acknowledged', shelve: 'shelved', unshelve: 'shelved', out_of_service: 'aside', in_service: 'aside' };
 const SAME_ACT_US = 1e6; // an operator's equal actions on several alarms of a tag count as one action if they are less than this apart
 
-// Gives a model the alarms of /api/v1/alarms, so that they are counted and sorted as on the page: one alarm for each tag.
+// Puts the alarms of /api/v1/alarms into a model, so that they are counted and sorted as on the page: one alarm for each tag.
 export function hearAlarms(model, { mode, alarms }) {
     const rows = alarms.map((one) => [one.kind === 'LINK' ? one.tag : model.tag(one.tag)?.index, one.kind, one.state, one.priority,
         one.raised_us, one.value, one.limit, one.active, one.held, one.until_us, one.who, one.reason]);
     model.alarms.hear({ mode, all: true, alarms: rows });
 }
 
-// Adds a raise to the alarms raised. An alarm that rises from H to HH is still the same alarm of its tag, and is not counted again.
+// Adds a row of the journal that raises an alarm to the map `raised`. An alarm that rises from H to HH is still the same alarm of its tag,
+// and is not counted again.
 function addRaise(raised, { tag, kind, priority, value, limit, unit, time_us: us }) {
     const known = raised.get(tag) ?? { tag, kinds: [], priority, count: 0, first: us, active: new Set() };
     const isNew = known.active.size === 0 || known.active.has(kind);
@@ -34,9 +35,9 @@ function addAct(list, row) {
         list.push({ ...row, kinds: [kind] });
 }
 
-// rows: rows of the journal, in any order. Returns { raised: [{ tag, kinds, priority, count, first, last, value, limit, unit (all three of
-// the last raise; unit null: not known) }], the most frequent first; acknowledged, shelved, aside (taken out of service or put back): lists
-// of actions with `kinds`, oldest first }.
+// rows: rows of the alarm journal, in any order. Returns { raised: [{ tag, kinds, priority, count, first, last, value, limit, unit }], the
+// most frequent first; acknowledged, shelved, aside (taken out of service or put back): lists of actions with `kinds`, oldest first }.
+// value, limit and unit are those of the tag's last raise; unit null: not known.
 export function sortJournal(rows) {
     const raised = new Map(), out = { acknowledged: [], shelved: [], aside: [] };
     for (const row of [...rows].sort((a, b) => a.time_us - b.time_us || a.id - b.id)) {
@@ -52,8 +53,8 @@ export function sortJournal(rows) {
 }
 
 const HOURS = { shift: 8, day: 24, week: 168 };
-// Returns the limits of a named span of the journal as [from, to] in microseconds; `to` null: the span ends now. today and yesterday
-// begin at midnight in the plant's time zone.
+// Returns the limits of a named span of the alarm journal as [from, to] in microseconds; `to` null: the span ends now. The spans today and
+// yesterday begin at midnight in the plant's time zone.
 export function journalSpan(name, nowUs, timeZone) {
     if (name in HOURS)
         return [nowUs - HOURS[name] * 3600e6, null];
@@ -61,8 +62,8 @@ export function journalSpan(name, nowUs, timeZone) {
     return name === 'today' ? [today, null] : [midnight(today - 12 * 3600e6), today];
 }
 
-// Reads the journal of a time span page by page, up to `most` rows. Returns { rows, cut: true if rows were left out }. get(query) fetches
-// /api/v1/alarms/journal.
+// Reads the alarm journal of a time span page by page, up to `most` rows. Returns { rows, cut: true if rows were left out }. get(query)
+// fetches /api/v1/alarms/journal.
 export async function readJournal(get, from, to, most = 20000) {
     const rows = [];
     for (let before = null; ;) {

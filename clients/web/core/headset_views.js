@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Geometry of headsets: places the room of a WebXR session in the plant, projects for each eye, and chooses the camera of the wide picture
-// from which both eyes are drawn. A rig is { at, axes }: the plant position of the room's origin in metres, and the plant directions of the
-// room's x (right), y (up) and z (back). An eye is { at, axes, projection }, in the plant.
+// Geometry for VR headsets: places the room of a WebXR session in the plant, projects for each eye, and chooses the camera of one wide
+// picture from which both eyes' pictures are made. A rig is { at, axes }: the plant position of the room's origin in metres, and the plant
+// directions of the room's x (right), y (up) and z (back). An eye is { at, axes, projection }, in plant coordinates.
 import { basis, heightAt, RADIANS } from './camera.js';
 import { depthAt, gridColumns } from './warp_mesh.js';
 import { add, along, cross, dot, length, middle, scale, subtract, unit } from './vector.js';
 
 // MAX_TAN, LEAST_TAN: bounds for the tangent of half the field of view, because the server accepts 1 to 120 degrees
 const MAX_TAN = Math.tan(60 * RADIANS), LEAST_TAN = 0.02;
-const MARGIN = 1.15; // how much wider the picture is than both eyes see, so that a turned head finds most of its view drawn
-const MOST_PX = 4e6, STEP_PX = 2; // MOST_PX: maximum number of pixels of a picture that is requested; STEP_PX: step along a ray
+// factor by which the picture is wider than the field that both eyes see, so that a turned head finds most of its view drawn
+const MARGIN = 1.15;
+// MOST_PX: maximum number of pixels of a picture that is requested; STEP_PX: step along a ray in hitOf(), in pixels
+const MOST_PX = 4e6, STEP_PX = 2;
 // largest plausible resolution of an eye, in pixels per tangent of 1; higher values of a device are replaced by this one
 const MOST_DENSITY = 4096;
 const NEAREST_M = 0.05, FARTHEST_M = 1000; // ends of a ray
-export const STAND_M = 1.6; // height of the eyes above the floor, where the device does not know it
-const ROOM_M = 2.5; // distance from the plant at which a user begins
+export const STAND_M = 1.6; // height of the eyes above the floor in metres, for devices that do not report it
+const ROOM_M = 2.5; // distance from the plant at which a user starts, in metres
 
 const turned = (axes, [x, y, z]) => add(add(scale(axes[0], x), scale(axes[1], y)), scale(axes[2], z));
 export const pointOf = (rig, point) => add(rig.at, turned(rig.axes, point));
@@ -53,24 +55,24 @@ export function rigFor(camera, { min, max }, up) {
 }
 
 // Returns the clip coordinates of a point for an eye. v: vector from the eye to the point, in metres; h: homogeneous coordinate of that
-// vector. Nothing is too far to be drawn; nothing nearer than `nearest` metres is drawn.
+// vector. The far plane is at infinity; nothing nearer than `nearest` metres is drawn.
 export function clipOf({ axes, projection: p }, [v, h], nearest) {
     const [x, y, z] = axes.map((axis) => dot(v, axis)), across = (row) => p[row] * x + p[4 + row] * y + p[8 + row] * z + p[12 + row] * h;
     const w = across(3);
     return [across(0), across(1), w * (1 - 1e-6) - 2 * nearest * h, w];
 }
 
-// Returns the 4x4 matrix, column by column, from [x, y, depth, 1] of a grid to clip coordinates of an eye. camera: that of the grid's
-// picture.
+// Returns the 4x4 matrix, column by column, from [x, y, depth, 1] of a depth grid to clip coordinates of an eye. camera: that of the
+// picture to which the grid belongs.
 export const eyeMatrix = (grid, camera, eye, nearest) =>
     gridColumns(grid, camera, eye.at).flatMap((column) => clipOf(eye, column, nearest));
 
 // Returns the tangent of the angle between a direction and the view. aside, depth: the direction's components across and along the view.
-// MAX_TAN if the device's numbers make no sense.
+// Returns MAX_TAN if the device's numbers make no sense.
 const tanOf = (aside, depth) => (depth > 0.1 && Math.abs(aside) < Infinity ? Math.max(LEAST_TAN, Math.abs(aside) / depth) : MAX_TAN);
 
-// Returns the shape of a picture that covers what all eyes see: { fov, width, height }. head: matrix of the viewer; views: of WebXR; eyePx:
-// height of an eye's picture in pixels.
+// Returns the shape of a picture that covers what all eyes see: { fov, width, height }. head: matrix of the viewer's pose; views: the WebXR
+// views, one per eye; eyePx: height of an eye's picture in pixels.
 export function wideView(head, views, eyePx) {
     const axes = columnsOf(head);
     let across = 0, up = 0, density = 0;
@@ -95,21 +97,21 @@ export function headCamera(rig, matrix, fov) {
     return { eye: at, target: along(at, back, -2), up, fov };
 }
 
-// Returns true if the head has moved so far that the picture of an earlier camera is no longer good enough.
+// Returns true if the head has moved or turned so far that the picture from an earlier camera is no longer good enough.
 export function isApart(before, now, mostM = 0.02, mostDeg = 2) {
     const [a, b] = [before, now].map(({ eye, target }) => unit(subtract(target, eye)));
     return length(subtract(before.eye, now.eye)) > mostM || dot(a, b) < Math.cos(mostDeg * RADIANS) ||
         dot(unit(before.up), unit(now.up)) < Math.cos(mostDeg * RADIANS) || before.fov !== now.fov;
 }
 
-// Returns the point at a pixel [x, y] of the grid and a depth above 0.
+// Returns the point of the plant at a pixel [x, y] of a depth grid and a depth above 0.
 export function pointAt(grid, camera, x, y, depth) {
     const place = [x, y, depth, 1], columns = gridColumns(grid, camera, [0, 0, 0]);
     const [v, h] = columns.reduce(([sum, all], [u, g], i) => [along(sum, u, place[i]), all + g * place[i]], [[0, 0, 0], 0]);
     return scale(v, 1 / h);
 }
 
-// Returns the part [from, to] of the segment from a to b, 0 to 1, that is within a picture; null: none.
+// Returns the part [from, to] (0 to 1) of the segment from a to b that is within a picture of that size; null: no part.
 function within(a, b, size) {
     let from = 0, to = 1;
     for (const i of [0, 1]) {
@@ -131,7 +133,7 @@ export function hitOf(grid, camera, origin, direction) {
         return [width / 2 + dot(v, right) / z * px, height / 2 - dot(v, up) / z * px, h / z];
     };
     const from = subtract(origin, camera.eye), near = dot(from, forward), slope = dot(direction, forward);
-    // distance along the ray to its first point in front of the picture's camera
+    // distance along the ray to its first point that the picture's camera can see
     const skip = near < NEAREST_M ? (NEAREST_M - near) / slope : 0;
     if (!(skip >= 0 && skip < Infinity))
         return null;
@@ -156,7 +158,8 @@ export function floorHit(origin, direction, level, up) {
     return down > 0.05 && t > 0 && t * length(direction) <= 30 ? along(origin, direction, t) : null;
 }
 
-// Returns the rig (place and axes of the room in the plant), moved so that a user, whose head is at `head` in the room, stands at a point.
+// Returns the rig (place and axes of the room in the plant), moved so that a user whose head is at `head` in the room stands at a point of
+// the plant.
 export function standAt(rig, head, point) {
     const feet = pointOf(rig, [head[0], 0, head[2]]);
     return { ...rig, at: add(rig.at, subtract(point, feet)) };

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decides for all parts of the page whether the picture may be trusted. Returns one state with a short and a long text for the user.
+// Decides for the whole page whether the user may trust the picture. Returns one state with a short and a long text.
 import { ageText, title, zoneClock } from './format.js';
 import { say } from './words.js';
 
 const seconds = (ms) => say('age.s', { n: Math.max(1, Math.ceil(ms / 1000)) });
 
-// Returns { kind, words, detail, banner }. words: short text about the state. detail: sentence with the reason; '' if none. banner: true if
-// the page must show the text across the picture. kind: 'connecting': no connection yet; 'live'; 'simulated': at least one source
-// simulates, and all sources are up; 'past': the picture shows a past instant; 'partial': some sources are down; 'nodata': the plant
-// delivers no live values; 'silent': the connection is open, but the server sends nothing; 'lost': the connection was lost.
+// Returns { kind, words, detail, banner }. words: short text about the state. detail: sentence with the reason; '' if there is none.
+// banner: true if the page must show the text across the picture. kind: 'connecting': no connection yet; 'live'; 'simulated': at least one
+// source simulates, and all sources are connected; 'past': the picture shows a past instant; 'partial': some sources are disconnected;
+// 'nodata': the plant delivers no live values; 'silent': the connection is open, but the server sends nothing; 'lost': the connection was
+// lost.
 export function health(session, now) {
     const { connection, model, picture } = session;
     const old = picture ? say('health.old', { age: ageText(now - session.freshAt) }) : '';
@@ -35,7 +36,7 @@ export function health(session, now) {
     return { kind: 'live', words: live, detail: '', banner: false };
 }
 
-// Returns the note over the picture that all or some values are simulated; '' if none are, or the past is shown.
+// Returns the note that is shown over the picture if all or some values are simulated; '' if none are, or a past instant is shown.
 export function simulatedText({ model, picture, time }) {
     const links = model?.links ?? [], simulated = links.filter((link) => link.simulated).length;
     if (simulated === 0 || time.atUs !== null || picture?.past)
@@ -43,7 +44,7 @@ export function simulatedText({ model, picture, time }) {
     return say(simulated < links.length ? 'simulated.partly' : 'simulated.all');
 }
 
-// Describes that the past is shown: at the picture's instant if the picture on the screen shows the past, else at the requested instant.
+// Describes that a past instant is shown: that of the picture on the screen if it shows the past, otherwise the requested one.
 function past({ picture, time, model }) {
     const us = picture?.past ? picture.dataTimeUs : time.atUs;
     const { date, time: clock, offset } = zoneClock(model.plant.time_zone)(us / 1000);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Converts responses of /api/v1/history and of the alarm journal to what charts and the time bar draw. Pure, except for ask().
+// Converts responses of /api/v1/history and of the alarm journal to what charts and the time bar draw. Only ask() has side effects.
 import { calls } from './alarms.js';
 import { answerText } from './refusals.js';
 import { say } from './words.js';
@@ -7,7 +7,7 @@ import { say } from './words.js';
 export const BAD = 2, UNCERTAIN = 1; // severity of a quality: the top two bits of an OPC UA status code
 export const severityOf = (quality) => Math.min(BAD, quality >>> 30);
 
-// Requests a path with a query, and with the token if there is one. Returns a promise of the response.
+// Sends a GET request for a path with a query, and with the user's token if there is one. Returns a promise of the response.
 export async function ask(path, query, token, fetcher = fetch) {
     const headers = token ? { Authorization: `Bearer ${token}` } : {};
     const text = new URLSearchParams(query).toString();
@@ -19,8 +19,8 @@ export async function ask(path, query, token, fetcher = fetch) {
     return response;
 }
 
-// Converts a series to seconds and values for a chart; null breaks the line. The line of intervals is that of their means (trend_values.js
-// has the band between lowest and highest value).
+// Converts a tag's series to seconds and values for a chart; null breaks the line. A series of intervals is drawn as a line through their
+// means (trend_values.js has the band between lowest and highest value).
 export function line(series, fromUs, toUs) {
     const xs = [], ys = [], { points, bucket_us: length } = series;
     const put = (us, value) => {
@@ -42,7 +42,8 @@ export function line(series, fromUs, toUs) {
     return [xs, ys];
 }
 
-// Adds a point. Where no straight line leads to it (HISTORY.md), the value before holds until just before the point.
+// Adds a recorded point to a chart's line. Where no straight line leads to the point (HISTORY.md), the value before holds until just before
+// the point.
 function putPoint(put, [us, value, quality], before, step) {
     const shown = severityOf(quality) === BAD ? null : value, isJoined = !step && shown !== null && before?.[2] === quality;
     if (!isJoined && before && before[1] !== null && severityOf(before[2]) !== BAD)
@@ -50,8 +51,8 @@ function putPoint(put, [us, value, quality], before, step) {
     put(us, shown);
 }
 
-// Adds an interval: its mean, and its first and last value where no other interval adjoins. An interval that ends without a value (`last`
-// null) breaks the line, even at the end of the series.
+// Adds an interval of a series to a chart's line: its mean, and its first and last value where no other interval adjoins. An interval that
+// ends without a value (`last` null) breaks the line, even at the end of the series.
 function putInterval(put, [us, low, , mean, first, last], length, before, after) {
     const adjoins = (other) => other && other[1] !== null && Math.abs(other[0] - us) <= length * 1.001;
     if (low === null && first !== null) // the value before holds until the start of the interval
@@ -66,7 +67,7 @@ function putInterval(put, [us, low, , mean, first, last], length, before, after)
     return undefined;
 }
 
-// Returns the periods without a value, or with an uncertain one: [{ from, to (seconds), severity }].
+// Returns the periods in which a series has no value, or an uncertain one: [{ from, to (seconds), severity }].
 export function gaps(series, fromUs, toUs) {
     const out = [];
     const add = (from, to, grade) => {
@@ -86,15 +87,15 @@ export function gaps(series, fromUs, toUs) {
     points.forEach((point, i) => {
         const next = points[i + 1]?.[0] ?? toUs, quality = length > 0 ? point[7] : point[2];
         if (length > 0 && point[6] > 0 && severityOf(quality) !== BAD)
-            add(point[0], point[0] + point[6], BAD); // marks the whole bucket, because the gap is at an unknown instant within it
+            add(point[0], point[0] + point[6], BAD); // marks the whole interval, because the gap is at an unknown instant within it
         add(length > 0 && severityOf(quality) === BAD ? Math.max(point[0], point[0] + length - point[6]) : point[0], next,
             length > 0 || point[1] !== null ? severityOf(quality) : BAD);
     });
     return out;
 }
 
-// Returns two tags of each source, the first and the last: [{ source, tags: [name] }], for at most `most` sources. If both have no values,
-// the source counts as lost.
+// Returns two tags of each data source, the first and the last: [{ source, tags: [name] }], for at most `most` sources. If both tags have
+// no values, the page treats the source as lost.
 export function witnesses(tags, most = 16) {
     const ends = new Map();
     for (const { source, name } of tags.filter((tag) => tag.source))
@@ -113,8 +114,8 @@ export function lost(all, fromUs, toUs) {
     return all.length > 0 ? common : [];
 }
 
-// Returns the different limits of tags: [{ scale, name, value, tags }]. scaleOf(tag) returns the tag's axis. tags: those that have the
-// limit; empty if all tags on that axis have it.
+// Returns the different alarm limits of tags, to be drawn as lines: [{ scale, name, value, tags }]. scaleOf(tag) returns the tag's axis.
+// tags: those that have the limit; empty if all tags on that axis have it.
 export function limitLines(tags, scaleOf) {
     const lines = new Map();
     for (const tag of tags) {
@@ -135,14 +136,15 @@ export function raised(rows) {
         .sort((a, b) => a.us - b.us);
 }
 
-// Returns the first mark of raised() after a time, or with `backwards` the last one before it, of several at one instant the most urgent;
-// null if there is none.
+// Returns from `marks` (result of raised()) the first after a time, or with `backwards` the last before it; of several at one instant the
+// most urgent. null: there is none.
 export function nextTo(marks, us, backwards) {
     const found = backwards ? marks.findLast((mark) => mark.us < us) : marks.find((mark) => mark.us > us);
     return marks.filter((mark) => mark.us === found?.us).sort((a, b) => a.priority - b.priority)[0] ?? null;
 }
 
-// Groups marks that are closer together than nearUs: { us, priority (both of the most urgent mark), of: all marks of the group }.
+// Groups marks of raised() that are closer together than nearUs: { us, priority (both of the most urgent mark), of: all marks of the group
+// }.
 export function clustered(marks, nearUs) {
     const out = [];
     for (const mark of marks) {
@@ -157,7 +159,8 @@ export function clustered(marks, nearUs) {
 
 const MOST_BINS = 5000;
 
-// Counts marks in `count` equal parts of a span: { bins: [{ count, priority (of the most urgent) }], most (in one part) }.
+// Counts marks of raised() in `count` equal parts of a time span: { bins: [{ count, priority (of the most urgent) }], most (largest count
+// of a part) }.
 export function density(marks, fromUs, toUs, count) {
     const bins = Array.from({ length: Math.max(1, Math.min(MOST_BINS, Math.floor(count) || 1)) }, () => ({ count: 0, priority: Infinity }));
     for (const { us, priority } of marks) {
@@ -168,12 +171,13 @@ export function density(marks, fromUs, toUs, count) {
     return { bins, most: bins.reduce((most, bin) => Math.max(most, bin.count), 0) };
 }
 
-// Returns by how many seconds an arrow key moves a slider over that span; at most a minute.
+// Returns by how many seconds an arrow key moves a time slider that covers spanS seconds; at most a minute.
 export const arrowS = (spanS) => Math.max(1, Math.min(60, Math.round(spanS / 900)));
 
 const MOST_TICKS = 1000;
 
-// Returns at most `most` round times between two instants, in microseconds; none if an instant is not finite or they are centuries apart.
+// Returns at most `most` round times between two instants, in microseconds, for the ticks of a time axis. Returns none if an instant is not
+// finite or the instants are centuries apart.
 export function ticks(fromUs, toUs, most, offsetUs = 0) {
     const steps = [1, 5, 10, 30, 60, 300, 600, 1800, 3600, 7200, 14400, 28800, 43200, 86400, 172800, 604800].map((s) => s * 1e6);
     const step = steps.find((one) => (toUs - fromUs) / one <= most) ?? steps.at(-1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The meaning of keys, and steady motion while a key is held.
+// Assigns camera motions and commands to the keys of the keyboard, and computes steady camera motion while a key is held.
 
-// speed of each key, per second: orbit [right, up] in degrees, pan [right, up] in picture heights, zoom as a natural logarithm
+// camera speed for each key, per second: orbit [right, up] in degrees, pan [right, up] in picture heights, zoom as a natural logarithm
 const MOTIONS = {
     ArrowLeft: { orbit: [-45, 0] }, ArrowRight: { orbit: [45, 0] }, ArrowUp: { orbit: [0, 45] }, ArrowDown: { orbit: [0, -45] },
     KeyA: { pan: [-0.5, 0] }, KeyD: { pan: [0.5, 0] }, KeyW: { pan: [0, 0.5] }, KeyS: { pan: [0, -0.5] },
@@ -26,7 +26,7 @@ function motionName({ key, code, shiftKey }) {
     return MOTIONS[code] ? code : null;
 }
 
-// Returns the meaning of a key: { motion }, { command }, { group: index from 0 } or null. Keys with ctrl, alt or meta are the browser's.
+// Returns what a key does: { motion }, { command }, { group: index from 0 } or null. Keys with ctrl, alt or meta are left to the browser.
 export function keyMeaning(event) {
     if (event.ctrlKey || event.altKey || event.metaKey)
         return null;

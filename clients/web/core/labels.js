@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decides which labels are shown next to their markers, and where (protocol/LABELS.md).
+// Decides which sensor labels are shown next to their markers, and where (protocol/LABELS.md).
 
-// SPACINGS: smallest distances between labels, as fractions of the area's width; HELD: factor on spacing and depth of labels that were in
-// the previous picture, so that they tend to stay
+// SPACINGS: smallest distances between labels, as fractions of the area's width, tried in this order; HELD: factor on spacing and depth for
+// labels that were in the previous picture, so that they tend to stay
 const SPACINGS = [0.16, 0.08, 0], HELD = 0.8;
 const MARK = 5, RING = 13, NEAR_GAP = 8, FAR_GAP = 22; // units
 export const CLEARANCE = 3;
-const ROOM = 0.06;                            // fraction of the area that labels may fill
-const MOST_CELLS = 1000;                      // maximum number of cells per side of the grid of occupied boxes
+const ROOM = 0.06;                            // fraction of the picture's area that labels may fill
+const MOST_CELLS = 1000;                      // maximum number of cells per side of the grid that finds occupied boxes
 export const FIRST_FAR = 8;                   // slots (positions next to the marker) from this index on are far and need a leader line
 export const RANK_RING = 3;
 export const MOST_BAD = 12;
@@ -22,14 +22,15 @@ export const hasArea = ({ left, top, right, bottom }) => right > left && bottom 
 
 export const meets = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
 
-// A grid of the occupied boxes, so that a label need not be compared with thousands of others.
+// A grid of the boxes that are already occupied, so that a new label is compared only with boxes near it, not with thousands.
 class Taken {
     constructor(cell, area) {
         Object.assign(this, { area, cell: Math.max(cell, (area.right - area.left) / MOST_CELLS, (area.bottom - area.top) / MOST_CELLS) });
         this.cells = new Map();
     }
 
-    // Returns the keys of the cells that a box covers, at most one cell beyond the area, since labels are inside the area.
+    // Returns the keys of the grid cells that a box covers. Cells more than one beyond the area are left out, since labels are inside the
+    // area.
     keys(box) {
         const keys = [], { cell, area } = this, from = (m, least) => Math.floor(Math.max(m - least, -cell) / cell);
         const to = (m, least, most) => Math.floor(Math.min(m - least, most - least + cell) / cell);
@@ -45,7 +46,8 @@ class Taken {
             this.cells.set(key, [...(this.cells.get(key) ?? []), box]);
     }
 
-    // Returns true if the box meets an occupied one. over: marks that do not count: 1: marks without a ring; 2: all marks.
+    // Returns true if the box meets an occupied one. over: which markers do not count: 1: markers without an alarm ring; 2: all markers.
+    // owner: item whose own marker does not count.
     meets(box, owner, over = 0) {
         return this.keys(box).some((key) => (this.cells.get(key) ?? []).some((other) =>
             other.owner !== owner && !(other.mark <= over) && meets(box, other)));
@@ -97,7 +99,7 @@ export function placeLabels(all, { area, unit = 1, blocked = [], rings = null, m
         return inside && !taken.meets(grown, item.id) ? box : null;
     };
     const place = (item) => {
-        // tries the previous slot first, unless it was that of a call-out
+        // tries the slot of the previous picture first, unless that was the slot of a call-out
         for (let n = isHeld(item) && item.held < SLOTS.length ? -1 : 0; n < SLOTS.length; n++) {
             const slot = n < 0 ? item.held : n, box = fits(item, slot);
             if (!box)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Arithmetic of the legend: ticks, bands, and the colour of a value, computed as on the server (server/field/colormap.c).
+// Arithmetic of the legend: ticks, colour bands, and the colour of a value, computed as on the server (server/field/colormap.c).
 
 // Returns a round step (1, 2 or 5 times a power of ten) that covers the range in at most `most` steps.
 export function niceStep(range, most) {
@@ -9,7 +9,7 @@ export function niceStep(range, most) {
 
 const MOST_MULTIPLES = 1000; // no scale has more
 
-// Returns the multiples of a step from min to max; none if there are too many.
+// Returns the multiples of a step from min to max; an empty list if there are too many.
 export function multiples(min, max, step) {
     const slack = (max - min) * 1e-9, list = [];
     if (!(step > 0 && (max - min) / step <= MOST_MULTIPLES && Math.abs(min / step) < Number.MAX_SAFE_INTEGER))
@@ -19,7 +19,7 @@ export function multiples(min, max, step) {
     return list;
 }
 
-// Returns round values within [min, max] and both ends; values that are too close to an end are left out.
+// Returns round values within [min, max], and min and max themselves; round values that are too close to an end are left out.
 export function ticks(min, max, most = 6) {
     if (!(max > min))
         return [];
@@ -29,7 +29,7 @@ export function ticks(min, max, most = 6) {
 }
 
 
-// Moves positions along a bar (0..1, ascending) apart until their labels do not overlap; all stay on the bar.
+// Moves positions along the legend's bar (0..1, ascending) apart until the labels there do not overlap; all stay on the bar.
 export function spread(places, gap) {
     const out = [...places];
     for (let i = 1; i < out.length; i++)
@@ -69,7 +69,7 @@ export function edges(scale) {
     return count <= 64 && Number.isFinite(min) ? Array.from({ length: count - 1 }, (_, i) => min + (i + 1) * interval) : [];
 }
 
-// Returns the position on the colour map (0..1) whose colour the value's band has. The last band ends at max and includes it.
+// Returns the position on the colour map (0..1) whose colour a value's band has. The last band includes its upper end.
 function bandPlace(scale, value) {
     const { min, max, interval } = scale;
     if (scale.breaks?.length > 0) {
@@ -98,7 +98,7 @@ export function colourOf(scale, value) {
     return [map.rgb[i], map.rgb[i + 1], map.rgb[i + 2]];
 }
 
-// Returns the values to label: those of isolines and both ends if there is room for them, else round values.
+// Returns the values at which the legend has labels: those of isolines and both ends if there is room for them, otherwise round values.
 export function scaleTicks(scale, lines, most = 9) {
     const { min, max } = scale;
     const within = [...new Set([...edges(scale), ...lines])].filter((value) => value > min && value < max).sort((a, b) => a - b);
@@ -115,7 +115,8 @@ export function scaleTicks(scale, lines, most = 9) {
     return [min, ...decades.filter((v) => near(v) && placeOf(scale, v) > 0.05 && placeOf(scale, v) < 0.95), max];
 }
 
-// Colours of the operator's view by position between alarm limits, the lowest band first, as on the server (shaders/maps/operator.csv).
+// Colours of the operator's view, the lowest band first, as on the server (shaders/maps/operator.csv). from, to: position of a value
+// between the alarm limits.
 export const LIMIT_BANDS = [
     { from: -3, to: -2, colour: [90, 141, 192] }, { from: -2, to: -1, colour: [146, 174, 203] },
     { from: -1, to: 1, colour: [201, 201, 201] },

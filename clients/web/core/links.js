@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Links that open the current view on another device.
+// Makes links that open the current view on another device.
 import { writeAddress } from './address.js';
 
-// Roles whose views the server stores for short links.
+// Roles for which the server stores a view under a short link.
 export const SHARERS = ['viewer', 'operator', 'engineer'];
 export const shortLink = (location, id) => new URL(`v/${id}`, location.origin + location.pathname).href;
 
-// Returns URLs { view, follow, tag, asset }; the last two only if one is selected. Links to tag and asset contain nothing else, because QR
-// codes with fewer modules are easier to scan.
+// Returns URLs { view, follow, tag, asset }; the last two only if a tag or an asset is selected. The links to tag and asset contain nothing
+// else, because QR codes of short links are easier to scan.
 export function shareLinks({ location, session, tag }) {
     const { camera, params, time, ownParams: own, named } = session, page = `${location.origin}${location.pathname}`;
     const asset = params.selected;
@@ -16,7 +16,8 @@ export function shareLinks({ location, session, tag }) {
         links.tag = page + writeAddress({ tag });
     if (asset)
         links.asset = page + writeAddress({ params: { selected: asset } });
-    const { node } = session.model?.plant ?? {}; // name of the server's node, with which a load balancer sends followers to that node
+    // name of this server among several behind a load balancer: with it, the load balancer sends followers to the same server
+    const { node } = session.model?.plant ?? {};
     links.follow = `${page}${node ? `?node=${node}` : ''}#follow=${session.following?.session ?? session.id}`;
     return links;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computes which rows of a long list must be in the document. Rows may differ in height.
+// Computes which rows of a long list must be in the document, because they can be seen. Rows may differ in height.
 
 // Returns the upper edges of rows from their heights: { tops }, a Float64Array with the total height as its last element.
 export function stack(heights) {
@@ -21,7 +21,7 @@ export function rowAt(tops, y) {
     return low;
 }
 
-// Returns the range [from, to) of the rows in sight, plus `more` rows on both sides.
+// Returns the range [from, to) of the rows that can be seen, plus `more` rows on both sides.
 export function rowsInSight(tops, scrollTop, height, more) {
     const count = tops.length - 1;
     return count === 0 ? [0, 0] : [Math.max(0, rowAt(tops, scrollTop) - more), Math.min(count, rowAt(tops, scrollTop + height) + 1 + more)];

@@ -2,18 +2,18 @@
 // Loop check: finds the tag whose reading changed when a transmitter was forced: the one with the largest change since the check was armed,
 // relative to its noise.
 
-const KEEP = 0.9;        // weight of the old noise estimate when a value updates it
-const FLOOR = 0.002;     // smallest change that counts, as a fraction of the tag's span
-const LEAST_RATIO = 8;   // smallest change that counts, as a multiple of the tag's noise
+const KEEP = 0.9;        // weight of the old noise estimate when a new value updates the estimate
+const FLOOR = 0.002;     // smallest change of a reading that counts, as a fraction of the tag's range
+const LEAST_RATIO = 8;   // smallest change of a reading that counts, as a multiple of the tag's noise
 
 export class LoopCheckSession {
     constructor() {
         this.noise = new Map(); // tag index -> noise of the tag: average change from one value to the next
         this.last = new Map();
-        this.base = null;       // tag index -> value when the check was armed (started); null: not armed
+        this.base = null;       // tag index -> value when the user armed (started) the check; null: no check is armed
     }
 
-    // values: by tag index, a number or null (no usable reading).
+    // Takes new readings. values: by tag index, a number or null (no usable reading).
     observe(values) {
         values.forEach((value, index) => {
             if (value === null)
@@ -21,7 +21,7 @@ export class LoopCheckSession {
             const before = this.last.get(index);
             this.last.set(index, value);
             if (before === undefined || this.base)
-                return; // while a check is armed, changes are what it looks for and do not count as noise
+                return; // while a check is armed, changes are what the check looks for, and do not count as noise
             const step = Math.abs(value - before), known = this.noise.get(index);
             this.noise.set(index, known === undefined ? step : Math.max(known * KEEP, KEEP * known + (1 - KEEP) * step, step / 2));
         });
@@ -49,7 +49,7 @@ export class LoopCheckSession {
     }
 }
 
-// Reads expected values by tag name from CSV text; null if columns are missing.
+// Reads a CSV text with the values that an engineer expects, by tag name; null if columns are missing.
 export function readExpected(text) {
     const lines = text.replace(/^\uFEFF/, '').split(/\r\n|\n|\r/).filter((line) => line.trim());
     const separator = [',', ';', '\t'].reduce((a, b) => (lines[0]?.split(b).length > lines[0]?.split(a).length ? b : a), ',');
@@ -59,7 +59,7 @@ export function readExpected(text) {
     const [name, expected, tolerance] = ['tag name', 'expected', 'tolerance'].map((column) => head.indexOf(column));
     if (name < 0 || expected < 0 || tolerance < 0)
         return null;
-    // unless the comma separates cells, a decimal comma counts as a decimal point
+    // a comma in a number is a decimal point, unless the comma separates the cells
     const point = (cell) => (separator === ',' ? cell : cell.replace(',', '.'));
     const number = (cell) => (cell?.trim() ? Number(point(cell)) : NaN);
     return new Map(lines.slice(1).map(cells).map((row) => [row[name], { expected: number(row[expected]),

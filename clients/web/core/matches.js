@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Matches of tags to equipment (matches.csv of `plantcast match`), and the user's decisions about them.
+// Proposed matches of tags to equipment (matches.csv of `plantcast match`), and the user's decisions about them.
 
 export const FILTERS = ['all', 'sure', 'likely', 'none', 'unplaced'];
 
@@ -41,12 +41,12 @@ export function readMatches(text) {
     }));
 }
 
-// Returns the pattern of a tag name; names that differ only in digits have the same pattern.
+// Returns the pattern of a tag name: the name with # for each digit. Decisions about one tag are offered for tags of the same pattern.
 export const patternOf = (tag) => tag.replace(/\d/g, '#');
 
 // The matches, and decisions about them that are not saved yet.
 export class Matches {
-    // placed(tag) returns whether the tag's position is known; null: the tag is not a sensor of the plant.
+    // placed(tag) returns whether the tag's position is known; null: the plant has no sensor of that name.
     constructor(placed = () => null) {
         this.placed = placed;
         this.all = [];
@@ -64,7 +64,7 @@ export class Matches {
         return this.decisions.get(match.tag) ?? match;
     }
 
-    // Returns the kind of a match for the filter: its status, but 'likely' if it is undecided and has candidates.
+    // Returns the kind of a match for the filter: its status, but 'likely' if the user has not decided about it and it has candidates.
     kindOf(match) {
         const { status } = this.of(match), open = status === 'none' && !this.decisions.has(match.tag);
         return open && match.candidates.length > 0 ? 'likely' : status;
@@ -79,7 +79,7 @@ export class Matches {
         return Object.fromEntries(FILTERS.map((filter) => [filter, this.all.filter((match) => this.fits(match, filter)).length]));
     }
 
-    // Returns the matches that pass the filter and whose tag, asset or reason contains all words of a text.
+    // Returns the matches that pass the filter and whose tag, asset or reason contains all words of `text`.
     rows(filter, text = '') {
         const words = text.toLowerCase().split(/\s+/).filter(Boolean);
         return this.all.filter((match) => {
@@ -88,7 +88,7 @@ export class Matches {
         });
     }
 
-    // Records a decision. asset '': the tag is on no equipment. A decision that equals the match is dropped.
+    // Records the user's decision about a match. asset '': the tag is on no equipment. A decision that equals the proposal is dropped.
     decide(match, asset) {
         const status = asset ? 'sure' : 'none', isOpen = match.status === 'none' && match.candidates.length > 0;
         if (match.status === status && match.asset === asset && !isOpen)
@@ -97,7 +97,7 @@ export class Matches {
             this.decisions.set(match.tag, { status, asset });
     }
 
-    // Returns the undecided matches whose tags have the same pattern, which can be accepted together, as [match, asset]. asset: the
+    // Returns the undecided matches whose tags have the same pattern, which the user can accept together, as [match, asset]. asset: the
     // proposed one, or the one that the user chose for another tag of the pattern, if it is a candidate.
     alike({ tag }) {
         const pattern = patternOf(tag), decided = [...this.decisions].filter(([name, { asset }]) => asset && patternOf(name) === pattern);
@@ -105,7 +105,7 @@ export class Matches {
             decided.findLast(([, { asset }]) => one.candidates.includes(asset))?.[1].asset]).filter(([, asset]) => asset);
     }
 
-    // Drops the decisions that were saved, unless the user has changed them since they were sent.
+    // Drops the decisions that the server has saved, unless the user has changed them since they were sent.
     settle(decided) {
         for (const [tag, decision] of decided)
             if (this.decisions.get(tag) === decision)
@@ -120,7 +120,8 @@ export class Matches {
     }
 }
 
-// sizeOf() returns the plant's width, depth and height in metres. times: factor, if another unit than the assumed one is right.
+// sizeOf() returns the plant's width, depth and height in metres. times: factor to apply if the model's unit is not the assumed one;
+// timesOf() returns it.
 const METRES = { m: 1, mm: 0.001, cm: 0.01, in: 0.0254, ft: 0.3048 };
 export const sizeOf = ({ min, max }, times = 1) => max.map((x, i) => (x - min[i]) * times);
 export const timesOf = (from, to) => (METRES[to] && METRES[from] ? METRES[to] / METRES[from] : 1);

@@ -29,8 +29,8 @@ export class LatencyMeter {
         this.inputs.set(seq, inputTime);
     }
 
-    // Handles a drawn picture, which answers the input of its own camera and all earlier inputs. Only its own input is measured, and only
-    // once.
+    // Handles a picture that was drawn. It answers the input of its own camera and all earlier inputs. Only the latency of its own input is
+    // measured, and only once.
     drawn(seq, now) {
         const input = this.inputs.get(seq);
         if (input !== undefined)

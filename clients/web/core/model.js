@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page's model of the plant: the message `welcome`, and the newest value, quality and age of every tag.
+// The page's model of the plant: the server's message `welcome`, and the newest value, quality and age of every tag.
 import { Alarms, graver } from './alarms.js';
 import { worst } from './format.js';
 import { decodeBase64 } from './wire.js';
@@ -12,7 +12,8 @@ export class Model {
         this.colormaps = welcome.colormaps.map((map) => ({ ...map, rgb: decodeBase64(map.rgb) }));
         this.readings = this.tags.map(() => ({ value: null, quality: 'bad', qualityName: '', ageMs: null, alarm: null, at: 0 }));
         this.environments = welcome.environments ?? ['sky'];
-        this.references = welcome.links ?? []; // templates of links to other systems about assets and tags
+        // templates of links from assets and tags to other systems
+        this.references = welcome.links ?? [];
         this.assets = welcome.assets.map((asset) => ({ ...asset, tags: [] }));
         const starting = (how) => this.assets.filter(({ start }) => start === how).map(({ id }) => id);
         this.start = { hidden: starting('hidden'), isolate: [], ghost: starting('ghost') }; // initial parameters
@@ -20,19 +21,23 @@ export class Model {
         for (const tag of this.tags)
             assets.get(tag.asset)?.tags.push(tag);
         this.alarms = new Alarms(this.tags);
-        this.placed = new Map(); // draft positions: tag name -> entry of the message `placed`
+        // draft sensor positions of an engineer: tag name -> entry of the message `placed`
+        this.placed = new Map();
         this.proofs = new Map(); // by tag index
         this.provingBegun = false;
         this.links = [];
         this.live = null; // null: no message yet
-        this.stopped = false; // true: a past instant is shown; see stop()
+        // true: a past instant is shown (stop())
+        this.stopped = false;
         this.clockSet = true; // true: the server's clock is synchronised
         this.clockErrorMs = null; // maximum clock error; null: unknown
         this.leapS = 0; // leap second announced for the end of the month: 1: will be inserted, -1: will be removed, 0: none
-        this.oldest = null; // { ms, at }: at the time `at`, the age of each good or uncertain reading was at most `ms`; null: unknown
+        // { ms, at }: at the time `at`, each good or uncertain reading was at most `ms` old; null: unknown
+        this.oldest = null;
     }
 
-    // Freezes the model at a past instant: ages and alarms then come from the readings of that instant.
+    // Freezes the model at a past instant: ages and alarms then follow from the readings of that instant. stopped false: back to the
+    // present.
     stop(stopped) {
         this.stopped = stopped;
         this.alarms.then = stopped ? this.readings : null;
@@ -55,7 +60,8 @@ export class Model {
             this.proofs.set(index, { state, timeUs, value, expected, tolerance, who, remark });
     }
 
-    // Returns the loop check state of a tag that has not passed; null if it has passed, is a derived tag, or no tag was ever checked.
+    // Returns the loop check state of a tag that has not passed. Returns null if the tag has passed, is a derived tag, or if no tag was
+    // ever checked.
     unproven(tag) {
         const state = this.proofs.get(tag.index)?.state ?? 'none';
         return this.provingBegun && tag.source && state !== 'pass' ? state : null;
@@ -81,7 +87,7 @@ export class Model {
         return this.colormaps.find((map) => map.name === name) ?? this.colormaps[0];
     }
 
-    // Stores readings. Returns the indices of the tags whose value or quality changed.
+    // Stores readings that the server sent. Returns the indices of the tags whose value or quality changed.
     update(values, now, plainAgeMs = null) {
         const changed = [];
         for (const [index, value, quality = 'good', qualityName = 'Good', ageMs = plainAgeMs, alarm = null, ...of] of values) {
@@ -97,12 +103,13 @@ export class Model {
         return changed;
     }
 
-    // Stores an upper bound for the ages of all readings that did not change: the server sends a reading only when it changes.
+    // Stores an upper bound for the ages of all readings. The server sends a reading only when it changes, so unchanged readings would seem
+    // to get old.
     notOlder(ms, now) {
         this.oldest = ms === null ? null : { ms, at: now };
     }
 
-    // Returns the age of a tag's reading, continued by the page's own clock since the server's message; null if there never was a value.
+    // Returns the age of a tag's reading, continued by the page's own clock since the server's message; null if the tag never had a value.
     ageMs(index, now) {
         const { ageMs, at, quality } = this.readings[index];
         if (ageMs === null)
@@ -113,7 +120,7 @@ export class Model {
         return this.oldest && quality !== 'bad' ? Math.min(age, this.oldest.ms + (now - this.oldest.at)) : age;
     }
 
-    // Returns the age of the oldest usable reading of a group; null if there is none.
+    // Returns the age of the oldest usable reading of a sensor group; null if the group has none.
     oldestAgeMs(groupId, now) {
         let oldest = null;
         for (const { index, group } of this.tags) {

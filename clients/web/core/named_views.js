@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Saved views: converts between their text, a session's state, and the query for a picture.
+// Saved views: converts between a view's text, a session's state, and the query for a picture of the view.
 import { addressOf, readAddress } from './address.js';
 import { ENGINEERS } from './session.js';
 
 const ID_CHARS = 48;
 
-// Returns the session's view as text, without the instant.
+// Returns the session's view as text, without the instant that is shown.
 export const textOf = (session, tag = null) => {
     const { camera, params, ownParams } = session;
     return addressOf({ camera, params, time: null, ownParams }, tag).slice(1);
 };
 
-// Returns { camera, params, tag } that bring a session from any state to the view. A view without a camera gets the home camera. id: id of
-// the saved view; from it, the server takes the parameters that only engineers may send.
+// Returns { camera, params, tag } that change a session from any state to the saved view. A view without a camera gets the home camera. id:
+// id of the saved view; from it, the server takes the parameters that only engineers may send.
 export function viewOf(session, text, id) {
     const { camera, params, tag } = readAddress(text), group = session.model.group(params.group) ?? session.group;
     const plain = { ...session.ownOf(group), range: null, ramp_interval: 0, breaks: group.breaks?.length ? group.breaks : null,
@@ -30,21 +30,21 @@ export function viewOf(session, text, id) {
 // Returns whether a view has parameters that only engineers may send.
 export const isEngineers = (text) => ENGINEERS.some((name) => readAddress(text).params[name] !== undefined);
 
-// Returns those parameters that only engineers may send, as text; null: all have their default values.
+// Returns those of a session's parameters that only engineers may send, as text; null: all have their default values.
 export function engineersOf({ params, ownParams: own }) {
     const differs = (name) => (name === 'sensors' ? Object.keys(params.sensors ?? {}).length > 0
         : JSON.stringify(params[name]) !== JSON.stringify(own[name]));
     return ENGINEERS.some(differs) ? JSON.stringify(ENGINEERS.map((name) => params[name])) : null;
 }
 
-// Returns the parameters of `params` that show what the session shows, with those that only engineers may send from the saved view `id`.
+// Returns the session's current parameters, with those that only engineers may send taken from the saved view `id`.
 export function regained(session, id) {
     const { params } = viewOf(session, textOf(session));
     ENGINEERS.forEach((name) => delete params[name]);
     return { ...params, named: id };
 }
 
-// Returns an id made from a title that no other view has.
+// Returns an id made from a title. No other saved view has this id.
 export function idFor(title, views) {
     const plain = title.normalize('NFKD').replace(/\p{M}/gu, '').toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-+|-+$/g, '');
     const base = (plain || 'view').slice(0, ID_CHARS - 4), taken = new Set(views.map(({ id }) => id));

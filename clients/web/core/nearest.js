@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds out what is under the pointer: which half of a split view, and which marker.
+// Finds what is under the pointer: which half of a split view, and which sensor marker.
 import { halves } from './split_view.js';
 
 // Returns the half of a split view at a position: 0 left, 1 right.

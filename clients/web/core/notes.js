@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shift notes: their positions in the plant, and until when they are valid.
+// Shift notes: where they are in the plant, and until when they are valid.
 import { zoneClock } from './format.js';
 import { say } from './words.js';
 
@@ -17,7 +17,7 @@ export const whereOf = (model, { tag, asset }) => tag ?? (asset ? model.asset(as
 // Returns true if a note is about the whole plant.
 export const isOfPlant = ({ tag, asset, position }) => !tag && !asset && !position;
 
-// Returns the name of what a note is about.
+// Returns the name of the tag or equipment that a note is about, or words for the plant or a place.
 export const whereText = (model, note) => whereOf(model, note) ?? say(isOfPlant(note) ? 'notes.plant' : 'notes.place');
 
 const timeText = (model, us) => {
@@ -32,7 +32,7 @@ export function aboutText(model, note) {
     return [whereText(model, note), made, endText(model, note)].filter(Boolean).join(' · ');
 }
 
-// Returns the notes that are valid now, or at the past instant atUs.
+// Returns the notes that are valid now, or at the past instant atUs. nowUs null: the server's time is not known yet.
 export const inForce = (notes, nowUs, atUs = null) => notes.filter(({ time_us: from, until_us: until, ended_us: ended }) => (atUs === null
     ? until === 0 || nowUs === null || until > nowUs
     : from <= atUs && (!until || until > atUs) && (!ended || ended > atUs)));

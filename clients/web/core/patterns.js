@@ -9,10 +9,10 @@ const fract = (x) => x - Math.floor(x);
 const clamp = (x) => Math.max(0, Math.min(1, x));
 const mix = (a, b, t) => a.map((x, i) => Math.round(x + (b[i] - x) * t));
 
-// Returns the period of the patterns in pixels, for a picture of that height.
+// Returns the period of the patterns in pixels, for a picture that is heightPx high.
 export const patternPeriodPx = (heightPx) => Math.max(PATTERNS.PATTERN_LEAST_PX, heightPx / PATTERNS.PATTERN_PERIODS);
 
-// Returns the part (0 to 1) of the pixel at a position that stripes cover. In this and the functions below, y is upwards, as in GL.
+// Returns which part (0 to 1) of a pixel is covered by stripes. In this and the functions below, y is upwards, as in OpenGL.
 const stripes = (place, edge, period) => clamp((Math.abs(fract(place) - 0.5) - edge) * period + 0.5);
 const hatch = (x, y, period) => stripes((x + y) / (period * PATTERNS.HATCH_SLANT), PATTERNS.HATCH_EDGE, period);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names of the users of other sessions, as the page shows them.
+// Names of the users of other sessions: those who follow this view, and the one whose view this page follows.
 import { say } from './words.js';
 
-// Returns a label for each follower: the user's name, or "Viewer". Labels that several followers have get numbers.
+// Returns a label for each follower: the user's name, or "Viewer". If several followers have the same label, each gets a number.
 export function followerNames({ sessions, names }) {
     const plain = sessions.map((_, i) => names[i] ?? say('share.viewer'));
     return plain.map((label, i) => {
@@ -11,5 +11,5 @@ export function followerNames({ sessions, names }) {
     });
 }
 
-// Returns the label of the user whose view is shown.
+// Returns the label of the user whose view this page follows.
 export const leaderName = (following) => following?.who ?? say('following.someone');

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Chooses a language, parses files of words and fills in their values. Loads nothing: the fleet page uses it too.
+// Chooses the page's language, parses the files of its texts and fills values into texts. Loads no file itself, because the fleet page uses
+// this module too.
 
 export const LANGUAGES = ['en', 'ko', 'de'];
 
-// Returns { language, locale }: from ?lang=, else from the browser's preferences, else English. The locale is the reader's own if it is of
-// that language.
+// Returns { language, locale }: from ?lang=, else from the browser's preferences, else English. The locale is the browser's own if it
+// belongs to that language.
 export function chooseLanguage(search = '', preferred = []) {
     const tags = [new URLSearchParams(search).get('lang'), ...preferred].filter(Boolean);
     const languageOf = (tag) => tag.toLowerCase().split('-')[0];
@@ -20,7 +21,7 @@ function known(tag) {
     }
 }
 
-// Parses a file of words into a table: key to text with {names}, or to { one, other, ... } by the plural form of `count`. [section] is a
+// Parses a file of texts into a table: key to text with {names}, or to { one, other, ... } by the plural form of `count`. [section] is a
 // prefix of the keys that follow; an indented line continues the text before it.
 export function readWords(text) {
     const table = {};

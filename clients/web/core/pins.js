@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Places the pins of notes: next to their point, where they cover neither legends nor alarm rings nor other pins.
+// Places the pins of shift notes next to their points, where they cover neither legends nor alarm rings nor other pins.
 import { meets } from './labels.js';
 
 export const STEM = 9;  // units: length of a pin's stem if the pin is at its usual position, above and to the right of its point
 const GAP = 2; // units: space between two pins
-const ROWS = 40; // number of heights at which a pin is tried that must cover rings or markers
-const FAR = 150; // units: a pin is not moved farther to keep off one marker without an alarm
+const ROWS = 40; // number of heights at which a pin is tried if it must cover alarm rings or markers
+const FAR = 150; // units: a pin that would have to move farther covers a marker without an alarm instead
 
 const enlarge = ({ left, right, top, bottom }, by) => ({ left: left - by, right: right + by, top: top - by, bottom: bottom + by });
 
-// Moves a box up or down (step -1 or 1) until it meets none of the boxes. Returns null if it would leave the area.
+// Moves a box up or down (step -1 or 1) until it meets none of the other boxes. Returns null if it would leave the area.
 function slide(box, boxes, step, { top, bottom }) {
     const high = box.bottom - box.top;
     let at = box;
@@ -23,9 +23,9 @@ function slide(box, boxes, step, { top, bottom }) {
     return null;
 }
 
-// Returns the box of a pin in the area, as near as possible to its usual position. x, y: its point; wide, high: its size. fixed: boxes of
-// legends and of pins, which the pin never covers. rings: boxes of alarm rings, of which the pin covers as few as possible. marks: boxes of
-// other markers, which the pin covers if the only other room is far.
+// Returns the box of a pin in the area, as near as possible to its usual position. x, y: the note's point; wide, high: size of the pin.
+// fixed: boxes of legends and of other pins, which the pin never covers. rings: boxes of alarm rings, of which the pin covers as few as
+// possible. marks: boxes of other markers, which the pin covers if all other room is far.
 export function placePin({ x, y, wide, high }, area, fixed, rings, marks = []) {
     const left = Math.max(area.left, Math.min(area.right - wide, x));
     const top = Math.max(area.top, Math.min(area.bottom - high, y - STEM - high));

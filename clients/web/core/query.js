@@ -4,13 +4,13 @@
 const round = (x) => Number(x.toFixed(4)) + 0;
 export const numbersText = (list) => list.map(round).join(',');
 
-// Parses a list of numbers; null if it is invalid, or does not have `count` numbers (null: any number).
+// Parses a comma-separated list of numbers; null if it is invalid or does not have `count` numbers. count null: any number.
 export function readNumbers(text, count = null) {
     const list = (text ?? '').split(',').map((part) => (part.trim() === '' ? NaN : Number(part)));
     return list.every(Number.isFinite) && (count === null || list.length === count) ? list : null;
 }
 
-// Writes { tag: { strength, decay } } as TAG=STRENGTH[:DECAY],...
+// Writes the factors of single sensors, { tag: { strength, decay } }, as TAG=STRENGTH[:DECAY],...
 export function sensorsText(sensors) {
     const factors = ({ strength = null, decay = null }) => `${strength ?? ''}${decay === null ? '' : `:${decay}`}`;
     return Object.entries(sensors).filter(([, own]) => own).map(([tag, own]) => `${tag}=${factors(own)}`).join(',');
@@ -47,7 +47,7 @@ function text(name, value) {
 const isSaid = ([name, value]) => !APART.includes(name) && value !== null && value !== undefined &&
     !(Array.isArray(value) && value.length === 0 && !NAMES.includes(name));
 
-// Returns the query for a picture of a session's view. carried: the view's parameters, as Session.carried() returns them.
+// Returns the query of /snapshot.png for a picture of a session's view. carried: the view's parameters, as Session.carried() returns them.
 export function snapshotQuery({ carried, camera, size, time }) {
     const query = { width: size.width, height: size.height };
     for (const [name, value] of Object.entries(carried).filter(isSaid))

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Refusals of the server in the reader's language, by code and arguments. Errors that only a program can cause stay in English.
+// Texts for refusals of the server in the user's language, by code and arguments. Errors that only a program can cause stay in English.
 import { phrase, readWords } from './phrases.js';
 import { language } from './words.js';
 
 const words = readWords((await import(`../words/refused.${language}.js`)).default);
 export const put = (key, values) => phrase(words, null, key, values);
 
-// Returns the text to show for a refusal. text: the server's English; refusal: { code, args } or undefined; kind: `code` of a message
-// `error`.
+// Returns the text to show for a refusal. text: the server's English text; refusal: { code, args } or undefined; kind: member `code` of the
+// server's message `error`.
 export function refusalText(text, refusal, kind) {
     if (words[refusal?.code])
         return put(refusal.code, refusal.args);
     return words[`class.${kind}`] ? put(`class.${kind}`) : put('page.other', { text });
 }
 
-// Returns from `tags_saved` why a tag list was not applied.
+// Returns why the server did not apply a tag list. The argument is its message `tags_saved`.
 export const whyNotSaved = ({ errors, refusal }) =>
     (refusal ? refusalText('', refusal) : errors.map((text) => refusalText(text)).join('; '));
 

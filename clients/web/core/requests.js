@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Requests that users cause now and then. (session.js sends the frequent ones: cameras, parameters and acknowledgements.)
+// Requests to the server that users cause only now and then. (session.js sends the frequent ones: cameras, parameters and
+// acknowledgements.)
 import { cameraMessage } from './camera.js';
 import { asAsked } from './session.js';
 
-// Asks for a camera that shows an asset, a tag or the whole plant (id null); side: as in the message `fit` (PROTOCOL.md). The server
-// answers with `fitted`.
+// Asks the server for a camera that shows an asset, a tag or the whole plant (id null); side: as in the message `fit` (PROTOCOL.md). The
+// server answers with `fitted`.
 export function askFit(session, { id = null, side = 'now', projection } = {}) {
     session.post({ type: 'fit', seq: ++session.fitSeq, id, side, ...(projection ? { projection } : {}) });
 }
 
-// Goes to an instant (null: now; undefined: the one shown) and plays from there.
+// Shows an instant (null: now; undefined: the one already shown), and plays from there if `speed` is not 0.
 export function travel(session, atUs, speed = 0) {
     if (session.leader !== null)
         session.follow(null);
     session.post({ type: 'time', ...(atUs === undefined ? {} : { at_us: atUs && Math.round(atUs) }), speed });
 }
 
-// Asks what is at a pixel of the current picture, or of one from another camera. The event `picked` has the answer to the latest request,
-// with its purpose.
+// Asks the server what is at a pixel of the current picture, or of a picture from another camera. The event `picked` has the answer to the
+// latest request, with its purpose.
 export function askPick(session, [x, y], purpose, camera = null) {
     if (!session.welcomed || !session.picture)
         return;
@@ -40,7 +41,7 @@ export function tellAsEngineer(session, type, fields = {}) {
     return session.toldSeq;
 }
 
-// Hands the lead to a session that follows this one; the server confirms with `following`.
+// Makes a session that follows this one the leader, whose view this session then follows. The server confirms with `following`.
 export function giveLead(session, other) {
     session.post({ type: 'lead', session: other });
 }

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Search in the equipment list.
 
-const known = new WeakMap(); // asset or tag -> text to search in
+const known = new WeakMap(); // asset or tag -> its text in which the search looks
 function textOf(item, ...texts) {
     if (!known.has(item))
         known.set(item, texts.filter(Boolean).join(' ').toLowerCase());
     return known.get(item);
 }
 
-// Returns a function that tests whether an asset matches the words in `wanted`: it returns { asset, tags (to list), byTag (true: found by
-// its tags) }, or null. All words must occur in the asset's own texts (then all its tags are listed), or in these and those of one tag. If
-// `wanted` has no words, search() returns null.
+// Returns a function that tests whether an asset matches the words in `wanted`. That function returns { asset, tags (to list), byTag (true:
+// found by its tags) }, or null. All words must occur in the asset's own texts (then all its tags are listed), or in these and those of one
+// tag. If `wanted` has no words, search() returns null.
 export function search(wanted) {
     const words = wanted.toLowerCase().split(/\s+/).filter(Boolean);
     return words.length === 0 ? null : (asset) => {

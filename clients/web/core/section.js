@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sections along an axis, and which assets are hidden, transparent or isolated.
+// Section planes and boxes along the axes, and which assets are hidden, transparent or isolated.
 
 export const AXES = ['x', 'y', 'z'];
 
-// Returns a clip plane across an axis at a position in metres, which keeps the larger coordinates; turned true: the smaller ones.
+// Returns a clip plane across an axis at a position in metres. The plane keeps the side of larger coordinates; turned true: the other side.
 export function cut(axis, at, turned) {
     const plane = [0, 0, 0, turned ? at : -at];
     plane[AXES.indexOf(axis)] = turned ? -1 : 1;
@@ -20,13 +20,13 @@ export function readCut(clip) {
     return { axis: AXES[index], at: turned ? plane[3] : -plane[3], turned };
 }
 
-// Returns a clip box centred in the bounds. part: its size relative to theirs; 1: the same size.
+// Returns a clip box with the same centre as the bounds. part: each side of the box relative to that of the bounds; 1: the same size.
 export function boxAround({ min, max }, part) {
     const side = (i, turn) => (min[i] + max[i]) / 2 + (turn * part * (max[i] - min[i])) / 2;
     return { box: { min: [0, 1, 2].map((i) => side(i, -1)), max: [0, 1, 2].map((i) => side(i, 1)) } };
 }
 
-// Returns `part` of a box that boxAround() made; null for other clips, and for boxes that were dragged to another shape.
+// Returns the argument `part` of a box that boxAround() made; null for other clips, and for boxes that the user dragged to another shape.
 export function readBox(clip, bounds) {
     if (!clip?.box)
         return null;
@@ -38,7 +38,7 @@ export function readBox(clip, bounds) {
 
 const without = (list, id) => (list ?? []).filter((other) => other !== id);
 
-// Returns the parameters after the button `how` (hide, ghost, only) of an asset was pressed; pressing it again undoes that.
+// Returns the parameters after the user pressed the button `how` (hide, ghost, only) of an asset. A second press undoes the first.
 export function showAsset(params, how, id) {
     const name = { hide: 'hidden', ghost: 'ghost', only: 'isolate' }[how];
     const was = (params[name] ?? []).includes(id);

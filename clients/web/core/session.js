@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One viewer's session with the server: has the camera and the parameters, and sends them again after a reconnect.
+// The session of this page with the server: stores the camera and the view's parameters, and sends them again after a reconnect.
 import { besideLegend, cameraMessage, cameraOfMessage, home, same, valid } from './camera.js';
 import { quantityText } from './format.js';
 import { LatencyMeter, RateMeter } from './meters.js';
@@ -13,14 +13,14 @@ export const PARAMS = [
     'show', 'split',
 ];
 const SAID = [...PARAMS, 'sensor', 'baseline', 'baselines', 'sensors', 'unit']; // parameters that the server reports
-// Parameters for engineers only. The build makes the server's list from this line.
+// Parameters that only engineers may send. The build makes the server's list from this line.
 export const ENGINEERS = ['fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'sensors'];
-// parameters that both halves of a split view share
+// parameters that are the same for both halves of a split view
 const SHARED = ['light', 'environment', 'backdrop', 'arrows', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split'];
-// lists that are sent even if empty, because the plant's defaults may not be empty
+// parameters with lists of assets: an empty list is sent, too, because the default list of the plant file may not be empty
 const SETS = ['hidden', 'isolate', 'ghost'];
 const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m', 'scale', 'isolines'];
-// types of messages whose data belong to the instant that is shown
+// types of messages whose contents belong to the instant that is shown, not to the present
 const OF_THE_INSTANT = ['tags', 'picked'];
 const NOW = { atUs: null, speed: 0, fromUs: null };
 const QUALITIES = ['good', 'uncertain', 'bad'];
@@ -28,13 +28,14 @@ const MOST_BACKLOG_BYTES = 64 * 1024, RECENT_MS = 5000;
 
 const pick = (from, names) => Object.fromEntries(names.filter((name) => from[name] !== undefined).map((name) => [name, from[name]]));
 
-// Returns a frame's camera in the form in which the page requests cameras: frames of orthographic cameras have a field of view of 0.
+// Returns a frame's camera in the form in which the page requests cameras. In frames, an orthographic camera has a field of view of 0; the
+// page leaves the field out.
 export const asAsked = (camera) => (camera.height_m === undefined ? camera : cameraOfMessage({ ...camera, fov: undefined }));
 
 export class Session {
     // wanted: { camera or null, params, time } from the page's URL. Events: hello (new connection), welcome, params, shown, time, tags
-    // (indices), status, alarms, alarmed (message), frame (frame), camera, error (message), astray (message: a part of our view was refused
-    // and dropped), denied (message: a token is needed), ignored (reason).
+    // (indices), status, alarms, alarmed (message), frame (frame), camera, error (message), astray (message: the server refused a part of
+    // our view, which was dropped), denied (message: a token is needed), ignored (reason).
     constructor({ connection, now, wanted = { camera: null, params: {} }, codecs = ['jpeg', 'png'] }) {
         Object.assign(this, { connection, now, codecs });
         this.listeners = new Map();
@@ -42,41 +43,53 @@ export class Session {
         this.camera = wanted.camera;
         this.params = { ...wanted.params };
         this.token = null;       // access token; null: none
-        this.resume = null;      // secret that resumes this session on the server
+        // secret with which the server resumes this session after a reconnect
+        this.resume = null;
         this.anew = false; // true: resume only this session's id, by which others follow it, and not its view
-        this.confirmed = null;   // parameters that the server last confirmed
+        // view parameters that the server last confirmed
+        this.confirmed = null;
         this.size = { width: 640, height: 360 };
         this.visible = true;
         this.unsent = {};        // parameters changed while disconnected
-        this.asked = new Map();  // sequence number -> earlier parameters, which pictures may still show
+        // sequence number -> view parameters sent with it: pictures on the way may still show earlier ones
+        this.asked = new Map();
         this.cameraSeq = this.paramsSeq = this.fitSeq = this.pickSeq = this.alarmSeq = this.toldSeq = 0;
         this.cameraNews = false; // true: the camera has changed and was not sent yet
         this.cameraInput = null; // time of the input that set the camera, from which latency is measured
         this.markers = new Map();
-        this.serverTime = null;  // { us, at }: the server's time, and when it arrived here
-        this.freshAt = null;     // time of the server's last message, from which the picture's age counts once messages stop
+        // { us, at }: the server's time, and the page's time when it arrived
+        this.serverTime = null;
+        // time of the server's last message: if messages stop, the picture's age counts from here
+        this.freshAt = null;
         this.outlived = null;    // picture of the previous connection
         this.rate = new RateMeter();
         this.latency = new LatencyMeter();
-        this.recent = [];        // recent pictures: { picture, decodeMs, hereUs (server's time at decoding) }
-        this.skew = null;        // { us, roundTripMs }: server clock minus ours, measured at the shortest round trip
-        this.id = null; // id of this session, by which others follow it
-        // the session that is followed: { session (id), width, height, gone (true: it has ended, and its last view is shown) }; null: none
+        // recent pictures: { picture, decodeMs, hereUs (server's time when it was decoded) }
+        this.recent = [];
+        // { us, roundTripMs }: the server's clock minus the page's, measured at the shortest round trip so far
+        this.skew = null;
+        // id of this session, by which other sessions follow its view
+        this.id = null;
+        // the session that this one follows: { session (id), width, height, gone (true: it has ended, and its last view is shown) }; null:
+        // none
         this.following = null;
         this.leader = null;      // id of the session to follow, also after a reconnect; null: none
-        this.lent = null;        // camera of the followed session that this one has taken over; null: none
+        // camera of the followed session while this session shows it; null: none
+        this.lent = null;
         this.followers = { count: 0, sessions: [], names: [] }; // sessions that follow this one
-        this.wantsDepth = false; // true: asks for depth grids, with which a picture can be shown from another camera
-        // newest depth grids: { messages (binary), more (true: the grid of the other half is missing) }
+        // true: asks the server for depth grids, with which the page can show a picture from another camera
+        this.wantsDepth = false;
+        // newest depth grids: { messages (binary), more (true: the grid of the split view's other half has not arrived) }
         this.depth = null;
         this.forget();
-        // the instant shown, as the server reports it; atUs null: now; fromUs null: no history is recorded
+        // the instant shown, as the server reports it; atUs null: the present; fromUs: start of the recorded history, null: none
         this.time = { ...NOW, ...wanted.time };
         connection.onOpen = () => {
             const compares = this.params.show === 'difference' && this.params.baseline?.name;
             this.hello(['camera', 'params', ...(compares ? ['baseline'] : [])]);
         };
-        this.unheard = null;     // texts that wait() holds back: [[arrival time, text], ...]; null: none are held back
+        // text messages that wait() holds back: [[arrival time, text], ...]; null: messages are not held back
+        this.unheard = null;
         connection.onText = (text) => (this.unheard ? this.unheard.push([this.now(), text]) : this.hear(text));
         connection.onBytes = (bytes) => this.guard(() => {
             this.freshen();
@@ -92,7 +105,7 @@ export class Session {
         this.listeners.set(name, [...(this.listeners.get(name) ?? []), listener]);
     }
 
-    // Calls the listener at each `welcome`, and immediately if there was one already.
+    // Calls the listener at each message `welcome`, and immediately if one has already arrived.
     greeted(listener) {
         this.on('welcome', listener);
         if (this.model)
@@ -118,7 +131,7 @@ export class Session {
         }
     }
 
-    // Adds the depth grids that the frame refers to, and passes the frame on.
+    // Attaches the depth grids that belong to a frame, and passes the frame on.
     receive(frame) {
         frame.depth = frame.hasDepth && !this.depth?.more ? this.depth : null;
         this.emit('frame', frame);
@@ -151,13 +164,14 @@ export class Session {
             this.connection.send(message);
     }
 
-    // Greets the server. parts: which parts of our view (camera, params, baseline) to ask for.
+    // Sends `hello`, the first message of a connection. parts: which parts of our view (camera, params, baseline) to ask for.
     hello(parts) {
         const { shown } = this;
         this.welcomed = false;
         this.outlived = this.picture;
         if (this.unheard)
-            this.unheard = []; // drops the texts of the previous connection that were held back
+            // drops the text messages of the previous connection that were held back
+            this.unheard = [];
         this.emit('hello');
         this.helloParts = parts;
         this.greetedSize = this.size;
@@ -167,7 +181,7 @@ export class Session {
         this.cameraSeq = this.paramsSeq = 0;
         this.asked = new Map([[-1, shown]]);
         if (this.picture)
-            // no sequence number of the new connection: the parameters of this picture were numbered by the previous connection
+            // the number of this picture's parameters belongs to the previous connection; -1 is no number of the new one
             this.picture.paramsSeq = -1;
         this.greetedCamera = parts.includes('camera') ? this.camera : null;
         const message = { type: 'hello', ...this.size, ...this.proofs(), codecs: this.codecs,
@@ -183,14 +197,15 @@ export class Session {
         this.connection.send(message);
     }
 
-    // Returns token and resume secret for `hello`; with the secret, the server restores parameters that the page does not send.
+    // Returns the user's token and the resume secret for `hello`. With the secret, the server restores parameters that the page does not
+    // send.
     proofs() {
         return { ...(this.token ? { token: this.token } : {}),
             ...(this.resume ? { resume: this.resume, idle_ms: Math.max(0, Date.now() - this.connection.activeAt) } : {}),
             ...(this.anew ? { anew: true } : {}) };
     }
 
-    // Returns the default parameters of the shown group and the plant, which need not be sent to the server.
+    // Returns the default parameters of the shown sensor group and the plant, which need not be sent to the server.
     get ownParams() {
         return this.ownOf(this.group);
     }
@@ -201,8 +216,8 @@ export class Session {
         return { ...this.model?.start, ...own };
     }
 
-    // Returns the parameters to ask for after a reconnect, without those that equal the defaults, since defaults may have changed. baseline
-    // false: without the baseline, which the server may have forgotten.
+    // Returns the view's parameters to send after a reconnect, without those that equal the defaults, since the plant's defaults may have
+    // changed. baseline false: without the baseline, which the server may have forgotten.
     carried({ baseline = true } = {}) {
         const { params, ownParams: own } = this;
         const may = (name) => !this.role || this.role === 'engineer' || !ENGINEERS.includes(name);
@@ -247,7 +262,7 @@ export class Session {
         this.emit('params');
     }
 
-    // Merges factors of single sensors into the current ones. null for a sensor removes its factors; null as a whole removes all.
+    // Merges changed factors of single sensors into the current ones. null for a sensor removes its factors; null as a whole removes all.
     mergedSensors(change) {
         if (change === undefined)
             return {};
@@ -267,7 +282,7 @@ export class Session {
         this.post({ type: 'visible', visible });
     }
 
-    // Sends the newest camera, at most once per animation frame.
+    // Sends the newest camera, unless none is new or the connection's send buffer is full. Called once per animation frame.
     flush() {
         if (!this.cameraNews || !this.welcomed || this.connection.backlogBytes > MOST_BACKLOG_BYTES)
             return;
@@ -277,7 +292,7 @@ export class Session {
         this.cameraInput = null;
     }
 
-    // session: id of the session to follow; null: follow none and show our own view again.
+    // session: id of the session to follow; null: follow none and show this session's own view again.
     follow(session) {
         this.leader = session;
         if (session === null)
@@ -286,7 +301,7 @@ export class Session {
         this.emit('following');
     }
 
-    // True if the server's messages belong to the picture on the screen, not to a later connection.
+    // True if the server's messages belong to the picture on the screen. After a reconnect, they do not until the first new picture.
     get isCurrent() {
         return this.welcomed && (!this.picture || this.picture !== this.outlived);
     }
@@ -316,13 +331,13 @@ export class Session {
             this.emit('camera');
     }
 
-    // Acknowledges a frame that cannot be decoded, because the server would otherwise send no more.
+    // Acknowledges a frame that cannot be decoded. Without the acknowledgement the server would send no more frames.
     passedOver(frame) {
         if (!frame.more)
             this.connection.send({ type: 'ack', seq: frame.seq });
     }
 
-    // Requests a key frame because the decoder lost its reference.
+    // Requests a key frame, because the decoder lost the frames to which later ones refer.
     askKeyFrame() {
         this.post({ type: 'key_frame' });
     }
@@ -348,7 +363,7 @@ export class Session {
             this.emit('unkept', message);
     }
 
-    // Sends the visibility, size and parameters that have changed between the greeting and `welcome`.
+    // Sends visibility, size and parameters that have changed between `hello` and the server's `welcome`.
     catchUp() {
         if (!this.visible)
             this.setVisible(false);
@@ -358,8 +373,8 @@ export class Session {
             this.setParams(this.unsent);
     }
 
-    // Sends `hello` again after a refusal, without the parameter that the server named. If it named none, leaves out the last of helloParts
-    // (parts of the view, such as camera and parameters), so that repeated refusals end with a hello without any part.
+    // Sends `hello` again after a refusal, without the parameter that the server named. If the server named none, leaves out the last of
+    // helloParts (parts of the view, such as camera and parameters), so that repeated refusals end with a hello without any part.
     helloWithout(name) {
         const isParam = name !== 'baseline' && this.params[name] !== undefined;
         if (isParam)
@@ -369,8 +384,8 @@ export class Session {
         this.hello(isParam ? this.helloParts : this.helloParts.slice(0, -1));
     }
 
-    // Returns a Map from "tag/half" to { occluded, value, quality } for a picture, with its `isolines`; forgets those of earlier pictures.
-    // Tags that are not in it have no marker: hidden, clipped or behind the camera. Returns null if no markers are known.
+    // Returns a Map from "tag/half" to { occluded, value, quality } for a picture, with its `isolines`; forgets the markers of earlier
+    // pictures. Tags that are not in the Map have no marker: hidden, clipped or behind the camera. Returns null if no markers are known.
     markersOf(seq) {
         let newest = null;
         for (const known of [...this.markers.keys()].sort((a, b) => a - b).filter((key) => key <= seq)) {
@@ -382,16 +397,16 @@ export class Session {
 
     // --- state of the view that the page reads
 
-    // Returns the home camera for a size in CSS pixels. legendLies() returns true if the legend lies across the top of the picture, null if
-    // the picture has no legend.
+    // Returns the home camera for a window size in CSS pixels. legendLies() returns true if the legend lies across the top of the picture,
+    // null if the picture has no legend.
     homeIn(width, height) {
         const { plant, groups: [group] } = this.model, lies = this.legendLies?.() ?? null, title = `${quantityText(group)} ${group.unit}`;
         return home(plant, width, height, lies === null ? {} : besideLegend(width, height, lies, title.length));
     }
 
-    // Empties the lists that all sessions share; the server sends them after its greeting. views: [{ id, title, view, fixed } or { id,
-    // title, view, by, time_us }]; notes: shift notes; pointed: positions at which users point on walls; walls: views that users sent to
-    // panes of walls, and the connected displays.
+    // Empties the lists that all users share; the server sends them again after `hello`. views: [{ id, title, view, fixed } or { id, title,
+    // view, by, time_us }]; notes: shift notes; pointed: positions at which users point on walls; walls: views that users sent to panes of
+    // walls, and the connected displays.
     forget() {
         Object.assign(this, { views: [], notes: [], pointed: [], walls: null });
     }
@@ -400,12 +415,12 @@ export class Session {
         return this.model?.group(this.params.group) ?? null;
     }
 
-    // Parameters of the picture on the screen; newer ones may be on their way.
+    // View parameters of the picture on the screen. The newest parameters may differ until their picture arrives.
     get shown() {
         return this.asked.get(this.picture?.paramsSeq) ?? this.params;
     }
 
-    // Returns the range [min, max] of the colours for parameters, such as those of one half.
+    // Returns the range [min, max] of the colour scale for view parameters, such as those of one half of a split view.
     rangeOf(params) {
         const group = this.model?.group(params.group);
         return params.range ?? (group ? [group.min, group.max] : [0, 1]);
@@ -415,7 +430,7 @@ export class Session {
         return this.rangeOf(this.params);
     }
 
-    // Returns the server's time, continued by our clock; null before its first message.
+    // Returns the server's time, continued by the page's clock; null before the server's first message.
     clockUs(now = this.now()) {
         return this.serverTime && this.serverTime.us + (now - this.serverTime.at) * 1000;
     }
@@ -426,7 +441,8 @@ const HANDLERS = {
     welcome(message) {
         const before = this.model;
         this.model = new Model(message);
-        this.markers.clear(); // drops the markers of the previous plant or connection
+        // drops the sensor markers of the previous plant or connection
+        this.markers.clear();
         this.forget();
         this.welcomed = true;
         this.id = message.session;
@@ -474,7 +490,7 @@ const HANDLERS = {
         this.model.notOlder(message.oldest_age_ms ?? null, this.now());
     },
 
-    // Markers of a frame. The first message has all, later ones only changes.
+    // The message `markers` of a frame. The first one has all sensor markers, later ones only changed markers.
     markers(message) {
         const newest = this.markers.get(Math.max(...this.markers.keys())) ?? new Map();
         const known = message.markers ? new Map(message.markers.map(([tag, , , occluded, half = 0, value = null, quality = null]) =>
@@ -492,7 +508,7 @@ const HANDLERS = {
 
     following({ session, who, width, height, gone = false, ...shown }) {
         this.lent ||= session ?? this.leader;
-        // the name of a leader who has left is still shown
+        // the name of a leader whose session has ended is still shown
         const name = who ?? (this.following?.session === session ? this.following.who : undefined);
         this.following = session === null ? null : { session, who: name, width, height, ...(gone ? { gone } : {}) };
         this.leader = session;
@@ -529,7 +545,7 @@ const HANDLERS = {
         this.emit('alarms');
     },
 
-    // Draft positions of an engineer, which only this session sees until they are saved.
+    // Draft sensor positions of an engineer, which only this session sees until they are saved.
     placed(message) {
         this.model.place(message.sensors);
         this.emit('placed', message);
@@ -560,13 +576,13 @@ const HANDLERS = {
             return;
         }
         if (message.about === 'hello' && !this.welcomed && this.helloParts.length > 0) {
-            // the server refused a part of the view that the page asked for, because the part does not exist in this plant or version:
-            // greets again without it
+            // the server refused a part of the view that the page asked for, because this plant or server version does not have it: sends
+            // `hello` again without that part
             this.emit('astray', message);
             this.helloWithout(message.text.split(':')[0]);
             return;
         }
-        // the session to follow has ended or has not started yet: following.js asks again later
+        // the session to follow has ended or has not started yet: app/sharing/following.js asks again later
         if (message.about === 'follow' && this.leader !== null) {
             this.emit('following');
             return;

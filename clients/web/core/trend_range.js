@@ -6,7 +6,7 @@ import { fieldInstant, fieldText } from './instant.js';
 const DAY_MS = 86400e3;
 export const LEAST_US = 10e6, LONGEST_US = 400 * 86400e6; // shortest and longest range of a chart, in microseconds
 
-// Words for time ranges in all languages of the page, because users may type in a language other than the page's.
+// Words for time units in all languages of the page, because users may type in a language other than the page's.
 const UNITS = [[1, /^(?:s|sec|seconds?|sek|sekunden?|초)$/], [60, /^(?:m|min|minutes?|minuten?|분)$/],
     [3600, /^(?:h|hours?|hrs?|std|stunden?|시간)$/], [86400, /^(?:d|days?|t|tage?n?|일)$/], [604800, /^(?:w|weeks?|wochen?|주)$/]];
 const LAST = /^(?:(?:the )?(?:last|past)|(?:die )?letzten?r?s?|최근|지난)?\s*(\d+(?:[.,]\d+)?)\s*([a-z]+|초|분|시간|일|주)$/;
@@ -16,7 +16,7 @@ const NOW = /^(?:now|jetzt|지금)$/;
 
 const tidy = (text) => text.trim().toLowerCase().replace(/\s+/g, ' ').replace(/^(?:from|von) |까지$/g, '');
 
-// Reads "[day] [time]": { day (YYYY-MM-DD or null), time (HH:MM:SS or null) }; null: not understood.
+// Reads one end of a typed range, "[day] [time]": { day (YYYY-MM-DD or null), time (HH:MM:SS or null) }; null: not understood.
 function readSide(text, dayAgo) {
     let rest = text, day = null;
     const [ago, word] = DAYS.find(([, pattern]) => pattern.test(rest)) ?? [];
@@ -36,8 +36,8 @@ function readSide(text, dayAgo) {
 
 const dayAfter = (day) => new Date(Date.parse(`${day}T00:00:00Z`) + DAY_MS).toISOString().slice(0, 10);
 
-// Returns the range that a text means at nowUs in the plant's time zone, or null if the text is not understood. A range that would begin in
-// the future without naming a day is that of a day earlier.
+// Returns the range that a text means at nowUs in the plant's time zone, or null if the text is not understood. A range that names no day
+// and would begin in the future is moved a day back.
 export function readRange(text, nowUs, timeZone) {
     const typed = tidy(text), [, count, unit] = typed.match(LAST) ?? [];
     if (count) {
@@ -76,16 +76,16 @@ export function readRange(text, nowUs, timeZone) {
     return until - fromUs >= LEAST_US && until - fromUs <= LONGEST_US ? { fromUs, toUs: until } : null;
 }
 
-// Returns [from, to] with the length limited and no time after nowUs. `at` keeps its position if the length changes.
+// Returns [from, to] with its length limited and no time after nowUs. If the length changes, the instant `at` keeps its relative position.
 function limited(from, to, at, nowUs) {
     const length = Math.max(LEAST_US, Math.min(LONGEST_US, to - from)), part = to > from ? (at - from) / (to - from) : 0.5;
     const ends = Math.min(nowUs, at + (1 - part) * length);
     return [ends - length, ends];
 }
 
-// Returns the range whose length is multiplied by `factor` while the instant `at` keeps its position.
+// Returns the range with its length multiplied by `factor`. The instant `at` keeps its relative position.
 export const zoomed = ([from, to], factor, at, nowUs) => limited(at - (at - from) * factor, at + (to - at) * factor, at, nowUs);
 
-// Returns the range moved by a part of its length; positive: later.
+// Returns the range moved by a fraction of its length; positive: later.
 export const panned = ([from, to], part, nowUs) =>
     limited(from + (to - from) * part, to + (to - from) * part, (from + to) / 2 + (to - from) * part, nowUs);

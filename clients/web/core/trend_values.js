@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computes the band, the value at an instant and the statistics of a series of /api/v1/history, and the spans of alarms. Pure.
+// For trends of /api/v1/history: computes the band between lowest and highest value, the value at an instant, statistics, and the spans of
+// alarms. No function has side effects.
 import { BAD, severityOf } from './history.js';
 import { calls, isGone } from './alarms.js';
 
 // Returns the stretches of the band between lowest and highest value: [[[fromS, toS, low, high], ...], ...]. Neighbouring intervals form
-// one stretch. Empty if the series has single points.
+// one stretch. Empty if the series has single points instead of intervals.
 export function bands({ points, bucket_us: length }) {
     const out = [];
     let lastUs = null;
@@ -19,7 +20,7 @@ export function bands({ points, bucket_us: length }) {
     return out;
 }
 
-// Returns the pieces of a series between two instants: [{ from, to (us), first, last, mean, low, high }], each with a value.
+// Returns the pieces of a series between two instants that have a value: [{ from, to (us), first, last, mean, low, high }].
 function pieces({ points, bucket_us: length, step }, fromUs, toUs) {
     const out = [];
     const add = (from, to, first, last) => {
@@ -47,7 +48,7 @@ function pieces({ points, bucket_us: length, step }, fromUs, toUs) {
     return out;
 }
 
-// Returns { min, max, mean (over the time with a value), known (part of the time with a value, 0 to 1) }; null without any value.
+// Returns { min, max, mean (over the time with a value), known (fraction of the time with a value) } of a series; null without any value.
 export function statistics(series, fromUs, toUs) {
     const all = pieces(series, fromUs, toUs);
     if (all.length === 0)
@@ -67,7 +68,7 @@ export function withNewest(stats, value) {
     return { ...stats, min: Math.min(min, value), max: Math.max(max, value) };
 }
 
-// Returns the value at an instant, of intervals the mean; null: none.
+// Returns the value of a series at an instant; of an interval its mean. null: no value.
 export function valueAt({ points, bucket_us: length, step }, us) {
     let low = 0, high = points.length;
     while (low < high) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Size, brightness and layout on a control room's wall, so that text is readable from where people sit.
+// Computes size, brightness and layout of the page on a control room's wall, so that text is readable from where people sit.
 
-// ISO 9241-303: a capital letter is comfortable to read from 20 minutes of arc on; it needs at least 16.
+// visual angle of a capital letter's height. ISO 9241-303: a capital letter is comfortable to read from 20 minutes of arc on; it needs at
+// least 16.
 export const MINUTES = 16;
 const CAPITAL = 0.72;  // height of a capital letter, relative to the font size
-const SMALLEST_PX = 12.5; // smallest font size of the page in pixels, before scaling
+const SMALLEST_PX = 12.5; // smallest font size of the page in pixels, before the page is scaled for a wall
 export const USUAL = { inches: 55, metres: 3 };
 
 // Parses ?wall, ?wall=65 (inches of the screen's diagonal), ?wall=65,4 (and metres of distance). Returns null if there is no ?wall.
@@ -17,8 +18,8 @@ export function readWall(search) {
     return { inches: sane(inches, 10, 400, USUAL.inches), metres: sane(metres, 0.5, 50, USUAL.metres) };
 }
 
-// Returns by how much the page must be larger than on an ordinary screen. screen: size in CSS pixels; with the diagonal in inches it gives
-// the size of a pixel.
+// Returns by what factor the page must be larger than on an ordinary screen. screen: size in CSS pixels; with the diagonal in inches it
+// gives the size of a pixel.
 export function wallScale({ inches, metres }, screen) {
     const needed = metres * 1000 * Math.tan((MINUTES / 60) * (Math.PI / 180));
     const larger = needed / (CAPITAL * SMALLEST_PX * millimetresPerPx(inches, screen));
@@ -27,11 +28,11 @@ export function wallScale({ inches, metres }, screen) {
 
 export const millimetresPerPx = (inches, { width, height }) => (inches * 25.4) / Math.hypot(width, height);
 
-// smallest size, in pixels of a desk page, that has room for name, alarms, picture, legend, clock and age
+// smallest page size, in pixels before scaling, that has room for name, alarms, picture, legend, clock and age
 export const LEAST = { width: 440, height: 250 };
 
-// Returns { scale, metres }. scale: the one needed, or a smaller one with which everything fits; metres: distance from which text is then
-// readable.
+// Returns { scale, metres }. scale: the needed factor, or a smaller one with which everything fits; metres: largest distance from which
+// text is then readable.
 export function wallFit(wall, screen, { width, height }, least = LEAST) {
     const needed = wallScale(wall, screen), fits = Math.min(needed, width / least.width, height / least.height);
     const scale = fits > 0.5 ? fits : 0.5;
@@ -42,7 +43,7 @@ export function wallFit(wall, screen, { width, height }, least = LEAST) {
 export const SPREAD_MS = 2000;
 
 // Returns a display's brightness: 1, or less within its dimming hours. minute: minute of the day; calls true: an unacknowledged alarm is
-// shown, which gives full brightness.
+// shown, which causes full brightness.
 export function brightness(dim, minute, calls) {
     const { from_min: from, to_min: to, percent } = dim ?? { from_min: 0, to_min: 0 };
     const within = from <= to ? minute >= from && minute < to : minute >= from || minute < to;
@@ -53,6 +54,6 @@ export function brightness(dim, minute, calls) {
 const SHIFT_US = 180e6, SHIFTS = [[0, 0], [2, 1], [3, -1], [1, -3], [-1, -2], [-3, 0], [-2, 2], [0, 3]];
 export const burnShift = (us) => SHIFTS[Math.floor(us / SHIFT_US) % SHIFTS.length] ?? SHIFTS[0];
 
-// Returns true if legends lie below the picture, false if they stand at its side. width, height: size of the wall's page in its units
+// Returns true if legends lie below the picture, false if they are at its side. width, height: size of the wall's page in its units
 // (page.unit).
 export const legendsLie = (width, height, split) => width < height || (split && width < 800);

@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Meshes for drawing a picture from another camera than its own: cells of a depth grid become quads, cut where the depth has a step.
-// A sheet is one surface within a cell: a divided cell has two.
+// Meshes for drawing a picture from another camera than its own. Cells of a depth grid become quads, cut where the depth has a step. A
+// sheet is one surface within a cell: a divided cell has two.
 import { basis, heightAt, isParallel, RADIANS } from './camera.js';
 import { distance } from './camera_moves.js';
 import { add, dot, length, scale, subtract } from './vector.js';
 
-const STEEPEST = 6; // steepest slope of a surface along the view, as a tangent: cells that differ by more show two surfaces
-// cells are merged if their codes deviate from a plane by at most FLAT_CODES, or FLAT_SHARE of the depth
+// steepest slope of a surface along the view, as a tangent: neighbouring cells whose depths differ by more show two surfaces
+const STEEPEST = 6;
+// cells are merged into one quad if their depth codes deviate from a plane by at most FLAT_CODES, or FLAT_SHARE of the depth
 const FLAT_SHARE = 0.002, FLAT_CODES = 0.8;
-const BLOCK = 16; // largest side of a merged block, in cells
+const BLOCK = 16; // largest side of a block of merged cells, in cells
 const LAP_PX = 0.5; // overlap of merged blocks, which hides cracks between blocks of different sizes
-export const WHOLE = 0, NEAR = 1, FAR = 2; // which pixels of its cells a quad shows: all, those before the step, those behind
-const ORDER = [0, 2, 1, 1, 2, 3]; // corners of a quad's two triangles
-export const FLOATS = 4; // number of floats per vertex: x and y in pixels of the part, depth, kind
+export const WHOLE = 0, NEAR = 1, FAR = 2; // which pixels of its cells a quad shows: all, those before the step in depth, those behind
+const ORDER = [0, 2, 1, 1, 2, 3]; // corners of a quad's two triangles, by index of the vertex
+export const FLOATS = 4; // number of floats per vertex: x and y in pixels of the half of the picture, depth, kind (WHOLE, NEAR or FAR)
 
 class Sheets {
     constructor(grid, camera) {
         Object.assign(this, grid);
         const step = STEEPEST * heightAt(camera, 1) / grid.height * grid.cellPx / Math.abs(grid.unit);
-        // Largest difference between codes of one surface in neighbouring cells, by code.
+        // Largest difference between depth codes of one surface in neighbouring cells, by code.
         const mostAt = (code) => Math.max(2, grid.parallel ? step : step * this.depthOf(code));
         this.most = Float32Array.from({ length: grid.levels + 1 }, (_, code) => mostAt(code));
     }
@@ -31,7 +32,8 @@ class Sheets {
         return a === 0 || b === 0 ? a === b : Math.abs(a - b) <= this.most[Math.max(a, b)];
     }
 
-    // Returns the code of the sheet (surface within a cell) of cell (x, y) that continues a sheet with this code; -1: none.
+    // Returns the depth code of the sheet (surface within a cell) of cell (x, y) that continues a neighbouring sheet with the given code;
+    // -1: none.
     continuing(code, x, y) {
         if (x < 0 || y < 0 || x >= this.columns || y >= this.rows)
             return -1;
@@ -41,14 +43,15 @@ class Sheets {
         return isNear ? near : -1;
     }
 
-    // Returns how much the code changes from the centre of a cell to its edge in the direction (dx, dy): half of the change from the
+    // Returns how much the depth code changes from the centre of a cell to its edge in the direction (dx, dy): half of the change from the
     // opposite neighbour to the cell. 0: that neighbour does not continue the surface.
     half(code, x, y, dx, dy) {
         const before = this.continuing(code, x - dx, y - dy);
         return before < 0 ? 0 : (code - before) / 2;
     }
 
-    // Returns the code at the corner of a cell in the direction (dx, dy). All cells that share a corner and a surface get the same code.
+    // Returns the depth code at the corner of a cell in the direction (dx, dy). All cells that share a corner and a surface get the same
+    // code.
     corner(code, x, y, dx, dy) {
         const across = this.continuing(code, x + dx, y), down = this.continuing(code, x, y + dy);
         if (across >= 0 && down >= 0) {
@@ -64,8 +67,8 @@ class Sheets {
     }
 }
 
-// Returns the code at each corner of the grid where the farthest sheets (surfaces within a cell) of the four cells around are one surface;
-// NaN elsewhere.
+// Returns the depth code at each corner of the grid where the farthest sheets (surfaces within a cell) of the four cells around are one
+// surface; NaN at other corners.
 function sharedCorners({ columns, rows }, back, sheets) {
     const wide = columns + 1, corners = new Float32Array(wide * (rows + 1)).fill(NaN);
     for (let y = 0; y <= rows; y++)
@@ -80,7 +83,7 @@ function sharedCorners({ columns, rows }, back, sheets) {
     return corners;
 }
 
-// Collects quads as vertices and indices, with room for the most that a grid can need.
+// Collects quads as vertices and indices. `most`: largest number of quads that a grid can need.
 class Quads {
     constructor(most) {
         this.vertices = new Float32Array(most * 4 * FLOATS);
@@ -88,7 +91,7 @@ class Quads {
         this.count = 0;
     }
 
-    // depths: at the top left, top right, bottom left and bottom right corner.
+    // depths: at the top left, top right, bottom left and bottom right corner of the quad.
     add(left, top, right, bottom, depths, kind) {
         const { vertices, indices } = this, first = this.count * 4;
         for (let i = 0, at = first * FLOATS; i < 4; i++) {
@@ -167,7 +170,7 @@ class Mesher {
         this.sheet(x, y, this.back[i], this.grid.far[i] < 0 ? WHOLE : FAR);
     }
 
-    // Adds the near sheet (surface before the step) of each divided cell.
+    // Adds quads for the near sheet (surface before the step in depth) of each divided cell.
     addNear() {
         const { near, far, columns } = this.grid;
         for (let i = 0; i < far.length; i++)
@@ -188,7 +191,7 @@ class Mesher {
 }
 
 // Returns { vertices, indices, count } of quads over a depth grid: merged where the surface is plane, apart where the depth has a step.
-// camera: that of the grid's picture.
+// camera: that of the picture to which the grid belongs.
 export function meshOf(grid, camera) {
     const mesher = new Mesher(grid, camera);
     for (let y = 0; y < grid.rows; y += BLOCK)
@@ -199,7 +202,7 @@ export function meshOf(grid, camera) {
     return { vertices: vertices.subarray(0, count * 4 * FLOATS), indices: indices.subarray(0, count * 6), count };
 }
 
-// Returns the depth that the grid has at a pixel of its part; null outside.
+// Returns the depth that the grid has at a pixel of its half of the picture; null outside.
 export function depthAt(grid, px, py) {
     const { columns, rows, cellPx, maskSide, masks, near, far, base, unit, parallel } = grid;
     const x = Math.floor(px / cellPx), y = Math.floor(py / cellPx), i = y * columns + x, bit = cellPx / maskSide;
@@ -212,8 +215,8 @@ export function depthAt(grid, px, py) {
 
 const halfHeight = (camera) => (isParallel(camera) ? camera.height_m / 2 : Math.tan(camera.fov * RADIANS / 2));
 
-// Returns the columns of the matrix that maps [x, y, depth, 1] of a grid to homogeneous plant positions relative to `origin`: each a vector
-// and a homogeneous coordinate. camera: that of the grid's picture.
+// Returns the columns of the matrix that maps [x, y, depth, 1] of a depth grid to homogeneous plant positions relative to `origin`. Each
+// column is [vector, homogeneous coordinate]. camera: that of the grid's picture.
 export function gridColumns({ width, height }, camera, origin) {
     const old = basis(camera), tall = halfHeight(camera), wide = tall * width / height;
     const eye = subtract(camera.eye, origin), corner = add(scale(old.right, -wide), scale(old.up, tall));
@@ -221,8 +224,8 @@ export function gridColumns({ width, height }, camera, origin) {
     return [[scale(old.right, 2 * wide / width), 0], [scale(old.up, -2 * tall / height), 0], depth, rest];
 }
 
-// Returns the 4x4 matrix, column by column as WebGL takes it, from [x, y, depth, 1] of a grid to clip coordinates of another camera, for a
-// picture of the same shape. nearest: a distance from the new eye in metres before which nothing is drawn.
+// Returns the 4x4 matrix, column by column as WebGL takes it, from [x, y, depth, 1] of a depth grid to clip coordinates of another camera,
+// for a picture of the same shape. nearest: surfaces nearer to the new eye than so many metres are not drawn.
 export function warpMatrix({ width, height }, from, to, nearest) {
     const now = basis(to), up = halfHeight(to), across = up * width / height, reach = 2 * distance(to) + 1e4 * up;
     return gridColumns({ width, height }, from, to.eye).flatMap(([v, h]) => {
@@ -239,7 +242,7 @@ export function moveBy(matrix, { width, height }, point) {
 
 const MOST_TURN = Math.cos(50 * RADIANS), MOST_STEP = 0.8, MOST_ZOOM = 2.5;
 
-// Returns true if a picture from one camera can be shown from another: not after a jump or with the other projection.
+// Returns true if a picture from one camera may be shown from another. It may not after a large jump, nor with the other projection.
 export function isNear(from, to) {
     if (isParallel(from) !== isParallel(to) || dot(basis(from).forward, basis(to).forward) < MOST_TURN)
         return false;

@@ -1,27 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Draws meshes of depth grids (warp_mesh.js) by the processor, for browsers without a GPU. These would emulate WebGL, which takes several
+// Draws meshes of depth grids (warp_mesh.js) on the processor, for browsers without a GPU. Such browsers emulate WebGL, which takes several
 // times as long. Pixels are 32-bit numbers as in an ImageData, with red in the lowest byte; 0: not drawn.
 import { FAR, FLOATS, NEAR } from './warp_mesh.js';
 
-const SKEW_PX = 1, LEAST_PX = 4; // rectangles of LEAST_PX and less are drawn as parallelograms even if they are more than SKEW_PX from one
-const LAP_PX = 0.1; // overlap of parallelograms, which hides cracks between them
+// a rectangle's image is drawn as a parallelogram if it deviates by at most SKEW_PX from one, or the rectangle is at most LEAST_PX large
+const SKEW_PX = 1, LEAST_PX = 4;
+const LAP_PX = 0.1; // overlap of neighbouring parallelograms, which hides cracks between them
 const LEAST_AREA = 1e-3; // parallelograms of fewer pixels are not drawn
-const TINY = 1e-7; // least change of a source position by pixel, which avoids divisions by zero
-const REDUCED = 4; // greys are computed for blocks of REDUCED x REDUCED pixels (fillUndrawn() divides by it by shifting)
-const WIDE_LEVEL = 3; // level of the reduced pictures that tells how wide an undrawn place is
+const TINY = 1e-7; // least change of a source position from pixel to pixel, which avoids divisions by zero
+// grey levels for undrawn places are computed for blocks of REDUCED x REDUCED pixels (fillUndrawn() divides by REDUCED by shifting)
+const REDUCED = 4;
+const WIDE_LEVEL = 3; // index of the reduced picture that tells how wide an undrawn place is
 const BITS = 16, ONE = 2 ** BITS; // fixed-point source positions
-const NEAR_ONE = 2 ** 30 - 1; // unit of nearness, which is less than 2, as a 32-bit number
-const INSIDE = 4e-3; // least distance of source positions from the right and lower edge of their quad
+const NEAR_ONE = 2 ** 30 - 1; // factor from nearness (a number below 2) to a 32-bit integer
+const INSIDE = 4e-3; // least distance of source positions from the right and lower edge of their quad, in pixels
 const OPAQUE = -0x1000000;
-const MARK = 0.08 * 255, MARK_SHARE = 0.1; // brightness of the lattice's lines, and their width as a share of its period
+// brightness of the lattice's lines over undrawn places, and the lines' width as a fraction of the lattice's period
+const MARK = 0.08 * 255, MARK_SHARE = 0.1;
 
 const lightOf = (pixel) => (77 * (pixel & 255) + 150 * (pixel >> 8 & 255) + 29 * (pixel >> 16 & 255)) >> 8;
 const greyPixel = (light) => (OPAQUE | Math.floor(light) * 0x10101);
 
-// The pixels of a picture, separated by surfaces: `all`, and for cells with two surfaces `near` and `far`, 0 at the other surface's pixels.
-// Pixels behind a step in depth that contain a part of the colour before the step are grey in `far`.
+// The pixels of a picture, separated by surfaces: `all`, and for depth cells with two surfaces `near` and `far`, in which pixels of the
+// other surface are 0. Pixels behind a step in depth that contain a part of the colour before the step are grey in `far`.
 export class Layers {
-    // pixels: of the whole picture, `width` pixels wide.
+    // pixels: those of the whole picture, `width` pixels wide.
     constructor(pixels, width, grids) {
         Object.assign(this, { all: pixels, width, far: pixels.slice(), near: new Int32Array(pixels.length) });
         for (const grid of grids)
@@ -50,7 +53,7 @@ export class Layers {
         }
     }
 
-    // Calls f with the index of each pixel of a mask's bit.
+    // Calls f with the index of each pixel that belongs to one bit of a cell's mask.
     pixelsOf({ x, y, width, height, cellPx, maskSide }, bitX, bitY, f) {
         const bit = cellPx / maskSide, right = Math.min(width, (bitX + 1) * bit), bottom = Math.min(height, (bitY + 1) * bit);
         for (let row = bitY * bit; row < bottom; row++)
@@ -72,7 +75,7 @@ export class Layers {
     }
 }
 
-// Bilinear interpolation in a level of the reduced pictures; x, y: in its blocks, from the centre of the first.
+// Returns a value of a reduced picture by bilinear interpolation; x, y: in blocks of that picture, from the centre of the first block.
 function smooth(values, { width, height }, x, y) {
     const left = Math.max(0, Math.min(width - 1, Math.floor(x))), top = Math.max(0, Math.min(height - 1, Math.floor(y)));
     const i = top * width + left, right = left + 1 < width ? 1 : 0, down = top + 1 < height ? width : 0;
@@ -81,7 +84,7 @@ function smooth(values, { width, height }, x, y) {
     return above + (below - above) * q;
 }
 
-// Computes a level from the level of twice its width and height.
+// Computes a reduced picture from the one with twice its width and height.
 function halve(level, half, from, to) {
     for (let y = 0, at = 0; y < half.height; y++)
         for (let x = 0, i = 2 * y * level.width; x < half.width; x++, at++, i += 2) {
@@ -95,7 +98,7 @@ export class Raster {
         Object.assign(this, { width, height, pixels: new Int32Array(width * height) });
         // 1 - z of the drawn surfaces, in normalized device coordinates, multiplied by NEAR_ONE
         this.nearness = new Int32Array(width * height);
-        // corners of the present quad on the screen, and their nearness
+        // corners of the quad being drawn on the screen, and their nearness
         [this.x, this.y, this.n] = [0, 1, 2].map(() => new Float64Array(4));
         // reduced pictures, each of half the width and height of the one before: brightness multiplied by the drawn part, and drawn part
         this.levels = [];
@@ -111,8 +114,8 @@ export class Raster {
         this.nearness.fill(0);
     }
 
-    // Draws the mesh of a part. matrix: from warpMatrix(); layers: those of the picture; box: { left, top, width, height } of the part in
-    // drawn pixels.
+    // Draws the mesh of a half of the picture. matrix: from warpMatrix(); layers: those of the picture; box: { left, top, width, height }
+    // of the half in drawn pixels.
     draw({ grid, mesh: { vertices, count } }, matrix, layers, box) {
         Object.assign(this, { grid, matrix: Float64Array.from(matrix), box, stride: layers.width });
         const picked = [layers.all, layers.near, layers.far], most = 4 * FLOATS;
@@ -125,8 +128,8 @@ export class Raster {
         }
     }
 
-    // Draws a rectangle of the part with these depths at its top left, top right, bottom left and bottom right corner. On the screen, it
-    // is drawn as a parallelogram. If it is too far from one, because of perspective, its quarters are drawn.
+    // Draws a rectangle of the source picture with these depths at its top left, top right, bottom left and bottom right corner. On the
+    // screen, it is drawn as a parallelogram. If perspective makes it differ too much from one, its quarters are drawn separately.
     quad(left, top, right, bottom, d0, d1, d2, d3) {
         const { matrix: m, box, x, y, n } = this, halfWidth = box.width / 2, halfHeight = box.height / 2;
         let behind = 0;
@@ -154,10 +157,10 @@ export class Raster {
 
     parallelogram(left, top, right, bottom) {
         const { x, y, n, layer, stride, nearness, pixels, width, grid, clip } = this, wide = right - left, high = bottom - top;
-        // on the screen, from the left to the right edge: (ex, ey), from the upper to the lower edge: (fx, fy)
+        // vectors on the screen: (ex, ey) from the left to the right edge, (fx, fy) from the upper to the lower edge
         const ex = (x[1] - x[0] + x[3] - x[2]) / 2, ey = (y[1] - y[0] + y[3] - y[2]) / 2;
         const fx = (x[2] - x[0] + x[3] - x[1]) / 2, fy = (y[2] - y[0] + y[3] - y[1]) / 2, area = ex * fy - ey * fx;
-        if (!(area > LEAST_AREA)) // seen from behind, or from its edge
+        if (!(area > LEAST_AREA)) // not drawn: the camera sees the rectangle from behind, or along its plane
             return;
         const cx = (x[0] + x[1] + x[2] + x[3]) / 4 - 0.5, cy = (y[0] + y[1] + y[2] + y[3]) / 4 - 0.5;
         const reach = (Math.abs(ey) + Math.abs(fy)) * (0.5 + LAP_PX / Math.min(wide, high));
@@ -165,7 +168,7 @@ export class Raster {
         let row = Math.max(clip.top, Math.ceil(cy - reach));
         if (row >= last)
             return;
-        // changes of source position and nearness by pixel of a row, and by row
+        // changes of source position and nearness from pixel to pixel of a row, and from row to row
         const e = (n[1] - n[0] + n[3] - n[2]) / 2, f = (n[2] - n[0] + n[3] - n[1]) / 2, slope = high * -ey / area;
         const ux = wide * fy / area || TINY, vx = Math.abs(slope) < TINY ? TINY : slope, nx = (e * fy - f * ey) / area;
         const uy = -wide * fx / area, vy = high * ex / area, ny = (f * ex - e * fx) / area;
@@ -173,7 +176,7 @@ export class Raster {
         const vLow = Math.max(0, top - LAP_PX), vHigh = Math.min(grid.height, bottom + LAP_PX) - INSIDE;
         const uFirst = ux > 0 ? uLow : uHigh, uLast = ux > 0 ? uHigh : uLow, vFirst = vx > 0 ? vLow : vHigh, vLast = vx > 0 ? vHigh : vLow;
         const perU = 1 / ux, perV = 1 / vx, xStep = Math.round(ux * ONE), yStep = Math.round(vx * ONE), nStep = Math.round(nx * NEAR_ONE);
-        // source position and nearness at the row's first pixel of the screen
+        // source position and nearness at the first pixel of the screen row
         let u = (left + right) / 2 - cx * ux + (row - cy) * uy, v = (top + bottom) / 2 - cx * vx + (row - cy) * vy;
         let near = (n[0] + n[1] + n[2] + n[3]) / 4 - cx * nx + (row - cy) * ny;
         for (; row < last; row++) {
@@ -198,7 +201,7 @@ export class Raster {
         }
     }
 
-    // Makes pixels that are not drawn as light as their surroundings, in grey, and draws a lattice over wide undrawn places. period: of
+    // Fills pixels that are not drawn with a grey as light as their surroundings, and draws a lattice over wide undrawn places. period: of
     // the lattice, in pixels.
     fillUndrawn(period) {
         const { pixels, width, height, levels } = this, first = this.greys(), { light } = first;
@@ -221,7 +224,7 @@ export class Raster {
             }
     }
 
-    // Leaves out a part (0 to 1) of the pixels, in a dither pattern, as GONE in gl_painter.js.
+    // Makes a part (0 to 1) of the pixels transparent, in a dither pattern, like GONE in gl_painter.js.
     leaveOut(part) {
         const { pixels, width, height } = this;
         for (let y = 0, i = 0; y < height; y++)
@@ -232,7 +235,8 @@ export class Raster {
             }
     }
 
-    // Returns the first level, with `light` complete: at places that are not drawn, that of the nearest levels that show something.
+    // Returns the first reduced picture with `light` complete: places that are not drawn get the brightness of the nearest coarser picture
+    // that shows something there.
     greys() {
         const { levels } = this, top = levels.at(-1);
         this.reduce(levels[0]);
@@ -251,7 +255,7 @@ export class Raster {
         return levels[0];
     }
 
-    // Computes the first level from a quarter of the pixels.
+    // Computes the first reduced picture from a quarter of the pixels.
     reduce({ width: columns, height: rows, light, part }) {
         const { pixels, width, height } = this;
         for (let y = 0, at = 0; y < rows; y++) {

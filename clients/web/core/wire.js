@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parses bytes of plantcast.v1 (protocol/PROTOCOL.md) into objects with checked values. No other code reads raw bytes.
+// Parses binary messages of the protocol plantcast.v1 (protocol/PROTOCOL.md) into objects with checked values. No other code parses their
+// headers.
 
 export const SUBPROTOCOL = 'plantcast.v1';
 const FRAME_HEADER_BYTES = 112;
@@ -20,7 +21,7 @@ function need(condition, what) {
         throw new WireError(what);
 }
 
-// Reads a u64 of microseconds since 1970, which a double represents exactly until the year 2255.
+// Reads a time as a u64 of microseconds since 1970, which a double represents exactly until the year 2255.
 function time(view, offset) {
     const us = Number(view.getBigUint64(offset, true));
     need(Number.isSafeInteger(us), `time at byte ${offset} is beyond all dates`);
@@ -29,7 +30,7 @@ function time(view, offset) {
 
 const triple = (view, offset) => [0, 4, 8].map((o) => view.getFloat32(offset + o, true));
 
-// Reads field of view and height; a camera with a field of view of 0 is orthographic.
+// Reads a camera's field of view and height; a camera with a field of view of 0 is orthographic.
 function lens(view) {
     const fov = view.getFloat32(104, true), height_m = view.getFloat32(108, true);
     if (fov === 0) {
@@ -56,7 +57,7 @@ export function decodeFrame(bytes) {
         past: (flags & FLAG_PAST) !== 0,
         // flag: another frame with a further rectangle of the same picture follows
         more: (flags & FLAG_MORE) !== 0,
-        // flag: the newest depth grids are of this picture
+        // flag: the newest depth grids belong to this picture
         hasDepth: (flags & FLAG_DEPTH) !== 0,
         seq: u32(8), cameraSeq: u32(12), paramsSeq: u32(16),
         oldestAgeMs: u32(20) === NO_AGE ? null : u32(20),
@@ -79,14 +80,15 @@ export function decodeFrame(bytes) {
     return frame;
 }
 
-// Returns true if the server aborted the frame: it is shorter than its header says.
+// Returns true if the server aborted the frame: the message is shorter than its header says.
 export function isGivenUp(bytes) {
     const data = bytes instanceof Uint8Array ? bytes : new Uint8Array(bytes);
     const there = data.length - FRAME_HEADER_BYTES;
     return there >= 0 && new DataView(data.buffer, data.byteOffset, data.length).getUint32(4, true) > there;
 }
 
-// Returns null if the message is not a depth grid, else { more }: the grid of the other half follows. core/depth_grid.js parses the rest.
+// Returns null if the message is not a depth grid, else { more }: true if the grid of the split view's other half follows.
+// core/depth_grid.js parses the rest.
 export function depthGridOf(bytes) {
     const [type, , flags] = new Uint8Array(bytes, 0, Math.min(3, bytes.byteLength));
     return type === DEPTH_GRID ? { more: (flags & FLAG_OTHER_HALF) !== 0 } : null;
@@ -112,7 +114,8 @@ export function decodeBase64(text) {
     return Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 }
 
-// Returns the size of picture to request: that of the window in device pixels, reduced in proportion to what the server draws at most.
+// Returns the size of the picture to request: the window's size in device pixels, reduced in proportion to the largest size that the server
+// draws.
 export function pictureSize(widthPx, heightPx) {
     const shrink = Math.min(1, MAX_SIDE_PX / widthPx, MAX_SIDE_PX / heightPx, Math.sqrt(MAX_PIXELS / (widthPx * heightPx)));
     const side = (px) => (px > 0 && px * shrink > MIN_SIDE_PX ? Math.floor(px * shrink) : MIN_SIDE_PX);

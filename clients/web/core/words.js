@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Looks up the page's words in the reader's language. Each language has a file for words that are needed immediately, and one for parts
-// that are loaded later.
+// Looks up the page's texts in the user's language. Each language has a file of texts that are needed immediately, and one for parts that
+// are loaded later.
 import { chooseLanguage, phrase, readWords } from './phrases.js';
 
 const reader = globalThis.document ? chooseLanguage(location.search, navigator.languages) : chooseLanguage();
@@ -11,7 +11,7 @@ const rules = new Intl.PluralRules(reader.language);
 export const { language, locale } = reader;
 export const say = (key, values) => phrase(words, rules, key, values);
 
-// Loads a further file of words, by its name. Returns a promise, which rejects if it cannot be fetched.
+// Loads a further file of texts, by its name. Returns a promise, which rejects if the file cannot be fetched.
 const learnt = new Map();
 let failures = 0;
 export function learnWords(name = 'lazy') {
