@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 layout(binding = 1) uniform sampler2DArrayShadow sky_maps;
 layout(std430, binding = 1) readonly buffer Directions {
     mat4 map_from_plant[32];
-    vec4 direction[32]; // unit vector towards the light; w: brightness of the light
+    vec4 direction[32]; // unit vector towards this part of the sky; w: its brightness
 };
 // matrix from the coordinates of the vertices to plant axes, relative to the centre of the scene
 layout(location = 0) uniform mat4 plant_from_here;
@@ -17,7 +17,7 @@ layout(location = 1) uniform mat4 sun_from_plant;
 layout(location = 4) uniform mat3 plant_from_normal;
 layout(location = 8) uniform vec4 sun;             // unit vector towards the sun; w: texel size of the sun's depth map in metres
 layout(location = 9) uniform float sky_texel_m;
-layout(location = 10) uniform ivec2 range; // range of vertices or points: first index, and one beyond the last
+layout(location = 10) uniform ivec2 range; // range of vertices, sample points or texels to compute: first index, and one beyond the last
 #ifdef GROUND
 const int TAPS = 16;
 const float SPREAD = 0.05;  // radius of the disc of samples, relative to the width of a sky map
@@ -31,10 +31,11 @@ layout(std430, binding = 3) readonly buffer Normals { uint normals[]; }; // pack
 // four bytes per vertex: light, ambient, openness (visible part of the sky), cosine to the sun
 layout(std430, binding = 4) buffer Light { uint baked[]; };
 layout(std430, binding = 5) readonly buffer Corners { uint corners[]; }; // three corners per large triangle: render/light/bake_faces.h
-layout(std430, binding = 6) buffer Sums { uint sums[]; }; // per vertex, sums over samples in large triangles: weight, openness, sun
+// three sums per vertex over the samples in large triangles: weight, openness, visible sun
+layout(std430, binding = 6) buffer Sums { uint sums[]; };
 layout(location = 12) uniform float large_m;
 layout(location = 13) uniform bool has_faces;
-layout(location = 14) uniform float least_open; // lower bound of openness while some assets are hidden
+layout(location = 14) uniform float least_open; // lower bound of openness (0..1), which is above 0 if assets are hidden
 #endif
 
 const vec2 disc[16] = vec2[](vec2(0.177, 0.000), vec2(-0.226, 0.207), vec2(0.035, -0.394), vec2(0.285, 0.371), vec2(-0.522, -0.092),
@@ -54,7 +55,7 @@ float opening(vec3 p, vec2 slope, int i)
     return sum / float(TAPS);
 }
 
-// Returns the unoccluded fraction of sky and ground that the surface faces, weighted by a typical sky's brightness; 0..1.
+// Returns which fraction (0..1) of the sky and ground that the surface faces no asset hides, weighted by the brightness of a typical sky.
 float openness(vec3 place, vec3 normal)
 {
     float open = 0.0, all = 0.0;
@@ -85,7 +86,8 @@ vec3 vertex_normal(uint i)
 #endif
 
 #ifdef FACES
-// Samples six points in each triangle: three towards the corners, three near the middles of the edges.
+// Computes the light at sample i % 6 of large triangle i / 6 and adds it to the sums of the triangle's corners. Three of the six samples
+// are towards the corners, three near the middles of the edges.
 void look_within(int i)
 {
     int k = i % 6, first = i / 6 * 3;
@@ -136,7 +138,7 @@ void main()
 #else
     float open = unpackUnorm4x8(baked[i]).z;
 #endif
-    // round openness as it is stored, so that the result does not change when it is read back after the sun has moved
+    // rounds openness to the 8 bits in which it is stored, so that the light does not change when a later bake reads the stored openness
     open = round(max(open, least_open) * 255.0) / 255.0;
     float ambient = open * sky_brightness(normal);
     float facing = max(dot(normal, sun.xyz), 0.0);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Clips vertices against the section planes of a view. The planes are in clip space, so that they do not depend on how a vertex was
-// transformed.
+// Clips vertices against the section planes of a view. The planes are given in clip space, so all vertex shaders can use the same planes.
 #ifdef CLIP
 out float gl_ClipDistance[6];
 

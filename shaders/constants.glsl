@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Constants shared by shaders, render/soft (which includes this file) and the page (deploy/stamp generates its copy). Contains only
-// numbers, so that it is valid GLSL and C.
+// #defines, so that the file is valid GLSL and C.
 #ifndef CONSTANTS_GLSL
 #define CONSTANTS_GLSL
 
-// Weights of scalar light: sky and ground; sun.
+// Weights of the light from sky and ground, and of sunlight, in the brightness of a surface (light_scalar() in light.glsl).
 #define LIGHT_AMBIENT 0.52
 #define LIGHT_SUN 0.48
 // Brightness of the light from sky and sun, relative to white.
@@ -15,10 +15,10 @@
 // Parameters of the Khronos PBR Neutral tone mapper.
 #define TONE_START 0.76
 #define TONE_DESATURATION 0.15
-// Assets without a field are mixed with this grey, by this fraction.
+// Assets without a field are muted: MUTED_PART of their colour is this grey.
 #define MUTED_GREY 0.88
 #define MUTED_PART 0.48
-// Weights for the brightness of sRGB.
+// Weights of the sRGB channels in the brightness of a colour.
 #define GREY_RED 0.30
 #define GREY_GREEN 0.59
 #define GREY_BLUE 0.11
@@ -27,7 +27,7 @@
 #define MOST_AWAY -0.3
 // Minimum openness of surfaces seen from behind, because the baked openness is that of the front side.
 #define OPEN_BEHIND 0.7
-// Glossy frames use softer light, so that colours in shadow can still be named.
+// Frames in the glossy look use softer light, so that colours of the field stay recognisable in shadow.
 #define GLOSSY_OPEN 0.3
 #define GLOSSY_SKY 1.45
 #define GLOSSY_SUN 0.75
@@ -54,8 +54,8 @@
 #define STIPPLE_GREY 64
 #define RULE_LIGHT_GREY 226
 #define RULE_DARK_GREY 196
-// Feature edges: opacity, and the relative depth steps at which a line begins and reaches full opacity. The nearer surface must be at least
-// EDGE_THIN_PX pixels wide; from EDGE_WIDE_PX on, the line has full opacity.
+// Feature edges (dark lines at steps of depth): colour, largest opacity, and the relative depth steps at which a line begins and reaches
+// that opacity. The nearer surface must be at least EDGE_THIN_PX pixels wide; from EDGE_WIDE_PX on, the line has full opacity.
 #define EDGE_RGB 0.08, 0.10, 0.14
 #define EDGE_MOST 0.5
 #define EDGE_FROM 0.006
@@ -93,7 +93,7 @@
 #define CAP_PERIOD 0.9
 #define CAP_STRIPE_FROM 0.28
 #define CAP_STRIPE_TO 0.40
-// Sun shadow lookups: distance of the four taps in texels, and rotation of their square.
+// Lookups in the sun's shadow map: distance of the four samples in texels, and cosine and sine of the rotation of their square.
 #define SUN_SPREAD 1.58
 #define SUN_TURN 0.949, 0.316
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Marks the pixels that a surface covers; discards pixels where the texture is transparent (holes).
+// Writes 1 for pixels that a surface covers, for masks of an asset; discards pixels where the texture has holes (alpha below the cutoff).
 #ifdef HOLES
 #include "material.glsl"
 layout(location = 0) in vec3 hole;

@@ -13,16 +13,16 @@ float at(ivec2 pixel)
     return texelFetch(depth, clamp(pixel, ivec2(0), textureSize(depth, 0) - 1), 0).r;
 }
 
-// Returns line coverage for a relative rise in depth.
+// Returns the opacity (0..1) of the line for a step of depth, relative to distance.
 float line(float rise)
 {
     return smoothstep(EDGE_FROM, EDGE_TO, rise);
 }
 
-// Returns line coverage towards the neighbour at `side`, if the neighbour is nearer. side: step of one pixel. Depth is 1/distance, or falls
-// with distance in an orthographic view, so depth is linear over a flat surface on the screen. The nearer surface must continue for
-// EDGE_THIN_PX pixels in direction `side`, and about as far along one side (slanting rails are thin but long). Coverage is full at
-// EDGE_WIDE_PX.
+// Returns the opacity (0..1) of a line at this pixel, if the neighbour at the offset `side` is nearer to the eye. side: step of one pixel.
+// Depth is 1/distance, or falls with distance in an orthographic view, so depth is linear over a flat surface on the screen. The nearer
+// surface must continue for EDGE_THIN_PX pixels in direction `side`, and about as far along one side (slanting rails are thin but long).
+// Opacity is 1 if it continues for EDGE_WIDE_PX.
 float edge(ivec2 pixel, float here, ivec2 side)
 {
     ivec2 other = pixel + side;

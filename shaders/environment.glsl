@@ -8,7 +8,7 @@ layout(std140, binding = 1) uniform Environment {
 layout(binding = 8) uniform sampler3D mirrored_map; // octahedral map; third coordinate: roughness
 layout(binding = 9) uniform sampler2D brdf_map;     // lookup table: scale and bias of F0, by cosine to the viewer and roughness
 
-// Returns irradiance divided by pi.
+// Returns the light that a white, matt surface with the normal n reflects (irradiance divided by pi).
 vec3 sky_irradiance(vec3 n)
 {
     vec3 e = irradiance_terms[0].rgb + irradiance_terms[1].rgb * n.y + irradiance_terms[2].rgb * n.z + irradiance_terms[3].rgb * n.x;
@@ -23,7 +23,8 @@ float sky_brightness(vec3 n)
     return clamp(dot(sky_irradiance(n), vec3(0.2126, 0.7152, 0.0722)), 0.0, 1.0);
 }
 
-// Returns the reflected light, prefiltered for this roughness.
+// Returns the light that arrives around the mirrored view direction r, averaged in advance over the directions that a surface of this
+// roughness reflects.
 vec3 mirrored(vec3 r, float roughness)
 {
     const float side = 128.0, layers = 8.0;

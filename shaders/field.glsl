@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Colour of the field at a pixel: a lookup by position on the scale and by light. The colour map (render/shaded_colormap.h) holds sRGB
-// colours by the legend's rule (field/scale.h): bands, colours outside MIN and MAX, and patterns.
+// Colour of the field at a pixel: a lookup in the colour map by position on the scale (column) and by brightness of the surface (row). The
+// colour map (render/shaded_colormap.h) holds sRGB colours by the legend's rule (field/scale.h): bands, colours outside MIN and MAX, and
+// patterns.
 #include "constants.glsl"
 layout(binding = 0) uniform sampler2D colormap;
 #ifdef RICH
@@ -10,8 +11,8 @@ layout(binding = 15) uniform sampler2D lines; // lookup table by position on the
 const int PLACES = COLORMAP_PLACES, HATCH_LIGHT = PLACES + 2, HATCH_DARK = PLACES + 3, STIPPLE = PLACES + 4,
           PLAIN_LIGHT = PLACES + 5, PLAIN_DARK = PLACES + 6;
 
-// Returns the column of the colour map for a position on the scale. Interpolation of equal values may round, so positions up to 1e-5 beyond
-// the ends still count as inside. Column 0 is below MIN, PLACES + 1 above MAX.
+// Returns the column of the colour map for a position on the scale (0 at MIN, 1 at MAX). Positions up to 1e-5 beyond the ends still count
+// as inside, because interpolation between vertices rounds. Column 0 is below MIN, PLACES + 1 above MAX.
 int colormap_column(float place)
 {
     const float slack = 1e-5, columns = float(PLACES) / (1.0 + 2.0 * slack);
@@ -28,7 +29,7 @@ vec3 colormap_color(int column, int row)
     return texelFetch(colormap, ivec2(column, row), 0).rgb;
 }
 
-// Diagonal stripes: returns a value above 0.5 in the dark stripes.
+// Pattern of places without data, diagonal stripes: returns a value above 0.5 in the dark stripes.
 float hatch(vec2 pixel)
 {
     float phase = fract((pixel.x + pixel.y) / (frame.scale.w * HATCH_SLANT));
@@ -43,7 +44,7 @@ float stipple(vec2 pixel)
 }
 
 #ifdef RICH
-// Horizontal lines, widely spaced: returns a value above 0.5 on the lines.
+// Pattern of tags without alarm limits, widely spaced horizontal lines: returns a value above 0.5 on the lines.
 float rule(float y)
 {
     return (abs(fract(y / frame.scale.w) - 0.5) - RULE_EDGE) * frame.scale.w + 0.5;
@@ -65,8 +66,8 @@ float line_part(float place, int column)
 }
 #endif
 
-// Returns an sRGB colour. field.x: position on the scale (RICH: the value itself); the other components: shares of no data, uncertain and
-// (RICH) no limits, each 0..1, interpolated between vertices.
+// Returns the field's sRGB colour with patterns and isolines. field.x: position on the scale (RICH: the value itself); the other
+// components: shares of no data, uncertain and (RICH) no limits, each 0..1, interpolated between vertices.
 vec3 field_color(FIELD_TYPE field, float light)
 {
 #ifdef RICH
@@ -98,7 +99,7 @@ vec3 field_color(FIELD_TYPE field, float light)
 #ifdef REFINED
     vec3 color = mix(colormap_color(column, row), colormap_color(second, row), clamp(part, 0.0, 1.0));
 #else
-    vec3 color = colormap_color(part > 0.5 ? second : column, row); // a single lookup
+    vec3 color = colormap_color(part > 0.5 ? second : column, row); // previews look up one colour only: patterns are not antialiased
 #endif
 #ifdef RICH
     vec3 ink = dot(color, vec3(GREY_RED, GREY_GREEN, GREY_BLUE)) > ISOLINE_BRIGHT ? vec3(ISOLINE_DARK_RGB) : vec3(ISOLINE_LIGHT);

@@ -5,17 +5,17 @@ layout(std140, binding = 0) uniform Frame {
     mat4 eye_from_clip;
     mat4 sun_from_eye;   // matrix from eye space to texture coordinates and depth of the shadow map
     vec4 sun;            // unit vector towards the sun; w: texel size of the shadow map in metres
-    vec4 up;             // the plant's up direction; w: brightness of muted assets without a field; 0: not muted
-    // scale of values: x: MIN, y: 1/(MAX - MIN); z 1: logarithmic scale, x and y are then of binary logarithms; w: cell size of patterns in
-    // pixels
+    vec4 up;             // the plant's up direction; w: brightness factor of assets without a field; 0: these are not muted
+    // colour scale: x: MIN, y: 1/(MAX - MIN); z: 1 if the scale is logarithmic (x and y are then computed from binary logarithms), else 0;
+    // w: cell size of patterns in pixels
     vec4 scale;
-    vec4 shade;          // row of the colour map = light * x + y, but at most z
+    vec4 shade;          // from the brightness of a surface to the row of the colour map: brightness * x + y, but at most z
     vec4 lines;          // x: width of isolines in pixels, 0: none; y: index of the first row of the backdrop
     vec4 back;           // orthographic: unit vector towards the viewer; w: view_constants.depth_scale. Perspective: all 0
     vec4 clip[6];        // section planes in clip space
 } frame;
 
-// Type of the field passed from vertices to pixels: shaders/field.glsl.
+// Type of the field's value and flags that vertex shaders pass to fragment shaders (field_color() in shaders/field.glsl).
 #ifdef RICH
 #define FIELD_TYPE vec4
 #else

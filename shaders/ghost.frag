@@ -13,8 +13,8 @@ float at(ivec2 pixel)
     return texelFetch(ghosts, clamp(pixel, ivec2(0), textureSize(ghosts, 0) - 1), 0).r;
 }
 
-// Returns x: step of depth down to one side, minus the rise to the other side (0 on a plane, however steep); y: curvature. Both are
-// relative to distance.
+// Measures edges of a ghost between the pixels on both sides. x: drop of depth to one side, minus its rise to the other side (0 on a plane,
+// however steep); y: curvature. Both are relative to distance.
 vec2 shape(ivec2 pixel, float here, float scale, ivec2 side)
 {
     float a = at(pixel - side), b = at(pixel + side);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shadow on the ground, as a factor on the colour behind.
+// Draws the shadow on the ground: outputs a factor by which blending multiplies the colour of the backdrop.
 #include "constants.glsl"
 #include "frame.glsl"
-layout(binding = 1) uniform sampler2D ground_light; // sun and openness
+layout(binding = 1) uniform sampler2D ground_light; // visible part of the sun, and openness; both 0..1
 layout(location = 0) in vec2 at;
 layout(location = 1) in vec3 place;
 layout(location = 0) out vec4 factor;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Data that differs between assets drawn by one call: placement, and per-vertex numbers in buffers that many assets share (gpu/pool.h). The
-// layout must match struct draw_instance.
+// Data that differ between the assets that one draw call draws: placement, and light and field per vertex, in buffers that many assets
+// share (gpu/pool.h). The layout must match struct draw_instance.
 
-// Three rows of the matrix for normals; in w: index of the asset's first block in `lights`; index of its first block in `scalars` (-1:
-// none); unused
+// rows of the matrix for normals. Their fourth elements: index of the asset's first block in `lights`; index of its first block in
+// `scalars` (-1: no field); unused
 layout(location = 4) in mat3x4 eye_from_normal;
 layout(location = 8) in mat4 clip_from_file;
 // rows of the matrix from file coordinates to eye space; in previews: to texture coordinates and depth of the sun's shadow map

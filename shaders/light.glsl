@@ -2,8 +2,8 @@
 // Light at a point and the resulting colour; shared by previews, refined frames and colour ramps, so that their colours agree.
 #include "constants.glsl"
 
-// Returns scalar light: 0 in a hidden corner, 1 facing the sun under the open sky. ambient: visible sky and ground, 0..1; sun: cosine times
-// visibility.
+// Returns the brightness of a surface: 0 in a hidden corner, 1 facing the sun under the open sky. ambient: visible fraction of sky and
+// ground, 0..1; sun: cosine to the sun times the sun's visible fraction.
 float light_scalar(float ambient, float sun)
 {
     return clamp(LIGHT_AMBIENT * ambient + LIGHT_SUN * sun, 0.0, 1.0);
@@ -40,7 +40,8 @@ float grey_of(vec3 c)
     return dot(c, vec3(GREY_RED, GREY_GREEN, GREY_BLUE));
 }
 
-// Mutes assets without a field: paler and without hue, so that no material is mistaken for a value. sRGB in and out.
+// Makes the colour of an asset without a field paler and removes its hue, so that no material is mistaken for a value. Takes and returns
+// sRGB.
 vec3 mute(vec3 c)
 {
     return mix(vec3(grey_of(c)), vec3(MUTED_GREY), MUTED_PART);

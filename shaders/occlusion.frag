@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs only for visible fragments of an asset's box, and then enables the asset's draw commands.
+// Occlusion culling: runs only for visible fragments of an asset's bounding box, and enables the asset's draw commands in the command
+// buffer.
 layout(early_fragment_tests) in;
 layout(location = 0) flat in uvec2 commands_here; // index of the asset's first draw command, and count of its commands
 struct Command {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Outline of the masked asset: a dark line inside a light one, so that it is visible on any field colour.
+// Draws the outline of the selected asset, whose pixels are set in `mask`: a dark line and a light line around it, so that the outline is
+// visible on any colour.
 #include "constants.glsl"
 layout(binding = 0) uniform sampler2D mask;
 layout(location = 0) uniform float width_px;

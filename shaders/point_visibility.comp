@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Projects each marker into the frame and tests whether a surface hides it.
+// Projects points (markers, isoline labels, arrows) into the frame, and tests against the depth buffer whether a surface hides each.
 #include "frame.glsl"
 layout(local_size_x = 64) in;
 struct Marker {

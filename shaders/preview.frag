@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Preview: one light scalar and one lookup per pixel; textures only cut holes.
+// Fragment shader of previews. For speed, it computes one brightness and one colour lookup per pixel; textures only cut holes.
 #include "frame.glsl"
 #include "light.glsl"
 #ifdef FIELD

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Preview: position, baked light and, on assets with a field, the field's value. llvmpipe runs this on one thread, so keep it short.
+// Vertex shader of previews: outputs position, baked light and, for assets with a field, the field's value. Keep it short, because Mesa's
+// software driver llvmpipe runs vertex shaders on one thread.
 #include "frame.glsl"
 #include "clip.glsl"
 #include "instance.glsl"

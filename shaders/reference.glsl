@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computes the field at a fragment over all sensors: Algorithm 1 of Kim & Suh, and Shepard, by the rules of field/field.h. Geodesic
-// distances are interpolated over the triangle, straight-line ones computed from the fragment's position. PIXEL_FIELD: straight-line
-// distances only (field/pixel_field.h).
+// Computes the field at a fragment as a sum over all sensors, for the interpolations `paper` (Algorithm 1 of Kim & Suh) and `shepard`, by
+// the rules of server/field/field.h. Geodesic distances are interpolated over the triangle, straight-line ones computed from the fragment's
+// position. PIXEL_FIELD: straight-line distances only (field/pixel_field.h).
 struct Sensor {
     vec4 place_m;  // position in file coordinates; w: strength
     float decay, value;
@@ -20,7 +20,8 @@ layout(location = 7) centroid in vec3 interpolated_place;
 #else
 layout(location = 7) in vec3 interpolated_place;
 #endif
-#ifndef CENTROID_ONE // value of a constant 1 after interpolation to the centroid of the covered samples
+// the constant 1 as the GL driver interpolates it to the centroid of the covered samples; dividing by it corrects the driver's error
+#ifndef CENTROID_ONE
 #define CENTROID_ONE 1.0
 #endif
 
@@ -88,14 +89,14 @@ float nearness(float distance_m)
     return max(0.0, 1.0 - distance_m / numbers.y);
 }
 
-// Returns the factor by which a weight fades towards the reach: 1 at the nearest sensor's distance, 0 from the reach on.
+// Returns the factor that lowers a sensor's weight towards the end of its reach: 1 at the nearest sensor's distance, 0 beyond the reach.
 float faded(float distance_m, float near_m)
 {
     float left = isinf(numbers.z) || distance_m <= near_m ? 1.0 : max(0.0, numbers.z - distance_m) / (numbers.z - near_m);
     return left * left;
 }
 
-// Returns x: value; y: no data; z: uncertain; w: without limits.
+// Returns the field at the fragment. x: value; y, z, w: 1 if it has no data, is uncertain, has no alarm limits; else 0.
 vec4 reference_field()
 {
     Spot spot = spot_here();
@@ -115,7 +116,7 @@ vec4 reference_field()
         return vec4(near_m, near_m < FAR ? 0.0 : 1.0, 0.0, 0.0);
     bool reached = near_m < FAR && near_m <= numbers.z;
     float limit_m = min(max(near_m, numbers.z), 0.5 * FAR);
-    // largest exponent of all sensors; Algorithm 1 scales its weights by it, so that they do not overflow
+    // computes `top`, the largest exponent of all sensors; Algorithm 1 subtracts it from all exponents, so that weights do not overflow
     for (int i = 0; choice.x != 0 && i < sensors.length(); i++) {
         float d = distance_to(i, spot);
         if ((sensors[i].state & 2u) != 0u && d <= limit_m)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Refined frames: physically based shading with all textures of the material; the field only gets lightness, as in previews.
+// Fragment shader of refined frames: physically based shading with all textures of the material. On the field, light changes only the
+// lightness of colours, as in previews.
 #include "frame.glsl"
 #include "light.glsl"
 #include "material.glsl"
@@ -31,7 +32,7 @@ layout(location = 0) out vec4 color;
 #include "section.glsl"
 #endif
 
-vec2 uv_of(int map) // map: bit of the texture
+vec2 uv_of(int map) // returns the texture coordinates of a map, given by its bit in `textures`
 {
     return (textures >> 8 & map) != 0 ? uv.zw : uv.xy;
 }
@@ -61,7 +62,8 @@ void main()
         return;
     }
 #endif
-    bool turned = dot(n, v) < (gl_FrontFacing ? MOST_AWAY : 0.0); // the surface is seen from behind, or its normals point to the other side
+    // true: the surface is seen from behind, or its vertex normals point away from the viewer
+    bool turned = dot(n, v) < (gl_FrontFacing ? MOST_AWAY : 0.0);
     if (turned)
         n = -n;
 #if defined(TEXTURED) || !defined(FIELD) || defined(GLOSSY)
@@ -101,7 +103,7 @@ void main()
     if ((textures & 16) != 0)
         glow *= texture(emissive_map, uv_of(16)).rgb;
 #endif
-#ifdef GLOSSY // keeps colours recognisable in dark parts of an occlusion map
+#ifdef GLOSSY // limits occlusion, so that colours of the field stay recognisable in dark parts
     s.open = mix(GLOSSY_OPEN, 1.0, s.open);
     vec3 c = srgb_from_linear(tone_map(GLOSSY_SKY * sky_shade(s, v) + GLOSSY_SUN * sun_shade(s, v, l) + glow));
 #else

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Refined frames: outputs everything that per-pixel shading needs.
+// Vertex shader of refined frames: outputs position, normal, texture coordinates, baked light and field value for shading in refined.frag.
 #include "frame.glsl"
 #include "clip.glsl"
 #include "instance.glsl"

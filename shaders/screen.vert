@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One triangle that covers the whole frame, at the far plane.
+// Vertex shader of full-screen passes: one triangle at the far plane that covers the whole frame.
 layout(location = 0) out vec2 clip;
 
 void main()

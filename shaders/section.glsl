@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Colours of section cuts, in neutral greys: the inner side of a surface, shaded; and section caps of closed bodies, darker and flat, with
-// stripes that slant the opposite way to those of no data.
+// stripes that slant the opposite way to the stripes that mean "no data".
 #include "constants.glsl"
 
 // Returns the colour of a surface's inner side. v: unit vector towards the viewer; n: normal of any length and sign.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Draws section caps: the section plane where it enters closed bodies. Runs over the resolved frame, once for colours, once for depth.
+// Draws section caps: colours the section plane where it cuts through closed bodies. Runs on all pixels of the resolved frame, once for
+// colours and once for depth.
 #include "frame.glsl"
 #include "section.glsl"
 layout(binding = 0) uniform sampler2D bodies; // written by section_cap_count.frag; `texels` x `texels` of its texels are one pixel

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Transforms the vertices of closed bodies, and clips them by the section planes.
+// Transforms the vertices of closed bodies and clips them by the section planes, for section_cap_count.frag.
 #include "frame.glsl"
 #include "clip.glsl"
 layout(location = 0) in vec3 position_m;

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-// Computes the visible fraction of the sun at a point (0..1), from the sun's shadow map: four taps on a rotated square, each the mean of
-// four comparisons that overlap with its neighbours'.
+// SPDX-License-Identifier: GPL-3.0-or-later Computes the visible fraction of the sun at a point (0..1), from the sun's shadow map: averages
+// four lookups on a rotated square. The GL sampler makes each lookup the weighted mean of four depth comparisons.
 #include "constants.glsl"
 layout(binding = 2) uniform sampler2DShadow sun_map;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Draws the backdrop, looked up by elevation over the horizon.
+// Draws the backdrop behind the plant: looks up its colour by elevation over the horizon.
 #include "frame.glsl"
 layout(binding = 1) uniform sampler2D backdrops;
 layout(location = 0) in vec3 ray;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One triangle that covers the whole frame at the far plane, with the view ray of each pixel.
+// Vertex shader of the backdrop: one triangle at the far plane that covers the whole frame; outputs the view ray of each pixel.
 #include "frame.glsl"
 layout(location = 0) out vec3 ray;
 

@@ -10,8 +10,8 @@
 #include "surface/surface_impl.h"
 
 #define TIME_OF_SPACING 3.0 /* diffusion time t of the heat method, in multiples of the squared mean edge length */
-/* sqrt(t) is at least the size of the surface (largest distance) divided by this: on larger surfaces, t is enlarged so that heat does not
-   underflow */
+/* sqrt(t) is at least twice the size of the surface (largest distance) divided by this: on large surfaces, t is enlarged so that heat does
+   not underflow */
 #define MAX_DECAY 500.0
 #define MAX_SOURCES 32 /* number of sources that are checked; they are spread evenly over all sources */
 #define BLOCK 8        /* number of sources for which the heat method solves at a time */

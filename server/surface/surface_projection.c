@@ -7,9 +7,10 @@
 #include "surface/surface_impl.h"
 
 #define SPOT_ON_SURFACE 1e-3 /* distance from a triangle below which a point counts as lying on it, in multiples of the mean edge length */
-/* the search ends when a triangle is found within this distance of the point, in multiples of the mean edge length */
+/* the search over pieces ends when a piece is found within this distance of the point, in multiples of the mean edge length */
 #define ON_PIECE 1e-5
-#define MAX_TRIED_PIECES 24 /* a model triangle is searched piece by piece if it has at most this many pieces in the surface */
+/* if the model triangles have more pieces in the surface than this, the bounding volume hierarchy is searched instead of piece by piece */
+#define MAX_TRIED_PIECES 24
 /* maximum distance of a triangle with a fitting normal, as a multiple of the distance of the nearest triangle, at which the former is
    preferred */
 #define FACING_FACTOR 4.0
