@@ -8,9 +8,9 @@
 
 struct decision { /* one row of the file */
     char *tag, *asset;
-    enum match_status status; /* status in the file; for an edited row, the status that the edit implies */
+    enum match_status status; /* status in matches.csv; for an edited row, the status that the edit implies */
     bool by_hand, edited;     /* by_hand: a person made the decision; edited: a person changed the row after the last run wrote it */
-    char *row;                /* text of the whole row with its line end, as in the file */
+    char *row;                /* text of the whole row with its line end, as in matches.csv */
 };
 
 struct decisions {       /* zero-initialise */
@@ -19,20 +19,20 @@ struct decisions {       /* zero-initialise */
     size_t count, capacity, tags;
 };
 
-/* Reads a file written by decisions_add_row(), possibly edited since, or one with only the columns Tag, Status and Asset. A missing file
- * counts as empty. A decision that `decisions` already contains takes precedence over the file's decision about the same tag. Returns false
- * with the reason in why. */
+/* Reads decisions about tags from a file written by decisions_add_row(), possibly edited since, or from one with only the columns Tag,
+ * Status and Asset. A missing file counts as empty. A decision that `decisions` already contains takes precedence over the file's decision
+ * about the same tag. Returns false with the reason in why. */
 bool decisions_read(struct decisions *decisions, const char *path, char why[MATCH_WHY_BYTES]);
 /* Returns the decision about a tag, or NULL if there is none. */
 const struct decision *decisions_of(const struct decisions *decisions, const char *tag);
 void decisions_finish(struct decisions *decisions);
 
-/* Returns the file's text without the rows of these tags, so that the next run matches the tags again. The caller frees the text
+/* Returns the text of matches.csv without the rows of these tags, so that the next run matches the tags again. The caller frees the text
  * (mem_free). Returns NULL if the text cannot be parsed. */
 char *decisions_without(const char *text, const char *const *tags, size_t count);
 
-/* Append the header line, or one row. Several assets that a tag may belong to are separated by bars. The row's last cell is a check of the
- * written status and asset, by which a later run detects edits. */
+/* Append to the text of matches.csv the header line, or one row. Several assets that a tag may belong to are separated by bars. The row's
+ * last cell is a check of the written status and asset, by which a later run detects edits. */
 void decisions_add_header(struct text *out);
 void decisions_add_row(struct text *out, const struct plant *plant, const char *tag, const struct match *match, const char *asset,
                        const char *place, bool by_hand);

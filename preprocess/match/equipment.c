@@ -53,7 +53,8 @@ static void add_field(struct text *lines, const char *key, const char *text)
     plant_edit_add_quoted(lines, text);
 }
 
-/* Appends an asset for a node. The asset's id is unique over all models, and its node pattern matches only this node. */
+/* Appends a plant-file line with an asset for a model node. The asset's id is unique over all models, and its node pattern matches only
+ * this node. */
 static void add_asset(const struct model_index *site, size_t model, size_t node, struct text *lines)
 {
     const struct model_tree *tree = &site->models[model];

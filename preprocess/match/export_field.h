@@ -3,7 +3,7 @@
 #ifndef PREPROCESS_MATCH_EXPORT_FIELD_H
 #define PREPROCESS_MATCH_EXPORT_FIELD_H
 
-enum export_field { /* all fields are text; numbers use a decimal point */
+enum export_field { /* all fields of a tag are text; numbers use a decimal point */
                     EXPORT_NAME,
                     EXPORT_ADDRESS,
                     EXPORT_TYPE,

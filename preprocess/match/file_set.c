@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes the new content of all files to temporary files, then renames each to its final name. */
+/* Writes the new content of all files of a set to temporary files, then renames each to its final name. */
 #include "preprocess/match/file_set.h"
 
 #include <dirent.h>
@@ -55,7 +55,7 @@ int file_set_lock(const struct plant_folder_params *params, char **why)
     return fd;
 }
 
-/* Gives the new file the mode and owner of the existing one. */
+/* Gives a new file the mode and owner of the file that it replaces. */
 static int take_rights(int fd, const char *path)
 {
     struct stat st;

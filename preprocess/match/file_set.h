@@ -21,8 +21,8 @@ int file_set_lock(const struct plant_folder_params *params, char **why);
 /* Writes the new content of `path` to a temporary file in the same folder, with the owner and mode of the existing file. If `path` is a
  * symlink, its target will be replaced. */
 int file_set_add(struct file_set *set, const char *path, const char *text);
-/* Renames all temporary files to their final names. On failure, files renamed so far stay replaced, and the other temporary files are
- * removed. */
+/* Renames all temporary files of the set to their final names. On failure, files renamed so far stay replaced, and the other temporary
+ * files are removed. */
 int file_set_commit(struct file_set *set);
 /* Removes the temporary files that were not committed, and empties the set. The set may be empty. */
 void file_set_abandon(struct file_set *set);

@@ -28,8 +28,8 @@ const char *isa_quantity(char variable)
     return NULL;
 }
 
-/* Valid letters are a measured variable, optionally a modifier (D, F, J, K, M, Q, S, X, Y, Z), then functions. H, L and O are valid only
- * after a function. */
+/* Valid letters of a tag name are a measured variable, optionally a modifier (D, F, J, K, M, Q, S, X, Y, Z), then functions. H, L and O are
+ * valid only after a function. */
 bool isa_are_letters(const char *letters)
 {
     static const char functions[] = "ACEGIKQRSTUVWYZ";
@@ -56,8 +56,8 @@ static const struct {
     { "HIHI", ISA_STATE },      { "LOLO", ISA_STATE },     { "ACK", ISA_STATE },
 };
 
-/* Removes attribute words that follow a separator from the end of the name. The last word determines the role (measurement, state or
- * setting). */
+/* Removes attribute words, such as PV, that follow a separator at the end of the tag name. The last word determines the role (measurement,
+ * state or setting). */
 static void drop_attributes(struct isa_name *name)
 {
     bool first = true;

@@ -13,7 +13,7 @@ enum isa_role { /* role of the tag's value */
 
 struct isa_name {
     struct name_tokens tokens; /* tokens of the name without a trailing attribute such as PV */
-    /* letters, number: indices of the tokens with the identification letters and with the loop number; -1: none */
+    /* indices in `tokens`. letters: the token with the identification letters; number: the token with the loop number; -1: none */
     int letters, number;
     const char *suffix; /* suffix: a single letter after the loop number; "": none */
     char variable;      /* letter of the measured variable; 'd': differential pressure; 0: unknown */
@@ -25,7 +25,8 @@ struct isa_name {
 void isa_read(struct isa_name *name, const char *text);
 /* Returns whether these letters (upper case) are valid ISA-5.1 letters before a loop number. */
 bool isa_are_letters(const char *letters);
-/* Returns the name of a variable, such as "Temperature", or NULL if ISA-5.1 leaves its meaning to the user. */
+/* Returns the name of the measured variable that a letter states, such as "Temperature", or NULL if ISA-5.1 leaves its meaning to the
+ * user. */
 const char *isa_quantity(char variable);
 
 #endif

@@ -6,7 +6,8 @@
 
 struct key_thing {
     char *key;
-    int asset, node; /* asset: index of the asset; node: index of a node of its model, -1: the entry is about the asset itself */
+    /* asset: index of the asset that the key names; node: index of a node of its model, -1: the key names the asset itself */
+    int asset, node;
     int next;        /* index in `things` of the next entry of the same hash slot; -1: none */
 };
 
@@ -16,7 +17,7 @@ struct key_map { /* zero-initialise */
     size_t count, capacity, slot_count;
 };
 
-/* Adds an entry unless the same asset and node already have this key. Copies the key. */
+/* Adds an entry to the map unless the same asset and node already have this key. Copies the key. */
 void key_map_add(struct key_map *map, const char *key, int asset, int node);
 /* Return the index of an entry with the key: key_map_find() of the first one, key_map_next() of the one after an entry. -1: none. */
 int key_map_find(const struct key_map *map, const char *key);

@@ -42,7 +42,8 @@ static void print_usage(FILE *out)
 
 enum { EQUIPMENT_MOST = 100 };
 
-/* Parses the numeric argument of an option. Returns false after printing an error if it is not a number between least and most. */
+/* Parses the numeric argument of a command-line option. Returns false after printing an error if it is not a number between least and
+ * most. */
 static bool take_number(const char *option, const char *range, long least, long most, long *number)
 {
     char *end;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds equipment by the tag's name: a model node with that name; the site's rules; equipment whose name is part of the tag's name; the
- * same with a spelling slip in one of the names. */
+/* Finds a tag's equipment by the tag's name: a model node with that name; the site's rules; equipment whose name is part of the tag's name;
+ * the same with a spelling slip in one of the names. */
 #include <stdio.h>
 #include <string.h>
 
@@ -128,8 +128,8 @@ static bool is_apart(const struct name_tokens *tokens, int from, int to)
     return before && behind && !letter;
 }
 
-/* Finds the longest range of tokens (runs of letters or digits) that names equipment. The range must begin and end at a separator or at an
- * end of the name. */
+/* Finds the longest range of the tag name's tokens (runs of letters or digits) that is the name of equipment. The range must begin and end
+ * at a separator or at an end of the tag's name. */
 static bool find_within(const struct matcher *matcher, const struct name_tokens *tokens, struct proposal *out)
 {
     for (int length = tokens->count; length >= 1; length--)
@@ -159,7 +159,8 @@ bool method_name_within(const struct matcher *matcher, const struct match_subjec
 
 /* --- slips of spelling ------------------------------------------------------------------------------------------------------ */
 
-/* Finds equipment whose name equals tokens of the tag's name, except for O in place of 0, and I or L in place of 1. */
+/* Finds equipment whose name equals tokens (runs of letters or digits) of the tag's name, except for O in place of 0, and I or L in place
+ * of 1. */
 static bool find_folded(const struct matcher *matcher, const struct name_tokens *tokens, struct proposal *out)
 {
     for (int length = tokens->count; length >= 1; length--)
@@ -207,7 +208,7 @@ static bool find_slip(const struct matcher *matcher, const struct name_tokens *t
     return false;
 }
 
-/* Finds equipment whose name ends with tokens of the tag's name: ART1105BA for 1105-BA. */
+/* Finds equipment whose name ends with tokens (runs of letters or digits) of the tag's name: ART1105BA for 1105-BA. */
 static bool find_ending(const struct matcher *matcher, const struct name_tokens *tokens, struct proposal *out)
 {
     for (int length = tokens->count; length >= 2; length--)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds equipment by number: an instrument loop has the number of its equipment, possibly followed by one or two digits (ISA-5.1, 4.2;
- * ISA-5.1-2009 annex A). */
+/* Finds a tag's equipment by number: an instrument loop has the number of its equipment, possibly followed by one or two digits (ISA-5.1,
+ * 4.2; ISA-5.1-2009 annex A). */
 #include <stdio.h>
 #include <string.h>
 
@@ -34,7 +34,7 @@ static int rate_prefix(const struct matcher *matcher, const struct match_subject
     return name->letters <= 0 || leads || (*matcher->common_prefix && !strcmp(key, matcher->common_prefix));
 }
 
-/* Returns the suffix of the equipment's name: a letter after the number that distinguishes, for example, pumps A and B; "": none. */
+/* Returns the suffix of an asset's name: a letter after the number that distinguishes, for example, pumps A and B; "": none. */
 static const char *suffix_of(const struct indexed_asset *asset)
 {
     int at = asset->number + 1;
@@ -99,7 +99,7 @@ static bool fits_class(const struct matcher *matcher, const struct match_subject
 
 enum number_filter { PREFIX_FITS, SAME_SUFFIX, NO_SUFFIX, FITS_CLASS };
 
-/* Keeps the candidates (assets that may be meant) that pass the filter, or all candidates if none does. */
+/* Removes from the list the assets that do not pass the filter, unless none passes. The list holds the assets to which a tag may belong. */
 static void keep(const struct matcher *matcher, const struct match_subject *subject, struct match_candidates *list,
                  enum number_filter filter)
 {
@@ -117,7 +117,7 @@ static void keep(const struct matcher *matcher, const struct match_subject *subj
         *list = kept;
 }
 
-/* Removes candidates (assets) whose suffix letter (A, B, ...) differs from the tag's suffix letter. */
+/* Removes from the list the assets whose suffix letter (A, B, ...) differs from the tag's suffix letter. */
 static void drop_other_suffix(const struct matcher *matcher, const struct match_subject *subject, struct match_candidates *list)
 {
     struct match_candidates kept = { .more = list->more };
@@ -135,8 +135,8 @@ bool method_number(const struct matcher *matcher, const struct match_subject *su
     if (name->letters < 0)
         return false;
     const struct name_token *number = &name->tokens.at[name->number];
-    /* digits, letters: whether the prefix has a run of digits, of letters. With both, the prefix itself names the equipment, and the loop
-     * number is not used. */
+    /* digits, letters: whether the tag name's prefix has a run of digits, of letters. With both, the prefix itself names the equipment, and
+     * the loop number is not used. */
     bool digits = false, letters = false;
     for (int i = 0; i < name->letters; i++) {
         digits |= name->tokens.at[i].digits && name->tokens.at[i].raw_length >= 3;
@@ -174,8 +174,8 @@ bool method_number(const struct matcher *matcher, const struct match_subject *su
 
 /* --- parts of names ----------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether the tokens of the tag's name, without instrument letters and loop number, occur in the asset's name in the same order,
- * and include letters. */
+/* Returns whether the tokens (runs of letters or digits) of the tag's name, without instrument letters and loop number, occur in the
+ * asset's name in the same order, and include letters. */
 static bool is_part(const struct isa_name *name, const struct name_tokens *of)
 {
     int at = 0;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds equipment by text: attributes of nodes, equipment that the tag's description names, words of descriptions, aliases. */
+/* Finds a tag's equipment by text: attributes of model nodes, equipment that the tag's description names, words of descriptions,
+ * aliases. */
 #include <stdio.h>
 #include <string.h>
 
@@ -38,7 +39,7 @@ static void find_numbers(const struct matcher *matcher, const struct name_tokens
     }
 }
 
-/* Proposes all equipment named in the description; where several names overlap in the text, only the longest is used. */
+/* Proposes all equipment whose name the tag's description contains; where several names overlap in the text, only the longest is used. */
 bool method_description(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
 {
     const struct name_tokens *tokens = &subject->description;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs the matching methods in order, and decides between proposals that disagree. */
+/* Runs the methods of matching a tag to equipment in order, and decides between proposals that disagree. */
 #include "preprocess/match/matcher.h"
 
 #include <errno.h>
@@ -21,7 +21,7 @@ static const size_t max_table_bytes = (size_t)16 << 20;
 typedef bool (*match_method)(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out);
 static const match_method methods[] = { method_own_node, method_rules,      method_name_within, method_parts, method_spelling,
                                         method_number,   method_attributes, method_description, method_words, method_alias };
-enum { MIN_PREFIXES = 20 }; /* minimum number of tag names with a prefix; with fewer, no prefix is taken as common to most names */
+enum { MIN_PREFIXES = 20 }; /* minimum number of tag names that have a prefix; with fewer, no prefix is taken as common to most names */
 enum { METHODS = sizeof(methods) / sizeof(*methods) };
 
 /* Returns whether two names differ in only one or two characters, so that one may be a typing error for the other. */
@@ -66,10 +66,11 @@ static void decide(const struct matcher *matcher, const struct proposal proposal
 {
     struct text reason = { 0 };
     char names[200];
-    /* indices of methods. chosen: the method whose proposal is taken; -1: none. open: the first method that proposed several assets; -1:
-     * none */
+    /* indices of matching methods. chosen: the method whose proposal is taken; -1: none. open: the first method that proposed several
+     * assets; -1: none */
     int chosen = -1, open = -1;
-    for (int pass = 0; pass < 2 && chosen < 0; pass++) /* first pass: only sure proposals of the methods; second pass: all proposals */
+    /* first pass: only those proposals that a method calls sure; second pass: all proposals */
+    for (int pass = 0; pass < 2 && chosen < 0; pass++)
         for (int i = 0; i < METHODS && chosen < 0; i++) {
             const struct proposal *proposal = &proposals[i];
             if (proposal->candidates.count == 1 && !proposal->candidates.more && (pass == 1 || proposal->confidence >= sure))

@@ -29,7 +29,7 @@ struct match_rule {  /* a rule of the site: tags whose name matches the pattern 
     char *equipment; /* name of the equipment, with \1 to \9 for groups of the pattern */
 };
 
-struct match_alias { /* an alias: a name that people use for an asset, as tokens */
+struct match_alias { /* an alias: a name that people use for an asset, split into tokens (runs of letters or digits) */
     struct name_tokens tokens;
     char *text;
     int asset;
@@ -40,16 +40,18 @@ struct matcher { /* zero-initialise */
     struct match_rule *rules;
     struct match_alias *aliases;
     size_t rule_count, rule_room, alias_count, alias_room;
-    char common_prefix[NAME_KEY_BYTES]; /* prefix that most tag names have before their letters, such as an area; "": none */
+    char common_prefix[NAME_KEY_BYTES]; /* prefix that most tag names have before their instrument letters, such as an area; "": none */
 };
 
 enum { MATCH_WHY_BYTES = 300 };
 
-/* Reads rules, a table with the columns `Tag` (a regular expression) and `Equipment`. Returns false with the reason in why. */
+/* Reads the site's matching rules, a table with the columns `Tag` (a regular expression) and `Equipment`. Returns false with the reason in
+ * why. */
 bool matcher_read_rules(struct matcher *matcher, const char *path, char why[MATCH_WHY_BYTES]);
-/* Reads aliases, a table with the columns `Alias` and `Equipment` (an asset's id or tag). Returns false with the reason in why. */
+/* Reads aliases of equipment, a table with the columns `Alias` and `Equipment` (an asset's id or tag). Returns false with the reason in
+ * why. */
 bool matcher_read_aliases(struct matcher *matcher, const char *path, char why[MATCH_WHY_BYTES]);
-/* Matches all tags of a list. Returns one match for each tag; the caller frees them with matches_free(). */
+/* Matches all tags of a list to equipment. Returns one match for each tag; the caller frees them with matches_free(). */
 struct match *matcher_run(struct matcher *matcher, const struct tag_export *list);
 void matches_free(struct match *matches, size_t count); /* NULL is fine */
 void matcher_finish(struct matcher *matcher);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads a tag list, matches its tags, composes the new files, and writes them if the plant they describe can be loaded. */
+/* Reads an exported tag list, matches its tags to equipment, composes the new files, and writes them if the plant they describe can be
+ * loaded. */
 #include "preprocess/match/matching.h"
 
 #include <errno.h>
@@ -38,11 +39,11 @@ struct matching_run {
     struct tag_rows rows;
     struct tag_source source;
     char *result;                                      /* output lines for people */
-    char *plant_text, *new_text;                       /* text of the plant file: current text, and text to write */
+    char *plant_text, *new_text;                       /* texts of the plant file. plant_text: current text; new_text: text to write */
     /* texts of the plant file, the tag list and matches.csv at the start of the run; NULL: the file does not exist */
     char *plant_before, *tags_before, *matches_before;
-    /* tags_text, matches_text: texts to write; left_names: names, for the report, of the first tags that are missing from the new tag
-     * list */
+    /* tags_text, matches_text: new texts of the tag list and matches.csv; left_names: names, for the report, of the first tags that are
+     * missing from the new tag list */
     struct text tags_text, matches_text, left_names;
     size_t left, by_hand, left_out, written, assumed, own_nodes;
 };
@@ -94,8 +95,8 @@ static void print_list(const struct matching_run *run)
                *list->encoding.name ? list->encoding.name : "text");
 }
 
-/* Replaces the plant's assets by the selected equipment. Returns false with an error if the tag list refers to assets, because those tags
- * would lose their equipment. */
+/* Replaces the plant's assets by the equipment that the option --equipment selects. Returns false with an error if the tag list refers to
+ * assets, because those tags would lose their equipment. */
 static bool choose_equipment(struct matching_run *run)
 {
     char why[MODEL_INDEX_WHY_BYTES];
@@ -175,7 +176,7 @@ static bool read_lists(struct matching_run *run)
 
 /* --- deciding --------------------------------------------------------------------------------------------------------------- */
 
-/* Applies the decisions that people made, which override the matcher. */
+/* Applies the decisions that people made about tags, which override the matcher. */
 static bool obey(struct matching_run *run)
 {
     char *path = beside(run, "matches.csv"), why[200];
@@ -245,7 +246,7 @@ static void put_rows(struct matching_run *run)
         const char *found = match->asset < 0 ? "" : run->plant->assets[match->asset].id;
         bool kept = asset && (!before || !before->edited) && match->status == MATCH_SURE && strcmp(asset, found) != 0;
         struct match shown = *match;
-        if (kept) { /* a person edited the asset in the tag list; this edit takes precedence over the match */
+        if (kept) { /* a person edited the asset of this tag in the tag list; the edit takes precedence over the match */
             shown.status = *asset ? MATCH_SURE : MATCH_NONE;
             found = asset;
         }
@@ -272,7 +273,8 @@ static int by_folded_name(const void *a, const void *b)
     return strcasecmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-/* Returns whether a tag of an earlier run comes from the control system of the current list, judging by its source in the plant file. */
+/* Returns whether a tag of an earlier run comes from the same control system as the current export, judging by its source in the plant
+ * file. */
 static bool is_of_source(const struct matching_run *run, const char *tag)
 {
     for (size_t i = 0; i < run->plant->tag_count; i++)
@@ -281,8 +283,8 @@ static bool is_of_source(const struct matching_run *run, const char *tag)
     return run->plant->source_count <= 1;
 }
 
-/* Keeps decisions about tags that are missing from the current list, because they may belong to another control system, or occur in a later
- * list. */
+/* Keeps decisions about tags that are missing from the current export, because they may belong to another control system, or occur in a
+ * later export. */
 static void keep_left(struct matching_run *run)
 {
     const char **names = mem_array(run->list.count + 1, sizeof(*names));
@@ -305,7 +307,7 @@ static void keep_left(struct matching_run *run)
 
 /* --- the plant file --------------------------------------------------------------------------------------------------------- */
 
-/* Appends a group to the plant file's lines. The range of its legend comes from the scaled limits of its tags. */
+/* Appends a group to the plant file's lines. The group's colour scale comes from the scaled limits of its tags. */
 static void add_group(const struct quantity *quantity, struct text *lines)
 {
     bool known = quantity->low < quantity->high;
@@ -349,7 +351,7 @@ static char *source_line(const struct matching_run *run)
     return line.at;
 }
 
-/* Updates the source's line in the plant file, unless a person has edited the line since source_line() wrote it. */
+/* Updates the line of the tags' source in the plant file, unless a person has edited the line since source_line() wrote it. */
 static bool change_source(struct matching_run *run)
 {
     regex_t regex;
@@ -420,9 +422,9 @@ static void say_written(const char *path, const char *before, const char *text)
     printf("%s: %s\n", path, before && !strcmp(before, text) ? "unchanged" : "written");
 }
 
-/* Writes the files. The plant file comes first, because it only gains groups and a source, and is valid with the old tag list. matches.csv
- * comes last: if the run is killed before that, the next run completes the work and does not take the new rows of the tag list for edits by
- * people. */
+/* Writes the plant's files. The plant file comes first, because it only gains groups and a source, and is valid with the old tag list.
+ * matches.csv comes last: if the run is killed before that, the next run completes the work and does not take the new rows of the tag list
+ * for edits by people. */
 static bool write_files(struct matching_run *run, const char *matches_path)
 {
     const char *plant = run->params->plant, *tags = run->plant->files.tags_path;
@@ -503,7 +505,7 @@ static void finish(struct matching_run *run)
     mem_free(run->matches_before);
 }
 
-/* Locks the plant's folder. Returns a descriptor, or a negative number after printing the error. */
+/* Locks the plant's folder. Returns a file descriptor, or a negative number after printing the error. */
 static int lock_folder(const struct matching_params *params)
 {
     char *folder = plant_folder_of(params->plant), *why = NULL;
@@ -519,7 +521,7 @@ static int lock_folder(const struct matching_params *params)
 
 struct matching_answer {
     struct matching_run *run;
-    int file; /* memory file into which the child writes its answer: each text as an 8-byte length and its bytes */
+    int file; /* memory file into which the confined child writes the new texts of the files, each as an 8-byte length and its bytes */
 };
 
 static bool put_text(int file, const char *text)
@@ -533,7 +535,7 @@ static bool put_text(int file, const char *text)
     return good;
 }
 
-/* Reads a text from the child's answer. Returns NULL if the answer is malformed, because the child may be compromised. */
+/* Reads a text from the answer of the confined child. Returns NULL if the answer is malformed, because the child may be compromised. */
 static char *get_text(int file)
 {
     uint64_t length;

@@ -9,11 +9,12 @@
 struct matching_params {
     const char *plant;            /* path of the plant file */
     const char *tags;             /* path of the exported tag list */
-    const char *encoding;         /* encoding of the export; NULL: detect it */
+    const char *encoding;         /* encoding of the exported tag list; NULL: detect it */
     const char *decisions;        /* path of a file of people's decisions, which override matches.csv; NULL: none */
     const char *const *equipment; /* selections of the nodes that become assets (equipment.h); count 0: keep the plant file's assets */
     int equipment_count;
-    const char *source; /* id of the source of the tags; NULL: the plant's only source, or `plc` with --modbus */
+    /* id, in the plant file, of the source that delivers the tags' values; NULL: the plant's only source, or `plc` with --modbus */
+    const char *source;
     /* HOST or HOST:PORT of a Modbus source to add, or the new address of a source that an earlier run added; NULL: none */
     const char *modbus;
     int unit;               /* Modbus unit identifier of the source to add; -1: not stated */

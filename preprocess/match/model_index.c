@@ -30,8 +30,8 @@ void model_index_each_word(const char *text, void (*each)(const char *word, void
 
 /* --- names ------------------------------------------------------------------------------------------------------------------ */
 
-/* Returns the index of the token that is probably the number of the equipment: the longest run of at least two digits; of equally long runs
- * the last one; -1: none. */
+/* Returns the index of the token (run of letters or digits) that is probably the number of the equipment: the longest run of at least two
+ * digits; of equally long runs the last one; -1: none. */
 static int find_number(const struct name_tokens *tokens)
 {
     int best = -1;

@@ -29,7 +29,7 @@ static const char *text_of(json_t *object, const char *name)
     return text ? text : "";
 }
 
-/* Returns the list item at an index, or NULL if the index is missing or out of range. */
+/* Returns the item of a glTF file's list at an index, or NULL if the index is missing or out of range. */
 static json_t *item_of(json_t *root, const char *list, json_t *index)
 {
     return json_is_integer(index) && json_integer_value(index) >= 0
@@ -135,7 +135,7 @@ static bool add_node(struct model_tree *tree, json_t *index, int parent, const d
     return good;
 }
 
-/* Finds the JSON text and, in a GLB file, the binary chunk. Returns false with the reason in why. */
+/* Finds the JSON text of a model file and, in a GLB file, the binary chunk. Returns false with the reason in why. */
 static bool find_chunks(struct model_tree *tree, size_t length, const char **json, size_t *json_bytes)
 {
     *json = tree->bytes;
@@ -203,7 +203,7 @@ struct positions {
     size_t count, stride;
 };
 
-/* Finds the positions of a primitive. Returns false unless they are an uncompressed list of floats in the file's own buffer. */
+/* Finds the vertex positions of a glTF primitive. Returns false unless they are an uncompressed list of floats in the file's own buffer. */
 static bool find_positions(const struct model_tree *tree, json_t *primitive, struct positions *out)
 {
     enum { FLOAT = 5126, BYTES = 12 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Splits text into runs of letters and digits. Bytes of other alphabets count as letters, after full-width letters, dashes and blanks have
+/* Splits names into runs of letters and digits. Bytes of other alphabets count as letters, after full-width letters, dashes and blanks have
  * been normalised. */
 #include "preprocess/match/name_tokens.h"
 

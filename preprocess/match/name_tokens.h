@@ -19,11 +19,12 @@ struct name_tokens {
     int count; /* number of tokens; a text with more tokens is cut off */
 };
 
-/* Splits the text between letters and digits, at separators, and before a capital letter that follows a small letter. */
+/* Splits a name into tokens: between letters and digits, at separators, and before a capital letter that follows a small letter. */
 void name_tokens_read(struct name_tokens *tokens, const char *text);
 /* Writes a key of the tokens [from, to) for hash maps: the tokens without separators, but with a dot between two runs of digits. */
 void name_tokens_key(const struct name_tokens *tokens, int from, int to, char key[NAME_KEY_BYTES]);
-/* Writes the key as name_tokens_key() does, but with 0 in place of O and 1 in place of I and L, and with leading zeros kept. */
+/* Writes the key of the tokens [from, to) as name_tokens_key() does, but with 0 in place of O and 1 in place of I and L, and with leading
+ * zeros kept. */
 void name_tokens_folded(const struct name_tokens *tokens, int from, int to, char key[NAME_KEY_BYTES]);
 /* Writes two keys of the tokens [from, to): the digits alone, with a dot between two runs, and the letters alone. */
 void name_tokens_split(const struct name_tokens *tokens, int from, int to, char digits[NAME_KEY_BYTES], char letters[NAME_KEY_BYTES]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edits the lines of a YAML file. */
+/* Edits the lines of a plant file (YAML). */
 #include "preprocess/match/plant_edit.h"
 
 #include <stdbool.h>
@@ -63,7 +63,7 @@ static char *spliced(const char *text, const char *begin, const char *end, const
     return out.at;
 }
 
-/* Returns the lines, indented like the list's existing items. The caller frees the text. */
+/* Returns a copy of `lines`, indented like the list's existing items. The caller frees the text. */
 static char *indented(const char *begin, const char *end, const char *lines)
 {
     struct text out = { 0 };

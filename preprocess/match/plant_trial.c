@@ -28,7 +28,7 @@ struct plant *plant_trial_load(const struct plant *plant, const char *text, cons
     if (status != 0)
         fprintf(stderr, "%s: %s: %s\n", program, path, strerror(-status));
     else
-        loaded = plant_load_without_models(path); /* models are not loaded, since they may not have been imported yet */
+        loaded = plant_load_without_models(path); /* the plant's models are not loaded, since they may not have been imported yet */
     if (status == 0 && !loaded)
         fprintf(stderr, "%s: the resulting plant would be invalid; nothing was written\n", program);
     unlink(path);

@@ -32,8 +32,8 @@ static bool is_number(const char *type)
     return !has_any(type, others, sizeof(others) / sizeof(*others));
 }
 
-/* For each kind of unit, the quantities that are measured in such units; the first one is the default. An empty list: units of this kind do
- * not identify a quantity. */
+/* For each kind of unit, the quantities that are measured in such units; the first quantity is the default. An empty list: units of this
+ * kind do not identify a quantity. */
 static const struct {
     const char *kind;
     bool alone; /* true: a unit of this kind determines the quantity alone, without description or letters */
@@ -154,8 +154,8 @@ static struct quantity *add_quantity(struct quantities *quantities, const char *
     return quantity;
 }
 
-/* Returns the index of the group for a quantity and unit; -1: none. An existing group of the plant fits by unit alone if it is the only one
- * with that unit. */
+/* Returns the index of the group for a quantity and unit; -1: none. An existing group of the plant fits by its unit alone if it is the only
+ * group with that unit. */
 static int find(const struct quantities *quantities, const char *name, const char *unit)
 {
     int by_unit = -1, fitting = 0;
@@ -187,7 +187,7 @@ static void take_range(struct quantity *quantity, const struct export_tag *tag)
     quantity->high = fmax(quantity->high, unit_change_value(&change, high));
 }
 
-/* Returns a unit in the spelling for a legend, such as "°C" for "degC". */
+/* Returns a unit in the spelling for the legend of a colour scale, such as "°C" for "degC". */
 static const char *written(const char *unit)
 {
     static const char *const usual[] = { "°C", "°F" };

@@ -6,7 +6,7 @@
 #include "plant/plant.h"
 #include "preprocess/match/matcher.h"
 
-struct quantity { /* an existing group or one to be added */
+struct quantity { /* a group of tags: an existing one, or one to be added to the plant file */
     char *id, *name, *unit;
     bool is_new;        /* true: the group will be added to the plant file; false: the plant file already has the group */
     double low, high;   /* lowest and highest scaled limit of the group's tags, in the group's unit; low > high: no tag has limits */

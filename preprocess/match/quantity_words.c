@@ -64,7 +64,7 @@ static const struct {
 };
 enum { QUANTITIES = sizeof(quantities) / sizeof(*quantities) };
 
-/* Returns the letters and digits of a text as words with one blank before and after each. The caller frees the text. */
+/* Returns the letters and digits of a text as words with one blank before and after each. The caller frees the returned text. */
 static char *words_of(const char *text)
 {
     char *folded = fold_text(text), *out = mem_array(strlen(folded) * 4 + 3, 1);

@@ -21,19 +21,19 @@ struct cell_table {         /* zero-initialise */
 enum { TABLE_MAX_CELLS = 1000 };
 #define TABLE_MAX_ROWS 1000000
 
-/* Returns the separator that the text probably uses: comma, semicolon, tab or bar, the one that splits the most of the first lines into
- * equally many cells. */
+/* Returns the character that probably separates the cells of a CSV text: comma, semicolon, tab or bar, the one that splits the most of the
+ * first lines into equally many cells. */
 char table_separator(const char *text);
-/* Appends the rows of a CSV text. Returns false with the reason in why: too many rows, or an unterminated quote. */
+/* Appends the rows of a CSV text to the table. Returns false with the reason in why: too many rows, or an unterminated quote. */
 bool table_read_csv(struct cell_table *table, const char *text, char separator, char *why, size_t why_bytes);
-/* Callback that receives a sheet and its name. The callback owns the sheet and frees it with table_finish(). */
+/* Callback that receives a sheet of a spreadsheet and its name. The callback owns the sheet and frees it with table_finish(). */
 typedef void table_take_sheet(void *data, struct cell_table *sheet, const char *name);
 /* Reads all non-empty sheets of a spreadsheet (Office Open XML, .xlsx) in workbook order, including hidden ones. Returns false with the
  * reason in why. */
 bool table_read_xlsx(const char *path, table_take_sheet *take, void *data, char *why, size_t why_bytes);
 /* Appends a cell to the row, without blanks at its ends and with control characters replaced by blanks. */
 void table_add_cell(struct cell_table *table, struct table_row *row, const char *text, size_t length);
-/* Appends a row and takes ownership of its cells. Drops a blank row. */
+/* Appends a row to the table and takes ownership of its cells. Drops a row of blank cells. */
 void table_add_row(struct cell_table *table, struct table_row *row);
 /* Returns a cell, or "" if the row is too short or column is negative. */
 const char *table_cell(const struct table_row *row, int column);

@@ -14,11 +14,12 @@
 
 enum {
     MAX_SHEETS = 1024,
-    MAX_BYTES = 1 << 28,      /* maximum bytes of all strings and cells together; a shared string counts for each cell that uses it */
+    /* maximum bytes of all shared strings and cells of a spreadsheet together; a shared string counts for each cell that uses it */
+    MAX_BYTES = 1 << 28,
     MAX_CELL_BYTES = 1 << 20, /* maximum bytes of one cell or shared string; programs that write spreadsheets allow 32,767 characters */
     MAX_TAG_BYTES = 1 << 20,  /* maximum bytes of one XML tag; expat parses an unfinished tag again with each block */
     MAX_DEPTH = 64,           /* maximum depth of nested XML elements; a sheet has 8 */
-    STRING_BYTES = 40         /* bytes of memory that an empty shared string takes */
+    STRING_BYTES = 40         /* bytes of memory that a shared string takes in addition to its text */
 };
 static const size_t max_part_bytes = (size_t)512 << 20;
 
@@ -27,10 +28,11 @@ struct xlsx_sheet {
     char **strings; /* shared strings of the workbook */
     size_t string_count, string_room;
     struct table_row row;
-    struct text text; /* text of the current cell or string */
+    struct text text; /* text of the cell or shared string that is being parsed */
     int column, last_row;
-    char type;    /* type of the current cell: 's' index of a shared string, 'i' text in the cell itself, 0 value stored in the cell */
-    size_t bytes; /* total size of all strings and cells so far */
+    /* type of the cell that is being parsed: 's' index of a shared string, 'i' text in the cell itself, 0 value stored in the cell */
+    char type;
+    size_t bytes; /* total size in bytes of all shared strings and cells so far */
     int depth;    /* nested elements that are open */
     bool in_value, in_phonetic, too_large;
     XML_Parser parser;
@@ -57,7 +59,7 @@ static void refuse_large(struct xlsx_sheet *sheet)
     XML_StopParser(sheet->parser, XML_FALSE);
 }
 
-/* Counts an element that begins, and refuses deeply nested ones. Returns its local name. */
+/* Counts the nesting depth of an XML element that begins, and refuses deeply nested elements. Returns the element's name without prefix. */
 static const char *enter(struct xlsx_sheet *sheet, const char *name)
 {
     if (++sheet->depth > MAX_DEPTH)
@@ -278,7 +280,8 @@ static void nothing_ends(void *data, const char *name)
     (void)name;
 }
 
-/* Finds the sheets through the workbook part; by their usual file names if that is missing. Returns false with the reason in why. */
+/* Finds the sheets of a spreadsheet through the archive's file that lists them; by their usual file names if that file is missing. Returns
+ * false with the reason in why. */
 static bool find_sheets(struct book *book, unzFile zip, char *why, size_t why_bytes)
 {
     if (read_part(&book->sheet, zip, "xl/workbook.xml", sheet_begins, nothing_ends, why, why_bytes) < 0 ||

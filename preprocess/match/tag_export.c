@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Detects the format of a file and maps its columns to fields. */
+/* Detects the format of an exported tag list and maps its columns to fields of tags. */
 #include "preprocess/match/tag_export.h"
 
 #include <errno.h>
@@ -44,7 +44,7 @@ static bool is_number_field(enum export_field field)
     return (field >= EXPORT_RAW_LOW && field <= EXPORT_SCALED_HIGH) || field >= EXPORT_LL;
 }
 
-/* Sets a numeric field. Accepts "1.234,5" and "12,5" too; ignores text that is not a number. */
+/* Sets a numeric field of a tag. Accepts "1.234,5" and "12,5" too; ignores text that is not a number. */
 static void set_number(struct export_tag *tag, enum export_field field, const char *text)
 {
     char copy[64];
@@ -62,7 +62,7 @@ static void set_number(struct export_tag *tag, enum export_field field, const ch
         export_tag_set(tag, field, copy);
 }
 
-/* Sets the scaled limits from a range that PI exports as its low end and its length. */
+/* Sets a tag's scaled limits from a range that PI (AVEVA's historian) exports as its low end and its length. */
 static void set_span(struct export_tag *tag, const char *text)
 {
     struct export_tag of_text = { 0 };
@@ -126,7 +126,7 @@ static bool is_of_kind(const struct table_row *row, const struct tag_header *hea
     return !strcasecmp(table_cell(row, header->kind), kind);
 }
 
-/* Applies a comment about an element of a tag: the comment becomes the description of all tags that refer to this element, such as
+/* Applies a comment row about an element of a tag: the comment becomes the description of all tags that refer to this element, such as
  * aliases. */
 static void describe(struct tag_export *list, const char *element, const char *text)
 {
@@ -167,7 +167,8 @@ static void read_studio(struct tag_export *list, const struct cell_table *table,
 
 /* --- lists whose first lines contain a row of column names ----------------------------------------------------------------------- */
 
-/* Finds the header: the row with the most recognised column names. Returns their number, or 0 if no row has a column of tag names. */
+/* Finds the header of a tag list: the row with the most recognised column names. Returns their number, or 0 if no row has a column of tag
+ * names. */
 static int find_header(const struct cell_table *table, struct tag_header *header, size_t *row)
 {
     bool one_column = table->count > 0;
@@ -246,7 +247,8 @@ static bool is_dump(const struct cell_table *table)
     return false;
 }
 
-/* Reads the header of a section. Returns whether the rows of the section are tags; false for access names, alarm groups and trends. */
+/* Reads the header of a section of an AVEVA dump. Returns whether the rows of the section are tags; false for access names, alarm groups
+ * and trends. */
 static bool begin_section(struct tag_export *list, const struct table_row *row, struct tag_header *header)
 {
     static const struct {
@@ -325,7 +327,7 @@ static bool read_text(struct tag_export *list, const char *bytes, size_t count, 
 }
 
 struct workbook {
-    /* the sheet with the most recognised column names in its header; if several have equally many, the one with the most rows */
+    /* the sheet with the most recognised column names in its header; of several with equally many, the one with the most rows */
     struct cell_table best;
     struct text others;     /* names of the other sheets with a header, for a remark */
     char *name;
@@ -360,7 +362,7 @@ static void take_sheet(void *data, struct cell_table *sheet, const char *name)
     table_finish(sheet);
 }
 
-/* Reads the sheet that contains the tag list, which may come after cover sheets, notes and hidden sheets. */
+/* Reads the sheet of a spreadsheet that contains the tag list, which may come after cover sheets, notes and hidden sheets. */
 static bool read_workbook(struct tag_export *list, const char *path, char *why, size_t why_bytes)
 {
     struct workbook book = { .known = -1 };

@@ -11,20 +11,20 @@
 #include "preprocess/match/export_field.h"
 
 struct export_tag {
-    char *fields[EXPORT_FIELDS]; /* texts of the fields: UTF-8; "": the field is empty; NULL only while a reader fills the tag */
+    char *fields[EXPORT_FIELDS]; /* texts of the tag's fields: UTF-8; "": the field is empty; NULL only while a reader fills the tag */
     int line;                    /* line number of the tag in the file; 0 for JSON */
 };
 
 struct tag_export {                 /* zero-initialise */
     const char *format;             /* name of the detected format (static) */
-    struct charset_choice encoding; /* encoding of the file; name "": a spreadsheet */
+    struct charset_choice encoding; /* encoding of the exported file; name "": a spreadsheet */
     char separator;                 /* column separator; 0: none */
-    struct export_tag *tags;        /* tags in the order of the file; their names are unique (case-insensitive) */
+    struct export_tag *tags;        /* tags in the order of the exported file; their names are unique (case-insensitive) */
     size_t count, capacity;
-    size_t rows; /* number of rows with a tag, before duplicates were merged */
-    /* number of rows left out as duplicates. same: equal to the first row of the same name; differing: different from that row */
+    size_t rows; /* number of rows that describe a tag, before duplicates were merged */
+    /* numbers of rows left out as duplicates. same: equal to the first row of the same name; differing: different from that row */
     size_t same, differing;
-    char *differing_lines; /* the first duplicates that differ, as "TT-101 (lines 5 and 80), ..."; NULL: none */
+    char *differing_lines; /* the first duplicate rows that differ, as "TT-101 (lines 5 and 80), ..."; NULL: none */
     /* nameless: number of rows left out because they have no name; control: number of control characters; damaged: number of undecodable
      * characters */
     size_t nameless, control, damaged;
@@ -33,18 +33,18 @@ struct tag_export {                 /* zero-initialise */
     size_t renamed;
 };
 
-/* Reads a file. encoding: a name that charset_resolve() knows; NULL: detect it with charset_find(). Returns false with the reason in why
- * and an empty list. */
+/* Reads an exported tag list. encoding: a name that charset_resolve() knows; NULL: detect it with charset_find(). Returns false with the
+ * reason in why and an empty list. */
 bool tag_export_read(struct tag_export *list, const char *path, const char *encoding, char *why, size_t why_bytes);
 void tag_export_finish(struct tag_export *list);
 
-/* Appends an empty tag; for the readers of file formats. Returns a pointer that is valid until the next call. */
+/* Appends an empty tag to the list; for the readers of file formats. Returns a pointer that is valid until the next call. */
 struct export_tag *tag_export_add(struct tag_export *list, int line);
-/* Sets a field to a copy of text. Does nothing if the field has a value already or text is blank. */
+/* Sets a field of a tag to a copy of text. Does nothing if the field has a value already or text is blank. */
 void export_tag_set(struct export_tag *tag, enum export_field field, const char *text);
-/* Reads an Ignition export (JSON). Returns false with the reason in why. */
+/* Reads an export of tags from Ignition (JSON). Returns false with the reason in why. */
 bool tag_export_read_json(struct tag_export *list, const char *text, size_t length, char *why, size_t why_bytes);
-/* Merges duplicate tags, so that names are unique. */
+/* Merges duplicate tags of the list, so that names are unique. */
 void tag_export_join(struct tag_export *list);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Adds tags to a list, and handles names that occur several times: the same tag twice, or different tags with one name in several
-   folders. */
+/* Adds tags to an exported list, and handles names that occur several times: the same tag twice, or different tags with one name in several
+ * folders. */
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>

@@ -41,28 +41,31 @@ struct complaint {
 
 struct tag_json_reader {
     struct tag_export *list;
-    json_t *types; /* definitions of types, by path within the folder of types; borrowed */
+    json_t *types; /* definitions of user-defined types (UDT), by path within the export's folder of types; borrowed */
     struct complaint unknown, circular, unresolved, without;
     bool too_deep, too_many;
-    /* number of references resolved for the current property; limited, because parameters may refer to each other in a cycle */
+    /* number of references to parameters resolved for the current property; limited, because parameters may refer to each other in a
+     * cycle */
     int references;
 };
 
-/* a node as a stack of definitions ("layers"): first the node's own definition, then those of its types */
+/* an element of the export (folder, instance or tag) as a stack of definitions ("layers"): first its own definition, then those of its
+ * types */
 struct layered_node {
     json_t *layers[MAX_LAYERS];
     int count;
 };
 
-struct instance_frame { /* a UDT instance that encloses a tag */
+struct instance_frame { /* an instance of a user-defined type (UDT) that encloses a tag */
     const struct instance_frame *outer;
     const struct layered_node *node;
-    /* number of layers that are the instance's own and not those of its types; parameters in own layers refer to the enclosing instance */
+    /* number of layers (definitions) that are the instance's own and not those of its types; parameters in own layers refer to the
+     * enclosing instance */
     int own;
     const char *name;
 };
 
-struct scope { /* context in which a reference to a parameter is resolved: the tag, its folder and the instances that enclose it */
+struct scope { /* context in which a reference to a parameter is resolved: the tag, its folder and the UDT instances that enclose it */
     struct tag_json_reader *reader;
     const struct instance_frame *frame;
     const char *folder, *name; /* path of the tag's folder; name of the tag */
@@ -99,7 +102,7 @@ static void complain(struct complaint *complaint, const char *folder, const char
 
 static const char types_folder[] = "_types_";
 
-/* Indexes all type definitions. `path` is relative to the folder of types. */
+/* Indexes the definitions of all user-defined types. `path` is relative to the export's folder of types. */
 static void index_types(struct tag_json_reader *reader, json_t *node, const char *path, int depth)
 {
     json_t *inner = json_is_array(node) ? node : json_object_get(node, "tags"), *item;
@@ -143,7 +146,7 @@ static bool is_around(const struct instance_frame *frame, const json_t *type)
     return false;
 }
 
-/* Appends the definition of an instance's type, and those of the type's parents, to the node's layers. */
+/* Appends to the layers of an instance the definition of its type, and those of the type's parents. */
 static void add_types(struct tag_json_reader *reader, struct layered_node *node, const struct instance_frame *outer, const char *folder,
                       const char *name)
 {
@@ -188,7 +191,7 @@ static json_t *value_of(json_t *parameter)
     return json_is_object(parameter) && json_object_get(parameter, "value") ? json_object_get(parameter, "value") : parameter;
 }
 
-/* Appends the text of a value: a number, a text, or a binding to parameters. Returns false if a parameter cannot be resolved. */
+/* Appends the text of a property's value: a number, a text, or a binding to parameters. Returns false if a parameter cannot be resolved. */
 static bool add_value(const struct scope *scope, json_t *value, struct text *out, int depth)
 {
     if (json_is_object(value)) {
@@ -206,7 +209,7 @@ static bool add_value(const struct scope *scope, json_t *value, struct text *out
     return json_is_number(value) || json_is_boolean(value);
 }
 
-/* Appends the value of a parameter. A parameter passed to a nested instance may refer to parameters of the enclosing instance. Returns
+/* Appends the value of a UDT parameter. A parameter passed to a nested instance may refer to parameters of the enclosing instance. Returns
  * false if it cannot be resolved. */
 static bool add_parameter(const struct scope *scope, const char *name, struct text *out, int depth)
 {
@@ -304,8 +307,8 @@ static double sum_of(struct term_reading *term)
     return number;
 }
 
-/* Appends the value of a reference with arithmetic or a number format, such as "{Base+10*No}" and "{Number|000}". Returns false if it
- * cannot be resolved. */
+/* Appends the value of a reference to parameters with arithmetic or a number format, such as "{Base+10*No}" and "{Number|000}". Returns
+ * false if it cannot be resolved. */
 static bool add_formatted(const struct scope *scope, const char *reference, struct text *out, int depth)
 {
     struct term_reading term = { scope, reference, depth, true };
@@ -324,7 +327,8 @@ static bool add_formatted(const struct scope *scope, const char *reference, stru
     return true;
 }
 
-/* Appends a text with its references replaced. Returns false if a reference could not be resolved; such a reference stays in the text. */
+/* Appends a text in which references to parameters are replaced by their values. Returns false if a reference could not be resolved; such a
+ * reference stays in the text. */
 static bool expand(const struct scope *scope, const char *text, struct text *out, int depth)
 {
     bool good = true;
@@ -349,7 +353,7 @@ static bool expand(const struct scope *scope, const char *text, struct text *out
 
 /* --- tags --------------------------------------------------------------------------------------------------------------------- */
 
-/* Sets a field to a text, without blanks at its ends and without control characters. */
+/* Sets a field of a tag to a text, without blanks at its ends and without control characters. */
 static void set_text(struct tag_export *list, struct export_tag *tag, enum export_field field, char *text)
 {
     for (char *c = text; *c; c++)
@@ -378,7 +382,8 @@ static void set_field(const struct scope *scope, struct export_tag *tag, enum ex
     text_finish(&out);
 }
 
-/* Adds a tag. A member of an instance is named by its whole path, because its own name does not tell instances apart. */
+/* Adds a tag of the export to the list. A member of a UDT instance is named by its whole path, because its own name does not tell instances
+ * apart. */
 static void add_tag(const struct scope *scope, const struct layered_node *node)
 {
     struct tag_export *list = scope->reader->list;
@@ -414,7 +419,7 @@ static json_t *child_of(json_t *layer, const char *name)
     return NULL;
 }
 
-/* Adds the children of a folder or instance. Children with the same name in several layers are merged into one. */
+/* Adds the children of a folder or UDT instance. Children with the same name in several layers (definitions) are merged into one. */
 static void add_children(struct tag_json_reader *reader, const struct layered_node *node, const struct instance_frame *frame,
                          const char *folder, int depth)
 {

@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "preprocess/match/fold.h"
 
-/* column names after fold_key(); if several columns of a file fit a field, the name listed earlier wins */
+/* column names after fold_key(), by the field that they mean; if several columns of a file fit a field, the name listed earlier wins */
 static const struct {
     enum export_field field;
     const char *words;
@@ -114,8 +114,8 @@ static int rank_of(const char *words, const char *key)
     return at ? (int)(at - words) : -1;
 }
 
-/* Calls `each` with keys made of a cell's text until `each` returns true: of the whole cell, then of the parts around "/", "(" and similar,
- * then of the ASCII part and of the rest, for bilingual headers. */
+/* Calls `each` with keys made of a header cell's text until `each` returns true: of the whole cell, then of the parts around "/", "(" and
+ * similar, then of the ASCII part and of the rest, for bilingual headers. */
 static bool each_key(const char *cell, bool (*each)(const char *key, void *data), void *data)
 {
     static const char separators[] = "/|()[]:;\n";
@@ -184,7 +184,7 @@ int tag_header_read(const struct table_row *row, struct tag_header *header)
         reading.column = (int)c;
         each_key(row->cells[c], take_key, &reading);
     }
-    /* a column "Instrument Tag" would fit both the name and the address; use it only as the name */
+    /* a column "Instrument Tag" fits both the name and the address of a tag; use it only as the name */
     if (header->columns[EXPORT_ADDRESS] == header->columns[EXPORT_NAME])
         header->columns[EXPORT_ADDRESS] = -1;
     for (int f = 0; f < EXPORT_FIELDS; f++)

@@ -6,7 +6,7 @@
 #include "preprocess/match/table.h"
 
 struct tag_header {
-    int columns[EXPORT_FIELDS]; /* by field: index of its column; -1: none */
+    int columns[EXPORT_FIELDS]; /* by field of a tag (export_field.h): index of its column; -1: none */
     int tag_type;               /* index of the column with Ignition's tag type, which marks folders; -1: none */
     int span;                   /* index of the column with the length of a range that begins at the scaled low limit; -1: none */
     /* indices of columns of Studio 5000 exports. kind: kind of the row; specifier: element of a tag that a comment row describes; -1:
@@ -17,7 +17,7 @@ struct tag_header {
 
 /* Reads a row as a header. Returns the number of columns whose names were recognised. */
 int tag_header_read(const struct table_row *row, struct tag_header *header);
-/* Returns whether a cell of the row equals the word after fold_key(). */
+/* Returns whether a cell of the row equals the word after both are normalised by fold_key(). */
 bool tag_header_has(const struct table_row *row, const char *word);
 
 #endif

@@ -168,7 +168,7 @@ static bool is_text(const char *type)
     return !strcasecmp(type, "String") || !strcasecmp(type, "Text") || !strcasecmp(type, "Char") || !strcasecmp(type, "DateTime");
 }
 
-/* Returns whether a tag is left out of the tag list: it is not numeric, or its address is not valid for its source. */
+/* Returns whether an exported tag is left out of the tag list: it is not numeric, or its address is not valid for its source. */
 static bool is_left_out(const struct export_tag *tag, const struct tag_source *source)
 {
     struct modbus_address address;
@@ -177,7 +177,7 @@ static bool is_left_out(const struct export_tag *tag, const struct tag_source *s
            (source->modbus && !address_parse(tag->fields[EXPORT_ADDRESS], source->address_base, &address, why));
 }
 
-/* Returns the data type under Kepware's name. Names of Ignition, IEC 61131-3 and PI are converted. An unknown name gives "", so that the
+/* Returns Kepware's name for a data type. Names of Ignition, IEC 61131-3 and PI are converted. An unknown name gives "", so that the
  * address determines the type. */
 static const char *type_of(const char *type)
 {
@@ -266,7 +266,7 @@ static void put_equipment(struct tag_rows *rows, struct table_row *row, const st
     }
 }
 
-/* Returns whether the equipment in an existing row may be overwritten: false if a person changed it after the last run. */
+/* Returns whether the equipment in an existing row of the tag list may be overwritten: false if a person changed it after the last run. */
 static bool may_put(const struct tag_row_input *input, const char *asset)
 {
     const struct decision *before = input->before;
@@ -317,7 +317,7 @@ void tag_rows_write(const struct tag_rows *rows, struct text *out)
     size_t width = rows->at[0].count;
     bool *used = mem_array(width + 1, sizeof(*used));
     for (size_t c = 0; c < width; c++) {
-        used[c] = rows->known > 1; /* a column that the file already had is written even if it is blank */
+        used[c] = rows->known > 1; /* a column that the tag list already had is written even if it is blank */
         for (size_t i = 1; i < rows->count && !used[c]; i++)
             used[c] = *table_cell(&rows->at[i], (int)c);
     }

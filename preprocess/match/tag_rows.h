@@ -9,8 +9,8 @@
 struct tag_rows {         /* zero-initialise */
     struct table_row *at; /* all rows of the tag list, existing and added; the first is the header */
     size_t count, capacity;
-    int *by_name; /* indices of the rows that the file had, sorted by the tag's name */
-    size_t known; /* number of rows that the file had, including the header */
+    int *by_name; /* indices of the rows that the tag list had before the run, sorted by the tag's name */
+    size_t known; /* number of rows that the tag list had before the run, including the header */
     char separator;
 };
 
@@ -20,7 +20,8 @@ struct tag_source { /* the source from which the daemon will read the exported t
     int address_base;
 };
 
-/* Reads the tag list. If it is missing or has only a header, the list gets the default header. Returns false with the reason in why. */
+/* Reads the tag list (tags.csv). If it is missing or has only a header, the list gets the default header. Returns false with the reason in
+ * why. */
 bool tag_rows_read(struct tag_rows *rows, const char *path, char why[MATCH_WHY_BYTES]);
 void tag_rows_finish(struct tag_rows *rows);
 
@@ -33,10 +34,10 @@ struct tag_row_input {
     const char *group; /* group id; "": none */
     const struct tag_source *source;
 };
-/* Adds a tag, or updates its row except for cells that people changed. Returns the id of the row's asset ("": no asset), valid until the
- * next call; NULL if the tag was left out of the list. */
+/* Adds a tag to the list, or updates its row except for cells that people changed. Returns the id of the row's asset ("": no asset), valid
+ * until the next call; NULL if the tag was left out of the list. */
 const char *tag_rows_put(struct tag_rows *rows, const struct tag_row_input *input);
-/* Appends the list as text. Omits columns that this program added and that are blank in all rows. */
+/* Appends the tag list as text. Omits columns that this program added and that are blank in all rows. */
 void tag_rows_write(const struct tag_rows *rows, struct text *out);
 
 #endif
