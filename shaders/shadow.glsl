@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: GPL-3.0-or-later Computes the visible fraction of the sun at a point (0..1), from the sun's shadow map: averages
-// four lookups on a rotated square. The GL sampler makes each lookup the weighted mean of four depth comparisons.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Computes the visible fraction of the sun at a point (0..1), from the sun's shadow map: averages four lookups on a rotated square. The GL
+// sampler makes each lookup the weighted mean of four depth comparisons.
 #include "constants.glsl"
 layout(binding = 2) uniform sampler2DShadow sun_map;
 
