@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The colour maps of a plant: the built-in ones, then those that its plant file defines. Thread: any. */
+/* The colour maps that a plant's pictures can use: the built-in ones, then those that its plant file defines. Thread: any. */
 #ifndef PLANT_COLORMAPS_H
 #define PLANT_COLORMAPS_H
 #include "plant/plant.h"
 
-/* plant: NULL in these functions means a plant without own colour maps. Index 0 is the default map. */
+/* plant NULL in these functions: only the built-in colour maps exist. Index 0 is the default map. */
 size_t colormap_count(const struct plant *plant);
 const struct colormap *colormap_at(const struct plant *plant, size_t index);
-/* Returns the index of the map with this name, or -1. */
+/* Returns the index of the colour map with this name, or -1. */
 int colormap_find(const struct plant *plant, const char *name);
 
-/* Adds a map with a name that no map has yet. Returns false if the plant has PLANT_COLORMAPS maps already. Thread: before others start. */
+/* Adds a colour map; no map may have that name yet. Returns false if the plant has PLANT_COLORMAPS maps already. Thread: before others
+   start. */
 bool colormap_add(struct plant *plant, const char *name, const uint8_t rgb[256][3]);
 
 #endif

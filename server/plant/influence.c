@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads which interpolations plantcast-prep must prepare for a group, and checks their parameters. */
+/* Reads which interpolations plantcast-prep must prepare for a group of tags, and checks their parameters. */
 #include "plant/influence.h"
 
 #include <math.h>
@@ -47,8 +47,8 @@ void plant_gp_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
     yaml_map_read(reader, node, "gp", keys, &group->gp, &map);
 }
 
-/* Sets defaults for the interpolation `gp` if there are no readings to fit to: the deviation is a quarter of the group's range, the noise a
-   200th of the range. */
+/* Sets defaults for the interpolation `gp` if the plant file names no readings from which plantcast-prep can determine them: the deviation
+   is a quarter of the group's range, the noise a 200th of the range. */
 void plant_gp_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_group *group)
 {
     struct plant_gp *gp = &group->gp;
@@ -73,7 +73,7 @@ static int count_sensors(const struct plant *plant, int group, int asset)
     return count;
 }
 
-/* Warns of assets with too few sensors for the fit of `gp` that a group asks for. */
+/* Warns of assets that have too few sensors of a group for determining the parameters of `gp` from readings. */
 static void warn_of_fits(const struct plant *plant, int g, struct diag *diag)
 {
     const struct plant_group *group = &plant->groups[g];

@@ -5,17 +5,22 @@
 #define PLANT_INFLUENCE_H
 #include "plant/plant.h"
 
-#define PLANT_DISC_M 0.05       /* radius in metres of the surface that a clamped or welded sensor touches */
-#define PLANT_CONDUCTIVITY 50.0 /* default conductivity, W/(m K): carbon steel, EN 1993-1-2, 3.4.1.3: 54 - 0.0333 T, at about 100 deg C */
-#define PLANT_HEAT_TRANSFER 9.0 /* default heat transfer coefficient, W/(m2 K): still air with radiation, EN 1991-1-2, 3.1(6) */
+#define PLANT_DISC_M 0.05       /* default radius in metres of the part of the surface that a clamped or welded sensor touches */
+/* default heat conductivity of an asset's wall, W/(m K): carbon steel, EN 1993-1-2, 3.4.1.3: 54 - 0.0333 T, at about 100 deg C */
+#define PLANT_CONDUCTIVITY 50.0
+/* default heat transfer coefficient from an asset's wall to its surroundings, W/(m2 K): still air with radiation, EN 1991-1-2, 3.1(6) */
+#define PLANT_HEAT_TRANSFER 9.0
 
-#define PLANT_GP_DEVIATION 0.25 /* assumed standard deviation of the field, as a fraction of the group's range */
-#define PLANT_GP_RANGE 0.25     /* correlation length to use if there are no readings to fit it to, as a fraction of the asset's size */
-#define PLANT_GP_FITTED 3       /* minimum number of sensors on an asset from which `gp` can be fitted to readings */
-#define PLANT_GP_NOISE 0.005    /* assumed standard deviation of a reading's noise, as a fraction of the group's range */
+/* assumed standard deviation of the field (interpolated values) of `gp`, as a fraction of the group's range */
+#define PLANT_GP_DEVIATION 0.25
+/* correlation length of `gp`, used if there are no readings from which to determine it, as a fraction of the asset's size */
+#define PLANT_GP_RANGE 0.25
+#define PLANT_GP_FITTED 3       /* minimum number of sensors on an asset for determining the parameters of `gp` from readings */
+#define PLANT_GP_NOISE 0.005    /* assumed standard deviation of a reading's noise, for `gp`, as a fraction of the group's range */
 
-#define PLANT_SEEN_PART 0.05 /* smallest difference that is visible in the colours, as a fraction of the group's range */
-#define PLANT_HOT_SPOT_M 0.5 /* size in metres of the hot spots for which blind areas (where sensors miss a hot spot) are computed */
+#define PLANT_SEEN_PART 0.05 /* smallest difference of values that users can see in the colours, as a fraction of the group's range */
+/* size in metres of the hot spots for which blind spots are computed (places where no sensor would notice a hot spot) */
+#define PLANT_HOT_SPOT_M 0.5
 
 /* Returns whether plantcast-prep computes the weights of an interpolation; false: the daemon computes them from distances. */
 static inline bool interpolation_is_prepared(enum interpolation interpolation)
@@ -27,8 +32,8 @@ static inline bool plant_prepares(const struct plant_group *group, enum interpol
 {
     return group->prepared >> interpolation & 1;
 }
-/* Returns whether plantcast-prep computes anything for the group: an interpolation, heat-method distances, or the transport of
-   directions. */
+/* Returns whether plantcast-prep computes anything for the group: an interpolation, heat-method distances, or how directions are carried
+   along the surface. */
 static inline bool plant_prepares_any(const struct plant_group *group)
 {
     return group->prepared >> INTERPOLATION_HARMONIC != 0 || group->heat || group->directed;

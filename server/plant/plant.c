@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loads a plant and finds items in it. */
+/* Loads a plant file with its tag list, and finds the plant's folders. */
 #include "plant/plant.h"
 
 #include <stdio.h>
@@ -24,7 +24,7 @@ static char *folder_of(const char *path)
     return slash == path ? mem_strdup("/.") : mem_printf("%.*s", (int)(slash - path), path);
 }
 
-/* Hashes the contents of plant file and tag list. A file that is changed back thus gets its old hash again. */
+/* Hashes the contents of plant file and tag list. The hash identifies the configuration: if a change is undone, the old hash returns. */
 static void hash_files(struct plant *plant)
 {
     const char *const paths[] = { plant->files.path, plant->files.tags_path };
@@ -228,7 +228,8 @@ char *plant_service_folder(const char *path, const char *name)
     return folder;
 }
 
-/* Returns `folder` if it exists or the plant is not that of a service, otherwise the service's folder. Takes ownership of `folder`. */
+/* Returns `folder` if it exists, or if the plant file does not belong to a systemd service; otherwise the folder `name` of that service.
+   Takes ownership of `folder`. */
 static char *or_of_service(const struct plant *plant, char *folder, const char *name)
 {
     char *own = access(folder, F_OK) == 0 ? NULL : plant_service_folder(plant->files.path, name);

@@ -25,13 +25,13 @@ enum interpolation {
 };
 /* DISTANCE_HEAT: geodesic distances by the heat method (Crane et al., 2013), as in Kim & Suh, Electronics 2025, 14(15), 2938 */
 enum distance_mode { DISTANCE_GEODESIC, DISTANCE_EUCLIDEAN, DISTANCE_HEAT, DISTANCES };
-/* filling of the area around a sensor whose reading is Bad: none, or the field of neighbouring sensors */
+/* fill of the surface around a sensor while the sensor's reading is Bad: none, or the field of neighbouring sensors */
 enum fill_mode { FILL_NONE, FILL_NEIGHBOURS };
-/* display with which a client begins: values, or values relative to their alarm limits (operator's display) */
+/* content of a client's first picture: values, or values relative to their alarm limits (operator's display) */
 enum plant_show { PLANT_SHOW_VALUE, PLANT_SHOW_OPERATOR };
 /* initial display state of an asset: shown, ghosted (outline only) or hidden */
 enum plant_start { PLANT_START_SHOWN, PLANT_START_GHOST, PLANT_START_HIDDEN };
-enum { PLANT_STARTS = 4096 }; /* maximum number of assets that can be hidden one by one: the first ones in the plant file */
+enum { PLANT_STARTS = 4096 }; /* only this many assets, the first ones of the plant file, can be hidden or ghosted one by one */
 enum axis { AXIS_Y, AXIS_Z }; /* upward axis */
 enum data_type {
     DATA_BIT,
@@ -62,7 +62,7 @@ enum alarm_mode { /* which system manages the alarms */
 enum { ALARM_PRIORITIES = 4, ALARM_PRIORITY_DEFAULT = 2 };
 extern const char *const plant_limit_names[LIMIT_COUNT];
 
-struct plant_view { /* initial camera of a client; positions in metres in the plant frame */
+struct plant_view { /* initial camera of a client; positions in metres, in the plant's coordinate frame */
     bool set;
     double eye_m[3], target_m[3], fov_deg;
 };
@@ -79,21 +79,24 @@ struct plant_asset {
     char *nodes;   /* node patterns (nodes.h), one a line; each matching node is taken with its sub-tree. NULL: the whole model */
     double unit_m; /* length of a model unit in metres, including the scale of the asset's placement */
     enum axis up;  /* upward axis of the model */
-    /* size in metres of gaps in the surface that are bridged when distances along it are computed; 0: chosen from the model */
+    /* maximum width in metres of gaps in the surface that count as closed when distances along the surface are computed; 0: chosen from the
+       model */
     double tolerance_m;
-    /* transform from asset frame (Z up) to plant frame, column-major; rotation and translation only: both frames are in metres */
+    /* transform from the asset's coordinate frame (Z up) to the plant's, column-major; rotation and translation only: both frames are in
+       metres */
     double placement[16];
     enum plant_start start;
     double thickness_m;                /* thickness of the asset's wall in metres; 0: not stated */
     double conductivity;               /* W/(m K) */
-    double heat_transfer;              /* W/(m2 K), to the surroundings */
-    bool sensors_in_asset_frame;       /* true: X, Y, Z of the asset's tags are in the asset frame; false: in the plant frame */
+    double heat_transfer;              /* heat transfer coefficient from the asset's wall to its surroundings, W/(m2 K) */
+    /* true: the columns X, Y, Z of the asset's tags are in the asset's coordinate frame; false: in the plant's */
+    bool sensors_in_asset_frame;
     struct plant_property *properties; /* properties that the plant file defines for the asset, in the order of the file */
     size_t property_count;
     int line;
 };
 
-struct plant_alarm_settings { /* settings by which alarms of this group or tag are raised and cleared */
+struct plant_alarm_settings { /* alarm settings of a group or of a tag: when alarms are raised and cleared */
     double deadband;          /* engineering units */
     double on_delay_s, off_delay_s;
     /* priority of the alarms LL and HH, from 1 (most urgent) to ALARM_PRIORITIES; L and H get the next less urgent priority */
@@ -101,25 +104,26 @@ struct plant_alarm_settings { /* settings by which alarms of this group or tag a
     bool latch; /* true: the alarm is latched: it stays until an operator resets it, even if the value returns to normal */
 };
 
-struct plant_mirror {  /* meaning of a tag that is an alarm bit of another system (`mirror`) */
+struct plant_mirror {  /* for a tag that is an alarm bit of another system (`mirror`): which alarm the bit reports */
     int tag;           /* index of the tag whose alarm the bit reports, or -1 */
-    int limit;         /* limit whose alarm the bit reports (enum limit); LIMIT_COUNT: the alarm belongs to no limit */
+    int limit;         /* limit (LL, L, H, HH) whose alarm the bit reports, as enum limit; LIMIT_COUNT: the alarm belongs to no limit */
     bool acknowledged; /* true: the bit means "acknowledged"; false: the bit means "alarm present" */
 };
 
 struct plant_gp { /* parameters of the interpolation `gp` */
-    /* range_m: correlation length in metres; noise, deviation: standard deviations of a reading's noise and of the field, in the group's
-       unit; NaN: to be fitted to readings */
+    /* range_m: correlation length in metres; noise, deviation: standard deviations of a reading's noise and of the field (interpolated
+       values), in the group's unit; NaN: plantcast-prep determines it from readings */
     double range_m, noise, deviation;
-    char *fit; /* path of a file with readings to fit the parameters to; NULL: no fitting */
+    char *fit; /* path of a file with readings from which plantcast-prep determines these parameters; NULL: none */
 };
 
 enum { PLANT_BREAKS = 16, PLANT_ISOLINES = 32 };
 struct plant_group {
     char *id, *quantity, *unit;
-    bool as_written; /* true (`units: as-written`): values are taken to be in the group's unit, even if the tag's row states another */
+    /* true (key `units: as-written`): values count as being in the group's unit, even if the tag list states another unit */
+    bool as_written;
     double min, max;
-    double limits[LIMIT_COUNT]; /* default limits of tags in the group; NaN: no limit */
+    double limits[LIMIT_COUNT]; /* alarm limits of tags in the group that state none themselves; NaN: no limit */
     struct plant_alarm_settings alarm_settings;
     enum interpolation interpolation;
     enum distance_mode distance;
@@ -129,16 +133,18 @@ struct plant_group {
     unsigned prepared; /* bit mask of the interpolations that plantcast-prep computes (plant/influence.h), including the group's own */
     double disc_m;     /* radius in metres of the disc that represents a sensor in the interpolations harmonic, fin and gp */
     double ambient;    /* temperature of the surroundings for `fin`, in the group's unit; NaN: not stated */
-    bool directed;     /* true: some tags of the group have a direction, which is shown with arrows */
-    bool heat;         /* `geodesic: heat`: plantcast-prep also computes distances by the heat method, as in Kim & Suh */
+    bool directed;     /* true: some tags of the group have a direction (such as the flow of air), which is shown with arrows */
+    /* true (key `geodesic: heat`): plantcast-prep also computes distances along the surface by the heat method, as in Kim & Suh */
+    bool heat;
     struct plant_gp gp;
-    /* radius in metres of the hot spots for `show: blind`: the distance from a spot's centre at which its excess has fallen by a factor
-       exp(-1/2) */
+    /* radius in metres of the hot spots for which `show: blind` finds places that no sensor notices: the distance from a spot's centre at
+       which its excess temperature has fallen by a factor exp(-1/2) */
     double hot_spot_m;
-    bool cuts_singles; /* `singles: cut`; see plant_cuts_singles() */
+    bool cuts_singles; /* value of the key `singles: cut`; see plant_cuts_singles() */
     enum fill_mode fill;
     bool log;                    /* true (`scale: log`): logarithmic colour scale; requires min > 0 */
-    double breaks[PLANT_BREAKS]; /* ascending boundaries of the colour bands; used by views that show bands instead of a continuous scale */
+    /* ascending values at which one colour band ends and the next begins, for pictures in bands instead of continuous colours */
+    double breaks[PLANT_BREAKS];
     double isolines[PLANT_ISOLINES];
     int break_count, isoline_count;
     int line;
@@ -159,11 +165,13 @@ struct plant_mqtt { /* MQTT settings of a source or of `publish`; texts that are
     char *client_id;
     bool has_tls;
     char *ca, *certificate, *key; /* PEM files for TLS; ca NULL: the system's trusted certificates */
-    char *will;                   /* topic of the last will: after a disconnection the broker publishes "offline" there */
+    char *will;                   /* topic of the last will: if the connection breaks, the broker publishes "offline" there */
     char *topic;                  /* topic template for tags whose address has no topic */
-    char *value, *time, *quality; /* JSONPaths of value, time and quality in JSON payloads */
+    char *value, *time, *quality; /* JSONPaths that find value, time and quality in a JSON message */
     bool will_stays;              /* true: the last will is published as a retained message, which new subscribers get, too */
-    bool rebirth; /* true: birth certificates may be requested from Sparkplug nodes; apart from this request the source publishes nothing */
+    /* true: Sparkplug nodes may be asked to send their birth certificates (lists of all their metrics); apart from this request the daemon
+       publishes nothing to this broker */
+    bool rebirth;
 };
 
 enum opcua_policy { OPCUA_BEST /* best security policy that the server offers */, OPCUA_AES256, OPCUA_BASIC256, OPCUA_AES128, OPCUA_NONE };
@@ -171,14 +179,15 @@ enum opcua_policy { OPCUA_BEST /* best security policy that the server offers */
 struct plant_opcua {                   /* OPC UA settings of a source; texts that are not given are NULL */
     bool has_security;                 /* true: the plant file states the key `security`; a source without that key is refused */
     enum opcua_policy policy;          /* security policy. Messages are signed and encrypted (SignAndEncrypt), except with OPCUA_NONE */
-    char *certificate, *key;           /* our certificate and key, files in PEM or DER */
-    char *trusted;                     /* folder of trusted certificates and revocation lists */
+    char *certificate, *key;           /* files with the daemon's own certificate and key, PEM or DER */
+    char *trusted;                     /* folder with the certificates of trusted OPC UA servers, and revocation lists */
     char *server_name;                 /* host name in the server's certificate, if it differs from the host */
-    char *user_certificate, *user_key; /* certificate and key of the user; used in place of a login file */
+    /* files with certificate and key of the user as which the daemon signs in; used in place of a login file */
+    char *user_certificate, *user_key;
     char *path;                        /* path of the endpoint URL */
     char *name_space;                  /* namespace URI that is used for nodes whose address states none */
-    int queue;                         /* number of values that the server queues per node between two notifications */
-    /* smallest change that the server reports, absolute, or as a percentage of EURange; 0: every change */
+    int queue;                         /* number of values per node that the OPC UA server keeps between two messages to the daemon */
+    /* smallest change of a value that the OPC UA server reports: absolute, or in percent of the node's range (EURange); 0: every change */
     double deadband, deadband_percent;
 };
 
@@ -190,15 +199,18 @@ struct plant_source {
     char *device;                      /* serial device */
     int baud, parity, stop_bits;       /* parity: 'N', 'E' or 'O' */
     int port, unit;                    /* unit: Modbus unit identifier */
-    int poll_ms, timeout_ms, pause_ms; /* milliseconds; pause_ms: between two requests */
+    /* milliseconds; poll_ms: between two readings of a value; timeout_ms: until an answer counts as missing; pause_ms: between an answer
+       and the next request */
+    int poll_ms, timeout_ms, pause_ms;
     int connect_delay_ms;              /* milliseconds from connecting to the first request */
     bool close_between_polls;          /* one request per connection */
     int max_registers, max_bits;       /* maximum number of registers, or of bits, in one Modbus request */
     int max_gap; /* maximum number of unneeded registers or bits between two tags that are still read by one request */
     enum byte_order byte_order;
-    int address_base; /* number of the first register in plain addresses: 0 or 1; base_stated: the plant file states it */
+    int address_base; /* number of a device's first register in addresses such as 40001: 0 or 1; base_stated: the plant file states it */
     bool base_stated;
-    char *heartbeat;    /* heartbeat: name of the tag whose value must keep changing; NULL: none */
+    /* heartbeat: name of a tag of this source whose value must keep changing, else the device counts as stopped; NULL: none */
+    char *heartbeat;
     int heartbeat_tag;  /* index of the heartbeat tag in the plant; -1: none */
     double heartbeat_s; /* maximum time in seconds between two changes of the heartbeat; 0: no heartbeat */
     char *file;         /* path of the CSV file that a replay source plays */
@@ -213,7 +225,7 @@ struct plant_source {
 
 /* The broker to which readings and alarms are published. */
 struct plant_publish {
-    struct plant_source broker; /* connection settings; of these only the broker's address and our own identity are used */
+    struct plant_source broker; /* connection settings; only the broker's address and the daemon's identity are used */
     char *prefix;               /* prefix of all topics; begins with plantcast/ */
     double every_s;
 };
@@ -235,7 +247,7 @@ struct plant_history {
     struct plant_postgres postgres;
 };
 
-/* Sentinel: a raw value with which a device says "no sensor", given as bits or as a number. */
+/* Sentinel: a raw value by which a device reports that no sensor is connected, given as bits or as a number. */
 struct plant_sentinel {
     bool is_bits;
     uint64_t bits;
@@ -252,13 +264,13 @@ struct plant_quality_tag {
 
 enum { PLANT_SENTINELS = 4 };
 struct opcua_deadband { /* smallest change of a node that the OPC UA server reports */
-    double value; /* 0: every change; NaN (only of a tag): that of its source */
-    bool percent; /* true: in percent of the node's EURange; false: in the node's unit */
+    double value; /* 0: every change; NaN (only of a tag): the tag uses the deadband of its source */
+    bool percent; /* true: in percent of the node's range (EURange); false: in the node's unit */
 };
 
-struct tag_signal { /* address of a tag's value at its device, and its encoding there */
-    char *address;  /* address as written: a register, a series name, a topic, or = and an expression */
-    /* topic, path: parts of the address. MQTT: the full topic, and the path of the value in its payload ("": the source's default).
+struct tag_signal { /* where the device has a tag's value, and how the value is encoded there */
+    char *address;  /* address as written in the tag list: a register, a series name, a topic, or = and an expression */
+    /* topic, path: parts of the address, split. MQTT: the full topic, and the path of the value in its payload ("": the source's default).
        Sparkplug: GROUP/NODE[/DEVICE], and the metric. OPC UA: the namespace URI, and an identifier such as s=NAME. Other sources: NULL. */
     char *topic, *path;
     int element;     /* index of the element in an OPC UA array; -1: the node's value is no array */
@@ -276,7 +288,7 @@ struct tag_signal { /* address of a tag's value at its device, and its encoding 
 
 struct tag_scale { /* conversion from the raw value to the tag's unit */
     enum scaling kind;
-    double raw_low, raw_high, scaled_low, scaled_high; /* range of raw values, and the range to which it is scaled, in own_unit */
+    double raw_low, raw_high, scaled_low, scaled_high; /* range of raw values, and the range of values that it is scaled to, in own_unit */
     bool has_range;                                    /* true: the range scaled_low to scaled_high is the instrument's measuring range */
     /* true: raw_low and raw_high are 4 and 20 mA, so a current outside of that range is judged by NAMUR NE 43 (overrange or broken wire) */
     bool ne43;
@@ -289,17 +301,18 @@ struct tag_scale { /* conversion from the raw value to the tag's unit */
     struct unit_change change; /* conversion from own_unit to the tag's unit */
 };
 
-struct tag_place { /* position of a tag's sensor on its asset */
+struct tag_place { /* where a tag's sensor is on its asset */
     /* `Place: equipment`: the exact position on the asset is unknown; the reading represents the whole asset (field/field.h) */
     bool assumed;
     bool has_position;    /* true: position_m is set; false: `node` gives the position or, without a node, the middle of the asset */
-    double position_m[3]; /* position in metres, in the frame that the asset states */
+    double position_m[3]; /* position in metres, in the coordinate frame that the asset's settings name */
     char *node;           /* name of the model node that gives the position, or NULL */
     char *lost_asset;     /* id of the tag's asset in the tag list if no such asset exists (plant_load_with_orphans()), else NULL */
 };
 
 struct tag_validity {                 /* conditions under which a tag's reading is good */
-    /* age in seconds from which the tag's reading is stale; default: three poll intervals, at least 5 s; OPC UA and Sparkplug: never */
+    /* age in seconds from which the tag's reading counts as too old (stale). Default: three poll intervals, at least 5 s; OPC UA and
+       Sparkplug: never */
     double stale_s;
     bool states_stale;                /* the row states stale_s */
     double flatline_s;                /* seconds without any change after which the tag's value is uncertain; 0: never */
@@ -307,13 +320,13 @@ struct tag_validity {                 /* conditions under which a tag's reading 
 };
 
 struct tag_alarms {
-    double limits[LIMIT_COUNT];           /* limits of the tag, or else of its group; NaN: no limit */
-    struct plant_alarm_settings settings; /* alarm settings in the tag's row, or else of its group */
+    double limits[LIMIT_COUNT];           /* alarm limits that apply to the tag: its own, or those of its group; NaN: no limit */
+    struct plant_alarm_settings settings; /* alarm settings that apply to the tag: its own, or those of its group */
     int suppressed_by; /* index of a bit tag; while that bit is 1, this tag's alarms are suppressed by design; -1: none */
     struct plant_mirror mirror;
 };
 
-struct tag_direction { /* direction of a tag's value */
+struct tag_direction { /* direction of what the tag measures, for example of an air flow; pictures show it as an arrow */
     int tags[3];       /* indices of the tags that hold the direction: its components along X, Y and Z of the plant, or a bearing */
     int count;         /* number of tags in `tags`: 0: the value has no direction; 1: a bearing in degrees; 3: components */
 };
@@ -330,9 +343,10 @@ struct plant_tag {
     double strength, decay;
     struct tag_validity validity;
     struct tag_alarms alarms;
-    double deadband; /* maximum error of the recorded history in the tag's unit; NaN: the history's default */
+    /* largest difference in the tag's unit by which recorded history may deviate from the readings; NaN: the history's default */
+    double deadband;
     struct tag_direction direction;
-    int line, column; /* position of the tag's name in the file of the tag list */
+    int line, column; /* position of the tag's name in the tag list's file; both count from 1 */
 };
 
 enum { PLANT_ENVIRONMENTS = 8 };
@@ -344,11 +358,11 @@ struct plant_environment { /* panorama image that lights the plant */
 enum { PLANT_LINKS = 16 };
 struct plant_link { /* template of a link to another system's page about an asset or a tag */
     char *name;
-    char *url; /* http or https URL; placeholders in braces are replaced by escaped values (PLANT.md) */
+    char *url; /* http or https URL; placeholders in braces, such as a tag's name, are replaced by escaped values (PLANT.md) */
     bool of_tags;
 };
 
-struct plant_conversion { /* rule by which plantcast-prep makes a model: it runs another program */
+struct plant_conversion { /* how plantcast-prep makes a model: by running another program, which writes a glTF file */
     char *model;          /* path of the glTF file that the program must write */
     char *from, *command; /* input file, and the command */
     double timeout_s;
@@ -363,19 +377,20 @@ struct plant_files {
     bool without_models; /* true while loading: missing model files are accepted (plant_load_without_models()) */
 };
 
-struct plant_display { /* initial display of a client, and what its user can choose */
+struct plant_display { /* content of a client's first picture, and what users can choose */
     struct plant_view view;
     enum plant_show show;
-    bool no_reprojection; /* true: clients get no depth grids, and so cannot move a picture before the next one arrives */
+    /* true: clients get no depth grids, so the page cannot shift a picture to the present camera before the next one arrives */
+    bool no_reprojection;
     struct plant_environment environments[PLANT_ENVIRONMENTS]; /* environments (panoramas); the first one is the default */
     size_t environment_count;
     struct plant_link links[PLANT_LINKS];
     size_t link_count;
-    struct colormap colormaps[PLANT_COLORMAPS]; /* read from images (plant/colormaps.h) */
+    struct colormap colormaps[PLANT_COLORMAPS]; /* colour maps that were read from images (plant/colormaps.h) */
     size_t colormap_count;
 };
 
-struct plant_screens { /* views, tours, other plants and walls: plant/walls/wall.h */
+struct plant_screens { /* the plant file's views, tours, other plants and walls (plant/walls/wall.h) */
     struct named_view *views;
     struct tour *tours;
     struct other_plant *other_plants;
@@ -385,7 +400,7 @@ struct plant_screens { /* views, tours, other plants and walls: plant/walls/wall
 
 struct plant {
     struct plant_files files;
-    char *name, *time_zone; /* time_zone: IANA name; default UTC */
+    char *name, *time_zone; /* name of the plant, and IANA name of its time zone; default UTC */
     enum axis up;           /* upward axis of the plant's coordinate frame */
     struct plant_display display;
     struct plant_screens screens;
@@ -394,7 +409,7 @@ struct plant {
     struct plant_history history;
     enum alarm_mode alarms;
     struct plant_publish *publish; /* NULL: no publishing */
-    struct plant_notify *notify;   /* recipients of alarms (plant/sections/notification.h); NULL: none */
+    struct plant_notify *notify;   /* recipients of alarm notifications (plant/sections/notification.h); NULL: nobody */
     struct plant_asset *assets;
     struct plant_group *groups;
     struct plant_source *sources;
@@ -402,14 +417,16 @@ struct plant {
     size_t asset_count, group_count, source_count, tag_count;
     /* indices sorted for binary search: of assets by id, and of tags by name; assets_by_id is NULL until the whole file is read */
     int *assets_by_id, *tags_by_name;
-    int *derived; /* indices of the derived tags, ordered so that each tag comes after the tags in its expression */
+    /* indices of the derived tags (computed from other tags), ordered so that each tag comes after the tags in its expression */
+    int *derived;
     size_t derived_count;
 };
 
-/* Loads a plant file and its tag list. Findings go to diag. Returns NULL if there was any error. */
+/* Loads a plant file and its tag list. Errors and warnings go to diag. Returns NULL if there was any error. */
 struct plant *plant_load(const char *path, struct diag *diag);
-struct plant *plant_load_or_print(const char *path); /* Loads a plant like plant_load(), and prints the findings to standard error. */
-/* Loads a plant like plant_load_or_print(), but a missing model file is no error: for programs that need no models. */
+/* Loads a plant like plant_load(), and prints errors and warnings to standard error. */
+struct plant *plant_load_or_print(const char *path);
+/* Loads a plant like plant_load_or_print(), but a missing model file is no error: for commands that need no models. */
 struct plant *plant_load_without_models(const char *path);
 /* Loads a plant like plant_load(), but accepts tags whose asset does not exist: such tags get no asset, and their lost_asset is set. */
 struct plant *plant_load_with_orphans(const char *path, struct diag *diag);
@@ -421,7 +438,7 @@ int plant_find_group(const struct plant *plant, const char *id);
 /* Returns the index of an environment by name: 0 for "sky", 1 for the plant's first panorama, and so on; -1: unknown. */
 int plant_find_environment(const struct plant *plant, const char *name);
 int plant_find_tag(const struct plant *plant, const char *name);
-/* Returns whether readings of a tag are simulated: the tag's source is simulated, or that of a tag in its expression. */
+/* Returns whether readings of a tag are simulated: its source is simulated or, for a derived tag, the source of a tag in its expression. */
 bool plant_tag_simulated(const struct plant *plant, int tag);
 /* Returns a folder of the systemd service plantcastd@NAME, whose plant file is /etc/plantcast/NAME/plant.yaml; NULL: `path` is not that of
    a service's plant file. name: `prepared` or `history`. Free with mem_free(). */
@@ -429,10 +446,11 @@ char *plant_service_folder(const char *path, const char *name);
 /* Returns the folder of the prepared asset files: FOLDER/NAME.prepared next to NAME.yaml, or the service's folder. Free with
    mem_free(). */
 char *plant_prepared_folder(const struct plant *plant);
-/* Returns the folder in which a command reads and writes recorded readings: plant_history_folder() if it exists, or the service's folder.
-   Free with mem_free(). */
+/* Returns the folder in which a command reads and writes recorded readings: plant_history_folder() if it exists, otherwise the folder of
+   the systemd service. Free with mem_free(). */
 char *plant_recorded_folder(const struct plant *plant);
-/* Returns the folder of the history: FOLDER/NAME.history, unless the plant file names another. Free with mem_free(). */
+/* Returns the folder in which the daemon records readings: FOLDER/NAME.history, unless the plant file names another. Free with
+   mem_free(). */
 char *plant_history_folder(const struct plant *plant);
 
 #endif

@@ -5,8 +5,9 @@
 #include "plant/plant.h"
 
 struct plant_diff { /* zero-initialise */
-    char **lines;   /* lines such as "tag TT-101: HH 90 > 95" or "tag TT-101: HH none > 95"; at most PLANT_DIFF_LINES. more: number of
-                       further lines that were left out */
+    /* one line for each difference, such as "tag TT-101: HH 90 > 95" or "tag TT-101: HH none > 95"; at most PLANT_DIFF_LINES. more: number
+       of further lines that were left out */
+    char **lines;
     size_t count, capacity, more;
 };
 enum { PLANT_DIFF_LINES = 200 };

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Locks a plant's folder by a kernel lock on the folder itself, and moves files into place at the end of a revision. */
+/* Locks a plant's folder by a kernel lock on the folder itself, and replaces its files at the end of a revision (an import or its
+   undoing). */
 #include "plant_folder.h"
 
 #include <dirent.h>
@@ -20,7 +21,8 @@
 #include "base/text/text.h"
 
 enum { LOOK_MS = 50 };
-/* name to which a revision's record is renamed once the revision is undone completely; the next program that locks the folder removes it */
+/* name that a revision's folder (its record) gets once the revision is undone completely; the next program that locks the folder removes
+   it */
 static const char undone[] = ".import-undone";
 static const size_t max_text_bytes = (size_t)64 << 20;
 
@@ -94,7 +96,8 @@ void revision_record_finish(struct revision_record *record)
 
 /* --- continuing a revision ------------------------------------------------------------------------------------------------------ */
 
-/* Replaces a file of another folder, perhaps on another file system, by a copy with the same owner and permissions. Returns 0 or -errno. */
+/* Replaces the file `to` in another folder, perhaps on another file system, by a copy of `from`; the copy gets the owner and permissions of
+   the old file. Returns 0 or -errno. */
 static int put_elsewhere(const char *from, const char *to)
 {
     struct atomic_file file = { .fd = -1 };
@@ -122,7 +125,7 @@ static int put_elsewhere(const char *from, const char *to)
 static int move_into_place(const struct revision_record *record, const char *folder, const char *from, const char *name)
 {
     char *source = revision_version_of(record->path, from, name), *target = plant_folder_file(folder, name);
-    /* the record has no file of this version if the file was moved already, or if the revision does not change it: success */
+    /* if the revision's record lacks this version of the file, the file was moved already, or the revision does not change it: success */
     int status = access(source, F_OK) != 0 ? 0 : *name == '/' ? put_elsewhere(source, target) : move(source, target);
     mem_free(source);
     mem_free(target);
@@ -151,7 +154,8 @@ int revision_go_on_undoing(const char *folder)
     struct revision_record record;
     char *last = plant_folder_file(folder, undone);
     int status = revision_record_read(&record, folder, REVISION_UNDOING);
-    /* no record: all files are back in place, and an earlier run was killed while it removed the revision's folder */
+    /* the record (list of files) is missing because all files are back in place, and an earlier run was killed while it removed the
+       revision's folder */
     if (status == -ENOENT)
         status = 0;
     for (size_t i = record.count; i-- > 0 && status == 0;) {
@@ -174,7 +178,7 @@ int revision_go_on_undoing(const char *folder)
     return status;
 }
 
-/* Returns whether killed programs left work folders in the folder. now: true: also removes them. own: path of a work folder of this
+/* Returns whether killed programs left work folders in the plant's folder. now true: also removes these. own: path of a work folder of this
    program, which stays. */
 static bool remove_left(const char *folder, const char *own, bool now)
 {
@@ -230,8 +234,8 @@ static char *say_holder(int fd)
                    : mem_strdup("another program is using the folder");
 }
 
-/* Opens the folder, or duplicates the descriptor of the parent process, which must refer to the same folder and hold its lock. Returns the
-   descriptor; -1 with errno on failure. */
+/* Opens the plant's folder, or duplicates the descriptor of the parent process, which must refer to the same folder and hold its lock.
+   Returns the descriptor; -1 with errno on failure. */
 static int open_folder(const struct plant_folder_params *params)
 {
     struct stat lent, folder;
@@ -278,7 +282,7 @@ int plant_folder_lock(const struct plant_folder_params *params, char **why)
     while (status == 0 && flock(fd, LOCK_EX | LOCK_NB) != 0)
         if (errno == EWOULDBLOCK && clock_mono_ns() < until_ns)
             usleep(LOOK_MS * 1000);
-        /* no lock is possible on this file system (NFS, for example): continues without one */
+        /* continues without a lock, because this file system (NFS, for example) has none */
         else if (errno == EBADF || errno == ENOLCK || errno == EOPNOTSUPP)
             return fd; /* work folders are not removed without a lock: another program may be using them */
         else if (errno != EINTR)
@@ -311,8 +315,8 @@ bool plant_folder_settle(const struct plant_folder_params *params, char **why)
     int lock = plant_folder_lock(&at_once, why);
     if (lock >= 0)
         close(lock);
-    /* no revision is in progress, so failing to lock is no error: an import is running that has not begun to replace files, or this program
-       may not remove what a killed program left */
+    /* reports no error for a failed lock, because no revision is in progress: an import is running that has not begun to replace files, or
+       this program may not remove what a killed program left */
     if (!killed) {
         mem_free(*why);
         *why = NULL;

@@ -18,21 +18,21 @@
 struct plant_folder_params {
     const char *folder;
     const char *own; /* path of this program's own work folder in the plant's folder, which is not removed; NULL: none */
-    int lent;        /* descriptor with which the parent process has locked the folder, inherited by this process; 0: none */
+    int lent;        /* open descriptor of the folder, inherited from the parent process, which holds the lock; 0: none */
     int wait_ms;     /* milliseconds to wait for another program to finish; 0: no waiting */
-    /* receives the name of the work that was finished for a killed program: "an import", "the undoing of an import"; NULL: not wanted */
+    /* receives what this program finished for a killed one: "an import", "the undoing of an import"; NULL: not wanted */
     const char **finished;
 };
 
-/* Locks the folder until the descriptor is closed, removes what killed programs left in it, and finishes their revisions. Returns the
-   descriptor, or -errno with a one-line reason in *why (mem_free), which does not name the folder. */
+/* Locks the folder until the descriptor is closed, removes the work folders that killed programs left in it, and finishes their revisions.
+   Returns the descriptor, or -errno with a one-line reason in *why (mem_free), which does not name the folder. */
 int plant_folder_lock(const struct plant_folder_params *params, char **why);
-/* Call this before reading files: waits for a revision in progress, finishes the revision of a killed program, and removes what killed
-   programs left, unless another program has locked the folder. Returns true once no revision is in progress; false: *why has a one-line
-   reason (mem_free). Sets *params->finished. */
+/* Call this before reading a plant's files. Waits for a revision (import or its undoing) in progress, finishes the revision of a killed
+   program, and removes what killed programs left, unless another program has locked the folder. Returns true once no revision is in
+   progress; false: *why has a one-line reason (mem_free). Sets *params->finished. */
 bool plant_folder_settle(const struct plant_folder_params *params, char **why);
-/* Returns true if a revision is in progress, or its program was killed. The files in the folder are then neither the old plant nor the new
-   one. */
+/* Returns true if a revision (import or its undoing) is in progress, or its program was killed. The files in the folder are then neither
+   the old plant nor the new one. */
 bool plant_folder_unsettled(const char *folder);
 /* Returns the folder of a plant file; free with mem_free(). */
 char *plant_folder_of(const char *plant_path);
@@ -53,12 +53,13 @@ struct revision_record {
    revision_record_finish() even after an error. */
 int revision_record_read(struct revision_record *record, const char *folder, const char *name);
 void revision_record_finish(struct revision_record *record);
-/* Finish applying, or undoing, a revision that an earlier run began. This program must have locked the folder. */
+/* Finish applying, or undoing, a revision that a killed program began. This program must have locked the folder. */
 int revision_go_on_applying(const char *folder);
 int revision_go_on_undoing(const char *folder);
-/* Returns the path of one version ("old" or "new") of a file in a record; free with mem_free(). `name` may be an absolute path. */
+/* Returns the path of one version ("old" or "new") of a file in a revision's record; free with mem_free(). `name` may be an absolute
+   path. */
 char *revision_version_of(const char *record, const char *version, const char *name);
-/* Returns the path of a file of the folder; free with mem_free(). `name` may be an absolute path. */
+/* Returns the path of a file in the plant's folder; free with mem_free(). `name` may be an absolute path. */
 char *plant_folder_file(const char *folder, const char *name);
 int plant_folder_sync(const char *folder);
 

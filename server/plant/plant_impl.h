@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Functions shared by the files that read the plant file and the tag list. Private to plant/. Thread: one. Functions that read a key take
-   the struct plant as void *, as struct yaml_key has them. */
+/* Functions shared by the files that read the plant file and the tag list. Private to plant/. Thread: one. The functions that read a key
+   get the plant as void *, because struct yaml_key requires this type. */
 #ifndef PLANT_PLANT_IMPL_H
 #define PLANT_PLANT_IMPL_H
 #include "plant/parse/yaml_reader.h"
 #include "plant/plant.h"
 
-#define PLANT_MAX_VALUE 1e30 /* maximum absolute value of a reading or a limit, because the field is computed in floats */
+#define PLANT_MAX_VALUE 1e30 /* maximum absolute value of a reading or a limit, because interpolated values are computed as float */
 
-/* Reads the plant file into a plant whose path and folder are set. Findings go to diag. If the plant file names no tag list that can be
-   read, tags_path stays NULL. */
+/* Reads the plant file into a plant whose path and folder are set. Errors and warnings go to diag. If the plant file names no tag list that
+   can be read, tags_path stays NULL. */
 void plant_file_read(struct plant *plant, struct diag *diag);
 /* Reads the value of the key `environment`; the plant's folder must be set. */
 void plant_environments_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
@@ -19,7 +19,8 @@ void plant_conversions_read(struct yaml_reader *reader, yaml_node_t *node, struc
 void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
 /* Reads the key `notify`. */
 void plant_notify_read(struct yaml_reader *reader, yaml_node_t *node, void *plant);
-void plant_notify_free(struct plant_notify **notify); /* Frees the recipients and sets *notify to NULL; accepts a pointer to NULL. */
+/* Frees the settings of `notify` and sets *notify to NULL; accepts a pointer to NULL. */
+void plant_notify_free(struct plant_notify **notify);
 /* Reads a time span such as 22:00-06:00. Returns false after an error, which is reported for the key `name`. */
 bool plant_day_span_read(struct yaml_reader *reader, yaml_node_t *node, const char *name, int *from_min, int *to_min);
 /* Read the lists `views`, `tours`, `other_plants` and `walls`. */
@@ -32,10 +33,10 @@ void plant_influence_read(struct yaml_reader *reader, yaml_node_t *node, void *r
 /* plant_gp_read() reads a group's key `gp`; plant_gp_check() checks the values and sets defaults. */
 void plant_gp_read(struct yaml_reader *reader, yaml_node_t *node, void *group);
 void plant_gp_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_group *group);
-/* Reports keys that the interpolation `fin` needs and that are missing: the group's ambient, and the thickness of assets with sensors of
-   the group. */
+/* Reports missing keys that the interpolation `fin` needs: the temperature of a group's surroundings (`ambient`), and the wall thickness of
+   assets with sensors of that group. */
 void plant_influence_check(const struct plant *plant, struct diag *diag);
-/* Report views, tags, tours and plants that tour stops or wall panes name but that do not exist. Call them after the tag list has been
+/* Report names of views, tags, tours and other plants in tours and wall panes that do not exist. Call them after the tag list has been
    read. */
 void plant_tours_check(const struct plant *plant, struct diag *diag);
 void plant_walls_check(const struct plant *plant, struct diag *diag);
@@ -71,22 +72,22 @@ void plant_mqtt_finish(struct plant_mqtt *mqtt);
 void plant_opcua_read_security(struct yaml_reader *reader, yaml_node_t *node, void *source);
 void plant_opcua_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_source *source);
 void plant_opcua_finish(struct plant_opcua *opcua);
-/* Resolves the path of a secret file or folder relative to the plant file. If the file cannot be read, warns and names the key. This is no
-   error, since a user who only prepares the plant may lack the right to read it. */
+/* Resolves the path of a file or folder with secrets (a key or a password) relative to the plant file. If the file cannot be read, warns
+   and names the key. This is no error, since a user who only prepares the plant may lack the right to read it. */
 void plant_secret_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, const char *key, char **path);
 
-/* For a list of records that begin with `char *id`: allocates a record for each item of the list and sets *count. Reports a list with fewer
-   than `least` items. Returns NULL, reported, if the node is no list or memory runs out. */
+/* Prepares reading a YAML list into records that begin with `char *id`: allocates a record for each item of the list and sets *count.
+   Reports a list with fewer than `least` items. Returns NULL, reported, if the node is no list or memory runs out. */
 void *plant_list_make(struct yaml_reader *reader, yaml_node_t *node, const char *name, int least, size_t bytes_each, int *count);
-/* Reports an id that occurs twice; call it after reading each record. */
+/* Reports the id of the record read last if an earlier record of the list has it, too. */
 void plant_list_check_id(struct yaml_reader *reader, const struct yaml_map *map, const char *what, const void *things, size_t count,
                          size_t stride, size_t line_offset);
-/* Makes *path, if it is relative, a path from the folder of the plant file. */
+/* Puts the folder of the plant file before *path if *path is relative. */
 void plant_resolve_path(const struct plant *plant, char **path);
 
 /* Reads the tag list, plant->tags_path; assets, groups and sources must have been read. */
 void tag_list_read(struct plant *plant, struct diag *diag);
-/* Returns true if limits do not ascend (LL < L < H < HH; NaN: not set), with the indices of the first two that do not. */
+/* Returns true if alarm limits do not ascend (LL < L < H < HH; NaN: not set), with the indices of the first two that do not. */
 bool plant_limits_wrong(const double limits[LIMIT_COUNT], int *lower, int *upper);
 
 /* Reads the list `colormaps`. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the tags that are sensors of an asset, and their positions in its frame. */
+/* Finds the tags that are sensors of an asset, and their positions in its coordinate frame. */
 #include "plant/sensors.h"
 
 #include <string.h>
@@ -18,7 +18,7 @@ size_t plant_sensors(const struct plant *plant, int asset, struct plant_sensor *
     const struct plant_asset *of = &plant->assets[asset];
     size_t count = 0;
     double asset_from_plant[16];
-    if (!transform_invert(of->placement, asset_from_plant)) /* never fails: plant_load() refuses placements without an inverse */
+    if (!transform_invert(of->placement, asset_from_plant)) /* the inverse exists: plant_load() refuses placements that have none */
         memcpy(asset_from_plant, transform_identity, sizeof(asset_from_plant));
     for (size_t i = 0; i < plant->tag_count; i++)
         count += is_sensor(&plant->tags[i], asset);

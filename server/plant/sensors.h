@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lists the sensors of an asset as its prepared file must contain them: plantcast-prep writes this list, and scene_create() compares the
-   file with it. Thread: any. */
+/* Lists the sensors of an asset as its asset file must contain them: plantcast-prep writes this list, and scene_create() compares the file
+   with it. Thread: any. */
 #ifndef PLANT_SENSORS_H
 #define PLANT_SENSORS_H
 #include <stdint.h>
@@ -14,7 +14,7 @@ struct plant_sensor {
     /* hash (XXH3-64) of `node`; 0: position_m is used. If the sensor's place is assumed: a hash, with another seed, of `node` or
        position_m */
     uint64_t node_hash;
-    double position_m[3]; /* position in the asset frame (metres, Z up); zero if `node` is set */
+    double position_m[3]; /* position in the asset's coordinate frame (metres, Z up); zero if `node` is set */
 };
 
 /* Returns the number of tags that have this asset and a group, and lists them in the order of the tag list; free *out with mem_free(). */

@@ -212,7 +212,7 @@ static bool goes_before(const struct history_queries *queries, const struct pend
 {
     uint64_t a_served = served_of(queries, a), b_served = served_of(queries, b);
     /* If two queries were served equally long ago, the older one goes first. The list is newest first, so that is the later one in the
-   list. */
+       list. */
     return a_served < b_served || (a_served == b_served && a->served <= b->served);
 }
 

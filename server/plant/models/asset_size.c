@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Plausible sizes of equipment and buildings, and the effect of wrong units. */
+/* Decides whether the size of a piece of equipment or a building is plausible, and which units would make it plausible. */
 #include "plant/models/asset_size.h"
 
 #include <math.h>
@@ -10,8 +10,8 @@
 #include "base/math/search.h"
 #include "base/mem.h"
 
-/* Bounds of plausible sizes: halls and platforms are below LARGE_M, transmitters above SMALL_M. An asset is also implausible if it exceeds
-   both LARGE_BESIDE_M and TIMES_MEDIAN times the plant's median. */
+/* Bounds of plausible sizes in metres: halls and platforms are below LARGE_M, transmitters above SMALL_M. An asset is also implausible if
+   it exceeds both LARGE_BESIDE_M and TIMES_MEDIAN times the median size of the plant's assets. */
 #define LARGE_M 300.0
 #define SMALL_M 0.03
 #define LARGE_BESIDE_M 60.0

@@ -11,7 +11,7 @@
 #include "plant/models/model_header.h"
 #include "plant/sensors.h"
 
-#define SAME_PLACE_M 1e-3 /* distance in metres below which positions of nodes are equal; the same value as in plantcast-prep */
+#define SAME_PLACE_M 1e-3 /* distance in metres below which positions of model nodes count as equal; the same value as in plantcast-prep */
 /* tolerated distance of a sensor from its asset's bounding box in metres, in addition to a fraction of the box's diagonal */
 #define SLACK_M 0.5
 #define SLACK 0.05
@@ -24,15 +24,15 @@ struct plant_models_check {
     const struct plant *plant;
     struct diag *diag;
     struct model_header header; /* header of the model file that is being checked */
-    bool *taken;                /* by node: true: the node belongs to the asset being checked */
-    bool *counted;              /* by node: true: the node belongs to an asset checked so far, so its triangles are counted already */
+    bool *taken;                /* by model node: true: the node belongs to the asset being checked */
+    bool *counted;              /* by model node: true: the node belongs to an asset checked so far, so its triangles are counted already */
     uint64_t triangles;         /* triangles of all models; a model that several assets share counts once */
     uint32_t *found;
 };
 
 /* --- boxes ---------------------------------------------------------------------------------------------------------------------- */
 
-/* Converts a box from model units and axes to metres, Z up. */
+/* Converts a bounding box from model units and axes to metres, Z up. */
 static struct model_box in_asset(const struct model_box *box, double unit_m, enum axis up)
 {
     struct model_box out;
@@ -119,7 +119,8 @@ static void check_places(struct plant_models_check *check, size_t asset_index, c
     mem_free(sensors);
 }
 
-/* Computes the place of a node as plantcast-prep does: the middle of its triangles, or the origin of its frame if it has none. */
+/* Computes the place of a node as plantcast-prep does: the middle of its triangles, or the origin of its coordinate frame if it has no
+   triangles. */
 static void place_of(const struct model_header *header, uint32_t node, double out[3])
 {
     struct model_box box = model_box_empty;
@@ -129,9 +130,9 @@ static void place_of(const struct model_header *header, uint32_t node, double ou
         out[axis] = box.low[axis] <= box.high[axis] ? (box.low[axis] + box.high[axis]) / 2 : header->origins[node][axis];
 }
 
-/* Returns whether all nodes that have a certain name have the same position. If the asset itself has nodes of that name, only these are
-   compared. *count receives the number of nodes compared. Returns true if the header does not state all positions, because plantcast-prep
-   compares them later. */
+/* Returns whether all nodes of the model with a certain name have the same position. If nodes of that name belong to the asset, only these
+   are compared. *count receives the number of nodes compared. Returns true if the header does not state all positions, because
+   plantcast-prep compares them later. */
 static bool is_one_place(const struct plant_models_check *check, const struct plant_asset *asset, size_t *count)
 {
     size_t own = 0;

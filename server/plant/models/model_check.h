@@ -7,8 +7,8 @@
 
 #include "plant/plant.h"
 
-/* Adds findings to diag, and prints a line with the size of each asset to `out` (NULL: no lines). Returns false, with an error in diag,
-   if the plant has more triangles than a machine with memory_bytes of memory (0: this machine) can serve. */
+/* Adds errors and warnings to diag, and prints a line with the size of each asset to `out` (NULL: no lines). Returns false, with an error
+   in diag, if the plant has more triangles than a machine with memory_bytes of memory (0: this machine) can serve. */
 bool models_check(const struct plant *plant, size_t memory_bytes, struct diag *diag, FILE *out);
 
 #endif

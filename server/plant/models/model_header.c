@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the JSON chunk of a GLB file, or a .gltf file, and walks its scene. */
+/* Reads the JSON chunk of a GLB file, or a .gltf file, and lists the nodes of its scene. */
 #include "plant/models/model_header.h"
 
 #include <errno.h>
@@ -99,7 +99,7 @@ void model_box_add(struct model_box *box, const struct model_box *other)
     }
 }
 
-/* Returns the divisor of normalised integers: the integer that represents 1. */
+/* Returns the number by which the integers of a normalised glTF accessor are divided: the integer that represents 1. */
 static double divisor_of(const json_t *accessor)
 {
     if (!json_is_true(json_object_get(accessor, "normalized")))
@@ -161,7 +161,7 @@ static struct model_box box_of_mesh(const struct header_walk *walk, const json_t
 
 /* --- nodes ---------------------------------------------------------------------------------------------------------------------- */
 
-/* Reads the numbers of a member; leaves `out` alone if the member is missing. */
+/* Reads an array of numbers, the member `key` of a JSON object; leaves `out` unchanged if the member is missing. */
 static bool numbers_of(const json_t *object, const char *key, double *out)
 {
     const json_t *list = json_object_get(object, key);
@@ -170,7 +170,7 @@ static bool numbers_of(const json_t *object, const char *key, double *out)
     return list;
 }
 
-/* Reads the transform of a node. Returns NULL, or the reason why the node is refused. */
+/* Reads the transform of a glTF node to its parent. Returns NULL, or the reason why the node is refused. */
 static const char *local_of(const json_t *node, double out[16])
 {
     double t[3] = { 0, 0, 0 }, q[4] = { 0, 0, 0, 1 }, s[3] = { 1, 1, 1 }, matrix[16];
@@ -195,7 +195,7 @@ static const char *name_of(const json_t *object)
     return name ? name : "";
 }
 
-/* Adds a node and its children. model_rules_check() has checked types and references. */
+/* Adds a node and its children. model_rules_check() has checked the types of all JSON members and their indices. */
 static bool walk_node(struct header_walk *walk, size_t number, int parent, const double parent_world[16], int depth)
 {
     struct model_header *header = walk->header;
@@ -269,7 +269,7 @@ bool model_header_read(struct model_header *header, const char *path, char *why,
     bool good = version && version[0] == '2';
     if (!good)
         wrong(walk.why, "is not glTF 2.0: its asset.version is '%.20s'", version ? version : "");
-    else if (!model_rules_check(root, invalid)) /* may delete members of the document, so it comes before these are looked up */
+    else if (!model_rules_check(root, invalid)) /* called before the members of the document are looked up, because it may delete some */
         good = wrong(walk.why, "is not valid: %.*s", MODEL_WHY_BYTES - 20, invalid);
     walk.nodes = json_object_get(root, "nodes");
     walk.meshes = json_object_get(root, "meshes");

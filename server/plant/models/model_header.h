@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the nodes of a glTF file and their bounding boxes from its JSON, without the vertices, so that --check is fast. Thread: any. */
+/* Reads the nodes of a glTF file and their bounding boxes from its JSON, without the vertices, so that plantcastd --check is fast. Thread:
+   any. */
 #ifndef PLANT_MODELS_MODEL_HEADER_H
 #define PLANT_MODELS_MODEL_HEADER_H
 #include "plant/models/nodes.h"
@@ -9,11 +10,11 @@ struct model_box { /* axis-aligned bounding box; empty if a coordinate of its lo
 };
 
 struct model_header {
-    struct model_node *nodes; /* nodes of the scene, depth first */
+    struct model_node *nodes; /* nodes of the scene, each directly followed by its descendants */
     struct model_box *boxes;  /* bounding box of each node's own mesh in scene coordinates, in the model's units and axes */
     double (*origins)[3];     /* origin of each node's own frame in scene coordinates, in the model's units and axes */
     size_t count;
-    bool partial; /* true: boxes may be too small, because the model has instances, or accessors without min and max */
+    bool partial; /* true: boxes may be too small, because the model has instances, or accessors that state no bounds (min and max) */
     void *json;   /* parsed JSON of the model file, which owns the names */
 };
 

@@ -10,7 +10,7 @@ extern "C" {
 
 #define MODEL_WHY_BYTES 400
 
-/* Formats the error text into why. Always returns false, so that callers can write `return wrong(why, ...)`. */
+/* Formats the error text into `why`. Always returns false, so that callers can write `return wrong(why, ...)`. */
 bool wrong(char why[MODEL_WHY_BYTES], const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of rules for properties of a glTF document. */
+/* Checks a glTF document by a table of rules, one for each property that is read later. */
 #include "plant/models/model_rules.h"
 
 #include <math.h>
@@ -9,15 +9,16 @@
 #include <string.h>
 
 enum rule_kind { OBJECT, LIST, TEXT, FLAG, NUMBER, NUMBERS, SIZE, COUNT, INDEX, INDICES, ATTRIBUTES };
-enum rule_need { MAY, MUST }; /* MUST: the property is required if its parent object exists */
+enum rule_need { MAY, MUST }; /* MUST: it is an error if an object of the list lacks the property */
 
 struct model_rule {
-    /* list: name of the glTF array that contains the object; path: property of the object; dots separate nested objects, for which earlier
-     * rules exist */
+    /* list: name of the glTF array that contains the object; path: name of the property; dots separate nested objects, which have rules of
+       their own earlier in the table */
     const char *list, *path;
     enum rule_kind kind;
     enum rule_need need;
-    /* kinds INDEX, INDICES, ATTRIBUTES: name of the glTF array that the index refers to; NULL for ATTRIBUTES: any number is allowed */
+    /* kinds INDEX, INDICES, ATTRIBUTES: name of the glTF array into which the property's value is an index; NULL for ATTRIBUTES: any number
+       is allowed */
     const char *target;
     size_t length;      /* NUMBERS: length of the array */
 };
@@ -37,7 +38,8 @@ struct model_rule {
 #define INSTANCING "extensions.EXT_mesh_gpu_instancing"
 
 /* clang-format off */
-/* buffer views of accessors are checked only when the accessor is read, because some files have unused accessors with invalid views */
+/* the table has no rule for an accessor's bufferView: it is checked only when the accessor is read, because some files have unused
+   accessors with invalid views */
 static const struct model_rule rules[] = {
     { "buffers", "byteLength", SIZE, MUST, NULL, 0 }, { "buffers", "uri", TEXT, MAY, NULL, 0 },
     { "bufferViews", "buffer", INDEX, MUST, "buffers", 0 }, { "bufferViews", "byteOffset", SIZE, MAY, NULL, 0 },
@@ -89,13 +91,13 @@ static const struct model_rule rules[] = {
 };
 /* clang-format on */
 
-/* extensions that this program implements, so a file may list them as required */
+/* glTF extensions that this program implements; a file may require them */
 static const char *const known_extensions[] = {
     "KHR_mesh_quantization", "EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_texture_transform", "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
 };
 
-/* name prefixes of extensions that change neither shape nor position of a model; they are ignored */
+/* prefixes of the names of glTF extensions that change neither shape nor position of a model; this program ignores such extensions */
 static const char *const look_extensions[] = {
     "KHR_materials_", "EXT_materials_",     "ADOBE_materials_",        "KHR_texture_", "EXT_texture_",           "MSFT_texture_",
     "KHR_lights_",    "EXT_lights_",        "KHR_xmp",                 "KHR_audio",    "KHR_techniques_webgl",   "KHR_animation_pointer",
@@ -146,7 +148,7 @@ static bool object_wrong(const struct rule_check *c, const char *fmt, ...)
     return wrong(c->why, "%s: %s", what, text);
 }
 
-/* Writes the whole number that `value` holds, written as 3 or as 3.0, to *out. Returns false if there is none. */
+/* Writes to *out the whole number that a JSON value holds, whether written as 3 or as 3.0. Returns false if it holds none. */
 static bool whole(const json_t *value, json_int_t *out)
 {
     double real = json_real_value(value);

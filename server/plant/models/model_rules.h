@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Validates the types and references of a glTF document, which the glTF library accepts unchecked or drops silently. Thread: any. */
+/* Validates the types and references of a glTF document, because the glTF library accepts wrong ones, or drops them without an error.
+   Thread: any. */
 #ifndef PLANT_MODELS_MODEL_RULES_H
 #define PLANT_MODELS_MODEL_RULES_H
 #include <jansson.h>
@@ -15,7 +16,7 @@ void model_rules_name(const json_t *root, const char *list, size_t number, int p
 
 /* Returns whether this program implements an extension. */
 bool model_rules_known(const char *name);
-/* Returns whether an extension affects only the appearance of a model, so that the model can be drawn without it. */
+/* Returns whether a glTF extension affects only the colours of a model, so that it can be ignored. */
 bool model_rules_look(const char *name);
 
 #endif

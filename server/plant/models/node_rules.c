@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks transforms and shapes of nodes. */
+/* Computes and checks the transforms of glTF nodes. */
 #include "plant/models/node_rules.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 
 #include "plant/models/transform.h"
 
-/* limit of the numbers in a matrix; least length of a rotation quaternion; tolerance of a matrix's last row */
+/* limit of the numbers in a node's matrix; least length of a rotation quaternion; tolerance of a matrix's last row */
 static const double MAX_COORDINATE = 1e15, LEAST_ROTATION = 1e-6, MATRIX_SLACK = 1e-6;
 
 const char *node_rules_local(const double t[3], const double q[4], const double s[3], const double *matrix, double out[16])

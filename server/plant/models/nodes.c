@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Matches node patterns: by name, by index in the file (#12), by the name of a mesh, by path. */
+/* Matches node patterns against the nodes of a model: by name, by index in the file (#12), by the name of a mesh, or by path (names of a
+   node and its parents). */
 #include "plant/models/nodes.h"
 
 #include <fnmatch.h>
@@ -18,9 +19,9 @@ enum pattern_kind { NAME, GLOB, NUMBER, MESH, PATH };
 struct pattern {
     enum pattern_kind kind;
     bool excludes;
-    char *text; /* the pattern's text without its prefixes ! and mesh:; a PATH is cut into segments in place */
+    char *text; /* the pattern's text without its prefixes ! and mesh:. A pattern that is a path is cut at its slashes, in this text */
     uint64_t number;
-    bool from_root; /* true: the PATH begins with a slash, so it starts at the scene's root */
+    bool from_root; /* true: the pattern is a path that begins with a slash, so it starts at the scene's root */
     const char *segments[SEGMENTS_MAX];
     size_t segment_count;
 };
@@ -151,7 +152,7 @@ static bool is_mesh(const char *text, const struct node_list *model)
     return false;
 }
 
-/* Writes ": did you mean ...?", or nothing if no name is similar. */
+/* Writes ": did you mean ...?" with the name that is most similar to the pattern, or nothing if none is similar. */
 static void suggest(const struct pattern *pattern, const struct node_list *model, char *out, size_t bytes)
 {
     const char *text = pattern->kind == PATH ? pattern->segments[pattern->segment_count - 1] : pattern->text;
@@ -180,7 +181,7 @@ static void say_none(const struct pattern *pattern, const char *text, const stru
 
 /* --- applying patterns -------------------------------------------------------------------------------------------------------- */
 
-/* Marks the nodes that a pattern matches. Returns false if no node matches. */
+/* Sets marks[i] to `value` for each node i that a pattern matches. Returns false if no node matches. */
 static bool mark(const struct pattern *pattern, const struct node_list *model, bool *marks, bool value)
 {
     bool any = false;

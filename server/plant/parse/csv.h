@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the rows of a CSV file (RFC 4180, separated by comma, semicolon or tab) with the line and column of each cell. plant_load() makes
-   one tag of each row that csv_next() returns, so row n is tag n. Thread: one. */
+/* Reads the rows of a CSV file (RFC 4180, separated by comma, semicolon or tab) with the line and column of each cell. In a tag list, the
+   row that the n-th call of csv_next() returns describes tag n. Thread: one. */
 #ifndef PLANT_PARSE_CSV_H
 #define PLANT_PARSE_CSV_H
 #include <stdbool.h>
@@ -28,8 +28,8 @@ struct csv { /* state of the CSV reader; callers may read its members but not ch
     struct csv_row header, row;
 };
 
-/* Reads the file and its header row. Returns false after errors, which go to diag; csv_close() is then not needed. The path is copied;
-   diag must outlive the reader. */
+/* Reads the file and its header row. Returns false after errors, which are added to diag; csv_close() is then not needed. The path is
+   copied; diag must outlive the reader. */
 bool csv_open(struct csv *csv, const char *path, struct diag *diag);
 /* Opens a file of another program, in any encoding, like csv_open(). encoding, choice: see input_read_foreign(). */
 bool csv_open_foreign(struct csv *csv, const char *path, const char *encoding, struct diag *diag, struct charset_choice *choice);

@@ -16,7 +16,7 @@ enum {
     TEXT_AT_LEAST = 10 /* TEXT_AT_LEAST: minimum number of valid characters for each invalid byte, so that a file counts as text */
 };
 
-/* Reports invalid bytes. Returns false if the bytes are not text at all; nothing is then reported. */
+/* Reports bytes that are not valid UTF-8. Returns false if the bytes are not text at all; nothing is then reported. */
 static bool check_characters(char *text, size_t bytes, const char *path, struct diag *diag)
 {
     size_t wrong = 0;
@@ -77,7 +77,7 @@ static char *read_bytes(const char *path, const char *wanted, struct diag *diag,
     return text;
 }
 
-/* Takes ownership of a file's text, and checks its encoding. Returns NULL after an error (reported). */
+/* Takes ownership of a file's content, and checks that it is valid UTF-8. Returns NULL after an error (reported). */
 static char *check_text(char *text, size_t bytes, const char *path, const char *wanted, struct diag *diag)
 {
     if (is_blank(text, bytes))

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads decimal numbers in the C locale. */
+/* Reads decimal numbers with a decimal point, whatever the user's locale. */
 #include "plant/parse/number.h"
 
 #include <locale.h>
@@ -10,7 +10,7 @@
 #include <string.h>
 #include <strings.h>
 
-static locale_t c_locale; /* the C locale; created once per process, never freed */
+static locale_t c_locale; /* the locale "C", which has a decimal point; created once per process, never freed */
 static pthread_once_t c_locale_once = PTHREAD_ONCE_INIT;
 
 static void make_c_locale(void)

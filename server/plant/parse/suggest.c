@@ -18,7 +18,8 @@ static int lower(char c)
     return tolower((unsigned char)c);
 }
 
-/* Returns the optimal string alignment distance of two texts of at most NAME_MAX_BYTES, ignoring case. */
+/* Returns how many letters must be inserted, deleted, replaced or swapped with a neighbour to turn one text into the other (optimal string
+   alignment). Texts have at most NAME_MAX_BYTES; case is ignored. */
 static int edit_distance(const char *a, size_t a_bytes, const char *b, size_t b_bytes)
 {
     int rows[3][NAME_MAX_BYTES + 1];

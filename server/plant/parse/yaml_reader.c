@@ -28,8 +28,8 @@ static struct text_position place_of_byte(const char *text, size_t offset)
     return place;
 }
 
-/* Reports tabs in the indentation of lines: YAML forbids tabs there, but libyaml's message does not mention them. Returns whether any were
-   found. */
+/* Reports tabs in the indentation of the YAML file's lines: YAML forbids tabs there, but libyaml's message does not mention them. Returns
+   whether any were found. */
 static bool report_tabs(struct yaml_reader *reader, const char *text)
 {
     bool any = false;

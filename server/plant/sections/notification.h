@@ -19,7 +19,7 @@ struct notify_list {
     size_t count;
 };
 
-struct notify_mail { /* SMTP server that sends e-mail */
+struct notify_mail { /* SMTP server to which the daemon sends its e-mails */
     char *server;    /* URL of the mail server: smtps://HOST[:PORT], or smtp:// with STARTTLS; NULL: none */
     char *from;
     char *user, *password_file, *ca_file; /* NULL: none */
@@ -34,7 +34,7 @@ struct notify_recipient {
     int line;
 };
 
-struct notify_shift {     /* shift: a time span in the plant's time zone */
+struct notify_shift {     /* a time of day in the plant's time zone during which a shift works */
     unsigned days;        /* bit mask of the days on which the shift begins; the lowest bit is Monday */
     int from_min, to_min; /* minutes of the day; from_min equal to to_min: the whole day; to_min before from_min: ends on the next day */
 };
@@ -46,7 +46,7 @@ struct notify_step {
 
 struct notify_rule {
     char *id;
-    int priority;             /* lowest priority that the rule covers; more urgent alarms are included */
+    int priority;             /* least urgent priority of the alarms that the rule covers */
     struct notify_list areas; /* patterns of area names to which the rule applies; none: all areas */
     struct notify_shift shift;
     struct notify_step steps[NOTIFY_STEPS];

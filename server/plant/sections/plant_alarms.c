@@ -11,7 +11,7 @@
 
 struct alarm_reference {
     char *text;
-    size_t tag; /* index of the tag whose row names another tag in an alarm cell */
+    size_t tag; /* index of the tag whose row names another tag as its alarm bit or as the bit that suppresses its alarms */
     enum tag_column column;
     int line, at_column;
 };
@@ -115,7 +115,7 @@ static void resolve_suppression(struct plant *plant, struct diag *diag, const st
     plant->tags[reference->tag].alarms.suppressed_by = by;
 }
 
-/* If the last word of the text is in the list, cuts that word off and returns its index in the list; otherwise returns -1. */
+/* If the last word of the text is one of `words`, cuts that word off and returns its index in the list; otherwise returns -1. */
 static int take_word(char *text, const char *const *words, int count)
 {
     char *blank = strrchr(text, ' ');
@@ -129,7 +129,7 @@ static int take_word(char *text, const char *const *words, int count)
     return -1;
 }
 
-/* Resolves a cell `TAG LIMIT [acknowledged]`; LIMIT is LL, L, H, HH or ALM. */
+/* Finds the tag and the limit that a mirrored alarm bit reports, from a cell `TAG LIMIT [acknowledged]`; LIMIT is LL, L, H, HH or ALM. */
 static void resolve_mirror(struct plant *plant, struct diag *diag, const struct alarm_reference *reference)
 {
     static const char *const acknowledged[] = { "acknowledged" };

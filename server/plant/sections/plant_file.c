@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads plant.yaml: the tables of its keys, and the checks across keys. PLANT.md describes the form. */
+/* Reads plant.yaml: has the tables of its keys, and checks keys against each other. PLANT.md describes the form. */
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
@@ -211,8 +211,8 @@ static void read_assets(struct yaml_reader *reader, yaml_node_t *node, void *rec
         read_asset(reader, yaml_list_item(reader, node, i), plant, &plant->assets[plant->asset_count++]);
 }
 
-/* Turns assets from Z up (asset frame) to the upward axis of the plant: in a plant with Y up, an asset without a rotation thus stands
-   upright. */
+/* Turns each asset from its own frame (Z up) so that its Z axis points along the plant's upward axis. So in a plant with Y up, an asset
+   without a rotation stands upright. */
 static void stand_upright(struct plant *plant)
 {
     static const double y_up_from_z_up[16] = { 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1 };
@@ -355,7 +355,7 @@ static void read_groups(struct yaml_reader *reader, yaml_node_t *node, void *rec
 
 /* --- other keys ------------------------------------------------------------------------------------------------------------- */
 
-/* Key handler that does nothing, because read_conversions() has already read `convert`. */
+/* Reader of the key `convert` that does nothing, because read_conversions() has already read it. */
 static void skip_conversions(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     (void)reader;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the plant file's `links`: URL templates of other systems' pages about an asset or a tag. */
+/* Reads the plant file's `links`: templates of URLs of other systems' pages about an asset or a tag. */
 #include <ctype.h>
 #include <string.h>
 
@@ -17,7 +17,7 @@ static size_t scheme_length(const char *url)
 }
 
 /* Returns a message that says what is wrong with a URL template, or NULL. Scheme and host must end before the first brace, so that a value
-   cannot change the host. */
+   inserted there cannot change the host. */
 static const char *wrong_with(const char *url, bool of_tags)
 {
     static const char *const of_asset[] = { "{id}", "{tag}", "{area}" }, *const of_tag[] = { "{name}", "{asset}", "{group}" };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads lists, paths, secrets and limits, which several sections of the plant file and the tag list have in common. */
+/* Functions for lists, paths, files with secrets and alarm limits, which several sections of the plant file and the tag list use. */
 #include <errno.h>
 #include <math.h>
 #include <string.h>

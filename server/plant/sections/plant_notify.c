@@ -341,7 +341,7 @@ static yaml_node_t *value_of(struct yaml_reader *reader, const yaml_node_t *map,
     return NULL;
 }
 
-/* Key handler that does nothing: plant_notify_read() reads these keys later in a fixed order, because rules refer to recipients and
+/* Reader of a key that does nothing: plant_notify_read() reads these keys later in a fixed order, because rules refer to recipients and
    recipients to the mail server. */
 static void read_later(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {

@@ -27,7 +27,8 @@ void plant_publish_read(struct yaml_reader *reader, yaml_node_t *node, void *rec
         { "client_id", KEY_NAME, false, offsetof(struct plant_publish, broker.mqtt.client_id), 0, 0, NULL, NULL },
         { "keepalive_s", KEY_INT, false, offsetof(struct plant_publish, broker.mqtt.keepalive_s), 5, 3600, NULL, NULL },
         { "login", KEY_NAME, false, offsetof(struct plant_publish, broker.login), 0, 0, NULL, NULL },
-        /* offset 0: plant_mqtt_read_tls() takes a struct plant_source, which is the first member (`broker`) of struct plant_publish */
+        /* the offset is 0 because plant_mqtt_read_tls() gets a struct plant_source, which is the first member (`broker`) of struct
+           plant_publish */
         { "tls", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_mqtt_read_tls },
         { "prefix", KEY_NAME, true, offsetof(struct plant_publish, prefix), 0, 0, NULL, NULL },
         { "every_s", KEY_NUMBER, false, offsetof(struct plant_publish, every_s), 0.1, 3600, NULL, NULL },

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses [UNIT!]ADDRESS[.BIT][#ORDER], and the names of data types. */
+/* Parses Modbus addresses of the form [UNIT!]ADDRESS[.BIT][#ORDER], and the names of data types. */
 #include "plant/sources/address.h"
 
 #include <stdio.h>
@@ -15,7 +15,7 @@ struct type_name {
     enum data_type type;
 };
 
-/* Names of data types; for each type our own name comes first, then Kepware's. */
+/* Names of data types; for each type our own name comes first, then the name in tag lists of the program Kepware. */
 static const struct type_name type_names[] = {
     { "bool", DATA_BIT },      { "boolean", DATA_BIT },     { "bit", DATA_BIT },        { "int16", DATA_INT16 },
     { "short", DATA_INT16 },   { "uint16", DATA_UINT16 },   { "word", DATA_UINT16 },    { "int32", DATA_INT32 },
@@ -71,7 +71,7 @@ int data_type_registers(enum data_type type)
 bool byte_order_parse(const char *text, enum byte_order *out)
 {
     static const struct {
-        const char *name, *suffix; /* letters after # in a Modbus address that name the byte order */
+        const char *name, *suffix; /* byte order: its name, and the letters after # with which a Modbus address states it */
         enum byte_order order;
     } orders[] = {
         { "ABCD", "LL", BYTE_ORDER_ABCD },
@@ -101,8 +101,8 @@ static int read_digits(const char **p, long *value)
     return count;
 }
 
-/* Parses an address that names its table, such as hr:0. Its register number counts from 0, as in Modbus messages. Returns false with the
-   reason in `why` if the text is no such address. */
+/* Parses an address that names its Modbus table, such as hr:0 for holding registers. Its register number counts from 0, as in Modbus
+   messages. Returns false with the reason in `why` if the text is no such address. */
 static bool read_named_table(const char **p, struct modbus_address *out, char why[200])
 {
     static const struct {
@@ -128,8 +128,8 @@ static bool read_named_table(const char **p, struct modbus_address *out, char wh
     return true;
 }
 
-/* Parses 40001 and 400001: the first digit selects the table, the other digits are the register number, counted from address_base. Returns
-   false with the reason in `why` if the text is no such address. */
+/* Parses 40001 and 400001: the first digit selects the Modbus table, the other digits are the register number, counted from address_base.
+   Returns false with the reason in `why` if the text is no such address. */
 static bool read_digit_table(const char **p, int address_base, struct modbus_address *out, char why[200])
 {
     static const enum register_table tables[] = { TABLE_COIL, TABLE_DISCRETE, 0, TABLE_INPUT, TABLE_HOLDING }; /* by first digit */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* JSONPath evaluation without compiling: each evaluation parses the path step by step. */
+/* Evaluates JSONPaths without compiling them: each evaluation parses the path step by step. */
 #include "plant/sources/json_path.h"
 
 #include <stdio.h>
@@ -35,7 +35,7 @@ static bool add_byte(char out[JSON_PATH_TEXT_BYTES], size_t *count, unsigned byt
     return true;
 }
 
-/* Appends a \u escape. Returns false for \u0000 and for surrogates. */
+/* Appends the character of an escape \uXXXX as UTF-8. Returns false for \u0000 and for surrogates. */
 static bool add_unicode(char out[JSON_PATH_TEXT_BYTES], size_t *count, const char *hex)
 {
     char digits[5] = { 0 }, *end;
@@ -93,7 +93,8 @@ static bool read_word(const char **at, const char *word)
     return true;
 }
 
-/* Reads a literal. Returns false with `why` unchanged if no literal begins here. */
+/* Reads the literal (text, number, true, false or null) on the right side of a comparison. Returns false with `why` unchanged if no literal
+   begins here. */
 static bool read_literal(const char **at, struct json_path_test *out, char why[200])
 {
     static const char *const words[] = { "true", "false", "null" };
@@ -159,7 +160,7 @@ static bool read_test(const char **at, struct json_path_test *out, char why[200]
     return read_literal(at, out, why) || (!*why && wrong(why, "expected a string, a number, true, false or null after ==", begin));
 }
 
-/* Reads comparisons joined by &&, optionally in parentheses. Returns false with the reason in `why` if that fails. */
+/* Reads a filter's comparisons, joined by &&, optionally in parentheses. Returns false with the reason in `why` if that fails. */
 static bool read_tests(const char **at, struct json_path_step *out, int depth, char why[200])
 {
     for (;;) {

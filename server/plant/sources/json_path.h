@@ -11,11 +11,11 @@ enum { JSON_PATH_TEXT_BYTES = 128, JSON_PATH_MAX_TESTS = 4 };
 enum json_literal_kind { JSON_LITERAL_STRING, JSON_LITERAL_NUMBER, JSON_LITERAL_TRUE, JSON_LITERAL_FALSE, JSON_LITERAL_NULL };
 
 struct json_path_test { /* one comparison in a filter: `@.a.b == literal` */
-    const char *path;   /* path after the `@`: names and indices, for json_path_next_operand() until `end` */
+    const char *path;   /* path on the left side, after its `@`: names and indices, to be read with json_path_next_operand() up to `end` */
     const char *end;
     enum json_literal_kind kind;
     double number;
-    char text[JSON_PATH_TEXT_BYTES]; /* text of a string literal, 0-terminated */
+    char text[JSON_PATH_TEXT_BYTES]; /* text of the literal on the right side if it is a string, 0-terminated */
 };
 
 enum json_path_kind { JSON_PATH_NAME, JSON_PATH_INDEX, JSON_PATH_FILTER };

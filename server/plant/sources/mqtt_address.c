@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses addresses of the form TOPIC#PATH: the first `#` separates the two parts, because topics cannot contain it. */
+/* Parses addresses of MQTT values of the form TOPIC#PATH: the first `#` separates the two parts, because topics cannot contain it. */
 #include "plant/sources/mqtt_address.h"
 
 #include <stdio.h>
@@ -66,7 +66,7 @@ static bool fill_template(const struct plant *plant, const struct plant_tag *tag
     return true;
 }
 
-/* Returns whether a topic has the form GROUP/NODE or GROUP/NODE/DEVICE. */
+/* Returns whether a topic has the form GROUP/NODE or GROUP/NODE/DEVICE of Sparkplug. */
 static bool is_sparkplug(const char *topic)
 {
     int parts = 1;

@@ -11,8 +11,8 @@ enum { MQTT_TOPIC_BYTES = 1024 }; /* maximum length of a tag's topic; MQTT itsel
 
 /* Checks the template of a source's topics. Returns false on errors, with the expected form in `why`. */
 bool mqtt_template_check(const char *text, char why[200]);
-/* Sets tag->topic and tag->path from its address and its source's template; name, address, source, group and asset of the tag must be
-   set. Returns false on errors, with the expected form in `why`. */
+/* Sets tag->topic and tag->path from the tag's address and the topic template of its source; name, address, source, group and asset of the
+   tag must be set. Returns false on errors, with the expected form in `why`. */
 bool mqtt_address_resolve(const struct plant *plant, struct plant_tag *tag, char why[200]);
 
 #endif

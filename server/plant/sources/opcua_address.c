@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses OPC UA addresses. The array element is a prefix, because names of nodes may themselves end in brackets. */
+/* Parses OPC UA addresses. An array element is written before the node ([3]), because names of nodes may themselves end in brackets. */
 #include "plant/sources/opcua_address.h"
 
 #include <ctype.h>
@@ -12,7 +12,7 @@
 
 static const char EXPECTED[] = "expected nsu=URI;s=NAME, with i=NUMBER, g=GUID or b=BASE64 in place of s=NAME";
 
-/* Reads an optional prefix such as [3]. Returns false if it is malformed. */
+/* Reads the optional index of an array element, such as [3], at the beginning of an address. Returns false if it is malformed. */
 static bool read_element(const char **at, int *element)
 {
     char *end;
@@ -61,8 +61,8 @@ static bool check_identifier(const char *text)
     return true;
 }
 
-/* Returns the namespace URI of an address: the one in its prefix nsu=URI, or else the source's. Returns NULL with the reason in `why` if
-   neither is given. */
+/* Returns the namespace URI of an address: the one in its prefix nsu=URI, or else the one stated for the source. Returns NULL with the
+   reason in `why` if neither is given. */
 static char *read_namespace(const char **at, const char *of_source, char why[200])
 {
     const char *end = strchr(*at, ';');

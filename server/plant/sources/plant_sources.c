@@ -134,7 +134,7 @@ static int way_of(const struct plant_source *source)
     return source->transport == TRANSPORT_RTU ? BY_LINE : BY_SOCKET;
 }
 
-/* Reports keys that have no effect for this kind of source. */
+/* Reports keys of the source that have no effect for its kind (Modbus, MQTT and so on). */
 static void check_keys(struct yaml_reader *reader, const struct yaml_map *map, const struct plant_source *source)
 {
     static const struct {
@@ -161,7 +161,7 @@ static void check_keys(struct yaml_reader *reader, const struct yaml_map *map, c
             yaml_error(reader, yaml_map_place(map, belongs[i].key), "%s: has no meaning for %s", belongs[i].key, what);
 }
 
-/* Reports missing keys that this kind of source requires. */
+/* Reports keys that a source of its kind (Modbus, MQTT and so on) requires but lacks. */
 static void check_way(struct yaml_reader *reader, const struct yaml_map *map, const struct plant_source *source)
 {
     bool has_hosts = yaml_map_good(map, "hosts"), has_host = yaml_map_good(map, "host");

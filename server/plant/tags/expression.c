@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compiles expressions by recursive descent into steps of a stack machine, and runs these. */
+/* Compiles expressions by recursive descent into steps of a stack machine, and computes their values with it. */
 #include "plant/tags/expression.h"
 
 #include <assert.h>
@@ -18,7 +18,7 @@ enum operation { OP_NUMBER, OP_INPUT, OP_ADD, OP_SUBTRACT, OP_MULTIPLY, OP_DIVID
 struct expression_step {
     enum operation operation;
     double number;
-    /* index: of an input in expression_inputs(), or of a function, depending on `operation`; arguments: number of arguments of the
+    /* index: of an input in expression_inputs(), or of a function, depending on `operation`. arguments: number of arguments of that
        function */
     int index, arguments;
 };
@@ -342,7 +342,7 @@ double expression_value(const struct expression *expression, const double *value
             top--;
             stack[top - 1] = join(step->operation, stack[top - 1], stack[top]);
         }
-        /* an undefined part makes the whole undefined: min(), or a division by infinity, would otherwise hide it */
+        /* a part without a value makes the whole expression undefined: min(), or a division by infinity, would otherwise hide it */
         if (!isfinite(stack[top - 1]))
             return NAN;
     }

@@ -14,9 +14,9 @@ struct expression;
 struct expression *expression_parse(const char *text, int (*find)(const void *arg, const char *name), const void *arg, char why[200],
                                     size_t *at);
 void expression_destroy(struct expression **expression); /* Frees the expression and sets *expression to NULL; accepts a pointer to NULL. */
-/* Returns the number of inputs, and in *inputs the indices that `find` returned, each once. */
+/* Returns the number of tags in the expression; *inputs receives their indices, which `find` returned, each once. */
 size_t expression_inputs(const struct expression *expression, const int **inputs);
-/* Computes the value from the values of the inputs, in the order of expression_inputs(). Returns NaN or infinity if the expression has
+/* Computes the expression from the values of its tags, in the order of expression_inputs(). Returns NaN or infinity if the expression has
    no value. */
 double expression_value(const struct expression *expression, const double *values);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the columns of the tag list and reads cells. */
+/* Finds the columns of the tag list by their names, and reads cells of its rows. */
 #include "plant/tags/tag_columns.h"
 
 #include <string.h>
@@ -8,13 +8,13 @@
 #include "plant/parse/number.h"
 #include "plant/parse/suggest.h"
 
-struct column_name { /* must be the first member, because suggest_nearest() expects a name there */
+struct column_name { /* `text` is the first member, because suggest_nearest() expects a name at the beginning of each record */
     const char *name;
     enum tag_column column;
 };
 
 static const struct column_name column_names[] = {
-    /* accepted names of the columns; messages use the first name of each column */
+    /* accepted names of the tag list's columns; the first name of each column is used in messages */
     { "Tag Name", COL_NAME },
     { "Address", COL_ADDRESS },
     { "Data Type", COL_DATA_TYPE },

@@ -11,7 +11,7 @@ enum tag_column {
     /* Kepware's */
     COL_NAME, COL_ADDRESS, COL_DATA_TYPE, COL_SCAN_RATE, COL_SCALING, COL_RAW_LOW, COL_RAW_HIGH, COL_SCALED_LOW, COL_SCALED_HIGH,
     COL_ENG_UNITS, COL_NEGATE, COL_DESCRIPTION, COL_CLAMP_LOW, COL_CLAMP_HIGH,
-    COL_RESPECT_DATA_TYPE, COL_CLIENT_ACCESS, COL_SCALED_DATA_TYPE, /* columns written by Kepware that the reader ignores */
+    COL_RESPECT_DATA_TYPE, COL_CLIENT_ACCESS, COL_SCALED_DATA_TYPE, /* columns of the program Kepware, which are accepted and ignored */
     /* ours */
     COL_SOURCE, COL_GROUP, COL_ASSET, COL_NODE, COL_X, COL_Y, COL_Z, COL_STRENGTH, COL_DECAY, COL_BYTE_ORDER, COL_STALE,
     COL_LL, COL_L, COL_H, COL_HH, COL_NE43, COL_OPEN_CIRCUIT, COL_QUALITY_TAG,
@@ -22,10 +22,11 @@ enum tag_column {
 
 struct tag_columns {
     struct csv csv;
-    int at[COL_COUNT]; /* by column: its index in the file; -1: the file lacks the column */
+    int at[COL_COUNT]; /* by column: index of the column in the file; -1: the file lacks the column */
 };
 
-/* Opens the list and finds its columns; unknown and duplicate columns are reported. Returns false if the list cannot be read (reported). */
+/* Opens the tag list and finds its columns; unknown and duplicate columns are reported. Returns false if the list cannot be read
+   (reported). */
 bool tag_columns_open(struct tag_columns *columns, const char *path, struct diag *diag);
 void tag_columns_need(struct tag_columns *columns, enum tag_column column); /* Reports that the tag list lacks the column, if it does. */
 const char *tag_column_name(enum tag_column column);
@@ -38,8 +39,8 @@ bool cell_given(const struct tag_columns *columns, enum tag_column column);
    (reported). */
 bool cell_number(struct tag_columns *columns, enum tag_column column, double low, double high, double *out);
 bool cell_flag(struct tag_columns *columns, enum tag_column column); /* Reads a flag: 1, true, yes; 0, false, no or blank. */
-/* Returns the index, in `things`, of the record that the cell names, or -1 if the cell is blank or the name unknown (reported). `things`
-   are records that begin with their id. */
+/* Returns the index of the item (asset, group or source) that the cell names, or -1 if the cell is blank or the name unknown (reported).
+   `things`: records of all such items, each beginning with its id. */
 int cell_reference(struct tag_columns *columns, enum tag_column column, const char *what, const void *things, size_t count, size_t stride);
 #define cell_error(columns, c, ...) csv_error(&(columns)->csv, (columns)->at[c], __VA_ARGS__)
 #define cell_warning(columns, c, ...) csv_warning(&(columns)->csv, (columns)->at[c], __VA_ARGS__)

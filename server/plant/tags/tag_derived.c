@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Derived tags: parses their expressions, and sorts them so that each tag comes after its inputs. */
+/* Derived tags, which are computed from other tags: parses their expressions, and sorts them so that each tag comes after the tags in its
+   expression. */
 #include <math.h>
 
 #include "base/mem.h"
@@ -10,7 +11,7 @@ enum mark { UNSEEN, OPEN, DONE };
 
 struct derived_walk {
     struct plant *plant;
-    char *marks; /* progress of the depth-first search, by tag (enum mark) */
+    char *marks; /* by tag: how far the search for its inputs has come (enum mark) */
 };
 
 static int find_tag(const void *plant, const char *name)
@@ -51,8 +52,8 @@ static void check_units(const struct tag_link *link, const struct plant *plant, 
     }
 }
 
-/* Depth-first topological sort: the inputs of a tag come before the tag. Unless its row states stale_s, a tag gets the largest stale_s of
-   its inputs. Returns false on a cycle. */
+/* Adds the derived tags on which a tag depends, then the tag itself, to the sorted list (depth first). Unless its row states stale_s, a tag
+   gets the largest stale_s of its inputs. Returns false on a cycle. */
 static bool visit(struct derived_walk *walk, int index)
 {
     struct plant_tag *tag = &walk->plant->tags[index];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replaces cells in the text of a tag list. */
+/* Replaces cells in the text of a tag list without changing anything else. */
 #include "plant/tags/tag_edit.h"
 
 #include <math.h>
@@ -14,7 +14,7 @@
 enum edited { EDIT_NAME, EDIT_ASSET, EDIT_GROUP, EDIT_NODE, EDIT_PLACE, EDIT_X, EDIT_Y, EDIT_Z, EDIT_COLUMNS };
 static const char *const names[EDIT_COLUMNS] = { "Tag Name", "Asset", "Group", "Node", "Place", "X", "Y", "Z" };
 
-struct cell_span { /* range of one cell in the text of the tag list, including quotes and blanks */
+struct cell_span { /* part of the tag list's text that is one cell, including quotes and blanks */
     const char *begin, *end;
 };
 
@@ -148,7 +148,7 @@ static void print_metres(double metres, char out[32])
         strcpy(out, "0");
 }
 
-/* Returns the new text that the edit gives to a column of the file. Returns false if the column stays unchanged. */
+/* Returns whether an edit changes the column of a row; if so, *out receives the cell's new text. */
 static bool wanted(const struct tag_text *list, const struct tag_edit *edit, size_t column, char number[32], const char **out)
 {
     if (edit->place_only) {
@@ -209,7 +209,7 @@ static const struct tag_edit *edit_of(const struct tag_text *list, const struct 
     return NULL;
 }
 
-/* Appends the columns that the edits need to the header line. */
+/* Appends to the header line the columns that the edits need and the tag list lacks. */
 static void widen(struct tag_text *list, const struct tag_edit *edits, size_t count, struct text *out)
 {
     bool needed[EDIT_COLUMNS] = { 0 };
@@ -308,8 +308,8 @@ static void say(struct tag_lines *out, int line, const struct cell_span *before,
     out->at[out->count++] = (struct tag_line){ line, before ? copy_of(*before) : NULL, after ? copy_of(*after) : NULL };
 }
 
-/* Lists the lines between the first and the last difference: pairwise if both texts have the same number of lines, else removed lines, then
-   added lines. */
+/* Lists the lines of two texts between their first and their last difference: pairwise if both texts have the same number of lines, else
+   removed lines, then added lines. */
 static void say_middle(const struct text_lines *a, const struct text_lines *b, size_t head, size_t tail, struct tag_lines *out)
 {
     bool even = a->count == b->count;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edits the text of a tag list to move sensors, or to take them off their equipment. Everything else stays unchanged to the byte: order,
-   unknown columns, blank rows, quotes, number format, line ends. Pure. Thread: any. */
+/* Edits the text of a tag list to move sensors, or to confirm an assumed place. Everything else stays unchanged to the byte: order, unknown
+   columns, blank rows, quotes, number format, line ends. Pure. Thread: any. */
 #ifndef PLANT_TAGS_TAG_EDIT_H
 #define PLANT_TAGS_TAG_EDIT_H
 #include <stdbool.h>
@@ -12,8 +12,9 @@ struct tag_edit {
     const char *tag;
     const char *asset, *group; /* new ids; NULL: unchanged */
     const char *node, *place;  /* new texts; NULL: cleared */
-    double position_m[3];      /* new position in the frame that the asset states, written to the millimetre; NaN: cleared */
-    bool place_only;           /* true: only clears the cell `Place` and changes nothing else */
+    /* new position in the coordinate frame that the asset's settings name, written to the millimetre; NaN: the cells are emptied */
+    double position_m[3];
+    bool place_only;           /* true: only empties the cell `Place`, which says that the place is assumed */
 };
 
 struct tag_line {         /* line that differs between two versions of the tag list */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Resolves the names of other tags in quality tags, directions and heartbeats. */
+/* Looks up the tags that other tags and sources name: quality tags, tags with directions, heartbeats. */
 #include "plant/tags/tag_links.h"
 
 #include <stdlib.h>
@@ -55,7 +55,7 @@ static void add_link(struct tag_links *links, struct tag_columns *columns, enum 
     };
 }
 
-/* Records one name of another tag, or three names separated by blanks, for later resolution. */
+/* Records one name of another tag, or three names separated by blanks, to be looked up once the whole tag list is read. */
 static void add_direction(struct tag_links *links, struct tag_columns *columns, size_t tag)
 {
     const char *at = cell_text(columns, COL_DIRECTION);

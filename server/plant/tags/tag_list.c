@@ -167,8 +167,8 @@ static void read_limits(struct tag_list *list)
                    list->tag->scale.change.converts ? list->tag->unit : "");
 }
 
-/* Returns whether the source reports the loss of values by itself, so that a silent tag is not stale. This holds for Sparkplug nodes, which
-   have death certificates, and for OPC UA servers. */
+/* Returns whether the source reports the loss of values by itself, so that a tag does not become stale while its source sends nothing. This
+   holds for Sparkplug nodes, which have death certificates, and for OPC UA servers. */
 static bool is_announced(const struct tag_list *list)
 {
     const struct plant_source *source = list->tag->source >= 0 ? &list->plant->sources[list->tag->source] : NULL;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the part of a tag's row that says where the device has the value, which data type it has, and how it is converted to engineering
-   units. */
+/* Reads the part of a tag's row that says at which address the device has the value, which data type it has, and how it is converted to
+   engineering units. */
 #include "plant/tags/tag_wire.h"
 
 #include <math.h>
@@ -93,8 +93,8 @@ static bool is_number(const struct tag_wire *wire)
     return tag_is_derived(wire->columns) || (kind && !strcmp(kind, "replay"));
 }
 
-/* Reports a plain address of a multi-register value if its source does not state address_base: a value read one register off still looks
-   plausible. */
+/* Reports a plain address of a multi-register value if its source does not state address_base: a value that is read from the next register
+   by mistake may still look plausible. */
 static void check_base(struct tag_wire *wire, int registers)
 {
     struct plant_tag *tag = wire->tag;

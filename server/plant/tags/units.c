@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of units, and normalisation of names as people write them. */
+/* The table of engineering units, and the comparison of their names as people write them. */
 #include "plant/tags/units.h"
 
 #include <ctype.h>
@@ -257,7 +257,7 @@ enum { UNIT_COUNT = sizeof(units) / sizeof(*units) };
 
 /* --- names ------------------------------------------------------------------------------------------------------------------ */
 
-/* Normalises a name: drops blanks, brackets and dots, and replaces signs by letters. */
+/* Brings a unit's name into the form of the table: drops blanks, brackets and dots, and replaces signs by letters. */
 static void normalise(const char *name, char out[NAME_BYTES])
 {
     static const struct {

@@ -5,7 +5,7 @@
 #define PLANT_TAGS_UNITS_H
 #include <stdbool.h>
 
-/* A conversion of units: converted value = value * factor + offset. All members zero: no conversion is needed or possible. */
+/* A conversion of units: converted value = value * factor + offset. All members zero: the units are equal or cannot be converted. */
 struct unit_change {
     bool converts;
     double factor, offset;
@@ -18,8 +18,8 @@ enum unit_match {
     UNITS_UNKNOWN     /* no comparison is possible, because at least one of the units is unknown */
 };
 
-/* Compares two units and sets *change to the conversion, all zero if there is none. Blanks, brackets, dots, superscript digits and
-   variants of the degree sign do not matter; case matters only where it distinguishes units (mW, MW). */
+/* Compares two units by their names and sets *change to the conversion, all zero if there is none. Blanks, brackets, dots, superscript
+   digits and variants of the degree sign do not matter; case matters only where it distinguishes units (mW, MW). */
 enum unit_match units_compare(const char *from, const char *to, struct unit_change *change);
 /* Returns the quantity that a unit measures, such as "volume flow" (static); NULL if the unit is unknown. */
 const char *unit_kind(const char *name);

@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Slow shift of the whole content of a wall display, against burn-in. The page uses the same function (clients/web/core/wall.js). Pure. */
+/* Slow shift of everything that a wall display shows, so that still content does not burn into the screen. The page uses the same function
+   (clients/web/core/wall.js). Pure. */
 #ifndef PLANT_WALLS_BURN_SHIFT_H
 #define PLANT_WALLS_BURN_SHIFT_H
 #include <stdint.h>
 
-#define BURN_SHIFT_PX 3 /* maximum offset in pixels in each direction */
+#define BURN_SHIFT_PX 3 /* maximum shift in pixels in each direction */
 
 struct burn_shift {
     int x_px, y_px; /* offset in pixels to the right and down */
 };
-/* Returns the offset at a time of the plant's clock. All displays of a wall use the same time, so their contents move together. */
+/* Returns the shift of the displays at a time of the plant's clock. All displays of a wall use the same time, so their contents move
+   together. */
 struct burn_shift burn_shift_at(int64_t utc_ns);
 
 #endif

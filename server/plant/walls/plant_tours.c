@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the plant file's `tours`: sequences of views, each with a duration and a text. */
+/* Reads the plant file's `tours`: sequences of views, each view with a duration and a text. */
 #include <string.h>
 
 #include "base/mem.h"

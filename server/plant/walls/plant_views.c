@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the plant file's `views`: named views. */
+/* Reads the plant file's `views`: views that users can open by name. */
 #include <string.h>
 
 #include "base/mem.h"

@@ -78,7 +78,7 @@ static int word_count(const char *row)
     return count;
 }
 
-/* Returns the word in a column (from 0) of a row; the row must have that many columns. */
+/* Returns the area name in a column (from 0) of a row of a display's grid; the row must have that many columns. */
 static const char *word_at(const char *row, int column, size_t *length)
 {
     const char *at = row + strspn(row, " ");
@@ -215,7 +215,7 @@ static void read_panes(struct yaml_reader *reader, yaml_node_t *node, void *reco
         read_pane(reader, yaml_list_item(reader, node, i), display, &display->panes[display->pane_count++]);
 }
 
-/* Reads a key's value that is one number, for both directions, or two numbers: horizontal and vertical. */
+/* Reads the width of bezels: one number, for both directions, or two numbers: horizontal and vertical. */
 static void read_bezel(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     double *bezel_mm = ((struct wall_tile *)record)->bezel_mm;

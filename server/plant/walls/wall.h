@@ -33,7 +33,7 @@ struct tour {
     int line;
 };
 
-/* A plant with a server of its own, whose pictures wall panes show. */
+/* A plant with a server of its own, whose pictures are shown in panes of wall displays. */
 struct other_plant {
     char *id, *url;
     char *token_file, *ca_file; /* paths; NULL: none */
@@ -44,7 +44,7 @@ struct other_plant {
 };
 
 enum pane_kind { PANE_VIEWS, PANE_TREND, PANE_ALARMS, PANE_TILES, PANE_CLOCK, PANE_TEXT, PANE_TOUR, PANE_SNAPSHOT };
-extern const char *const pane_kind_names[]; /* names of pane kinds, by enum pane_kind: the keys of a pane in the plant file */
+extern const char *const pane_kind_names[]; /* names of the kinds of panes, by enum pane_kind; these are keys of a pane in the plant file */
 
 struct wall_pane {
     char *area, *title; /* area: name of the area in the display's grid that the pane fills; title NULL: no title */
@@ -60,7 +60,7 @@ struct wall_pane {
 };
 
 struct wall_display {
-    char *rows[WALL_ROWS]; /* rows of the display's grid of panes, each with area names separated by blanks */
+    char *rows[WALL_ROWS]; /* layout of the display's panes: rows of a grid, each with area names separated by blanks */
     size_t row_count;
     struct wall_pane panes[WALL_PANES];
     size_t pane_count;
@@ -71,7 +71,7 @@ struct day_span {
     int from_min, to_min;
 };
 
-/* One picture across the first columns * rows displays of a wall, row by row. */
+/* One picture that spans the first columns * rows displays of a wall; the displays count row by row. */
 struct wall_tile {
     int columns, rows;     /* number of displays horizontally and vertically; 0: the wall has no picture across displays */
     double bezel_mm[2];    /* millimetres between the picture areas of two neighbouring displays: horizontally, vertically */
@@ -99,12 +99,12 @@ const struct wall *wall_find(const struct plant *plant, const char *id);
 int other_plant_find(const struct plant *plant, const char *id); /* Returns an index, or -1. */
 /* Returns a display of a wall of the plant file, NULL if the wall has no such display. number: from 1. */
 const struct wall_display *wall_display_find(const struct plant *plant, const char *wall, int number);
-/* Each function answers one question about a display, and returns false for a NULL display: whether it has a pane of views or a tour;
-   whether one of its trends or tiles shows the tag; whether one of its panes shows the view with that id. */
+/* Each function answers one question about a wall's display, and returns false for a NULL display: whether it has a pane of views or a
+   tour; whether one of its trends or tiles shows the tag; whether one of its panes shows the view with that id. */
 bool wall_display_has_pictures(const struct wall_display *display);
 bool wall_display_shows_tag(const struct wall_display *display, const char *tag);
 bool wall_display_shows_view(const struct plant *plant, const struct wall_display *display, const char *id);
-/* Returns whether a display has a pane of that kind that contains the item `item`; NULL: any item. */
+/* Returns whether a display has a pane of that kind; item not NULL: one that shows this view, tag, tour or other plant. */
 bool wall_display_has(const struct wall_display *display, enum pane_kind kind, const char *item);
 /* Returns a message (static) that says what is wrong with a title or a view address, or NULL. */
 const char *named_view_title_wrong(const char *title);
