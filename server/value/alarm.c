@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Names of alarms, and alarms computed from a tag's limits without an alarm service. */
+/* Names of alarm kinds and states, and alarms that follow from a tag's limits alone, without an alarm service. */
 #include "value/alarm.h"
 
 #include <math.h>

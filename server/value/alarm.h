@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Kinds and states of alarms, their names and priorities, and the limit that a reading violates. No side effects. Thread: any. */
+/* Kinds and states of alarms, their names and priorities, and the limit that a reading has passed. No side effects. Thread: any. */
 #ifndef VALUE_ALARM_H
 #define VALUE_ALARM_H
 #include "plant/plant.h"
@@ -10,22 +10,22 @@ enum alarm_kind {
     ALARM_LL,
     ALARM_L,
     ALARM_H,
-    ALARM_HH,   /* kind of alarm: the reading is beyond a limit of the tag; the values ALARM_HH and following are 1 + enum limit */
-    ALARM_ON,   /* kind of alarm: the tag's alarm bit is set, which another alarm system controls */
-    ALARM_BAD,  /* kind of alarm: the quality of the tag's reading is Bad (OPC UA severity) */
-    ALARM_LINK, /* kind of alarm: a device has failed, so that none of its measurements can be used */
+    ALARM_HH,   /* ALARM_LL to ALARM_HH: the reading is beyond that limit of the tag; each number is 1 + that of enum limit */
+    ALARM_ON,   /* another alarm system sets a bit of the tag, which means that the alarm is active */
+    ALARM_BAD,  /* the quality of the tag's reading is Bad (OPC UA severity) */
+    ALARM_LINK, /* a device does not answer, so that the readings of all its tags are unusable */
     ALARM_KINDS
 };
 
-enum alarm_status { /* alarm states of ISA-18.2 and IEC 62682; plus ALARM_ACTIVE for active alarms that another system manages */
+enum alarm_status { /* alarm states of ISA-18.2 and IEC 62682, plus ALARM_ACTIVE */
                     ALARM_NORMAL,
                     ALARM_ACTIVE, /* the alarm is active; another alarm system manages it, so whether it is acknowledged is unknown */
                     ALARM_UNACKNOWLEDGED,
                     ALARM_ACKNOWLEDGED,
-                    ALARM_RETURNED, /* returned to normal, not acknowledged */
+                    ALARM_RETURNED, /* the cause of the alarm is gone, but nobody has acknowledged the alarm yet */
                     ALARM_LATCHED,  /* the cause of the alarm is gone, but the alarm is latched: it remains until an operator resets it */
                     ALARM_SHELVED,
-                    ALARM_SUPPRESSED, /* by design */
+                    ALARM_SUPPRESSED, /* another alarm explains this one, or a tag says so ("suppressed by design" in ISA-18.2) */
                     ALARM_OUT_OF_SERVICE,
                     ALARM_STATUSES
 };
@@ -40,31 +40,31 @@ const char *alarm_status_name(enum alarm_status status);
 enum alarm_status alarm_status_find(const char *name);
 /* Returns true if operators see an alarm in this state; false if the state is normal, shelved, suppressed or out of service. */
 bool alarm_status_is_annunciated(enum alarm_status status);
-/* Returns whether the cause of an alarm in this state is gone although the alarm remains: ALARM_RETURNED or ALARM_LATCHED. */
+/* Returns true if the cause of an alarm in this state is gone although the alarm remains: ALARM_RETURNED or ALARM_LATCHED. */
 bool alarm_status_is_cleared(enum alarm_status status);
 
 /* Returns the priority of a tag's alarm of this kind, from 1 (most urgent) to ALARM_PRIORITIES. */
 int alarm_priority(const struct plant_tag *tag, enum alarm_kind kind);
 
-/* Sort key of the alarms of one tag; the first alarm in this order is shown for the tag. Active alarms come before cleared ones. Of these,
- * the higher priority comes first, then the outer limit (HH before H), then the unacknowledged alarm. */
+/* Sort key of the alarms of one tag; the first alarm in this order is shown for the tag. Active alarms come before alarms whose cause is
+   gone. Of these, the more urgent priority comes first, then the outer limit (HH before H), then the unacknowledged alarm. */
 struct alarm_grade {
     int priority;
     enum alarm_kind kind;
     enum alarm_status status;
 };
-/* Returns whether alarm `a` comes before alarm `b` in the order of struct alarm_grade. */
+/* Returns true if alarm `a` comes before alarm `b` in the order of struct alarm_grade. */
 bool alarm_graver(const struct alarm_grade *a, const struct alarm_grade *b);
 
-/* Returns whether a value is at or above a high limit, or at or below a low one; false if the limit is NaN (not configured). Compares with
- * the precision of 32-bit floats: a device's float and a scaled value differ from the limit in the last digits although both read the same,
- * such as 55.5 and 55.50000000000001. */
+/* Returns true if a value is at or above a high limit, or at or below a low one; false if the limit is NaN (not configured). Compares
+   with the precision of 32-bit floats, because a device's 32-bit value or a scaled value may differ from an equal limit in the last
+   digits, such as 55.5 and 55.50000000000001. */
 bool alarm_reaches(double value, double limit, bool high);
-/* Returns the limit that a usable reading has reached or passed: the outer limit if it passed two; ALARM_NONE if the reading is within
- * limits. */
+/* Returns the kind of the limit that a usable reading has reached or passed: the outer limit if it passed two; ALARM_NONE if the reading
+   is within limits. */
 enum alarm_kind alarm_beyond(const struct plant_tag *tag, const struct reading *reading);
-/* Sets the alarms of a snapshot from the limits alone, for daemons without an alarm service: each reading beyond a limit has an active
-   alarm. */
+/* Sets the alarms of a snapshot from the tags' limits alone, for daemons without an alarm service: each reading beyond a limit has an
+   active alarm. */
 void alarm_by_limits(const struct plant *plant, struct snapshot *snapshot);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores baselines as a short list of reference-counted snapshots, so that a baseline can be replaced while it is read. */
+/* Stores baselines (saved readings of all tags) with reference counts, so that a baseline can be replaced while it is read. */
 #include "value/baselines.h"
 
 #include <pthread.h>
@@ -8,7 +8,7 @@
 
 #include "base/mem.h"
 
-/* must be the first member: users hold a pointer to the snapshot, which is converted back to a pointer to this struct */
+/* The snapshot must be the first member: users hold a pointer to it, which is converted back to a pointer to this struct. */
 struct baseline_copy {
     struct snapshot snapshot;
     int users; /* number of users, under `lock` */
@@ -42,7 +42,7 @@ static struct baseline_copy *copy_create(const struct snapshot *from)
     return copy;
 }
 
-/* Call with the lock held. */
+/* Gives up one use of a copy, and frees it after the last. Call with the lock held. */
 static void copy_unref(struct baseline_copy *copy)
 {
     if (--copy->users > 0)
@@ -81,7 +81,7 @@ static struct baseline_slot *find_id(struct baselines *baselines, uint32_t id)
     return NULL;
 }
 
-/* Call with the lock held. */
+/* Returns the number of baselines with a name, or without one. Call with the lock held. */
 static size_t count_of(const struct baselines *baselines, bool named)
 {
     size_t count = 0;
@@ -90,7 +90,7 @@ static size_t count_of(const struct baselines *baselines, bool named)
     return count;
 }
 
-/* Call with the lock held. */
+/* Removes a baseline from the list. Call with the lock held. */
 static void slot_remove(struct baselines *baselines, struct baseline_slot *slot)
 {
     copy_unref(slot->copy);
@@ -99,7 +99,7 @@ static void slot_remove(struct baselines *baselines, struct baseline_slot *slot)
     baselines->count--;
 }
 
-/* Adds a baseline and returns its id. Call with the lock held; a slot must be free. */
+/* Adds a baseline and returns its id. Call with the lock held; the array of slots must have room. */
 static uint32_t slot_add(struct baselines *baselines, const char *name, const struct snapshot *snapshot)
 {
     struct baseline_slot *slot = &baselines->slots[baselines->count++];
@@ -126,7 +126,8 @@ uint32_t baselines_set(struct baselines *baselines, const char *name, const stru
     return id;
 }
 
-/* Returns the first unnamed baseline that was taken at the time taken_utc_ns (below 0: at any time), or NULL. Call with the lock held. */
+/* Returns the first unnamed baseline whose readings are of the time taken_utc_ns (below 0: of any time), or NULL. Call with the lock
+   held. */
 static struct baseline_slot *find_unnamed(struct baselines *baselines, int64_t taken_utc_ns)
 {
     for (size_t i = 0; i < baselines->count; i++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts registers to readings: byte order, data type, scaling, unit. */
+/* Converts a device's registers to readings: byte order, data type, scaling, unit. */
 #include "value/decode.h"
 
 #include <math.h>
@@ -18,8 +18,9 @@ int decode_width(const struct plant_tag *tag)
     return is_bit(&tag->signal) ? 1 : data_type_registers(tag->signal.type);
 }
 
-/* Joins the words of a number. A byte order such as ABCD names the bytes in their order on the wire, where A is the most significant byte.
- * If B or D comes first, the bytes within each word are swapped. If C or D comes first, the least significant word comes first. */
+/* Joins 16-bit registers to one number. A byte order such as ABCD names the bytes in their order on the wire, where A is the most
+   significant byte. If B or D comes first, the bytes within each register are swapped. If C or D comes first, the least significant
+   register comes first. */
 static uint64_t join_words(enum byte_order order, const uint16_t *words, int count)
 {
     bool swap_bytes = order == BYTE_ORDER_BADC || order == BYTE_ORDER_DCBA;
@@ -89,21 +90,22 @@ static bool beyond(double raw, double a, double b)
     return raw < fmin(a, b) || raw > fmax(a, b);
 }
 
-/* Returns whether a published number is the unsigned or the signed integer of 16, 32 or 64 bits that has these bits. */
+/* Returns true if a published number is the unsigned or the signed integer of 16, 32 or 64 bits that has these bits. */
 static bool has_bits(double raw, uint64_t bits)
 {
     int64_t number = bits <= UINT16_MAX ? (int16_t)bits : bits <= UINT32_MAX ? (int32_t)bits : (int64_t)bits;
     return raw == (double)bits || raw == (double)number;
 }
 
-/* Returns whether a raw value is this number, or the nearest number of 32 bits: a device that sends floats of 32 bits sends -999.9 as
+/* Returns true if a device's value is this number, or the nearest 32-bit float: a device that sends 32-bit floats sends -999.9 as
    -999.90002. */
 static bool is_number(double raw, double number)
 {
     return raw == number || raw == (double)(float)number;
 }
 
-/* bits: the registers' bits; NULL: the source received a number */
+/* Returns true if a device's value is one of the special values by which it reports a failure, such as an open circuit. bits: the bits
+   of the registers; NULL: the source received a number instead of registers. */
 static bool is_sentinel(const struct tag_scale *scale, const uint64_t *bits, double raw)
 {
     for (int i = 0; i < scale->sentinel_count; i++) {
@@ -120,7 +122,7 @@ static uint32_t judge_current(const struct tag_scale *scale, double raw)
 {
     static const double MEASURED_LOW_MA = 3.8, MEASURED_HIGH_MA = 20.5, FAILED_LOW_MA = 3.6, FAILED_HIGH_MA = 21;
     double ma = 4 + 16 * (raw - scale->raw_low) / (scale->raw_high - scale->raw_low);
-    /* tolerance for the transmitter's rounding: half a step of the raw number, converted to mA */
+    /* tolerance for the transmitter's rounding: half a step of the integer that the device sends, converted to mA */
     double half_step_ma = 8 / (scale->raw_high - scale->raw_low);
     double rounding_ma = half_step_ma < 0.05 ? half_step_ma : 0;
     if (ma <= FAILED_LOW_MA + rounding_ma || ma >= FAILED_HIGH_MA - rounding_ma)
@@ -152,10 +154,10 @@ static void fail(struct sample *out)
     out->quality = QUALITY_BAD_SENSOR_FAILURE;
 }
 
-/* Decodes a numeric value. raw: the number as received; bits: as for is_sentinel() */
+/* Decodes a numeric value: scaling, unit and quality. raw: the number that the device sent; bits: as for is_sentinel(). */
 static void decode_analog(const struct tag_scale *scale, const uint64_t *bits, double raw, struct sample *out)
 {
-    /* special values are recognised before scaling: a scaled special value would look like a measurement */
+    /* recognises special values, which report a failure, before scaling: a scaled one would look like a measurement */
     if (!isfinite(raw) || is_sentinel(scale, bits, raw)) {
         fail(out);
         return;

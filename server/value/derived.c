@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes derived tags, whose values are expressions of other tags. */
+/* Computes derived tags, whose values are expressions of other tags' values. */
 #include "value/derived.h"
 
 #include <errno.h>
@@ -18,13 +18,13 @@ static const int64_t ROUND_NS = 200 * NS_PER_MS;
 struct written {
     double value;
     uint32_t quality;
-    int64_t mono_ns; /* INT64_MIN: nothing written yet */
+    int64_t mono_ns; /* monotonic time of the result; INT64_MIN: no result was written yet */
 };
 
 struct derived_state {
     const struct plant *plant;
     struct snapshot *snapshot;
-    struct written *written; /* by index in plant->derived */
+    struct written *written; /* results that were written last, by index in plant->derived */
 };
 
 struct derived_source {
@@ -53,8 +53,8 @@ void derived_destroy(struct derived_state **state)
     *state = NULL;
 }
 
-/* Evaluates a tag's expression in the units of the tag list. The result has the worst quality among its inputs and its own measuring range,
- * and the age of the newest input. */
+/* Evaluates a derived tag's expression in the units of the tag list. The result has the worst quality of its inputs and its own
+   measuring range, and the age of the newest input. */
 static struct reading combine(const struct derived_state *state, const struct plant_tag *tag)
 {
     const struct plant *plant = state->plant;
@@ -80,9 +80,9 @@ static struct reading combine(const struct derived_state *state, const struct pl
     return all;
 }
 
-/* Writes a result to the store only if an input is newer than at the last write, or value or quality differ. Writing an unchanged result
- * would make it look newer than its inputs. Inputs have their devices' times, so an input that arrives late may change the value without
- * being the newest. */
+/* Writes a derived tag's result to the store only if an input is newer than at the last write, or value or quality differ, because
+   writing an unchanged result would make it look newer than its inputs. Inputs have the times that their devices state, so an input that
+   arrives late may change the value without being the newest. */
 static void write_new(struct derived_state *state, struct store *store, size_t i, struct reading *reading)
 {
     struct written *written = &state->written[i];
@@ -105,7 +105,7 @@ void derived_compute(struct derived_state *state, struct store *store, int64_t n
     store_snapshot(store, now_mono_ns, now_utc_ns, state->snapshot);
     for (size_t i = 0; i < plant->derived_count; i++) {
         struct reading *reading = &state->snapshot->readings[plant->derived[i]];
-        /* also updates the snapshot, because the result may be an input of derived tags later in the list */
+        /* also puts the result into the snapshot, because later derived tags may use it as an input */
         *reading = combine(state, &plant->tags[plant->derived[i]]);
         write_new(state, store, i, reading);
     }

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes derived tags from the readings of other tags, several times a second, and writes the results to the store as a source does. A
-   result has the age of its newest input and the worst quality among its inputs. */
+/* Computes derived tags from the readings of other tags, several times a second, and writes the results to the store like a source. A
+   result has the age of its newest input and the worst quality of its inputs. */
 #ifndef VALUE_DERIVED_H
 #define VALUE_DERIVED_H
 #include "value/source.h"
 
-struct derived_state; /* results of derived tags that were written last, to find changes; use the struct in one thread only */
+struct derived_state; /* the results that were last written, to detect changes; use the struct in one thread only */
 
-/* Starts the thread that computes derived tags. Returns it as a source, to be ended by source_stop(), although it is not in
-   plant->sources; NULL if the thread could not be started (logged). */
+/* Starts the thread that computes derived tags. Returns it as a source, to be ended by source_stop(), although plant->sources does not
+   contain it; NULL if the thread could not be started (logged). */
 struct source *derived_start(struct log *log, const struct plant *plant, struct store *store);
 
-/* Does the same computation without thread and clock: each call of derived_compute() computes all derived tags once. */
+/* The three functions below do the same without thread and clock: each call of derived_compute() computes all derived tags once. */
 struct derived_state *derived_create(const struct plant *plant);
 void derived_destroy(struct derived_state **state); /* Frees the state and sets *state to NULL. *state may be NULL. */
 void derived_compute(struct derived_state *state, struct store *store, int64_t now_mono_ns, int64_t now_utc_ns);

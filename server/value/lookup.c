@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs getaddrinfo() on a detached thread. The last user of the lookup, caller or thread, frees it. */
+/* Resolves a host name by getaddrinfo() on a detached thread. The caller and that thread share the struct lookup; the last
+   of the two to finish with the struct frees the struct. */
 #include "value/lookup.h"
 
 #include <errno.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Modbus source: writes the values in responses to the store, and changes the read plan after exceptions (Modbus error responses). */
+/* A Modbus source: writes the values in responses to the store, and splits or rebuilds the read plan after exceptions (Modbus error
+   responses). */
 #include <modbus.h>
 
 #include "base/clock.h"
@@ -50,7 +51,8 @@ static uint32_t quality_of_exception(int code)
     }
 }
 
-/* Logs that a device answers every request with an exception such as acknowledge (5) or busy (6). The tags of the block go stale. */
+/* Logs that a device answers every request for a block with an exception such as acknowledge (5) or busy (6). The readings of the
+   block's tags become stale meanwhile. */
 static void note_busy(struct modbus_source *modbus, const struct read_plan_block *block, int code, int64_t now_ns)
 {
     char more[LOG_PACE_BYTES];
@@ -85,7 +87,8 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
         note_busy(modbus, block, code, now_ns);
         return;
     }
-    /* a block (tags read by one request) that the device has answered before: one further request decides whether it is split in two */
+    /* the device has answered this block (tags read by one request) before, so one further request decides whether the block is split in
+       two */
     if (block->answered) {
         block->answered = false;
         block->due_ns = now_ns;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Declarations shared by the files of a Modbus source: its thread (modbus.c), the state of each unit (modbus_units.c), adaptation to the
- * way in which the device handles connections ("manners", modbus_manners.c), and processing of responses (modbus_answers.c). Thread: the
- * source's own. */
+/* Declarations shared by the files of a Modbus source: its thread (modbus.c), the state of each unit (modbus_units.c), the "manners",
+   which adapt to the way in which the device handles connections (modbus_manners.c), and processing of responses (modbus_answers.c).
+   Thread: the source's own. */
 #ifndef VALUE_MODBUS_IMPL_H
 #define VALUE_MODBUS_IMPL_H
 #include "base/log/log_pace.h"
@@ -18,9 +18,9 @@ struct modbus_unit { /* one Modbus unit (slave address); a gateway or a serial l
     struct backoff backoff;
     int64_t retry_ns;
     struct log_pace pace, busy_pace;
-    bool loss_said; /* true: the log says "does not answer" for the unit, and "answers again" is not logged yet */
-    /* true: a block failed on a new connection while the unit was up; the result of the next block decides whether the block or the unit is
-       to blame */
+    bool loss_said; /* true: the log says that the unit does not answer, and does not yet say that it answers again */
+    /* true: a block (tags read by one request) failed on a new connection while the unit was up; the result of the next block decides
+       whether the block or the unit is to blame */
     bool doubted;
     enum register_table doubted_table;
     int doubted_first;
@@ -36,14 +36,14 @@ struct modbus_manners {       /* the device's manners: how it handles connection
     /* unit whose request has just timed out, or NULL. A gateway may still wait for that unit, longer than our timeout, and accept no other
        request meanwhile */
     const struct modbus_unit *timed_out;
-    /* true: a late first answer on this connection is not the unit's fault, because the gateway may still be waiting for the unit
-       `timed_out` */
+    /* true: a late first answer on this connection does not count against the unit, because the gateway may still be waiting for the
+       unit `timed_out` */
     bool first_excused;
-    /* number of connections since the device's last answer that the device refused or closed at once, shortly after that answer: it
-       needs a pause between connections. Doubles the time until the next try */
+    /* Number of connections since the device's last answer that the device refused or closed at once, shortly after that answer: it
+       needs a pause between connections. Each one doubles the time until the next try. */
     int failed_connections;
     bool ends_said;
-    struct log_pace late_pace; /* rate limit of the log line about late answers */
+    struct log_pace late_pace; /* rate limit of the log line about answers that come later than timeout_ms */
 };
 
 struct modbus_source {
@@ -52,33 +52,33 @@ struct modbus_source {
     struct modbus_link *link;
     /* --- below: used by the source's thread only */
     struct read_plan plan;
-    bool plan_cut; /* true: blocks (requests) of the read plan were split, because the device refused or did not answer some addresses */
+    /* true: blocks (requests) of the read plan were split, because the device refused some addresses or did not answer for them */
+    bool plan_cut;
     struct modbus_unit *units;
     struct backoff backoff; /* backoff of connection attempts */
     int64_t connect_ns;     /* monotonic time before which the source makes no connection */
     int64_t asked_ns;       /* monotonic time at which the last request to the device ended */
     int64_t answered_ns;    /* monotonic time of the device's last answer */
     bool link_up;
-    int fallen; /* number of units that have stopped answering since any unit last answered */
+    int fallen; /* number of units that have stopped answering since the last answer of any unit */
     struct modbus_manners manners;
-    struct log_pace pace;      /* rate limit of the log line "no readings" */
-    bool loss_said;            /* true: the log says "no readings" for the source, and "readings are back" is not logged yet */
+    struct log_pace pace;      /* rate limit of the log line that says that the source has no readings */
+    bool loss_said;            /* true: the log says that the source has no readings, and does not yet say that they are back */
     struct log_pace unit_pace; /* rate limit of the log line about answers that state another unit than requested */
-    bool *refused;             /* by index in plant->tags: true: the device refuses to read this tag */
-    struct sample *samples;    /* buffer with room for one sample of each tag */
-    int *lost;                 /* buffer for tag indices, with room for all tags */
+    bool *refused;             /* by index in plant->tags: true if the device refuses to read this tag */
+    struct sample *samples;    /* buffer for samples on their way to the store, with room for one sample of each tag */
+    int *lost;                 /* buffer for the indices of tags whose readings are lost, with room for all tags */
 };
 
-/* Number of units that stop answering, one after the other and without an answer of any unit in between, after which the gateway counts as
-   lost. */
+/* If so many units stop answering one after the other, without an answer of any unit in between, the gateway counts as lost. */
 enum { GATEWAY_UNITS = 3 };
 
 /* Returns the Modbus unit (slave address) from which a block of the read plan is read. */
 struct modbus_unit *modbus_unit_of(const struct modbus_source *modbus, const struct read_plan_block *block);
-/* Records that a unit answered. Logs this if the log says that the unit does not answer. */
+/* Records that a unit answered. Logs this if the log said before that the unit does not answer. */
 void modbus_unit_is_up(struct modbus_source *modbus, struct modbus_unit *unit);
-/* Records that a unit does not answer: its tags lose their link (store_tags_lost()), and the unit gets no request before a backoff delay
- * has passed. If that makes GATEWAY_UNITS such units, all units of the source lose their link at once. */
+/* Records that a unit does not answer: the readings of its tags are lost (store_tags_lost()), and the unit gets no request before a
+   backoff delay has passed. If that makes GATEWAY_UNITS such units, the readings of all units of the source are lost at once. */
 void modbus_unit_is_down(struct modbus_source *modbus, struct modbus_unit *unit, const char *why);
 /* Opens the link if it is closed. Returns false if it is closed and cannot be opened now; modbus->connect_ns is then the time of the next
  * attempt. */
@@ -86,40 +86,39 @@ bool modbus_connect_link(struct modbus_source *modbus);
 
 /* Initialises the device's manners (how it handles connections) from the plant file. */
 void modbus_manners_init(struct modbus_source *modbus);
-/* Prepares the link for a request to a unit: sets how long the link waits for the first answer of a connection. */
+/* Prepares the connection for a request to a unit: sets how long to wait for the connection's first answer. */
 void modbus_manners_before(struct modbus_source *modbus, const struct modbus_unit *unit);
 /* Closes the connection after an answer, if the device accepts only one request per connection. */
 void modbus_manners_after(struct modbus_source *modbus);
-/* Learns from an answer how the device handles connections. */
+/* Learns from an answer how the device handles connections, for example how long it takes for the first one. */
 void modbus_manners_answered(struct modbus_source *modbus, const struct read_plan_block *block);
 /* Logs, after a failed read, that the device answers later than timeout_ms. */
 void modbus_manners_late(struct modbus_source *modbus);
-/* Learns from a failed read (status < 0) how the device handles connections. Returns true if the device's behaviour explains the failure:
-   the block is then requested again on a new connection, from modbus->connect_ns on. */
+/* Learns from a failed read (status < 0) how the device handles connections. Returns true if its way of handling them explains the
+   failure: the block is then requested again on a new connection, from modbus->connect_ns on. */
 bool modbus_manners_excuse_read(struct modbus_source *modbus, int status, bool unit_up);
 /* Returns true if the way in which the device handles connections explains a failed connection attempt; the next attempt is then made at
  * modbus->connect_ns. */
 bool modbus_manners_excuse_connect(struct modbus_source *modbus, int status);
-/* Called when a block failed on a new connection while its unit was up. Returns true if another block of the unit is requested next, whose
- * result tells whether the block or the whole unit is to blame. */
+/* Called when a block (tags read by one request) failed on a new connection while its unit was up. Returns true if another block of the
+   unit is requested next, whose result tells whether the block or the whole unit is to blame. */
 bool modbus_unit_doubt(struct modbus_source *modbus, struct modbus_unit *unit, size_t block);
-/* Called when a block of the unit was answered. If another block had failed before (modbus_unit_doubt()), that block and not the unit is to
- * blame: its tags lose their link. */
+/* Called when a block of the unit was answered. If another block had failed before (modbus_unit_doubt()), that block and not the unit is
+   to blame: the readings of its tags are lost. */
 void modbus_unit_settle(struct modbus_source *modbus, struct modbus_unit *unit, const struct read_plan_block *answered);
 
-/* Decodes the response to a block (tags read by one request) and writes its tags to the store. */
+/* Decodes the response to a block (tags read by one request) and writes the readings of its tags to the store. */
 void modbus_take_values(struct modbus_source *modbus, struct read_plan_block *block, const uint16_t *words);
 /* Returns true for exceptions by which a gateway says that it cannot reach a unit. */
 bool modbus_is_gateway_exception(int code);
-/* Handles a Modbus exception (error response): retries a busy device, splits a refused block, and marks refused tags as Bad. */
+/* Handles a Modbus exception (error response) to a block: retries a busy device, splits a refused block in two, and marks refused tags
+   as Bad. */
 void modbus_take_exception(struct modbus_source *modbus, size_t block, int code, int64_t now_ns);
-/* Records whether the device refuses a block's tags (refused) or answers them again, and logs a change. Returns true if this changed for
- * any tag. */
+/* Records that the device refuses a block's tags, or answers them again, and logs a change. Returns true if this changed for any tag. */
 bool modbus_note_refused(struct modbus_source *modbus, const struct read_plan_block *block, bool refused, const char *why);
 /* Returns the delay in nanoseconds before an address that was refused `before` consecutive times is requested again. */
 int64_t modbus_refused_pause_ns(int before);
-/* Rebuilds the read plan, with addresses that the device has refused included again, because the device may have been repaired or
- * replaced. */
+/* Rebuilds the read plan, including the addresses that the device has refused, because the device may have been repaired or replaced. */
 void modbus_replan(struct modbus_source *modbus);
 
 #endif

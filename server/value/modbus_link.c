@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Opens a TCP socket or serial line within a deadline, and closes it after any error. Uses libmodbus for RTU frames, and modbus_tcp.c for
- * TCP frames. */
+/* A connection to a Modbus device: opens a TCP socket or serial line within a deadline, and closes it after any error. Uses libmodbus
+   for RTU frames, and modbus_tcp.c for TCP frames. */
 #include "value/modbus_link.h"
 
 #include <errno.h>
@@ -24,11 +24,11 @@
 
 static const int64_t SETTLE_NS = 50 * NS_PER_MS;
 enum {
-    /* in timeouts: LATEST: after this time, an abandoned request is hardly answered any more; QUIET: then the line counts as cleared after
-       this time without an answer */
+    /* Multiples of the source's timeout. LATEST: a device hardly answers an abandoned request after this time. QUIET: if late answers
+       come even then, the line counts as cleared after this time without an answer. */
     LATEST_TIMEOUTS = 10,
     QUIET_TIMEOUTS = 5,
-    DRAINED_ANSWERS = 10, /* most answers that are discarded before the line counts as noisy */
+    DRAINED_ANSWERS = 10, /* when this many stray answers have been discarded, the line counts as noisy */
 };
 
 struct modbus_link {
@@ -37,28 +37,29 @@ struct modbus_link {
     uint16_t number;  /* transaction identifier of the last request, for TCP frames */
     int stop_fd;
     int null_fd;
-    /* A low file descriptor that is reserved at creation; dup3() moves each connection into it. libmodbus calls select(), which cannot
-     * handle descriptors from FD_SETSIZE on, and the daemon may have that many files open when it reconnects. */
+    /* a low file descriptor that is reserved at creation; dup3() moves each connection into it. libmodbus calls select(), which cannot
+       handle descriptors from FD_SETSIZE on, and the daemon may have that many files open when it reconnects */
     int slot_fd;
     bool open;
-    bool suspect; /* true (RTU frames only): an abandoned request may still be answered, so the next answer may belong to that request */
-    /* for RTU frames: asked_ns: when the last request was sent; abandoned_ns: when the oldest request was sent that may still be answered,
-       0: none; late_ns: time after which the device answered an abandoned request, 0: it answers in time */
+    /* true (RTU frames only): the device may still answer an abandoned request, so the next answer may belong to that request */
+    bool suspect;
+    /* For RTU frames. asked_ns: monotonic time when the last request was sent; abandoned_ns: the same of the oldest request that may
+       still be answered, 0: none; late_ns: how long the device took to answer an abandoned request, 0: it answers in time */
     int64_t asked_ns, abandoned_ns, late_ns;
     int host;     /* index in source->hosts of the host that is used now */
-    int answers;  /* of this connection */
+    int answers;  /* number of answers on this connection */
     bool any_unit;
     struct modbus_answered answered; /* transaction identifier and unit in the last response, for TCP frames */
     int64_t patience_ns;
-    /* monotonic times: opened_ns: when the connection was opened; sent_ns: when the first request that was answered was sent;
-       first_answered_ns: when its answer arrived */
+    /* Monotonic times: opened_ns: when the connection was opened; sent_ns: when its first answered request was sent; first_answered_ns:
+       when the answer to that request arrived. */
     int64_t opened_ns, sent_ns, first_answered_ns;
     struct lookup *lookup;
     char name[300];
 };
 
-/* Makes a libmodbus context for RTU frames with 8 data bits, as RTU requires. The link itself opens the connection and passes it to
- * libmodbus. */
+/* Creates a libmodbus context for RTU frames with 8 data bits, as RTU requires. This file opens the connection itself and passes its
+   descriptor to libmodbus. */
 static modbus_t *new_modbus(const struct plant_source *source)
 {
     bool line = source->transport == TRANSPORT_RTU;
@@ -66,7 +67,7 @@ static modbus_t *new_modbus(const struct plant_source *source)
     if (!modbus)
         return NULL;
     modbus_set_response_timeout(modbus, (uint32_t)(source->timeout_ms / 1000), (uint32_t)(source->timeout_ms % 1000) * 1000);
-    /* libmodbus gets no timeout between bytes, because the response timeout limits the whole reply */
+    /* sets no timeout between bytes, because the response timeout limits the whole reply */
     modbus_set_byte_timeout(modbus, 0, 0);
     return modbus;
 }
@@ -229,7 +230,7 @@ static int connect_any(struct modbus_link *link, int64_t deadline_ns, int *out_f
     if (!link->lookup)
         link->lookup = lookup_start(link->source->hosts[link->host], link->source->port);
     int status = lookup_wait(link->lookup, link->stop_fd, deadline_ns, &to);
-    /* the lookup is kept, because the system resolver has not returned: the next attempt waits for the same lookup */
+    /* the system's resolver has not returned yet: the next attempt to connect waits for the same lookup */
     if (status == -ETIMEDOUT)
         return status;
     for (; to; to = to->ai_next) {
@@ -237,12 +238,12 @@ static int connect_any(struct modbus_link *link, int64_t deadline_ns, int *out_f
         if (status == 0 || status == -ECANCELED)
             break;
     }
-    lookup_destroy(&link->lookup); /* the result is not kept: each connection resolves the host name again, because addresses change */
+    lookup_destroy(&link->lookup); /* resolves the host name again for each connection, because addresses change */
     return status;
 }
 
-/* Opens the serial line with exclusive access. libmodbus sets the line's parameters and remembers the previous ones. Returns 0 or
- * -errno. */
+/* Opens the serial line with exclusive access. libmodbus sets the line's speed and parity and remembers the previous settings. Returns 0
+   or -errno. */
 static int open_line(struct modbus_link *link, int *out_fd)
 {
     if (modbus_connect(link->modbus) != 0) {
@@ -270,8 +271,8 @@ int modbus_link_open(struct modbus_link *link)
     link->open = status == 0;
     link->answers = 0;
     link->opened_ns = clock_mono_ns();
-    /* checks stop_fd a second time: modbus_link_interrupt() may have been called before the socket was in its reserved descriptor, and so
-       could not end this connection */
+    /* checks stop_fd a second time: modbus_link_interrupt() may have been called before the socket was in its reserved descriptor, and
+       then could not end this connection */
     if (link->open && wait_for(-1, 0, link->stop_fd, 0) == -ECANCELED) {
         close_link(link);
         status = -ECANCELED;
@@ -281,8 +282,8 @@ int modbus_link_open(struct modbus_link *link)
 
 /* --- reading ---------------------------------------------------------------------------------------------------------------- */
 
-/* Discards received bytes that no request is waiting for, such as a duplicate reply or noise. modbus_flush() does not do this for RTU
- * frames over a socket. Returns false if the device has closed the connection meanwhile. */
+/* Discards received bytes that belong to no request, such as a duplicate reply or noise. modbus_flush() does not do this for RTU frames
+   over a socket. Returns false if the device has closed the connection meanwhile. */
 static bool flush(struct modbus_link *link)
 {
     uint8_t bytes[512];
@@ -309,7 +310,7 @@ static int read_words(modbus_t *modbus, enum register_table table, int first, in
                                 : modbus_read_registers(modbus, first, count, words);
 }
 
-/* Maps a libmodbus result to 0, a Modbus exception code or -errno. */
+/* Maps a result of libmodbus to 0, a Modbus exception code or -errno. count: number of values that were requested. */
 static int status_of(int got, int count)
 {
     int cause = errno;
@@ -320,9 +321,9 @@ static int status_of(int got, int count)
     return got < 0 && cause > 0 && cause < MODBUS_ENOBASE ? -cause : -EPROTO;
 }
 
-/* Sends a request in TCP frames. The first request of a connection is repeated until it is answered or patience_ns have passed: some
-   devices drop requests that come soon after connecting, others take long for their first answer. The answer to any of the repeated
-   requests is accepted. */
+/* Sends a request in TCP frames and receives its answer. The first request of a connection is repeated until it is answered or
+   patience_ns have passed: some devices drop requests that come soon after connecting, others take long for their first answer. The
+   answer to any of the repeated requests is accepted. */
 static int ask_framed(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
 {
     struct modbus_question numbered = *question;
@@ -354,12 +355,12 @@ static int ask(struct modbus_link *link, const struct modbus_question *question,
     return status_of(got, question->count);
 }
 
-/* Discards answers until none has come for quiet_ns. Returns how many came; DRAINED_ANSWERS: the line is still not quiet. */
+/* Discards answers until none has arrived for quiet_ns. Returns how many arrived; DRAINED_ANSWERS: the line is still not quiet. */
 static int drain(struct modbus_link *link, int64_t quiet_ns)
 {
     int count = 0;
     while (count < DRAINED_ANSWERS && wait_for(link->slot_fd, POLLIN, link->stop_fd, clock_mono_ns() + quiet_ns) == 0) {
-        wait_for(-1, 0, link->stop_fd, clock_mono_ns() + SETTLE_NS); /* an answer comes in several pieces */
+        wait_for(-1, 0, link->stop_fd, clock_mono_ns() + SETTLE_NS); /* waits a moment, because an answer may arrive in several pieces */
         if (!flush(link))
             break;
         count++;
@@ -368,8 +369,8 @@ static int drain(struct modbus_link *link, int64_t quiet_ns)
 }
 
 /* Discards the answers to abandoned requests: RTU frames have no transaction numbers, so such an answer could be taken for the answer to
-   the next request. To do so, sends a request, discards its answer, and waits until the line is quiet. That answer may have been the one to
-   the oldest abandoned request; if so, the device takes as long for each of the others. Returns false if the device does not answer. */
+   the next request. Sends a request, discards its answer, and waits until the line is quiet. The discarded answer may have been the one
+   to the oldest abandoned request; then the device takes as long for each of the others. Returns false if the device does not answer. */
 static bool clear_line(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
 {
     int64_t timeout_ns = link->source->timeout_ms * NS_PER_MS, quiet_ns = timeout_ns;
@@ -389,8 +390,9 @@ static bool clear_line(struct modbus_link *link, const struct modbus_question *q
     return !link->suspect;
 }
 
-/* Records that the last request, in RTU frames, was abandoned. cleared: clear_line() came before it. Then the device may be one that
-   answers only one request on each connection, unless late answers were seen. */
+/* Records that the last request, in RTU frames, was abandoned without an answer. cleared: clear_line() was called before that request.
+   The missing answer then need not come late: the device may be one that answers only one request on each connection, unless late
+   answers were seen. */
 static void abandon(struct modbus_link *link, bool cleared)
 {
     if (!link->abandoned_ns)
@@ -406,8 +408,8 @@ static int ask_again(struct modbus_link *link, const struct modbus_question *que
     return ask(link, question, words);
 }
 
-/* Selects a unit for the next requests. Returns false if its number is invalid. Valid numbers are 0 to 247; over TCP also 255, which means
- * the device at the IP address itself. */
+/* Selects the Modbus unit for the next requests. Returns false if its number is invalid. Valid numbers are 0 to 247; over TCP also 255,
+   which means the device at the IP address itself. */
 static bool can_ask_unit(struct modbus_link *link, int unit)
 {
     return link->modbus ? modbus_set_slave(link->modbus, unit) == 0 : (unit >= 0 && unit <= 247) || unit == 255;
@@ -428,10 +430,10 @@ int modbus_link_read(struct modbus_link *link, int unit, enum register_table tab
         link->first_answered_ns = clock_mono_ns();
     if (status >= 0)
         link->late_ns = 0;
-    /* a serial device server may send the late answer over the next connection */
+    /* marks the request as abandoned: a serial device server may send its late answer over the next connection */
     if (link->modbus && (status == -ETIMEDOUT || status == -EPROTO))
         abandon(link, cleared);
-    /* listens for the late answer, only to learn how late it is */
+    /* waits for the late answer, only to measure how late it is */
     if (link->modbus && status == -ETIMEDOUT && wait_for(link->slot_fd, POLLIN, link->stop_fd, link->asked_ns + link->patience_ns) == 0 &&
         flush(link))
         link->late_ns = clock_mono_ns() - link->asked_ns;

@@ -25,30 +25,31 @@ int modbus_link_host(const struct modbus_link *link);
 int modbus_link_open(struct modbus_link *link);
 /* Switches to the next of the source's hosts. Returns true if that was a switch from the last host back to the first. */
 bool modbus_link_next_host(struct modbus_link *link);
-/* Reads `count` registers, or bits as 0 and 1, into `words`, within the source's timeout_ms however slowly the device sends. Returns 0, or
- * a Modbus exception code (> 0; the link stays open), or -errno with the link closed, so that a late or foreign response is never taken for
- * the response to the next request. */
+/* Reads `count` registers, or bits as 0 and 1, into `words`, within the source's timeout_ms however slowly the device sends. Returns 0;
+   a Modbus exception code (> 0; the connection stays open); or -errno with the connection closed, so that a late or foreign response is
+   never taken for the response to the next request. */
 int modbus_link_read(struct modbus_link *link, int unit, enum register_table table, int first, int count, uint16_t *words);
 /* Closes the connection; modbus_link_open() makes a new one. */
 void modbus_link_close(struct modbus_link *link);
-/* Sets whether a response may name unit 0 or 255 instead of the unit requested. Allow this only if the address has no other unit. */
+/* Sets whether a response may state unit 0 or 255 instead of the unit requested. Allow this only if no other unit is read at this
+   address. */
 void modbus_link_allow_any_unit(struct modbus_link *link, bool any);
 /* Returns the unit number that the last response states. */
 int modbus_link_answered_unit(const struct modbus_link *link);
 /* Modbus TCP: makes the link repeat the first request of each connection every timeout_ms, until an answer arrives or patience_ns have
-   passed. 0: the request is sent once. RTU frames: makes the link listen for a late answer until patience_ns after the request, to learn
+   passed. 0: the request is sent once. RTU frames: makes the link wait for a late answer until patience_ns after the request, to measure
    how late it is. */
 void modbus_link_set_patience(struct modbus_link *link, int64_t patience_ns);
-/* Returns the number of requests answered on the current connection, or on the last one if the link is closed. */
+/* Returns the number of requests that were answered on the current connection, or on the last one if none is open. */
 int modbus_link_answers(const struct modbus_link *link);
-/* Returns how long after an abandoned request the device answered it, in nanoseconds; 0: no late answer was seen since the last answer in
- * time. For RTU frames. */
+/* For RTU frames: returns how long after an abandoned request the device answered it, in nanoseconds; 0: no late answer was seen since
+   the last answer in time. */
 int64_t modbus_link_late_ns(const struct modbus_link *link);
-/* Returns the time in nanoseconds from connecting until the first request that was answered was sent. *answered_ns: time from connecting
- * until its answer. */
+/* Returns the time in nanoseconds from connecting until the first answered request was sent. *answered_ns receives the time from
+   connecting until its answer. */
 int64_t modbus_link_first_ns(const struct modbus_link *link, int64_t *answered_ns);
-/* Ends a read that is in progress. Called from another thread, after stop_fd became readable. A read on a serial line ends only at its
- * deadline. */
+/* Ends a read that is in progress. Called by another thread, after stop_fd became readable. A read on a serial line ends only at its
+   deadline. */
 void modbus_link_interrupt(struct modbus_link *link);
 
 #endif

@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Modbus source: learns how the device handles connections and adapts to it. Logs once which key of the plant file would set this from
- * the start. */
+/* A Modbus source: learns how the device handles connections ("manners") and adapts to it. Logs once which key of the plant file would
+   set this from the start. */
 #include <errno.h>
 #include <stdio.h>
 
 #include "base/clock.h"
 #include "value/modbus_impl.h"
 
-/* LISTEN_TIMEOUTS: how long to listen for the answer of a device in RTU frames that does not answer, in timeouts */
+/* LISTEN_TIMEOUTS: how long to wait for a late answer in RTU frames, in multiples of the source's timeout, while no unit answers */
 enum { LISTEN_TIMEOUTS = 4, SHORT_CONNECTIONS = 3, REFUSED_CONNECTIONS = 6, CLOSED_CONNECTIONS = 2 };
-/* first delay before reconnecting to a device that refuses connections; doubled each time, because some devices free a closed connection
-   only after a while */
+/* first delay before reconnecting to a device that refuses connections. It doubles each time, because some devices take a while to
+   release a closed connection */
 static const int64_t RECONNECT_DELAY_NS = 50 * NS_PER_MS;
-static const int64_t TOLERANCE_NS = 2 * NS_PER_S; /* time since the device's last answer after which the device counts as lost */
-/* time limit for the first answer on a connection, if the last connection had no answer at all; doubled after each further connection
-   without an answer */
+static const int64_t TOLERANCE_NS = 2 * NS_PER_S; /* if the device's last answer is longer ago, the device counts as lost */
+/* time limit for the first answer on a connection if the previous connection had no answer at all; twice as long after more such
+   connections */
 static const int64_t FIRST_ANSWER_TIMEOUT_NS = 3 * NS_PER_S;
-/* first delay that is tried between connecting and the first request. Used for RTU over TCP, whose requests have no transaction numbers and
-   so cannot be repeated */
+/* first delay that is tried between connecting and the first request. Used for RTU over TCP, whose frames have no transaction numbers,
+   so that requests must not be repeated */
 static const int64_t RTU_DELAY_NS = 500 * NS_PER_MS;
 /* time limit for the answer of a unit (slave address) that is up, if another unit behind the same gateway has just timed out */
 static const int64_t GATEWAY_TIMEOUT_NS = 5 * NS_PER_S;
@@ -47,13 +47,13 @@ void modbus_manners_before(struct modbus_source *modbus, const struct modbus_uni
     int64_t patience_ns = manners->first_wait_ns;
     if (!modbus->link_up && manners->silent_connections > 0 && patience_ns < FIRST_ANSWER_TIMEOUT_NS)
         patience_ns = manners->silent_connections == 1 ? FIRST_ANSWER_TIMEOUT_NS : 2 * FIRST_ANSWER_TIMEOUT_NS;
-    /* a gateway is waited for only once: after that it may be lost */
+    /* waits longer for a gateway only once: after that it may be lost */
     bool waits = manners->timed_out && manners->timed_out != unit && modbus->fallen < GATEWAY_UNITS - 1;
     manners->first_excused = waits && unit->state == UNIT_UP && patience_ns < GATEWAY_TIMEOUT_NS;
     if (manners->first_excused)
         patience_ns = GATEWAY_TIMEOUT_NS;
     manners->timed_out = NULL;
-    if (modbus->base.config->transport != TRANSPORT_TCP) /* while no unit is up, listening delays nobody */
+    if (modbus->base.config->transport != TRANSPORT_TCP) /* while no unit answers, waiting for late answers delays nothing else */
         patience_ns = modbus->link_up ? 0 : LISTEN_TIMEOUTS * modbus->base.config->timeout_ms * NS_PER_MS;
     modbus_link_set_patience(modbus->link, patience_ns);
 }
@@ -71,8 +71,8 @@ static void log_found(struct modbus_source *modbus, const char *found)
     log_info(modbus->base.log, "source %s: device %s %s", modbus->base.config->id, modbus_link_name(modbus->link), found);
 }
 
-/* Learns from a late first answer on a connection why it was late: the device answered only a repeated request, or it was slow to answer
- * the first one. */
+/* Learns from a late first answer on a connection why it was late: the device dropped the first request and answered a repeated one, or
+   it took long to answer the first. */
 static void learn_start(struct modbus_source *modbus)
 {
     struct modbus_manners *manners = &modbus->manners;
@@ -81,7 +81,7 @@ static void learn_start(struct modbus_source *modbus)
     bool known = manners->first_wait_ns > 0, repeated = answered_ns - sent_ns < timeout_ns / 2;
     char found[200];
     if (answered_ns - manners->connect_delay_ns < timeout_ns) {
-        manners->first_wait_ns = 0; /* slow for another reason */
+        manners->first_wait_ns = 0; /* the answer was not late after all: the device was slow for another reason before */
         return;
     }
     if (answered_ns > manners->first_wait_ns / 2)
@@ -99,8 +99,9 @@ static void learn_start(struct modbus_source *modbus)
     log_found(modbus, found);
 }
 
-/* Logs the connect delay with which an RTU-over-TCP device answers. Its answers have no transaction numbers, so requests must not be
- * repeated. Instead, after each connection without an answer, the next connection waits longer before its first request. */
+/* Logs the delay after connecting with which a device with RTU frames over TCP answers. Its frames have no transaction numbers, so
+   requests must not be repeated. Instead, after each connection without an answer, the next connection waits longer before its first
+   request. */
 static void learn_rtu_delay(struct modbus_source *modbus)
 {
     struct modbus_manners *manners = &modbus->manners;
@@ -138,7 +139,7 @@ void modbus_manners_answered(struct modbus_source *modbus, const struct read_pla
 
 /* --- failures --------------------------------------------------------------------------------------------------------------- */
 
-/* Returns a timeout, in milliseconds, that is long enough for a device that answers after late_ns: twice that time. */
+/* Returns a value for `timeout_ms` that is long enough for a device that answers after late_ns: twice that time. */
 static long long enough_ms(int64_t late_ns)
 {
     return (2 * late_ns / NS_PER_MS + 99) / 100 * 100;
@@ -161,8 +162,8 @@ static bool is_closed(int status)
     return status == -ECONNRESET || status == -EPIPE || status == -ECONNREFUSED || status == -ECONNABORTED;
 }
 
-/* Says why the source reads one block per connection from now on. A device that takes long for each answer looks like one that answers only
-   once: its second answer does not come in time. */
+/* Logs why the source reads one block per connection from now on. A device that takes long for each answer looks like one that answers
+   only once for each connection: its second answer does not come in time. */
 static void log_one_per_connection(struct modbus_source *modbus, int status)
 {
     int64_t wait_ns = modbus->manners.first_wait_ns;
@@ -192,8 +193,8 @@ static void learn_end(struct modbus_source *modbus, int answers, int status)
     }
 }
 
-/* Returns true, and sets the retry time, if the device refused or closed a connection soon after one on which it answered: it may free the
- * earlier connection late. */
+/* Returns true, and sets the time of the next try, if the device refused or closed a connection soon after one on which it answered: it
+   may take a while to release the earlier connection. */
 static bool may_be_early(struct modbus_source *modbus, int status, int most)
 {
     struct modbus_manners *manners = &modbus->manners;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sends requests and reads responses in Modbus TCP frames. */
+/* Sends read requests and receives their responses in Modbus TCP frames. */
 #include "value/modbus_tcp.h"
 
 #include <errno.h>
@@ -13,7 +13,7 @@ enum {
     HEADER_BYTES = 7, /* length in bytes of the frame header: transaction identifier, protocol, length of the rest, unit */
     REFUSED = 0x80,   /* bit of the function code that marks an exception response */
     LAST_EXCEPTION = 11,
-    MAX_VALUE_BYTES = 2 * READ_PLAN_MAX_REGISTERS, /* READ_PLAN_MAX_BITS take as many bytes */
+    MAX_VALUE_BYTES = 2 * READ_PLAN_MAX_REGISTERS, /* READ_PLAN_MAX_BITS bits take as many bytes */
 };
 
 static uint8_t function_of(enum register_table table)
@@ -73,15 +73,14 @@ static int receive_all(int fd, int stop_fd, int64_t deadline_ns, uint8_t *bytes,
     return 0;
 }
 
-/* Returns the number of bytes that the values in the response must have. */
+/* Returns the number of bytes that the values in the response to a request must have. */
 static int value_bytes(const struct modbus_question *question)
 {
     return is_bits(question->table) ? (question->count + 7) / 8 : 2 * question->count;
 }
 
-/* Returns whether a response may state this unit although another was requested. Unit identifiers 0 and 255 mean the device at the address
-   itself (MODBUS Messaging on TCP/IP V1.0b, 4.4.1.2); many devices that are no gateways answer with one of these, whatever unit was
-   requested. */
+/* Returns true if a response may state this unit. Unit identifiers 0 and 255 mean the device at the IP address itself (MODBUS Messaging
+   on TCP/IP V1.0b, 4.4.1.2). Many devices that are not gateways answer with one of these, whatever unit was requested. */
 static bool fits_unit(const struct modbus_question *question, uint8_t unit)
 {
     bool itself = unit == 0 || unit == 255 || question->unit == 0 || question->unit == 255;
@@ -99,7 +98,8 @@ static int check_header(const struct modbus_question *question, const uint8_t *h
     return sized && fits_unit(question, header[6]) ? 0 : -EPROTO;
 }
 
-/* Checks and decodes a response. length: number of bytes from the function code on. Returns 0, a Modbus exception code, or -errno. */
+/* Checks and decodes a response to a request. length: number of bytes from the function code on. Returns 0, a Modbus exception code, or
+   -errno. */
 static int take_answer(const struct modbus_question *question, const uint8_t *answer, int length, uint16_t *words)
 {
     int function = function_of(question->table);

@@ -14,7 +14,7 @@ struct modbus_question {
     /* true: a response may state unit 0 or 255 in place of the requested unit; a response to a request for unit 0 or 255 may state any
        unit */
     bool any_unit;
-    /* transaction identifier of the first copy of a request that was repeated on this connection; equal to `number` if the request was sent
+    /* transaction identifier of the first copy of this request, if it was repeated on this connection; equal to `number` if it was sent
        once */
     uint16_t oldest;
     enum register_table table;

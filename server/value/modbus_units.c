@@ -8,10 +8,11 @@
 #include "value/lookup.h"
 #include "value/modbus_impl.h"
 
-/* Delay before a register that the device refused is read again. It doubles after each refusal up to MAX_REFUSED_DELAY_NS, because a device
- * may refuse only while it starts up. */
+/* Delay before a register that the device refused is read again. The delay doubles after each refusal up to MAX_REFUSED_DELAY_NS,
+   because a device may refuse only while it starts up. */
 static const int64_t REFUSED_DELAY_NS = 2 * NS_PER_S, MAX_REFUSED_DELAY_NS = 60 * NS_PER_S;
-/* delay before the unit's next block is read, while blocks are split to find the addresses that the device does not answer */
+/* delay between two requests to a unit while blocks (tags read by one request) are split, to find the addresses for which the device
+   does not answer */
 static const int64_t SPLIT_PAUSE_NS = 500 * NS_PER_MS;
 
 struct modbus_unit *modbus_unit_of(const struct modbus_source *modbus, const struct read_plan_block *block)
@@ -67,7 +68,7 @@ void modbus_replan(struct modbus_source *modbus)
 void modbus_unit_is_up(struct modbus_source *modbus, struct modbus_unit *unit)
 {
     if (unit->state == UNIT_DOWN && modbus->plan_cut)
-        modbus_replan(modbus); /* rebuilds the read plan when the unit answers again, because it may have been replaced by another device */
+        modbus_replan(modbus); /* the unit answers again, maybe because another device replaced it: requests the refused addresses again */
     if (unit->loss_said)
         log_info(modbus->base.log, "source %s: unit %d answers again", modbus->base.config->id, unit->id);
     unit->loss_said = false;
@@ -77,7 +78,7 @@ void modbus_unit_is_up(struct modbus_source *modbus, struct modbus_unit *unit)
         return;
     modbus->link_up = true;
     for (size_t i = 0; i < modbus->plan.unit_count; i++)
-        /* lets all units be requested again, because the gateway may be back, and with it all units */
+        /* a unit answers, so the gateway may be back: lets the other units be requested again at once */
         modbus->units[i].retry_ns = clock_mono_ns();
     counter_set(modbus->up, 1);
     counter_set(modbus->host, 1 + modbus_link_host(modbus->link));
@@ -106,7 +107,8 @@ static void lose_tags_of(struct modbus_source *modbus, const struct modbus_unit 
     store_tags_lost(modbus->base.store, modbus->lost, count, clock_mono_ns());
 }
 
-/* Switches to the next host and connects without a delay; once all hosts were tried, with a backoff delay before the first one. */
+/* Switches to the source's next host and connects to it without a delay; once all hosts were tried, waits with backoff before the first
+   one is tried again. */
 static void try_elsewhere(struct modbus_source *modbus)
 {
     int64_t now_ns = clock_mono_ns();
@@ -116,7 +118,7 @@ static void try_elsewhere(struct modbus_source *modbus)
         modbus->units[i].retry_ns = now_ns;
 }
 
-/* Marks all units as down. Units that were up before are requested again at once. */
+/* Marks all units of a gateway as down. Units that were up before are requested again at once. */
 static void lose_gateway(struct modbus_source *modbus)
 {
     for (size_t i = 0; i < modbus->plan.unit_count; i++) {
@@ -156,7 +158,8 @@ void modbus_unit_is_down(struct modbus_source *modbus, struct modbus_unit *unit,
 
 /* --- deciding whether a block or its unit is to blame ----------------------------------------------------------------------- */
 
-/* Returns the block that is due first among the other blocks of the same unit whose last request was answered; NULL: there is none. */
+/* Returns the block (tags read by one request) that is due first among the other blocks of the same unit whose last request was
+   answered; NULL: there is none. */
 static struct read_plan_block *other_block(struct modbus_source *modbus, const struct read_plan_block *block)
 {
     struct read_plan_block *other = NULL;
@@ -181,8 +184,8 @@ bool modbus_unit_doubt(struct modbus_source *modbus, struct modbus_unit *unit, s
     return true;
 }
 
-/* Records that a block is to blame for a missing answer: splits the block, or, if it has a single address, requests it again after growing
- * delays. */
+/* Records that a block and not its unit is to blame for a missing answer: splits the block in two or, if it has a single tag, requests
+   it again after growing delays. */
 static void blame(struct modbus_source *modbus, size_t index)
 {
     struct read_plan_block *block = &modbus->plan.blocks[index];

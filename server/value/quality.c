@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Table of the names of the quality codes. */
+/* Names of the quality codes of readings. */
 #include "value/quality.h"
 
 #include <stddef.h>

@@ -25,7 +25,7 @@ enum {
 #define QUALITY_BAD_SENSOR_FAILURE 0x808C0000u
 #define QUALITY_BAD_OUT_OF_SERVICE 0x808D0000u
 
-/* Returns a status code without its info bits, such as those for a limit that was reached or a queue that overflowed. */
+/* Returns a status code without its info bits, which say for example that a limit was reached or a queue overflowed. */
 static inline uint32_t quality_code(uint32_t q)
 {
     return q & 0xFFFF0000u;
@@ -42,7 +42,7 @@ static inline bool quality_is_bad(uint32_t q)
 {
     return (q >> 30) >= 2;
 }
-/* Returns whether the first code has a higher severity (Good, Uncertain, Bad) than the second. */
+/* Returns true if the severity (Good, Uncertain, Bad) of `q` is higher than that of `than`. */
 static inline bool quality_is_worse(uint32_t q, uint32_t than)
 {
     return (q >> 30) > (than >> 30);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sorts the tags of a source by register address and divides the list into blocks, at gaps and at the protocol's limits. */
+/* Makes the read plan of a Modbus source: sorts its tags by register address and divides the list into blocks, at gaps and at the
+   protocol's limits. */
 #include "value/read_plan.h"
 
 #include <assert.h>
@@ -10,7 +11,7 @@
 #include "base/mem.h"
 #include "value/decode.h"
 
-struct register_place { /* register address of a tag; tags are sorted by these members, in the order of declaration */
+struct register_place { /* register address of a tag; tags are sorted by these members, in the order in which they are declared */
     int unit, table, scan_ms, first, end, tag;
 };
 
@@ -98,7 +99,7 @@ void read_plan_finish(struct read_plan *plan)
     *plan = (struct read_plan){ 0 };
 }
 
-/* Sets the register range of a block (tags read by one request) to the range that its tags occupy. */
+/* Sets the register range of a block to the range that its tags occupy. */
 static void fit_to_tags(struct read_plan_block *block, const struct read_plan *plan, const struct plant *plant)
 {
     block->first = plant->tags[plan->tags[block->first_tag]].signal.register_index;

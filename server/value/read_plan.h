@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Read plan of a Modbus source: its tags, grouped into blocks; one request reads one block. No I/O, no clock. Thread: one. */
+/* Read plan of a Modbus source: its tags, grouped into blocks; one request reads one block. No input or output, no clock. Thread: one. */
 #ifndef VALUE_READ_PLAN_H
 #define VALUE_READ_PLAN_H
 #include <stddef.h>
@@ -17,13 +17,14 @@ struct read_plan_block {
     int scan_ms;
     int first, count;            /* registers or bits */
     size_t first_tag, tag_count; /* index of the first tag in read_plan.tags, and number of tags */
-    /* monotonic time when the block is read next; set by the reader (modbus.c); 0 in a new plan; copied by read_plan_split() */
+    /* monotonic time when the block is read next. modbus.c sets it; 0 in a new plan; read_plan_split() copies it */
     int64_t due_ns;
-    /* The reader sets the following members, too. They are 0 in a new plan, and read_plan_split() copies them. */
-    int busy_count;    /* number of successive "busy" responses */
-    int refused_count; /* number of consecutive refusals by the device; counted only for blocks with a single tag */
-    int silent_count;  /* number of consecutive requests without an answer while other blocks of the unit were answered */
-    bool answered;     /* the last request was answered */
+    /* modbus.c sets the following members, too. They are 0 in a new plan, and read_plan_split() copies them. */
+    int busy_count; /* number of consecutive responses of the device that it is busy */
+    /* number of consecutive responses by which the device refuses the block; counted only for blocks with a single tag */
+    int refused_count;
+    int silent_count; /* number of consecutive requests without an answer while other blocks of the unit were answered */
+    bool answered;    /* the last request was answered */
 };
 
 struct read_plan { /* zero-initialise */

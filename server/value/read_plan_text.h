@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The read plan of a source as readable text: every request with its addresses on the wire, and the load on the device. */
+/* The read plan of a Modbus source as readable text: every request with its register addresses, and the load on the device. */
 #ifndef VALUE_READ_PLAN_TEXT_H
 #define VALUE_READ_PLAN_TEXT_H
 #include "base/text/text.h"

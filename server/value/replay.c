@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A source that replays recorded series: writes their samples to the store when their times come. */
+/* A source that replays recorded series: writes each sample to the store when its time comes. */
 #include "value/source_impl.h"
 
 #include <errno.h>
@@ -15,15 +15,15 @@
 #include "value/series.h"
 
 static const int64_t ROUND_NS = 50 * NS_PER_MS;
-/* lateness above which a sample is skipped instead of written, for example after the machine slept */
+/* a sample that is late by more than this is skipped, for example after the machine slept */
 static const int64_t LATEST_NS = 10 * NS_PER_S;
 
-struct replay_lane { /* a tag and its series */
+struct replay_lane { /* a tag and the series that it replays */
     int tag;
     struct unit_change change; /* conversion from the series' unit to the tag's unit */
     struct series series;      /* samples of the tag's series; count 0: the tag has no series */
     size_t next;
-    int64_t rounds; /* completed rounds of a loop */
+    int64_t rounds; /* number of times that a looping series has been replayed in full */
 };
 
 struct replay {
@@ -70,7 +70,7 @@ static bool ended(const struct replay *replay, const struct replay_lane *lane)
     return lane->series.count == 0 || (!replay->base.config->loop && lane->next == lane->series.count);
 }
 
-/* Moves to the next sample. A looping series starts again after its last sample. */
+/* Moves to the next sample of a series. A looping series starts again after its last sample. */
 static void step(const struct replay *replay, struct replay_lane *lane)
 {
     if (++lane->next < lane->series.count || !replay->base.config->loop)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads one series from a CSV file of numbers. */
+/* Reads one recorded series from a CSV file. */
 #include "value/series.h"
 
 #include <errno.h>
@@ -26,14 +26,14 @@ struct series_cell {
 
 struct series_lines {
     const char *path, *at;
-    char separator; /* of cells */
+    char separator; /* character between the cells of a line */
     int number;
     struct series_cell *cells;
     size_t count, capacity;
 };
 
-/* Begins to read the text of a file. The separator of its cells is the one that occurs most in the first line: `21,5` in a file with
- * semicolons is one cell. */
+/* Begins to read the text of a CSV file. The separator of its cells is the character among , ; and tab that occurs most in the first
+   line, so that `21,5` in a file with semicolons is one cell. */
 static struct series_lines lines_of(const char *path, const char *text)
 {
     size_t most = 0;
@@ -75,7 +75,7 @@ static bool is(const struct series_cell *cell, const char *text, size_t length)
     return cell->length == length && !memcmp(cell->at, text, length);
 }
 
-/* Returns whether a cell equals a name, ignoring case. */
+/* Returns true if a cell equals a name, ignoring case. */
 static bool is_called(const struct series_cell *cell, const char *name)
 {
     return cell->length == strlen(name) && !strncasecmp(cell->at, name, cell->length);
@@ -96,8 +96,8 @@ static bool number_of(const struct series_cell *cell, double *out)
     return cell->length && end == cell->at + cell->length && isfinite(*out);
 }
 
-/* Reads a value; NaN if the cell has a word for "no value" (state_word.h). Returns false if the cell is neither a number nor such a
- * word. */
+/* Reads a cell's value; NaN if the cell has a word for "no value" (state_word.h). Returns false if the cell is neither a number nor such
+   a word. */
 static bool value_of(const struct series_cell *cell, double *out)
 {
     char text[64];
@@ -109,7 +109,7 @@ static bool value_of(const struct series_cell *cell, double *out)
     return state_word_is_bad(text, &quality);
 }
 
-/* Reads a quality: a status code such as 0x40900000, or a word. Uncertain if the cell is neither. */
+/* Reads a cell's quality: a status code such as 0x40900000, or a word. Uncertain if the cell is neither. */
 static uint32_t quality_of(const struct series_cell *cell)
 {
     char text[40], *end;
@@ -150,7 +150,7 @@ struct clock {     /* state for converting the time column of a file to seconds 
     bool begun;    /* first or first_us is set */
     double unit_s, first, last_s;
     int64_t first_us, last_us;
-    size_t ticks; /* number of distinct times */
+    size_t ticks; /* number of different times in the column */
 };
 
 static bool instant_of(const struct series_cell *cell, int64_t after_us, int64_t *t_us)
@@ -188,8 +188,8 @@ static bool read_number(struct clock *clock, const struct series_cell *cell, dou
     return true;
 }
 
-/* Reads a line's time in seconds since the first line. Returns false if the cell is not a time, or the time is before that of the previous
- * line. */
+/* Reads a line's time in seconds since the first line. Returns false if the cell is not a time, or the time is before that of the
+   previous line. */
 static bool tick(struct clock *clock, const struct series_cell *cell, double *time_s)
 {
     if (!(clock->instants ? read_instant : read_number)(clock, cell, time_s) || *time_s < clock->last_s)
@@ -199,7 +199,8 @@ static bool tick(struct clock *clock, const struct series_cell *cell, double *ti
     return true;
 }
 
-/* Returns whether a line has more cells with a text than the header, for example because of `1,234` in a file with commas. */
+/* Returns true if a line has more non-empty cells than the header has columns, for example because of the number `1,234` in a file with
+   commas. */
 static bool has_surplus(const struct series_lines *lines, size_t columns)
 {
     for (size_t i = columns; i < lines->count; i++)
@@ -225,7 +226,7 @@ static bool read_wide(struct series *series, struct series_lines *lines, size_t 
             snprintf(why, 200, "%s:%d: expected a time not before that of the line above", lines->path, lines->number);
             return false;
         }
-        if (lines->cells[column].length == 0) /* no value at this time */
+        if (lines->cells[column].length == 0) /* the series has no value at this time */
             continue;
         if (!value_of(&lines->cells[column], &value)) {
             snprintf(why, 200, "%s:%d: %s: expected a number", lines->path, lines->number, series->name);
@@ -258,14 +259,14 @@ static bool read_long(struct series *series, struct series_lines *lines, struct 
     return true;
 }
 
-struct header {              /* indices of the columns in the file; if a column is missing, its index is the number of columns */
+struct header {              /* indices of columns in a CSV file; the index of a missing column is the number of columns */
     size_t time, column;     /* wide form (series.h): the time column, and the column of the series */
-    size_t tag, value, unit, quality; /* columns of the values form (series.h), with one value a line */
+    size_t tag, value, unit, quality; /* columns of the values form (series.h), which has one value in each line */
     bool of_values;
 };
 
-/* Finds the first and the last time of a file, and its number of distinct times. Times need not ascend through the file, because the lines
-   of one tag may follow those of another. */
+/* Finds the first and the last time of a file, and its number of different times. Times need not ascend through the file, because the
+   lines of one tag may follow those of another. */
 static void scan_values(struct series_lines lines, const struct header *header, struct clock *clock)
 {
     int64_t t_us;
@@ -282,8 +283,8 @@ static void scan_values(struct series_lines lines, const struct header *header, 
     mem_free(lines.cells);
 }
 
-/* Reads a file in the values form: each line has a tag and a value, as `plantcast history export` prints. A blank value means that the
- * quality was Bad. */
+/* Reads a file in the values form: each line has a tag and a value, as `plantcast history export` writes. A blank value means that the
+   quality was Bad. */
 static bool read_values(struct series *series, struct series_lines *lines, const struct header *header, struct clock *file, char why[200])
 {
     double time_s, value;
@@ -321,7 +322,7 @@ static bool read_values(struct series *series, struct series_lines *lines, const
     return true;
 }
 
-/* Returns whether the first line below the header has a date and time in this column, whatever its header says. */
+/* Returns true if the first line below the header has a date and time in this column, whatever the header names it. */
 static bool begins_with_instant(const struct series_lines *header, size_t column)
 {
     struct series_lines next = { .at = header->at, .separator = header->separator };
@@ -452,7 +453,8 @@ static void add_name(struct series_names *names, char *name)
     names->at[names->count++] = name;
 }
 
-/* Lists the series of a file with one value a line. Their names are entity/property in the long form, the tag's name in the values form. */
+/* Lists the series of a file with one value in each line. In the long form they are named entity/property, in the values form like their
+   tags. */
 static void list_lines(struct series_names *names, struct series_lines *lines, size_t tag)
 {
     int first = lines->number;

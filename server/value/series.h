@@ -18,21 +18,21 @@ struct series {
     double *time_s, *value;
     uint32_t *quality; /* OPC UA quality of each sample; Good, or Bad without a value, unless the lines of the file state another */
     size_t count, capacity, value_capacity, quality_capacity;
-    double length_s; /* duration of the whole file in seconds: its last time plus one interval; after it, a looping series starts again */
+    /* duration of the whole file in seconds: its last time plus one interval; a looping series starts again after this time */
+    double length_s;
 };
 
 /* Reads the series with this name. Returns false with file, line and reason in `why` on failure; *found then tells whether the file has the
  * series at all. Free with series_finish(). */
 bool series_read(struct series *series, const char *path, const char *name, bool *found, char why[200]);
 void series_finish(struct series *series);
-/* Returns the last value recorded at or before time_s, or the first value if time_s is earlier. loop: the series is continued by repeating
- * it after length_s. */
+/* Returns the last value recorded at or before time_s, or the first value if time_s is earlier. loop: the series repeats after length_s. */
 double series_at(const struct series *series, double time_s, bool loop);
 
 struct series_names {
     char **at;
     size_t count, capacity;
-    bool whole; /* the whole file was read */
+    bool whole; /* true: the whole file was read, so the list is complete */
 };
 
 /* Lists the series of a file by reading its beginning. Returns false with the reason in `why` if the file cannot be read. */

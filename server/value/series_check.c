@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks that the series to which the tags' addresses refer are in the files. */
+/* Checks that the files of replay sources contain the series that the tags replay. */
 #include "value/series_check.h"
 
 #include <string.h>

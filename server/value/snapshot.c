@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Makes and frees snapshots. */
+/* Creates, copies and frees snapshots (readings of all tags at one time). */
 #include "value/snapshot.h"
 
 #include <string.h>

@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Snapshot: the readings of all tags at one instant, from which the field is computed. A plain copy, owned by its creator. */
+/* Snapshot: the readings of all tags at one time, from which the field is computed. A plain copy, owned by its creator. */
 #ifndef VALUE_SNAPSHOT_H
 #define VALUE_SNAPSHOT_H
 #include <stddef.h>
 #include <stdint.h>
 
 struct reading {
-    double value;                /* value in engineering units; never NaN unless the quality is Bad */
-    uint32_t quality;            /* OPC UA status code, which includes the effect of the reading's age */
-    uint32_t changes;            /* counter that increases with each change of value, quality or alarm */
-    uint8_t alarm, alarm_status; /* alarm: the alarm shown for the tag (enum alarm_kind); alarm_status: its state (enum alarm_status) */
-    int64_t received_utc_ns;     /* time when the value arrived (UTC); 0: no value ever arrived */
-    int64_t age_ns;              /* age at the time of the snapshot, by the monotonic clock; INT64_MAX: no value was ever received */
+    double value;     /* value in engineering units; never NaN unless the quality is Bad */
+    uint32_t quality; /* OPC UA status code; takes the reading's age into account */
+    uint32_t changes; /* counter that increases with each change of value, quality or alarm */
+    /* alarm: kind of the alarm that is shown for the tag (enum alarm_kind); alarm_status: its state (enum alarm_status) */
+    uint8_t alarm, alarm_status;
+    int64_t received_utc_ns; /* time when the value arrived (UTC); 0: no value ever arrived */
+    int64_t age_ns;          /* age at the time of the snapshot, by the monotonic clock; INT64_MAX: no value was ever received */
 };
 
 struct snapshot {

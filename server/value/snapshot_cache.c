@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores historical snapshots as a short list with reference counts. */
+/* Caches snapshots of past times (readings of all tags) in a short list, with reference counts. */
 #include "value/snapshot_cache.h"
 
 #include <pthread.h>
@@ -10,7 +10,7 @@
 
 #include "base/mem.h"
 
-/* must be the first member: users hold a pointer to the snapshot, which is converted back to a pointer to this struct */
+/* The snapshot must be the first member: users hold a pointer to it, which is converted back to a pointer to this struct. */
 struct snapshot_entry {
     struct historical_snapshot historical;
     int users;
@@ -51,7 +51,7 @@ void snapshot_cache_destroy(struct snapshot_cache **cache_ptr)
     *cache_ptr = NULL;
 }
 
-/* Returns the entry of an instant, or NULL. Call with the lock held. */
+/* Returns the cache entry of a past time, or NULL. Call with the lock held. */
 static struct snapshot_entry *find(const struct snapshot_cache *snapshot_cache, int64_t at_us)
 {
     for (size_t i = 0; i < snapshot_cache->count; i++)
@@ -72,7 +72,7 @@ static int free_slot(const struct snapshot_cache *snapshot_cache)
     }
 }
 
-/* Call with the lock held. */
+/* If more than SNAPSHOT_CACHE_SPARE snapshots have no user, frees the one that was used least recently. Call with the lock held. */
 static void drop_spare(struct snapshot_cache *snapshot_cache)
 {
     size_t spare = 0, oldest = 0;

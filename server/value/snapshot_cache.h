@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cache of historical snapshots (readings of all tags at an instant in the past). Each instant that somebody views is read from history
- * once, and shared by all users. Thread: any. */
+/* Cache of historical snapshots (readings of all tags at a past time). Each time that users view is read from history once, and all its
+   users share the snapshot. Thread: any. */
 #ifndef VALUE_SNAPSHOT_CACHE_H
 #define VALUE_SNAPSHOT_CACHE_H
 #include "value/snapshot.h"
 
-enum { SNAPSHOT_CACHE_SPARE = 16 }; /* number of snapshots that stay in the cache although nobody uses them: the newest ones */
+enum { SNAPSHOT_CACHE_SPARE = 16 }; /* number of snapshots that stay in the cache although nobody uses them: those used last */
 
-struct historical_snapshot { /* the readings of one past instant; immutable while a user holds it */
+struct historical_snapshot { /* the readings of all tags at one past time; immutable while a user holds the snapshot */
     struct snapshot snapshot;
     int64_t at_us; /* UTC, since 1970; above 0 */
     /* slot number, from 1, unique among snapshots with a user; the renderer assigns its fields and buffers to snapshots by this number */
@@ -19,11 +19,11 @@ struct snapshot_cache *snapshot_cache_create(void);
 /* Frees the cache and sets *snapshot_cache to NULL. *snapshot_cache may be NULL. No snapshot may be in use any more. */
 void snapshot_cache_destroy(struct snapshot_cache **snapshot_cache);
 
-/* Adds the snapshot of an instant and takes ownership of its readings, which leaves `snapshot` empty; the caller still frees the struct.
- * Sets `changes` of the readings so that equal values and qualities have equal numbers. If the instant is already in the cache, changes
- * nothing, and the caller keeps the readings. */
+/* Adds the snapshot of a past time and takes ownership of its readings, which leaves `snapshot` empty; the caller still frees the
+   struct. Sets `changes` of the readings so that equal values and qualities have equal numbers. If the cache already has the time,
+   changes nothing, and the caller keeps the readings. */
 void snapshot_cache_add(struct snapshot_cache *snapshot_cache, int64_t at_us, struct snapshot *snapshot);
-/* Returns the snapshot of an instant, valid until snapshot_cache_give(); NULL if it is not in the cache. */
+/* Returns the snapshot of a past time, valid until snapshot_cache_give(); NULL if the cache does not have it. */
 const struct historical_snapshot *snapshot_cache_take(struct snapshot_cache *snapshot_cache, int64_t at_us);
 void snapshot_cache_give(struct snapshot_cache *snapshot_cache,
                          /* Ends the use of a snapshot from snapshot_cache_take() and sets *historical to NULL. *historical may be NULL. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of the kinds of sources, and functions that start and end their threads. */
+/* The kinds of sources (Modbus, MQTT and so on), and functions that start and end a source's thread. */
 #include "value/source.h"
 
 #include <errno.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sources of readings. Each has one thread, which writes to the store and to nothing else. */
+/* Sources: what the plant reads its tags' values from. Each has one thread, which writes to the store and to nothing else. */
 #ifndef VALUE_SOURCE_H
 #define VALUE_SOURCE_H
 #include "base/log/log.h"
@@ -12,7 +12,7 @@ struct source;
 /* Starts the thread of one of the plant's sources. A device that does not answer is not an error: the source retries without end. Returns
  * NULL (logged) if the kind is unknown or the thread could not be started. */
 struct source *source_start(struct log *log, const struct plant *plant, int source, struct store *store, struct counters *counters);
-/* Ends the thread within 2 s, frees the source and sets *source to NULL. *source may be NULL. */
+/* Ends the source's thread within 2 s, frees the source and sets *source to NULL. *source may be NULL. */
 void source_stop(struct source **source);
 
 #endif

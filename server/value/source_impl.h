@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "value/source.h"
 
-struct source { /* part that all kinds of source have in common; it is the first member of the struct of each kind */
+struct source { /* the members that sources of all kinds have; this struct is the first member of each kind's own struct */
     const struct source_impl *impl;
     struct log *log;
     const struct plant *plant;
@@ -23,18 +23,18 @@ struct source_impl {
     const char *kind;
     /* creates a source that begins with a copy of *base; its thread is not running yet; returns NULL on failure (logged) */
     struct source *(*create)(const struct source *base, struct counters *counters);
-    /* main function of the thread: runs until stop_fd becomes readable or no more data can arrive */
+    /* main function of the source's thread: runs until stop_fd becomes readable or no more data can arrive */
     void (*run)(struct source *source);
-    /* callback, on any thread, that interrupts a wait in which the source's thread does not watch stop_fd; NULL: this kind of source has no
-       such wait */
+    /* called by any thread; interrupts a wait in which the source's thread does not watch stop_fd; NULL: this kind of source has no such
+       wait */
     void (*interrupt)(struct source *source);
-    /* callback that frees the source, after its thread has ended or if it never ran */
+    /* frees the source, after its thread has ended or if it never ran */
     void (*destroy)(struct source *source);
 };
 
 /* Creates a source of the kind params->impl and starts its thread. The caller sets all members of `params` except stop_fd and thread;
- * config may be NULL for a kind that is not in the table. what: name of the source in the log. Returns NULL on failure (logged). The caller
- * ends the source with source_stop(). */
+   config may be NULL for a kind that cannot be named in the plant file. what: name of the source in the log. Returns NULL on failure
+   (logged). The caller ends the source with source_stop(). */
 struct source *source_begin(const struct source *params, const char *what, struct counters *counters);
 
 /* Registers the metric plantcast_source_NAME{source="ID"MORE} and returns its counter. more: further labels, such as ",result=\"ok\"", or
@@ -48,10 +48,10 @@ static inline counter *source_counter(const struct source *source, struct counte
     return added;
 }
 
-extern const struct source_impl modbus_impl; /* kind of source: Modbus TCP and RTU, read only */
-extern const struct source_impl mqtt_impl;   /* kind of source: values published to an MQTT broker; subscribes only */
-extern const struct source_impl opcua_impl;  /* kind of source: OPC UA, subscribes only; defined if the build has open62541 */
-/* kind of source: recorded series from a CSV file (series.h), at the speed set in the plant file */
+extern const struct source_impl modbus_impl; /* Modbus TCP and RTU, read only */
+extern const struct source_impl mqtt_impl;   /* values published to an MQTT broker; subscribes only */
+extern const struct source_impl opcua_impl;  /* OPC UA, subscribes only; defined if the build has open62541 */
+/* recorded series from a CSV file (series.h), at the speed set in the plant file */
 extern const struct source_impl replay_impl;
 
 #endif

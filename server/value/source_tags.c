@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lists the tags of a source by address; tags with equal addresses stay in the order of the tag list. */
+/* Lists the tags of a source by their addresses; tags with equal addresses stay in the order of the tag list. */
 #include "value/source_tags.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Collects consecutive readings that have the same time, and writes them to the store together. */
+/* Collects consecutive samples that state the same time, and writes them to the store together. */
 #include "value/stamped_writer.h"
 
 #include <stdlib.h>
@@ -13,7 +13,7 @@ void stamped_writer_init(struct stamped_writer *writer, const struct plant *plan
     *writer = (struct stamped_writer){ .store = store, .plant = plant };
     writer->samples = mem_array(plant->tag_count, sizeof(*writer->samples));
     writer->last = mem_array(plant->tag_count, sizeof(*writer->last));
-    /* value for "no sample yet"; 0 would not do, because a monotonic time before the machine's start is negative */
+    /* INT64_MIN means "no sample yet"; 0 would not do, because a monotonic time before the machine's start is negative */
     for (size_t i = 0; i < plant->tag_count; i++)
         writer->last[i].mono_ns = INT64_MIN;
 }
@@ -41,16 +41,16 @@ void stamped_writer_end(struct stamped_writer *writer)
     writer->count = 0;
 }
 
-/* Converts UTC to monotonic time. The two clocks cannot be read at the same instant, so the result may be slightly off. If the sample is
-   not older in UTC than the tag's last sample, its monotonic time is at least that of the last sample. */
+/* Converts a sample's UTC time to monotonic time. The two clocks cannot be read at the same moment, so the result may be slightly off.
+   If the sample is not older in UTC than the tag's last sample, its monotonic time is at least that of the last sample. */
 static int64_t mono_of(const struct stamped_writer *writer, int tag, int64_t utc_ns)
 {
     int64_t mono_ns = writer->mono_ns - (writer->utc_ns - utc_ns);
     return utc_ns >= writer->last[tag].utc_ns && mono_ns < writer->last[tag].mono_ns ? writer->last[tag].mono_ns : mono_ns;
 }
 
-/* Adds a sample to the batch. A batch contains samples of one time, at most as many as there are tags; if the sample does not fit, the
- * batch is written first. */
+/* Adds a sample to the batch, which has samples of one time only, at most as many as there are tags. If the sample does not fit, the
+   batch is written first. */
 static void add_sample(struct stamped_writer *writer, const struct sample *sample, int64_t utc_ns)
 {
     int64_t mono_ns = mono_of(writer, sample->tag, utc_ns);
@@ -78,7 +78,7 @@ void stamped_writer_add(struct stamped_writer *writer, int tag, const struct sta
         writer->worst_skew_ns = utc_ns - writer->utc_ns;
     if (!quality_is_bad(value->quality)) {
         decode_number(&writer->plant->tags[tag], value->value, &sample);
-        /* the sender's quality code is used instead of ours, because it is more specific, unless ours is worse */
+        /* takes the publisher's quality code instead of ours, because it is more specific, unless ours is worse */
         if (!quality_is_worse(sample.quality, value->quality))
             sample.quality = value->quality;
         if (was_kept && quality_is_good(sample.quality))

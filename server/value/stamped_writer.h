@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes readings to the store, each with the timestamp that its sender states. Thread: one. */
+/* Writes samples to the store, each with the timestamp that its sender (publisher or server) states. Thread: one. */
 #ifndef VALUE_STAMPED_WRITER_H
 #define VALUE_STAMPED_WRITER_H
 #include "plant/plant.h"
@@ -15,15 +15,16 @@ struct stamped_writer {
     struct store *store;
     const struct plant *plant;
     int64_t mono_ns, utc_ns; /* arrival time of the message that is being processed */
-    /* largest difference between a time stated in the message and our clock; above 0: the sender's clock is ahead; 0: no difference */
+    /* largest difference between a time stated in the message and our clock, in nanoseconds; above 0: the sender's clock is ahead; 0: no
+       difference */
     int64_t worst_skew_ns;
-    size_t written; /* number of readings of this message that were written so far */
+    size_t written; /* number of samples of this message that were written to the store so far */
     /* samples of the present batch, which are not written yet and all have the same time; room for as many as there are tags */
     struct sample *samples;
     size_t count;
-    int64_t at_utc_ns, at_mono_ns; /* time of the pending samples */
+    int64_t at_utc_ns, at_mono_ns; /* UTC and monotonic time of the batch */
     struct {
-        int64_t utc_ns, mono_ns; /* by tag: time that the tag's last sample states */
+        int64_t utc_ns, mono_ns; /* by tag: time of the tag's last sample */
         bool is_stated;          /* the sender stated that time */
     } * last;
 };
@@ -32,13 +33,13 @@ void stamped_writer_init(struct stamped_writer *writer, const struct plant *plan
 void stamped_writer_finish(struct stamped_writer *writer);
 /* Begins the processing of a message that arrived at this time. */
 void stamped_writer_begin(struct stamped_writer *writer, int64_t now_mono_ns, int64_t now_utc_ns);
-/* Adds the value, not scaled yet, that the message contains for a tag. was_kept: the broker had retained the value, which may have changed
- * since, so its quality is Uncertain_LastUsableValue at best. A time ahead of our clock is replaced by the current time. A time before that
- * of the tag's last sample is replaced by that sample's time if in_order is set; otherwise the store ignores the sample. */
+/* Adds the value, not scaled yet, that the message contains for a tag. was_kept: the broker had retained the value, which may have
+   changed since, so its quality is Uncertain_LastUsableValue at best. A time ahead of our clock is replaced by the current time. A time
+   before that of the tag's last sample is replaced by that sample's time if in_order is set; otherwise the store ignores the sample. */
 void stamped_writer_add(struct stamped_writer *writer, int tag, const struct stamped_value *value, bool was_kept, bool in_order);
-/* Sets a Bad quality for a tag from now on. If the sender states times, the quality counts from the time of the tag's last sample instead.
- * Otherwise the next value from a sender whose clock is behind ours would count as older than this quality, and be ignored. */
+/* Makes a tag Bad from now on. If the sender states times, the Bad quality counts from the time of the tag's last sample instead.
+   Otherwise the next value from a sender whose clock is behind ours would count as older, and be ignored. */
 void stamped_writer_add_bad(struct stamped_writer *writer, int tag, uint32_t quality);
-void stamped_writer_end(struct stamped_writer *writer); /* Writes the pending samples. */
+void stamped_writer_end(struct stamped_writer *writer); /* Writes the samples of the batch to the store. */
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of state words: digital states of PI, errors of PI DataLink, quality codes of Ignition and errors of spreadsheets. */
+/* The table of state words, which historians and spreadsheets write instead of a value: digital states of PI, errors of PI DataLink,
+   quality codes of Ignition and errors of spreadsheets. */
 #include "value/state_word.h"
 
 #include <ctype.h>
@@ -9,7 +10,7 @@
 
 enum { LONGEST_WORD = 40 };
 
-/* Words for each quality, separated by blanks; each consists of letters and digits only, in lower case. */
+/* State words for each quality, separated by blanks; each consists of letters and digits only, in lower case. */
 static const struct {
     uint32_t quality;
     const char *words;
@@ -34,8 +35,8 @@ static const struct {
       " unitdown notinservice " },
 };
 
-/* Returns whether the text begins with this word and not only with its letters: "Bad", "Bad_NotConnected", "BadSensorFailure" and "BAD
- * INPUT" begin with "bad", "badge" does not. */
+/* Returns true if the text begins with this word as a whole: "Bad", "Bad_NotConnected", "BadSensorFailure" and "BAD INPUT" begin with
+   "bad", "badge" does not. */
 static bool begins_as(const char *text, const char *word)
 {
     size_t length = strlen(word);
@@ -45,7 +46,7 @@ static bool begins_as(const char *text, const char *word)
     return !islower((unsigned char)text[length]);
 }
 
-/* "#DIV/0!", "#NAME?", "#N/A" */
+/* Returns true for error values of spreadsheets, such as "#DIV/0!", "#NAME?" and "#N/A". */
 static bool is_spreadsheet_error(const char *text)
 {
     size_t length = strlen(text);

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Returns whether the text says that there is no value, and sets *quality to the matching Bad quality. This holds for blank text,
+/* Returns true if the text says that there is no value, and sets *quality to the matching Bad quality. This holds for blank text,
    dashes, NaN, null, spreadsheet errors (#N/A), digital states of PI and quality names of OPC UA and Ignition; case and punctuation do
    not matter. Other text leaves *quality unchanged. */
 bool state_word_is_bad(const char *text, uint32_t *quality);

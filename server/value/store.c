@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stores the newest reading of every tag, and computes its current quality. */
+/* Stores the newest reading of every tag, and computes the reading's present quality. */
 #include "value/store.h"
 
 #include <assert.h>
@@ -12,17 +12,17 @@
 
 struct held {
     double value;                              /* last usable value */
-    uint32_t quality;                          /* of the last sample */
-    bool has_value, lost;                      /* lost: true: the tag could not be read since its last sample */
-    bool dead;                                 /* true: the tag is lost, and its last value may not be used any more */
+    uint32_t quality;                          /* quality that the tag's last sample states */
+    bool has_value, lost;                      /* has_value: `value` is set; lost: the tag could not be read since its last sample */
+    bool dead;                                 /* true: the tag is lost, and its last value must not be used any more */
     int64_t sampled_mono_ns;                   /* time of the tag's last sample, whether Good or Bad */
     int64_t received_mono_ns, received_utc_ns; /* arrival time of the tag's last usable value */
     int64_t changed_mono_ns;                   /* time at which the last usable value differed from the one before */
     int64_t stale_ns, flatline_ns;
-    /* A quality tag gives its quality to other tags, which form a list. first_vouched: index of the first tag to which this tag gives its
-     * quality; next_vouched: index of the next tag in the list that contains this tag; -1: none. */
+    /* A quality tag decides the quality of other tags, which form a list. first_vouched: index of the first tag whose quality this tag
+       decides; next_vouched: index of the next tag in the list to which this tag belongs; -1: none. */
     int first_vouched, next_vouched;
-    uint32_t shown_quality; /* quality that was reported when `changes` was last incremented */
+    uint32_t shown_quality; /* quality that the tag had when `changes` was last incremented */
     uint32_t changes;
     uint8_t alarm, alarm_status;
 };
@@ -41,12 +41,12 @@ struct store {
     struct {
         store_listener *hear;
         void *arg;
-        bool all; /* also called for store_tell_aged() */
+        bool all; /* true: also called by store_tell_aged() */
     } listeners[STORE_LISTENERS];
     struct {
-        void (*changed)(void *arg); /* NULL: no callback */
+        void (*changed)(void *arg); /* called when a reading, an alarm or a link has changed; NULL: not wanted */
         void *arg;
-        bool told; /* true: the watch callback has been called since the last store_take(), so it is not called again */
+        bool told; /* true: changed() has been called since the last store_take(), so it is not called again */
     } watch;
     int64_t utc_ahead_ns; /* difference in nanoseconds between UTC and the monotonic clock, when the last sample arrived */
     bool has_utc;         /* a sample has arrived */
@@ -109,8 +109,8 @@ static int find_source(const struct plant *plant, const char *id)
     return i;
 }
 
-/* Returns whether a tag has the same unit in the old and the new plant. If not, its old reading is not taken over; the source will soon
- * send a new one. */
+/* Returns true if a tag has the same unit in the old and the new plant. If not, the old reading is not taken over, because the source
+   will soon send a new one. */
 static bool same_unit(const struct plant_tag *a, const struct plant_tag *b)
 {
     struct unit_change change;
@@ -130,7 +130,7 @@ void store_adopt(struct store *store, struct store *before)
             continue;
         const struct held own = *to;
         *to = before->tags[i];
-        /* the alarm of the old reading is not taken over: limits may have changed, and the alarm service sets it again */
+        /* does not take over the alarm of the old reading: limits may have changed, and the alarm service sets the alarm again */
         to->alarm = own.alarm;
         to->alarm_status = own.alarm_status;
         to->stale_ns = own.stale_ns;
@@ -217,7 +217,7 @@ static void tell(struct store *store, size_t tag, uint32_t quality, int64_t mono
             store->listeners[i].hear(store->listeners[i].arg, &event);
 }
 
-/* Returns the quality that follows from the tag's own samples and the age of the last value. */
+/* Returns the quality that follows from the tag's last sample and from the age of its last value. */
 static uint32_t own_quality(const struct held *held, int64_t now_mono_ns)
 {
     bool stale = held->has_value && now_mono_ns - held->received_mono_ns >= held->stale_ns;
@@ -235,7 +235,7 @@ static uint32_t own_quality(const struct held *held, int64_t now_mono_ns)
     return flat && quality_is_good(held->quality) ? QUALITY_UNCERTAIN_SENSOR_NOT_ACCURATE : held->quality;
 }
 
-/* Returns the quality from the heartbeat of the tag's source: Good, or Bad if the controller behind the source has stopped. */
+/* Returns Bad if the controller behind the tag's source has stopped, as the source's heartbeat tag shows; otherwise Good. */
 static uint32_t heartbeat_quality(const struct store *store, size_t tag, int64_t now_mono_ns)
 {
     int index = store->plant->tags[tag].source;
@@ -248,7 +248,7 @@ static uint32_t heartbeat_quality(const struct store *store, size_t tag, int64_t
     return now_mono_ns - heart->changed_mono_ns >= ns_of(source->heartbeat_s) ? QUALITY_BAD_DEVICE_FAILURE : QUALITY_GOOD;
 }
 
-/* Returns the quality that the tag's quality tag gives; Good if it has no quality tag. */
+/* Returns the quality that the tag's quality tag (PLANT.md) decides; Good if it has none. */
 static uint32_t vouched_quality(const struct store *store, size_t tag, int64_t now_mono_ns)
 {
     const struct plant_quality_tag *by = &store->plant->tags[tag].validity.quality;
@@ -257,15 +257,14 @@ static uint32_t vouched_quality(const struct store *store, size_t tag, int64_t n
     const struct held *word = &store->tags[by->tag];
     bool readable =
         quality_is_good(own_quality(word, now_mono_ns)) && quality_is_good(heartbeat_quality(store, (size_t)by->tag, now_mono_ns));
-    /* a value holds 53 bits: of a larger number, the lowest bits are lost */
+    /* a double has 53 bits, so the lowest bits of a larger number are lost */
     if (!readable || !(fabs(word->value) <= 0x1p53))
         return QUALITY_UNCERTAIN;
     bool good = (((uint64_t)(int64_t)word->value & by->mask) == by->want) != by->negate;
     return good ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE;
 }
 
-/* Returns the worst of three qualities: the one from the tag's own samples, the one from the heartbeat of its source, and the one from its
- * quality tag. */
+/* Returns the worst of three qualities: of the tag's own sample, of the heartbeat of its source, and of its quality tag. */
 static uint32_t quality_now(const struct store *store, size_t tag, int64_t now_mono_ns)
 {
     uint32_t quality = own_quality(&store->tags[tag], now_mono_ns);
@@ -276,7 +275,7 @@ static uint32_t quality_now(const struct store *store, size_t tag, int64_t now_m
     return quality;
 }
 
-/* Increments the change counter if value or quality changed. Returns whether it did. */
+/* Increments the tag's change counter if its value or quality changed. Returns true if so. */
 static bool count_change(struct store *store, size_t tag, bool value_changed, int64_t now_mono_ns)
 {
     struct held *held = &store->tags[tag];
@@ -292,8 +291,8 @@ static bool hold(struct store *store, const struct sample *sample, int64_t now_m
     struct held *held = &store->tags[sample->tag];
     bool bad = quality_is_bad(sample->quality), finite = isfinite(sample->value), value_changed = false;
     if (now_mono_ns < held->sampled_mono_ns) {
-        /* A sample older than the last is ignored. Exception: the tag is dead, and the sample has the UTC time of the last value or a later
-           one; then it shows that the lost source is back. */
+        /* A sample older than the last one is ignored, unless the tag is dead and the sample is not older in UTC than the last value:
+           then it shows that the lost source is back. */
         if (!held->dead || !held->has_value || now_utc_ns < held->received_utc_ns)
             return false;
         now_mono_ns = held->sampled_mono_ns;
@@ -315,7 +314,7 @@ static bool hold(struct store *store, const struct sample *sample, int64_t now_m
     return true;
 }
 
-/* Reports changes of all tags to which this tag gives its quality. */
+/* Reports changed qualities of all tags whose quality this tag decides. */
 static void tell_vouched(struct store *store, int tag, int64_t now_mono_ns, int64_t now_utc_ns)
 {
     for (int i = store->tags[tag].first_vouched; i >= 0; i = store->tags[i].next_vouched) {
@@ -350,7 +349,7 @@ static void mirror(struct store *store, const struct mirrored *reading, int64_t 
     held->received_utc_ns = reading->received_utc_ns;
     held->sampled_mono_ns = held->changed_mono_ns = now_mono_ns;
     held->lost = held->dead = false;
-    /* a reading from a core (daemon that reads the devices) is not made stale here, because the core decides that */
+    /* a core's reading never becomes stale here, because the core (the daemon that reads the devices) decides its quality */
     held->stale_ns = held->flatline_ns = INT64_MAX;
     if (count_change(store, (size_t)reading->tag, value_changed, now_mono_ns))
         tell_watch(store);
@@ -369,7 +368,7 @@ static void lose(struct store *store, size_t tag, bool dead, int64_t now_mono_ns
     struct held *held = &store->tags[tag];
     if (now_mono_ns < held->sampled_mono_ns)
         return;
-    /* listeners are called even if the tag's own quality stays the same, because the quality of tags that depend on it may change */
+    /* calls the watch callback even if the tag's own quality stays the same, because the quality of tags that depend on it may change */
     if (!held->lost || (dead && !held->dead))
         tell_watch(store);
     held->lost = true;
@@ -482,14 +481,14 @@ void store_snapshot(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns
     pthread_mutex_unlock(&store->lock);
 }
 
-/* Returns the earlier one of next_ns and since_ns + after_ns. If the latter is not in the future, returns next_ns. */
+/* Returns the earlier of next_ns and since_ns + after_ns; if the latter is not in the future, returns next_ns. */
 static int64_t sooner(int64_t next_ns, int64_t since_ns, int64_t after_ns, int64_t now_mono_ns)
 {
     bool comes = after_ns < INT64_MAX && since_ns + after_ns > now_mono_ns;
     return comes && since_ns + after_ns < next_ns ? since_ns + after_ns : next_ns;
 }
 
-/* Returns when the next reading becomes stale, or the next heartbeat counts as stopped; INT64_MAX: never. */
+/* Returns the monotonic time when the next reading becomes stale, or the next heartbeat counts as stopped; INT64_MAX: never. */
 static int64_t next_change_ns(const struct store *store, int64_t now_mono_ns)
 {
     int64_t next_ns = INT64_MAX;
@@ -506,8 +505,8 @@ static int64_t next_change_ns(const struct store *store, int64_t now_mono_ns)
     return next_ns;
 }
 
-/* Lists the times at which a reading goes stale or counts as unchanged for too long, and at which the heartbeat of its source stops;
-   INT64_MAX: never. */
+/* Lists the monotonic times at which time alone changes a tag's quality: its reading becomes stale, its value counts as unchanged for
+   too long, the heartbeat of its source counts as stopped; INT64_MAX: never. */
 static void list_ageing(const struct store *store, size_t tag, int64_t at_ns[3])
 {
     const struct held *held = &store->tags[tag];

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The store holds the newest sample of every tag. Sources write samples, any thread takes snapshots.
- * The quality of a reading is the worst of these: the sample's quality; the quality that follows from the sample's age;
- * Uncertain_SensorNotAccurate if the value has not changed for flatline_s; the quality that the tag's quality tag gives; Bad_DeviceFailure
- * if the heartbeat of the tag's source has stopped. */
+/* The store holds the newest sample of every tag. Sources write samples, any thread takes snapshots. The quality of a reading is the
+   worst of these: the sample's quality; the quality that follows from the sample's age; Uncertain_SensorNotAccurate if the value has not
+   changed for flatline_s; the quality that the tag's quality tag decides; Bad_DeviceFailure if the heartbeat of the tag's source has
+   stopped. */
 #ifndef VALUE_STORE_H
 #define VALUE_STORE_H
 #include <stdbool.h>
@@ -20,9 +20,9 @@ struct sample {
     uint32_t quality;
 };
 
-/* Argument of listeners. A listener is called for every sample and every lost link, in the order in which they happen. It runs under the
-   store's lock, so it must only copy the event and return. A link that is lost before the first sample causes no call, because the UTC time
-   is not known yet; only snapshots show it. */
+/* Argument of a listener, which the store calls for every sample and for every tag that can no longer be read, in the order in which
+   this happens. A listener runs under the store's lock, so it must only copy the event and return. A link that is lost before the first
+   sample causes no call, because the UTC time is not known yet; only snapshots show it. */
 struct sample_event {
     int tag;
     double value;
@@ -34,36 +34,38 @@ enum { STORE_LISTENERS = 6 };
 
 struct store *store_create(const struct plant *plant); /* Creates a store; `plant` must outlive it. */
 void store_destroy(struct store **store);
-/* Copies readings and link states from another store, for tags and sources with equal names. Must be called before a listener is added. */
+/* After a reload: copies readings and link states from the old plant's store, for tags and sources with equal names. Call it before a
+   listener is added. */
 void store_adopt(struct store *store, struct store *before);
-/* Adds a listener; a store has at most STORE_LISTENERS. */
+/* Adds a listener for samples; a store has at most STORE_LISTENERS. */
 void store_listen(struct store *store, store_listener *listener, void *arg);
-/* Does the same as store_listen(), and also calls the listener for store_tell_aged(). */
+/* Does the same as store_listen(); the listener is also called by store_tell_aged(). */
 void store_listen_all(struct store *store, store_listener *listener, void *arg);
-/* Tells the listeners of store_listen_all() that time alone changed the quality of a tag, for example that its reading went stale. Returns
- * false, with nobody told, if a sample of the tag has arrived since event->mono_ns: that sample tells the quality. */
+/* Calls the listeners of store_listen_all(), because time alone changed the quality of a tag; for example, its reading became stale.
+   Returns false, without a call, if a sample of the tag has arrived since event->mono_ns: that sample has told the quality. */
 bool store_tell_aged(struct store *store, const struct sample_event *event);
-/* Returns since when the tag has had its present quality because of time alone: its reading, or the one of its quality tag, went stale or
- * counted as unchanged for too long, or a heartbeat stopped. Returns now if there is no such time since the tag's newest sample. */
+/* Returns the monotonic time since which a tag has had its present quality because of time alone: its reading, or that of its quality
+   tag, became stale or counted as unchanged for too long, or a heartbeat stopped. Returns now if there is no such time since the tag's
+   newest sample. */
 int64_t store_aged_ns(struct store *store, int tag, int64_t now_mono_ns);
 /* Removes a listener; the store no longer calls it once this function has returned. */
 void store_unlisten(struct store *store, store_listener *listener, void *arg);
-/* Sets the callback for changes of readings, alarms or links. The thread that makes the change calls it under the store's lock: once, and
- * not again before store_take(). It is not called when only age makes a reading stale; store_take() returns when that will be. NULL removes
- * the callback, which is not called any more after this function has returned. */
+/* Sets the function that is called when a reading, an alarm or a link has changed. The thread that makes the change calls it under the
+   store's lock: once, and not again before store_take(). It is not called when time alone makes a reading stale; store_take() returns
+   when that will be. NULL removes the callback, which is not called any more after this function has returned. */
 void store_watch(struct store *store, void (*changed)(void *arg), void *arg);
-/* Writes samples that arrived at this time. If a read failed, call store_link_lost() instead. */
+/* Writes samples that arrived at this time. If reading the device failed, call store_link_lost() or store_tags_lost() instead. */
 void store_write(struct store *store, const struct sample *samples, size_t count, int64_t now_mono_ns, int64_t now_utc_ns);
-/* a reading as another daemon's store shows it; a renderer (daemon that draws for a core) receives such readings from its core */
+/* a reading as the store of a core (daemon that reads the devices) shows it, for a daemon that gets its readings from that core */
 struct mirrored {
     int tag;
-    uint32_t quality; /* quality that the core (daemon that reads the devices) shows, including the effect of the reading's age */
+    uint32_t quality; /* quality that the core shows, which takes the reading's age into account */
     double value;     /* last usable value, if has_value */
     bool has_value;
-    int64_t received_mono_ns, received_utc_ns; /* arrival time of the value: in UTC; received_mono_ns: on this machine's monotonic clock */
+    int64_t received_mono_ns, received_utc_ns; /* arrival time of the value, on this machine's monotonic clock and in UTC */
 };
-/* Writes readings of a core (daemon that reads the devices) in place of samples: their quality is the core's, and their age here does not
- * change it. Listeners are not called. store_link_lost(), store_tags_lost() and store_tags_dead() apply to such readings too. */
+/* Writes readings of a core (daemon that reads the devices) instead of samples: their quality is the core's, and their age here does not
+   change it. Listeners are not called. store_link_lost(), store_tags_lost() and store_tags_dead() apply to such readings too. */
 void store_mirror(struct store *store, const struct mirrored *readings, size_t count, int64_t now_mono_ns);
 /* Records that a source cannot be read from now on. Its tags keep their last values: Uncertain_NoCommunicationLastUsableValue until
    stale_s after their arrival, then Bad_CommunicationError. Tags that never had a value are Bad_NoCommunication. */
@@ -73,18 +75,18 @@ void store_tags_lost(struct store *store, const int *tags, size_t count, int64_t
 /* Makes some tags Bad_CommunicationError immediately, even if their last values are recent, because these values may not be used any
  * more. */
 void store_tags_dead(struct store *store, const int *tags, size_t count, int64_t now_mono_ns);
-/* Records that a source can be read again. Each of its tags becomes usable with its next sample. */
+/* Records that a source can be read again. Each of its tags is usable again from its next sample on. */
 void store_link_up(struct store *store, int source, int64_t now_mono_ns);
-/* Records that a source is not connected, without changing its tags. For renderers (daemons that draw for a core), which receive each tag's
- * state from the core. */
+/* Records that a source is not connected, without changing its tags. For renderers (daemons that draw pictures), which receive each
+   tag's state from the core. */
 void store_link_down(struct store *store, int source, int64_t now_mono_ns);
-/* Sets the alarm of a tag's readings from now on (enum alarm_kind) and its state (enum alarm_status). */
+/* Sets the alarm that a tag's readings show from now on: its kind (enum alarm_kind) and its state (enum alarm_status). */
 void store_set_alarm(struct store *store, int tag, int alarm, int status);
 bool store_link_is_up(const struct store *store, int source);
 /* Copies all readings, with their qualities as of now, into a snapshot that was made for the same plant. */
 void store_snapshot(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns, struct snapshot *into);
-/* Does the same as store_snapshot(), for the owner of the store_watch() callback, which then reports changes made after this call. Returns
- * the monotonic time at which a quality next changes only because time passes; INT64_MAX: never. */
+/* Does the same as store_snapshot(), for the owner of the store_watch() callback, which from now on reports later changes. Returns the
+   monotonic time at which a quality next changes because of time alone; INT64_MAX: never. */
 int64_t store_take(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns, struct snapshot *into);
 
 #endif

@@ -29,7 +29,8 @@ static bool names_its_object(const char *key)
     return false;
 }
 
-/* Returns true if an item's name is the tag's name, or ends in the tag's name after a separator, as `A.T1` for the tag T1. */
+/* Returns true if the name that an array item states is the tag's name, or ends in the tag's name after a separator, as `A.T1` for the
+   tag T1. */
 static bool is_name_of(const json_t *name, const char *tag)
 {
     const char *text = json_string_value(name);
@@ -39,8 +40,8 @@ static bool is_name_of(const json_t *name, const char *tag)
     return length == tag_length || strchr("./:\\!|", text[length - tag_length - 1]);
 }
 
-/* Returns true if the rest of a path selects this member of an array item. The member then holds the tag's value, so it is not the item's
-   name. */
+/* Returns true if the rest of a path selects the member `key` of an array item. That member then holds the tag's value, and not a name
+   of the item. */
 static bool is_selected(const char *key, const char *rest)
 {
     struct json_path_step step;
@@ -48,8 +49,8 @@ static bool is_selected(const char *key, const char *rest)
     return *rest && json_path_next(&rest, &step, why) && step.kind == JSON_PATH_NAME && !strcmp(step.name, key);
 }
 
-/* Returns a name that an array item states of itself, if none of the item's names fits the tag; NULL if a name fits or the item has no
- * name. rest: path below the item. */
+/* Returns a name that an array item states for itself, if none of its names fits the tag; NULL if one fits or the item states none.
+   rest: path below the item. */
 static const json_t *foreign_name(const json_t *item, const char *tag, const char *rest)
 {
     const char *key;

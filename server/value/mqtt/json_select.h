@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the one value that a path (plant/sources/json_path.h) selects in a JSON document. No side effects. Thread: any. */
+/* Finds the value that a path (plant/sources/json_path.h) selects in a JSON document. No side effects. Thread: any. */
 #ifndef VALUE_MQTT_JSON_SELECT_H
 #define VALUE_MQTT_JSON_SELECT_H
 #include <jansson.h>
@@ -9,14 +9,14 @@ struct json_selected {
     size_t count;         /* number of values that the path selects */
     const json_t *value;  /* last selected value; NULL: none */
     const json_t *holder; /* object or array that contains `value`; NULL: `value` is the root */
-    /* name that an array item states for itself, if the path addresses the item by position and that name does not fit the tag; NULL: all
-       names fit */
+    /* If the path addresses an array item by position: a name that the item states for itself and that does not fit the tag; NULL: there
+       is no such name. */
     const json_t *foreign;
 };
 
-/* Follows the path from `root`. tag: name of the tag whose value is read. An array item addressed by position may name itself (a text or
- * number called `id`, `name`, `tag` and the like). It is selected only if its name is the tag's, or ends in the tag's name after a
- * separator: a publisher that sends only changed items changes their positions. */
+/* Follows the path from `root`. tag: name of the tag whose value is read. An array item that the path addresses by position may state a
+   name (a text or number called `id`, `name`, `tag` and the like). It is selected only if this name is the tag's, or ends in the tag's
+   name after a separator, because a publisher that sends only changed items changes their positions. */
 struct json_selected json_select(const json_t *root, const char *path, const char *tag);
 
 #endif

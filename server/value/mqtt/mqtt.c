@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An MQTT source: connects, subscribes, and marks all readings as lost when the connection to the broker is lost. It can publish only two
- * messages, if the plant file allows them: the request for a Sparkplug birth certificate, and a last will on a topic below plantcast/. */
+/* An MQTT source: connects to a broker, subscribes, and marks all its readings as lost when the connection is lost. It can publish only
+   two messages, if the plant file allows them: the request for a Sparkplug birth certificate, and a last will on a topic below
+   plantcast/. */
 #include <errno.h>
 #include <string.h>
 #include <sys/random.h>
@@ -21,7 +22,7 @@ static bool stopping(const struct mqtt_source *mqtt, int64_t until_ns)
 
 /* --- the link --------------------------------------------------------------------------------------------------------------- */
 
-/* Marks all readings of the source as lost, because values may have changed unnoticed while the broker could not be reached. */
+/* Marks the readings of all tags of the source as lost, because values may have changed unnoticed while the broker could not be reached. */
 static void link_lost(struct mqtt_source *mqtt, const char *why)
 {
     int64_t now_ns = clock_mono_ns();
@@ -80,7 +81,8 @@ static void on_message(void *arg, const struct mqtt_message *message)
 
 /* --- the thread ------------------------------------------------------------------------------------------------------------- */
 
-/* Runs one connection until it ends. Returns -ECANCELED when the source must stop, else another negative code with the reason in `why`. */
+/* Runs one connection to the broker until it ends. Returns -ECANCELED when the source must stop, else another negative code with the
+   reason in `why`. */
 static int run_session(struct mqtt_source *mqtt, char why[200])
 {
     const struct mqtt_client_events events = {
@@ -150,8 +152,8 @@ static void add_counters(struct mqtt_source *mqtt, struct counters *counters)
     mqtt->host = source_counter(base, counters, "host", "", "gauge", "number of the host that delivers readings: 1 is the first, 0 none");
 }
 
-/* Returns the configured client id, or a random one. Two clients with one id would disconnect each other from the broker. The caller frees
- * it. */
+/* Returns the MQTT client id from the plant file, or a random one, because the broker disconnects a client if another one connects with
+   the same id. The caller frees it. */
 static char *make_client_id(const struct plant_source *config)
 {
     unsigned random = 0;

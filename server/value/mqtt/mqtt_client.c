@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Wraps libmosquitto, with our own poll() loop in place of its select() loop, which cannot handle descriptors above 1023. */
+/* Wraps libmosquitto, with a poll() loop of our own instead of the library's select() loop, which cannot handle descriptors above 1023. */
 #include "value/mqtt/mqtt_client.h"
 
 #include <errno.h>
@@ -23,25 +23,26 @@
 enum { TOPICS_AT_ONCE = 8 };         /* maximum number of topics in one subscribe request; some brokers refuse more */
 enum { SESSION_KEPT_S = 7 * 86400 }; /* seconds for which the broker keeps a persistent session after a disconnection */
 static const char SYSTEM_CERTIFICATES[] = "/etc/ssl/certs";
-static const int64_t CHORES_NS = 500 * NS_PER_MS; /* interval at which the library checks its keep-alive timer */
+static const int64_t CHORES_NS = 500 * NS_PER_MS; /* interval at which libmosquitto is called to check its keep-alive timer */
 
 struct mqtt_client {
     struct mosquitto *library;
     const struct plant_source *source;
     const struct mqtt_client_events *events;
-    char *host; /* copy of the settings that belongs to the connecting thread, because that thread may outlive the source */
+    char *host; /* copies of the host's name and settings for the connecting thread, because that thread may outlive the source */
     int port, keepalive_s;
     mosquitto_property *properties;
     int done_fd; /* descriptor that becomes readable once the connection attempt has ended */
     _Atomic int users;
-    _Atomic int status; /* status: result code of the connection attempt; errno_then: errno at that time */
+    _Atomic int status; /* status: result code of the attempt to connect; errno_then: errno at that time */
     int errno_then;
-    char said[160]; /* text of the last error that the MQTT library logged */
+    char said[160]; /* text of the last error that libmosquitto logged */
     /* --- below: used only by the thread that calls mqtt_client_serve() */
     int refusal; /* reason code with which the broker refused the connection; 0: none */
     char *const *topics;
     size_t topic_count, acknowledged;
-    int *requests; /* message ids of the subscribe requests; 0: acknowledged; each request has up to TOPICS_AT_ONCE topics */
+    /* message ids of the subscribe requests, each for up to TOPICS_AT_ONCE topics; 0: the broker has acknowledged the request */
+    int *requests;
 };
 
 static void client_unref(struct mqtt_client *client)
@@ -100,7 +101,7 @@ static void on_subscribe(struct mosquitto *library, void *arg, int id, int count
         request++;
     if (request == requests)
         return;
-    client->requests[request] = 0; /* 0 marks the request as acknowledged, because the library never uses the id 0 */
+    client->requests[request] = 0; /* 0 marks the request as acknowledged, because libmosquitto never uses the message id 0 */
     for (size_t i = 0, topic = request * TOPICS_AT_ONCE; i < TOPICS_AT_ONCE && topic < client->topic_count; i++, topic++) {
         client->acknowledged++;
         if ((int)i >= count || granted[i] >= 128)
@@ -139,7 +140,7 @@ static void *connect_main(void *arg)
     return NULL;
 }
 
-/* Passphrase callback of the library for an encrypted key: fails, because nobody is there to type a passphrase. */
+/* Callback of OpenSSL that must supply the passphrase of an encrypted key. Fails, because nobody is present to type one. */
 static int no_passphrase(char *out, int bytes, int for_writing, void *arg)
 {
     (void)out;
@@ -161,8 +162,8 @@ static bool use_tls(struct mqtt_client *client, char why[200])
     return status == MOSQ_ERR_SUCCESS;
 }
 
-/* Sets user name and password. Reads the login file again for each connection, because the password may have changed. Returns false with
- * the reason in `why`. */
+/* Sets user name and password for the broker. Reads the login file again for each connection, because the password may have changed.
+   Returns false with the reason in `why`. */
 static bool log_in(struct mqtt_client *client, char why[200])
 {
     const char *file = client->source->login;
@@ -246,13 +247,13 @@ void mqtt_client_destroy(struct mqtt_client **client)
     if (!gone)
         return;
     if (gone->done_fd >= 0 && wait_for(gone->done_fd, POLLIN, -1, 0) == 0)
-        mosquitto_disconnect(gone->library); /* from here on, the connecting thread does not use the library object any more */
+        mosquitto_disconnect(gone->library); /* the connecting thread has ended by now, so it no longer uses the libmosquitto object */
     client_unref(gone);
 }
 
 /* --- serving ---------------------------------------------------------------------------------------------------------------- */
 
-/* Writes the reason why a connection ended to `why`. Returns the code that mqtt_client_serve() must return. */
+/* Writes to `why` why a connection to the broker ended. Returns the code that mqtt_client_serve() must return. */
 static int explain(const struct mqtt_client *client, int status, int errno_then, char why[200])
 {
     bool is_5 = client->source->mqtt.protocol == 5;
@@ -277,7 +278,7 @@ int mqtt_client_wait(struct mqtt_client *client, int stop_fd, int64_t deadline_m
     return client->status == MOSQ_ERR_SUCCESS ? 0 : explain(client, client->status, client->errno_then, why);
 }
 
-/* Returns whether the TLS layer holds received bytes that it has already decrypted; poll() on the socket does not report these. */
+/* Returns true if the TLS layer holds received bytes that it has already decrypted; poll() on the socket does not report these. */
 static bool holds_more(struct mqtt_client *client)
 {
     SSL *tls = mosquitto_ssl_get(client->library);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State of an MQTT source, shared by its files: one thread with one connection. Private to value/mqtt/. Thread: the source's own. */
+/* State of an MQTT source, which has one thread with one connection. Private to value/mqtt/. Thread: the source's own. */
 #ifndef VALUE_MQTT_IMPL_H
 #define VALUE_MQTT_IMPL_H
 #include "base/log/log_pace.h"
@@ -18,27 +18,27 @@ struct mqtt_source {
     /* --- below: used only by the source's thread */
     struct mqtt_topics topics;
     struct stamped_writer writer;
-    struct sparkplug *sparkplug; /* Sparkplug decoder; NULL: the source uses other payloads */
+    struct sparkplug *sparkplug; /* decoder of Sparkplug messages; NULL: the source's messages have another form */
     char **subscriptions;
     size_t subscription_count;
     struct mqtt_client *client;
     struct host_turn turn;
     bool link_up, link_known;
-    bool subscribed;          /* true: all topics are subscribed, so messages without the retained flag are new values */
+    bool subscribed;          /* true: all topics are subscribed, so a message without the retained flag has a new value */
     struct log_pace refusals; /* rate limit of the log line about refused messages */
-    char last_refused[300];   /* topic and reason of the last refused message, for the log */
+    char last_refused[300];   /* topic and reason of the last refused message, for the next log line */
     /* rate limit of the log line "value missing", about tags whose value no message has contained yet */
     struct log_pace absences;
-    bool *matched; /* by index in plant->tags: true: some JSON message has contained this tag's value */
-    /* monotonic times of the last log lines about wrong clocks of senders: [0] a clock behind ours, [1] a clock ahead of ours */
+    bool *matched; /* by index in plant->tags: true once a JSON message has contained this tag's value */
+    /* monotonic times of the last log lines about wrong clocks of publishers: [0] a clock behind ours, [1] a clock ahead of ours */
     int64_t skew_said_ns[2];
 };
 
-/* Processes a message for the source's tags: writes their values, or refuses the message and logs the reason. */
+/* Writes the values in a message to the tags of its topic, or refuses the message and logs the reason. */
 void mqtt_take_message(struct mqtt_source *mqtt, const struct mqtt_message *message);
-/* Counts a refused message, and logs at most one such message a minute. */
+/* Counts a refused message, and logs at most one such message per minute. */
 void mqtt_refuse(struct mqtt_source *mqtt, const struct mqtt_message *message, const char *why);
-/* Logs, at most once a minute, how many refused messages were not logged by mqtt_refuse(). */
+/* Logs, at most once a minute, how many refused messages mqtt_refuse() has not logged. */
 void mqtt_log_left_out(struct mqtt_source *mqtt, int64_t now_ns);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes the values of a message to the tags of its topic. */
+/* Writes the values of an MQTT message to the tags of its topic. */
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 
 static const int64_t SKEW_NS = 5 * NS_PER_S, SKEW_SAID_NS = 60 * NS_PER_S;
 
-/* Returns a name for a log line, shortened and without control characters, in `out`. */
+/* Returns a publisher's name for a log line: shortened and without control characters, in `out`. */
 static const char *shown(const char *name, char out[64])
 {
     size_t n = 0;
@@ -44,7 +44,7 @@ static void report_skew(struct mqtt_source *mqtt, const char *topic)
     int64_t skew_ns = mqtt->writer.worst_skew_ns, now_ns = mqtt->writer.mono_ns;
     char name[64];
     int64_t *said_ns = &mqtt->skew_said_ns[skew_ns > 0];
-    if (mqtt->sparkplug && skew_ns < 0) /* an old time is normal in Sparkplug, which states when the metric last changed */
+    if (mqtt->sparkplug && skew_ns < 0) /* an old time is normal in Sparkplug, whose timestamps state when a metric last changed */
         return;
     if ((skew_ns < SKEW_NS && skew_ns > -SKEW_NS) || (*said_ns && now_ns - *said_ns < SKEW_SAID_NS))
         return;
@@ -69,8 +69,8 @@ static bool take_number(struct mqtt_source *mqtt, const struct mqtt_topic *topic
     return true;
 }
 
-/* Handles a message that lacks a tag's value. A tag whose value no message has ever contained probably has a wrong address, so it becomes
- * Bad_NoMatch. */
+/* Handles a JSON message that lacks a tag's value. If no message so far has contained a value of the tag, the tag's path is probably
+   wrong, so the tag becomes Bad_NoMatch. */
 static void note_absent(struct mqtt_source *mqtt, const struct mqtt_topic *topic, const struct mqtt_reader *reader, int tag)
 {
     char name[64], more[LOG_PACE_BYTES];
@@ -107,7 +107,7 @@ static bool take_json(struct mqtt_source *mqtt, const struct mqtt_topic *topic, 
     return all_good;
 }
 
-/* Writes the values of a message to the tags of its topic. Returns false if the message is refused. */
+/* Writes the values of a message to the tags of its topic. Returns false with the reason in `why` if the message is refused. */
 static bool take(struct mqtt_source *mqtt, const struct mqtt_topic *topic, const struct mqtt_message *message, char why[200])
 {
     snprintf(why, 200, "too long");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses numbers from text, and values, times and qualities from JSON. */
+/* Parses MQTT payloads: numbers in text, and values, times and qualities in JSON. */
 #include "value/mqtt/mqtt_payload.h"
 
 #include <math.h>
@@ -63,8 +63,8 @@ static bool read_number(const json_t *json, double *out)
     return isfinite(*out);
 }
 
-/* Converts a time since 1970. The number's magnitude shows the unit (s, ms, us or ns); this is unambiguous for the years 1973 to 5138.
- * Returns false for other numbers. */
+/* Converts a time since 1970 to nanoseconds. The number's magnitude shows its unit (s, ms, us or ns); this is unambiguous for the years
+   1973 to 5138. Returns false for other numbers. */
 static bool read_epoch(double number, int64_t *utc_ns)
 {
     static const double SECONDS_LOW = 1e8, SECONDS_HIGH = 1e11;
@@ -88,8 +88,8 @@ static bool read_time(const json_t *json, int64_t *utc_ns)
     return !json_is_boolean(json) && read_number(json, &number) && read_epoch(number, utc_ns);
 }
 
-/* Returns the quality that an OPC UA status code states, or a word that begins with a severity such as "good". Any other value gives
- * Uncertain. */
+/* Returns the quality that a member of a JSON message states: an OPC UA status code, or a word that begins with a severity such as
+   "good". Anything else gives Uncertain. */
 static uint32_t read_quality(const json_t *json)
 {
     static const struct {
@@ -116,8 +116,8 @@ static struct json_selected value_of(const json_t *root, const struct mqtt_reade
     return json_select(root, json_is_object(root) ? "value" : "$", reader->tag);
 }
 
-/* Returns the value that a path selects, or NULL if it selects none or several. A path that begins with `@` starts in the object that
- * contains the tag's value. */
+/* Returns the JSON value (a tag's time or quality) that a path selects, or NULL if it selects none or several. A path that begins with
+   `@` starts in the object that contains the tag's value. */
 static const json_t *select_stated(const json_t *root, const struct json_selected *value, const char *path, const char *tag)
 {
     struct json_selected found = json_select(*path == '@' ? value->holder : root, path, tag);

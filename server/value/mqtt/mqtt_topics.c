@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Groups tags by topic: sorts them by topic, then by path. */
+/* Groups the tags of an MQTT source by topic: sorts them by topic, then by path. */
 #include "value/mqtt/mqtt_topics.h"
 
 #include <stdlib.h>

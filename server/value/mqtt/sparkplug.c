@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Processes birth and death certificates. A node's readings are valid from its birth to its death. A device's readings are valid only while
- * its node is alive too. */
+/* Processes the birth and death certificates and the data messages of Sparkplug nodes. A node's readings are valid from its birth to its
+   death. A device's readings are valid only while its node is alive too. */
 #include "value/mqtt/sparkplug.h"
 
 #include <stdio.h>
@@ -19,8 +19,9 @@ static const char PREFIX[] = "spBv1.0/";
 
 struct alias {
     uint64_t number;
-    size_t topic;           /* topic (of a node or device), as an index, whose birth certificate defined the alias */
-    size_t first_tag, tags; /* tags of the topic that take their values from this metric: index of the first tag, and number of tags */
+    size_t topic; /* index of the node's or device's topic, whose birth certificate defined the alias */
+    /* the tags of that topic that take their values from the metric with this alias: index of the first one, and their number */
+    size_t first_tag, tags;
 };
 
 struct sparkplug_node {
@@ -30,8 +31,8 @@ struct sparkplug_node {
     int64_t bd_seq; /* session number (bdSeq) of the node's birth certificate; -1: none */
     int next_seq;
     int64_t asked_ns;      /* monotonic time of the last birth request; 0: never */
-    bool is_wanted;        /* true: a birth request must be sent once ASK_NS have passed since the last one */
-    struct alias *aliases; /* by number, then topic: some nodes number the metrics of each device from 1 */
+    bool is_wanted;        /* true: a request for the birth certificate must be sent once ASK_NS have passed since the last one */
+    struct alias *aliases; /* sorted by number, then by topic, because some nodes number the metrics of each device from 1 */
     size_t alias_count, alias_capacity;
 };
 
@@ -40,10 +41,12 @@ struct sparkplug {
     struct sparkplug_node *nodes;
     size_t node_count;
     size_t *node_of; /* by topic: index of the node to which the topic belongs */
-    bool *is_born;   /* by topic: true: the node or device is alive (its birth certificate arrived, and no death certificate since) */
-    uint32_t *types; /* by tag: data type of its metric, as stated in the birth certificate; 0: no birth certificate contains the metric */
-    struct stamped_value *last;  /* last value, by tag */
-    bool *has_last, *in_message; /* by tag */
+    /* by topic: true while the node or device is alive (its birth certificate has arrived, and no death certificate since) */
+    bool *is_born;
+    uint32_t *types; /* by tag: data type of its metric, as the birth certificate states it; 0: no birth certificate contains the metric */
+    struct stamped_value *last; /* last value, by tag */
+    /* by tag. has_last: `last` is set; in_message: the message that is being processed has a value of the tag */
+    bool *has_last, *in_message;
 };
 
 enum verb { NBIRTH, NDEATH, NDATA, DBIRTH, DDEATH, DDATA, OTHER };
@@ -51,7 +54,7 @@ static const char *const verbs[] = { "NBIRTH", "NDEATH", "NDATA", "DBIRTH", "DDE
 
 /* --- nodes and topics ------------------------------------------------------------------------------------------------------- */
 
-/* Finds a node by its name. A linear search suffices, because there are few nodes and one search per message. */
+/* Finds a node by group and name. A linear search suffices, because there are few nodes, and each message needs only one search. */
 static struct sparkplug_node *find_node(const struct sparkplug *sparkplug, const char *group, size_t group_length, const char *name,
                                         size_t length)
 {
@@ -111,8 +114,8 @@ void sparkplug_destroy(struct sparkplug **sparkplug)
     mem_free(gone);
 }
 
-/* Returns subscriptions to all messages of each node and its devices. Devices without tags are included, because a node and its devices
- * share one sequence number. */
+/* Returns topic filters for all messages of each node and its devices, including devices without tags, because a node and its devices
+   share one sequence number. */
 char **sparkplug_subscriptions(const struct sparkplug *sparkplug, size_t *count)
 {
     char **names = mem_array(sparkplug->node_count, sizeof(*names));
@@ -169,8 +172,8 @@ static void topic_dies(struct sparkplug *sparkplug, size_t topic)
     store_tags_dead(sparkplug->params.store, dead->tags, dead->tag_count, sparkplug->params.writer->mono_ns);
 }
 
-/* Marks a node and all its devices as dead. spared: index of a topic that is not marked, because its birth certificate is being processed;
- * SIZE_MAX: none. */
+/* Marks a node and all its devices as dead, and their tags as lost. spared: index of a topic that is not marked, because its birth
+   certificate is being processed; SIZE_MAX: none. */
 static void node_dies(struct sparkplug *sparkplug, struct sparkplug_node *node, size_t spared)
 {
     for (size_t i = 0; i < sparkplug->params.topics->count; i++)
@@ -181,8 +184,8 @@ static void node_dies(struct sparkplug *sparkplug, struct sparkplug_node *node, 
 
 /* --- metrics ---------------------------------------------------------------------------------------------------------------- */
 
-/* Finds the tags of a topic whose value is the metric with this name; they are adjacent. Returns their number; *first receives the index of
- * the first. */
+/* Finds the tags of a topic that take their values from the metric with this name; they are adjacent in the topic's list of tags.
+   Returns their number; *first receives the index of the first. */
 static size_t tags_named(const struct sparkplug *sparkplug, size_t topic, const char *name, size_t *first)
 {
     const struct mqtt_topic *of = &sparkplug->params.topics->at[topic];
@@ -211,7 +214,7 @@ static void drop_aliases(struct sparkplug_node *node, size_t topic)
     node->alias_count = kept;
 }
 
-/* Finds the tags whose value is a metric, by its name or else its alias. Returns their number, which is 0 for most metrics. */
+/* Finds the tags that take their values from a metric, by its name or else its alias. Returns their number, which is 0 for most metrics. */
 static size_t tags_of(const struct sparkplug *sparkplug, const struct sparkplug_node *node, size_t topic,
                       const struct sparkplug_metric *metric, size_t *first)
 {
@@ -234,7 +237,7 @@ static void write_value(struct sparkplug *sparkplug, int tag, const struct stamp
     stamped_writer_add(sparkplug->params.writer, tag, value, false, true);
 }
 
-/* Writes a metric to a tag. Returns false if the metric has another type than in the birth certificate, or is not a number. */
+/* Writes a metric's value to a tag. Returns false if the metric has another type than in the birth certificate, or is not a number. */
 static bool take_metric(struct sparkplug *sparkplug, const struct sparkplug_metric *metric, int tag, char why[200])
 {
     struct stamped_value value = { .quality = metric->quality, .utc_ns = metric->utc_ns };
@@ -254,7 +257,8 @@ static bool take_metric(struct sparkplug *sparkplug, const struct sparkplug_metr
     return good;
 }
 
-/* Writes the metrics of a payload to their tags. Returns false if a metric is wrong; the tags of that metric become Bad. */
+/* Writes the metrics of a payload to their tags. Returns false if a metric is wrong, with the reason in `why`; the tags of that metric
+   become Bad. */
 static bool take_metrics(struct sparkplug *sparkplug, const struct sparkplug_node *node, size_t topic,
                          const struct sparkplug_payload *payload, char why[200])
 {
@@ -271,7 +275,7 @@ static bool take_metrics(struct sparkplug *sparkplug, const struct sparkplug_nod
     return all_good;
 }
 
-/* Records the types and aliases of a birth certificate. */
+/* Records the types and aliases of the metrics that a birth certificate states. */
 static void learn(struct sparkplug *sparkplug, struct sparkplug_node *node, size_t topic, const struct sparkplug_payload *payload)
 {
     const struct mqtt_topic *of = &sparkplug->params.topics->at[topic];
@@ -292,8 +296,8 @@ static void learn(struct sparkplug *sparkplug, struct sparkplug_node *node, size
         qsort(node->aliases, node->alias_count, sizeof(*node->aliases), by_number);
 }
 
-/* Processes a birth certificate. Tags whose metric is not in the certificate become Bad_ConfigurationError. Returns false if the
- * certificate is refused. */
+/* Processes a birth certificate of a node or device. Tags whose metric is not in the certificate become Bad_ConfigurationError. Returns
+   false, with the reason in `why`, if the certificate is refused. */
 static bool take_birth(struct sparkplug *sparkplug, struct sparkplug_node *node, size_t topic, const struct sparkplug_payload *payload,
                        char why[200])
 {
@@ -321,7 +325,7 @@ static bool take_birth(struct sparkplug *sparkplug, struct sparkplug_node *node,
 
 /* --- sequence numbers ------------------------------------------------------------------------------------------------------- */
 
-/* Makes all readings of a node uncertain, because messages were lost whose values are unknown. */
+/* Makes all readings of a node uncertain, because messages with newer values were lost. */
 static void doubt_all(struct sparkplug *sparkplug, const struct sparkplug_node *node)
 {
     for (size_t i = 0; i < sparkplug->params.topics->count; i++) {
@@ -359,7 +363,7 @@ static void follow(struct sparkplug *sparkplug, struct sparkplug_node *node, con
 struct said {
     enum verb verb;
     struct sparkplug_node *node;
-    size_t topic; /* index of the topic of the node or device; SIZE_MAX: no tag has this topic */
+    size_t topic; /* index of the topic of the node or device; SIZE_MAX: no tag of the plant has this topic */
 };
 
 /* Parses a topic spBv1.0/GROUP/VERB/NODE[/DEVICE]. Returns false if the topic has another form. */
@@ -390,8 +394,8 @@ static bool read_topic(const struct sparkplug *sparkplug, const char *topic, str
     return true;
 }
 
-/* Refuses a message of a node or device whose birth certificate has not arrived: it may be dead, and its aliases are unknown. Requests the
- * birth certificate. */
+/* Refuses a message of a node or device whose birth certificate has not arrived: the node may be dead, and its aliases are unknown.
+   Requests the birth certificate. */
 static bool refuse_unborn(struct sparkplug *sparkplug, struct sparkplug_node *node, char why[200])
 {
     ask(sparkplug, node, sparkplug->params.writer->mono_ns);
@@ -406,7 +410,7 @@ static bool refuse_unborn(struct sparkplug *sparkplug, struct sparkplug_node *no
 static bool take_node_birth(struct sparkplug *sparkplug, const struct said *said, const struct sparkplug_payload *payload, char why[200])
 {
     struct sparkplug_node *node = said->node;
-    /* marks the node and its devices as dead first: the new birth certificate ends their previous life */
+    /* first marks the node and its devices as dead, because their earlier birth certificates are no longer valid */
     node_dies(sparkplug, node, said->topic);
     node->is_born = true;
     node->told = node->is_wanted = false;
@@ -434,8 +438,8 @@ static bool take_node_death(struct sparkplug *sparkplug, struct sparkplug_node *
     return true;
 }
 
-/* Processes a message of a node that is alive, after checking its sequence number. Does not get the node's own birth and death
- * certificates. */
+/* Processes a message of a node that is alive, or of its devices, after checking the sequence number. The node's own birth and death
+   certificates are not passed to this function. */
 static bool take_in_order(struct sparkplug *sparkplug, const struct said *said, const struct sparkplug_payload *payload, char why[200])
 {
     follow(sparkplug, said->node, payload);
@@ -461,7 +465,7 @@ bool sparkplug_take(struct sparkplug *sparkplug, const struct mqtt_message *mess
     snprintf(why, 200, "not a topic of Sparkplug B");
     if (!read_topic(sparkplug, message->topic, &said))
         return false;
-    if (said.verb == OTHER) /* commands sent by other hosts */
+    if (said.verb == OTHER) /* NCMD and DCMD: commands that other programs send to nodes */
         return true;
     snprintf(why, 200, "retained messages are ignored, because they may be old");
     if (message->is_retained)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Unpacks payloads with protobuf-c and an allocator that has a byte limit, because two bytes of a message may take two hundred bytes of
- * memory. */
+/* Unpacks Sparkplug payloads with protobuf-c. Its allocator has a byte limit, because two bytes of a message may take two hundred bytes
+   of memory. */
 #include "value/mqtt/sparkplug_payload.h"
 
 #include <stdio.h>
@@ -51,7 +51,7 @@ static int64_t ns_of_ms(bool has, uint64_t ms)
     return has && ms <= INT64_MAX / 1000000 ? (int64_t)ms * 1000000 : 0;
 }
 
-/* Converts the property Quality, with Sparkplug's codes (192 good, 0 bad, 500 stale), to an OPC UA status code. */
+/* Converts a metric's property Quality, with Sparkplug's codes (192 good, 0 bad, 500 stale), to an OPC UA status code. */
 static uint32_t quality_of(const Sparkplug__Payload__PropertySet *set)
 {
     for (size_t i = 0; set && i < set->n_keys && i < set->n_values; i++) {
@@ -153,8 +153,8 @@ void sparkplug_payload_finish(struct sparkplug_payload *payload)
 
 /* --- values ----------------------------------------------------------------------------------------------------------------- */
 
-/* Reads an integer. The payload contains the integer's memory image, in which a negative number is sign-extended only to the width of its
- * type. */
+/* Returns a metric's integer. Sparkplug sends the integer's bytes as an unsigned number, so a negative one is sign-extended only to the
+   width of its type. */
 static double whole_of(const struct sparkplug_metric *metric, uint32_t type)
 {
     switch (type) {

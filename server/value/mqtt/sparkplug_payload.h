@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes Sparkplug B payloads from untrusted bytes. No side effects. Thread: any. */
+/* Decodes Sparkplug B payloads, which are not trusted. No side effects. Thread: any. */
 #ifndef VALUE_SPARKPLUG_PAYLOAD_H
 #define VALUE_SPARKPLUG_PAYLOAD_H
 #include <stdbool.h>
@@ -20,13 +20,13 @@ struct sparkplug_metric {
     const char *name; /* name of the metric; NULL: the alias identifies it */
     bool has_alias, is_historical, is_null;
     uint64_t alias;
-    int64_t utc_ns;   /* time that the metric states, or else the time of its payload; 0: neither states a time */
-    uint32_t type;    /* 0: not stated */
+    int64_t utc_ns;   /* UTC time that the metric states, or else the time of its payload; 0: neither states a time */
+    uint32_t type;    /* data type of the metric (Sparkplug's number); 0: the message does not state it */
     uint32_t quality; /* quality from the metric's property Quality; Good if it has none */
     enum sparkplug_form form;
     union {
-        uint64_t whole; /* INT, LONG, BOOLEAN */
-        double real;    /* FLOAT, DOUBLE */
+        uint64_t whole; /* if the form is INT, LONG or BOOLEAN */
+        double real;    /* if the form is FLOAT or DOUBLE */
     };
 };
 
@@ -34,16 +34,16 @@ struct sparkplug_payload {
     struct sparkplug_metric *metrics; /* metrics of the payload; their names are freed with the payload */
     size_t count;
     int seq;    /* sequence number, 0 to 255; -1: none */
-    void *from; /* the unpacked protobuf message, owned */
+    void *from; /* the unpacked protobuf message, which this struct owns */
 };
 
 /* Decodes a payload. Returns false with the reason in `why`, and nothing to free, if the bytes are not a valid payload. */
 bool sparkplug_payload_read(const void *bytes, size_t count, struct sparkplug_payload *out, char why[200]);
 void sparkplug_payload_finish(struct sparkplug_payload *payload);
-/* Reads a metric's value as `type`: the metric's own type, or the type in its birth certificate if it states none. Returns false if the
- * value is not a number. */
+/* Reads a metric's value as a number. type: the type that the metric states, or else the one in its birth certificate. Returns false if
+   the value is not a number. */
 bool sparkplug_number(const struct sparkplug_metric *metric, uint32_t type, double *out);
-/* Returns the name of a type, such as "Int32"; "an unknown type" for a number that is no type. */
+/* Returns the name of a Sparkplug data type, such as "Int32"; "an unknown type" for a number that is no type. */
 const char *sparkplug_type_name(uint32_t type);
 /* Returns the session number (bdSeq) in a birth or death certificate; -1: it has none. */
 int64_t sparkplug_bd_seq(const struct sparkplug_payload *payload);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An OPC UA source: connects, subscribes, and marks all readings as lost when the connection to the server is lost. */
+/* An OPC UA source: connects to a server, subscribes, and marks all its readings as lost when the connection is lost. */
 #include <errno.h>
 #include <stdio.h>
 
@@ -12,14 +12,14 @@
 #include "value/quality.h"
 #include "value/source_impl.h"
 
-/* time limits for opening a session, and for subscribing to all nodes */
+/* time limit for opening a session, and for subscribing to all nodes */
 static const int64_t CONNECT_NS = 15 * NS_PER_S, SUBSCRIBE_NS = 60 * NS_PER_S;
-/* interval at which nodes that the server refused are requested again */
+/* RETRY_NS: interval at which nodes that the server refused are requested again */
 static const int64_t SERVE_NS = NS_PER_S, RETRY_NS = 30 * NS_PER_S;
 /* shortest interval between readings of all nodes after notifications were lost */
 static const int64_t READ_NS = 10 * NS_PER_S;
 static const int64_t SKEW_NS = 5 * NS_PER_S, SKEW_SAID_NS = 60 * NS_PER_S;
-enum { REFUSALS_SAID = 8 }; /* refused nodes, and refused deadbands, logged per session */
+enum { REFUSALS_SAID = 8 }; /* maximum number of log lines per session about refused nodes, and of those about refused deadbands */
 
 struct opcua_source {
     struct source base;
@@ -30,15 +30,15 @@ struct opcua_source {
     struct host_turn turn;
     bool link_up, link_known;
     int refusals_said, deadbands_said;
-    bool *wrong; /* by node: true: its last value was not a number, and this was logged */
+    bool *wrong; /* by node: true once the log says that the node's value is not a number, until it is one again */
     int64_t skew_said_ns;
     struct log_pace missed_pace; /* rate limit of the log line about missing notifications */
 };
 
 /* --- values ----------------------------------------------------------------------------------------------------------------- */
 
-/* Logs the difference between the server's clock and ours, taken from the server timestamp, because the source timestamp may be an old time
- * of the sensor. */
+/* Logs the difference between the server's clock and ours. Uses the server timestamp, because the source timestamp may be an old time of
+   the sensor. */
 static void report_skew(struct opcua_source *opcua, const UA_DataValue *value)
 {
     int64_t now_ns = opcua->writer.mono_ns;
@@ -86,7 +86,7 @@ static void on_refused(void *arg, size_t index, uint32_t status, const char *why
                  opcua->refusals_said == REFUSALS_SAID ? "; further refusals are not logged" : "");
 }
 
-/* Logs a refused deadband of the tag list. A refused deadband of the plant file's source is not logged, because it
+/* Logs that the server refuses a deadband that the tag list states. A refused deadband of the plant file is not logged, because it
    applies only to nodes that support one. */
 static void on_deadband_refused(void *arg, size_t index, const char *why)
 {
@@ -100,7 +100,7 @@ static void on_deadband_refused(void *arg, size_t index, const char *why)
 
 /* --- the link --------------------------------------------------------------------------------------------------------------- */
 
-/* Marks all readings of the source as lost, because values may have changed unnoticed while the server could not be reached. */
+/* Marks the readings of all tags of the source as lost, because values may have changed unnoticed while the server could not be reached. */
 static void link_lost(struct opcua_source *opcua, const char *why)
 {
     int64_t now_ns = clock_mono_ns();
@@ -162,7 +162,8 @@ static int serve(struct opcua_source *opcua, struct opcua_client *client, char w
     return status;
 }
 
-/* Runs one session until it ends. Returns -ECANCELED when the source must stop, else another negative code with the reason in `why`. */
+/* Runs one session with the server until it ends. Returns -ECANCELED when the source must stop, else another negative code with the
+   reason in `why`. */
 static int run_session(struct opcua_source *opcua, char why[200])
 {
     const struct opcua_events events = { .arg = opcua, .value = on_value, .refused = on_refused, .deadband_refused = on_deadband_refused };

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds variables by following all hierarchical references. Visits each node once, because references may form cycles. */
+/* Finds the variables of an OPC UA server by following all hierarchical references. Visits each node once, because references may form
+   cycles. */
 #include "value/opcua/opcua_browse.h"
 
 #include <errno.h>
@@ -9,7 +10,8 @@
 #include "base/text/text.h"
 #include "value/opcua/opcua_impl.h"
 
-enum { OBJECTS_FOLDER = 85, HIERARCHICAL = 33, HAS_PROPERTY = 46 }; /* node ids of the standard, which are the same on every server */
+/* node ids in OPC UA's own namespace, which are the same on every server */
+enum { OBJECTS_FOLDER = 85, HIERARCHICAL = 33, HAS_PROPERTY = 46 };
 enum { MAX_NODES = 200000, MAX_DEPTH = 24, REFERENCES_AT_ONCE = 500 };
 
 struct browse_step {
@@ -27,7 +29,7 @@ struct browse {
     int64_t deadline_mono_ns;
     struct browse_step *steps; /* all nodes found so far, in the order in which they are visited */
     size_t count, capacity;
-    size_t *table; /* hash table with open addressing: 1 + index in `steps`; 0: empty slot */
+    size_t *table; /* hash table of the nodes found so far, with open addressing: 1 + index in `steps`; 0: empty slot */
 };
 
 static size_t slot_of(const struct browse *browse, const UA_NodeId *id)
@@ -66,8 +68,8 @@ static void see_all(struct browse *browse, size_t parent, const UA_BrowseResult 
     }
 }
 
-/* Requests the remaining references of a node after a partial response, and takes ownership of the continuation point. Returns 0 or a
- * negative code. */
+/* Requests the remaining references of a node after a partial response; takes ownership of `point`, the continuation point. Returns 0 or
+   a negative code. */
 static int browse_rest(struct browse *browse, size_t parent, UA_ByteString point, char why[200])
 {
     int status = 0;

@@ -7,13 +7,13 @@
 struct opcua_variable {
     const char *path;        /* browse names of the nodes from the folder Objects to the variable, joined by dots */
     const char *address;     /* address of the variable's node, nsu=URI;s=NAME, as a tag list states it */
-    const char *description; /* description; may be "" */
+    const char *description; /* the server's description of the variable; may be "" */
     bool is_bit;
-    size_t elements; /* number of elements, if the variable is an array; 0: it is not */
+    size_t elements; /* number of elements if the variable is an array; 0: it is not an array */
 };
 
-/* Calls `found` for each numeric variable below the folder Objects, except the standard variables of every server. The client must be
- * connected. Returns the same codes as opcua_client_connect(). */
+/* Calls `found` for each numeric variable below the folder Objects, except the variables that every server has. The client must be
+   connected. Returns the same codes as opcua_client_connect(). */
 int opcua_browse(struct opcua_client *client, void (*found)(void *arg, const struct opcua_variable *variable), void *arg, int stop_fd,
                  int64_t deadline_mono_ns, char why[200]);
 

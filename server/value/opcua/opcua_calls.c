@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sends requests and waits for their responses while watching stop_fd. */
+/* Sends requests to an OPC UA server and waits for their responses while watching stop_fd. */
 #include <errno.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 #include "value/opcua/opcua_client.h"
 #include "value/opcua/opcua_impl.h"
 
-static const int64_t SLICE_NS = 100 * NS_PER_MS; /* interval at which a waiting call checks stop_fd */
+static const int64_t SLICE_NS = 100 * NS_PER_MS; /* interval at which a call that waits for the server checks stop_fd */
 
 void opcua_explain(const struct opcua_client *client, UA_StatusCode status, char why[200])
 {
@@ -43,7 +43,7 @@ void opcua_on_answer(UA_Client *library, void *arg, UA_UInt32 id, void *response
     if (!client->call.response)
         return;
     memcpy(client->call.response, response, client->call.type->memSize);
-    memset(response, 0, client->call.type->memSize); /* the response's memory now belongs to the caller, so the library's copy is cleared */
+    memset(response, 0, client->call.type->memSize); /* the caller now owns the memory of the response, so open62541's copy is cleared */
     client->call.response = NULL;
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Opens two connections. On the first one, without security, the server lists its endpoints. This code chooses an endpoint and checks its
- * certificate before any of our data is sent over the second connection. */
+/* Opens two connections to an OPC UA server. On the first one, without security, the server lists its endpoints. This code chooses an
+   endpoint and checks its certificate before any of our data is sent over the second connection. */
 #include "value/opcua/opcua_client.h"
 
 #include <arpa/inet.h>
@@ -23,7 +23,8 @@ enum { DISCOVERIES = 3 };
 
 /* --- library callbacks ------------------------------------------------------------------------------------------------------ */
 
-/* The library only logs a gap in the sequence numbers of notifications, and so loses the values in between. */
+/* Log callback of open62541. The library only logs a gap in the sequence numbers of notifications, although the values in between are
+   lost: that log line sets client->missed. */
 static void on_log(void *arg, UA_LogLevel level, UA_LogCategory category, const char *format, va_list args)
 {
     struct opcua_client *client = arg;
@@ -123,7 +124,7 @@ static enum opcua_policy policy_of(const UA_EndpointDescription *endpoint)
         if (is_text(endpoint->securityPolicyUri, opcua_policy_uri(policy)) &&
             mode == (policy == OPCUA_NONE ? UA_MESSAGESECURITYMODE_NONE : UA_MESSAGESECURITYMODE_SIGNANDENCRYPT))
             return policy;
-    return OPCUA_BEST; /* no policy that we support */
+    return OPCUA_BEST; /* none of the policies that we support */
 }
 
 static bool takes_us(const struct opcua_client *client, const UA_EndpointDescription *endpoint)
@@ -228,8 +229,8 @@ static int discover_at(struct opcua_client *client, const struct addrinfo *at, i
     return discover(client, stop_fd, deadline_mono_ns, why);
 }
 
-/* Requests the list of endpoints at each IP address of the host in turn; each gets an equal share of the remaining time. The name is
- * resolved here, because the library's resolver call cannot be interrupted. */
+/* Requests the list of endpoints at each IP address of the host in turn; each gets an equal share of the remaining time. Resolves the
+   host name itself, because open62541's call of the resolver cannot be interrupted. */
 static int discover_somewhere(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
     const struct addrinfo *found;
@@ -257,8 +258,8 @@ int opcua_client_connect(struct opcua_client *client, int stop_fd, int64_t deadl
         status = open_library(client, &client->endpoint, true, stop_fd, deadline_mono_ns, why);
     if (status == 0) {
         UA_ClientConfig *config = UA_Client_getConfig(client->library);
-        config->noReconnect = true; /* the library must not reconnect by itself, because a lost session is replaced by a new client */
-        /* interval in milliseconds of checks by which a silent server is noticed even if values are published rarely */
+        config->noReconnect = true; /* open62541 must not reconnect by itself, because a new client replaces a lost session */
+        /* interval in milliseconds of checks by which a server that stopped answering is noticed, even if it rarely has new values */
         config->connectivityCheckInterval = TIMEOUT_MS;
         *client->said = 0;
     }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One session with an OPC UA server through open62541's client, which only this folder includes. Each session has a new client, because the
- * library neither recreates its subscriptions nor notices that they are gone. opcua_client.c, opcua_subscription.c and opcua_browse.c
- * contain all requests that it can send: none writes to a node or calls a method. Thread: one. */
+/* One session with an OPC UA server through open62541's client, which only this folder includes. Each session needs a new client,
+   because the library neither creates lost subscriptions again nor notices that they are gone. opcua_client.c, opcua_subscription.c and
+   opcua_browse.c contain all requests that can be sent: none writes to a node or calls a method. Thread: one. */
 #ifndef VALUE_OPCUA_CLIENT_H
 #define VALUE_OPCUA_CLIENT_H
 #include "value/opcua/opcua_nodes.h"
@@ -9,7 +9,7 @@
 
 struct opcua_client;
 
-/* callbacks of a session; any function with a deadline may call them */
+/* functions that the client calls during a session, from any function with a deadline */
 struct opcua_events {
     void *arg;
     void (*value)(void *arg, size_t node, const UA_DataValue *value); /* `node`: index in opcua_nodes */
@@ -18,8 +18,8 @@ struct opcua_events {
     void (*deadband_refused)(void *arg, size_t node, const char *why);
 };
 
-/* Creates a client and reads the certificate and login files that the source names; sends nothing yet. Returns NULL with the reason in
-   `why` if a file cannot be used. All arguments must outlive the client. */
+/* Creates a client and reads the certificate and login files that the source names; sends nothing yet. host: index in the source's
+   hosts. Returns NULL with the reason in `why` if a file cannot be used. All arguments must outlive the client. */
 struct opcua_client *opcua_client_create(const struct plant_source *source, int host, const struct opcua_nodes *nodes,
                                          const struct opcua_events *events, char why[200]);
 /* Ends the session, waiting at most 0.3 s for the server, frees the client and sets *client to NULL. *client may be NULL. */
@@ -30,10 +30,10 @@ int opcua_client_connect(struct opcua_client *client, int stop_fd, int64_t deadl
 /* Subscribes to all nodes. A repeated call requests only those nodes again that the server refused. Returns the same codes as
  * opcua_client_connect(). */
 int opcua_client_subscribe(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
-/* Receives until the deadline. Returns 0; -ECANCELED if stop_fd became readable; another negative code with the reason in `why` when the
- * session or the subscription has ended. */
+/* Receives new values until the deadline. Returns 0; -ECANCELED if stop_fd became readable; another negative code with the reason in
+   `why` when the session or the subscription has ended. */
 int opcua_client_serve(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
-/* Returns whether notifications of the subscription were lost, so that nodes may have other values than the session has received. */
+/* Returns true if notifications of the subscription were lost, so that nodes may have newer values than the session has received. */
 bool opcua_client_missed(const struct opcua_client *client);
 /* Reads all subscribed nodes, after notifications were lost. Returns the same codes as opcua_client_connect(). */
 int opcua_client_read(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Groups tags by node: sorts them by node, then by array element. */
+/* Groups the tags of an OPC UA source by node: sorts them by node, then by array element. */
 #include "value/opcua/opcua_nodes.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "value/source_tags.h"
 
-/* Returns the deadband of a tag: its own, or that of its source. */
+/* Returns the deadband of a tag: the one in the tag list, or else that of its source. */
 static struct opcua_deadband deadband_of(const struct plant_opcua *source, const struct plant_tag *tag)
 {
     if (!isnan(tag->signal.opcua_deadband.value))

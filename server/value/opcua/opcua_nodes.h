@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The nodes of an OPC UA source with the tags of each node. A node is subscribed only once, even if several elements of its array are tags.
- * Immutable once made. Thread: any. */
+/* The nodes of an OPC UA source, with the tags of each node. A node is subscribed only once, even if several elements of its array are
+   tags. Immutable once made. Thread: any. */
 #ifndef VALUE_OPCUA_NODES_H
 #define VALUE_OPCUA_NODES_H
 #include <stddef.h>
@@ -9,10 +9,10 @@
 
 struct opcua_node {
     const char *name_space, *id; /* namespace URI, and identifier in the namespace, such as s=NAME; owned by the plant */
-    const int *tags;             /* indices in plant->tags */
+    const int *tags;             /* indices in plant->tags of the tags that take their values from the node */
     size_t tag_count;
     int sampling_ms; /* sampling interval in milliseconds: the shortest one that any of the node's tags requests */
-    /* deadband: the smallest one of the node's tags, or of the source; if one tag states percent and another does not: none */
+    /* the smallest deadband of the node's tags, or that of the source; none if one tag states percent and another does not */
     struct opcua_deadband deadband;
     bool own_deadband; /* true: the tag list states the deadband; false: the source does */
 };

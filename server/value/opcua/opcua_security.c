@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks certificates with OpenSSL, because the library's own check ignores the host name, and accepts a server whose first response
- * contains no certificate. */
+/* Checks certificates of OPC UA servers with OpenSSL, because open62541's own check ignores the host name, and accepts a server whose
+   first response contains no certificate. */
 #include "value/opcua/opcua_security.h"
 
 #include <arpa/inet.h>
@@ -46,7 +46,7 @@ static X509_CRL *read_crl(BIO *file)
     return found;
 }
 
-/* Passphrase callback: fails, because nobody is there to type a passphrase. */
+/* Callback of OpenSSL that must supply the passphrase of an encrypted key. Fails, because nobody is present to type one. */
 static int no_passphrase(char *out, int bytes, int for_writing, void *arg)
 {
     (void)out, (void)bytes, (void)for_writing, (void)arg;
@@ -99,7 +99,7 @@ static bool read_pair(const char *certificate_path, const char *key_path, UA_Byt
     return fits;
 }
 
-/* Returns the applicationUri in our certificate. Servers require it to equal the one we announce. */
+/* Returns the applicationUri in our certificate. Servers require it to equal the one that we announce. */
 static char *application_uri_of(X509 *certificate)
 {
     GENERAL_NAMES *names = X509_get_ext_d2i(certificate, NID_subject_alt_name, NULL, NULL);
@@ -134,7 +134,7 @@ static bool trust_file(struct opcua_security *security, const char *path, char w
     return good;
 }
 
-/* Verification callback of OpenSSL: accepts a certificate whose issuer has published no revocation list, which OpenSSL would reject. */
+/* Verification callback of OpenSSL: accepts a certificate without a revocation list from its issuer, which OpenSSL would reject. */
 static int on_verified(int good, X509_STORE_CTX *context)
 {
     int error = X509_STORE_CTX_get_error(context);
@@ -291,21 +291,22 @@ const char *opcua_policy_uri(enum opcua_policy policy)
 static UA_StatusCode verify(const UA_CertificateVerification *verification, const UA_ByteString *certificate)
 {
     const struct opcua_security *security = verification->context;
-    if (!security->trusted) /* not loaded with `security: none` */
+    if (!security->trusted) /* no certificate to trust is loaded with `security: none` */
         return UA_STATUSCODE_GOOD;
     UA_ByteString chain = *certificate;
     char why[200];
     return opcua_security_check(security, &chain, why);
 }
 
-/* Accepts the application URI in our own certificate without a check, because our URI was read from that certificate. */
+/* Accepts any application URI: open62541 calls this function only for our own certificate, from which our URI was read. */
 static UA_StatusCode verify_uri(const UA_CertificateVerification *verification, const UA_ByteString *certificate, const UA_String *uri)
 {
     (void)verification, (void)certificate, (void)uri;
     return UA_STATUSCODE_GOOD;
 }
 
-/* Adds all supported security policies to a client. with_none: also the policy None, as the first one. Returns false if out of memory. */
+/* Adds all security policies that we support to a client's configuration. with_none: also the policy None, as the first one. Returns
+   false if out of memory. */
 static bool add_policies(UA_SecurityPolicy **out, size_t *count, UA_ByteString certificate, UA_ByteString key, bool with_none,
                          const UA_Logger *logger)
 {
@@ -325,7 +326,7 @@ static bool add_policies(UA_SecurityPolicy **out, size_t *count, UA_ByteString c
     return good && *out;
 }
 
-/* Sets the user from the login file or the user's certificate. Returns false with the reason in `why`. */
+/* Sets the user of the session, from the login file or the user's certificate. Returns false with the reason in `why`. */
 static bool log_in(const struct opcua_security *security, const char *path, UA_ClientConfig *config, char why[200])
 {
     struct login_file login;

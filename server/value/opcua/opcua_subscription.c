@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Implements the subscription of a session: finds the index of each namespace URI on the server, and creates one monitored item per
- * node. */
+/* The subscription of an OPC UA session: finds the index of each namespace URI on the server, and creates one monitored item per node. */
 #include <errno.h>
 #include <string.h>
 
@@ -10,7 +9,7 @@
 #include "value/opcua/opcua_client.h"
 #include "value/opcua/opcua_impl.h"
 
-enum { NAMESPACE_ARRAY = 2255, MAX_ITEMS_PER_CALL = 11714 }; /* node ids of the standard, which are the same on every server */
+enum { NAMESPACE_ARRAY = 2255, MAX_ITEMS_PER_CALL = 11714 }; /* node ids in OPC UA's own namespace, which are the same on every server */
 enum { ITEMS_PER_CALL = 500, KEPT_ALIVE_MS = 5000, LIFETIMES = 12 };
 enum { NO_NAMESPACE = 0xffff };
 static const UA_StatusCode NO_SUCH_NODE = 0x80340000; /* Bad_NodeIdUnknown */
@@ -90,7 +89,7 @@ static void on_deleted(UA_Client *library, UA_UInt32 subscription, void *arg)
 
 static int begin_subscription(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
-    /* Creates the subscription. Its keep-alive interval is short enough to notice a silent server soon. */
+    /* Creates the subscription. Its keep-alive interval is short, so that a server that stopped answering is noticed soon. */
     int poll_ms = client->source->poll_ms < KEPT_ALIVE_MS ? client->source->poll_ms : KEPT_ALIVE_MS;
     UA_CreateSubscriptionRequest request = { .requestedPublishingInterval = poll_ms, .publishingEnabled = true };
     UA_CreateSubscriptionResponse response;
@@ -126,7 +125,7 @@ static bool has_deadband(const struct opcua_client *client, size_t node)
     return client->nodes->at[node].deadband.value > 0 && !client->no_filter[node];
 }
 
-/* Fills the request for a node. *filter: receives the node's deadband, and must outlive the request. */
+/* Fills the request to monitor a node. *filter receives the node's deadband, and must outlive the request. */
 static void fill_item(const struct opcua_client *client, size_t node, UA_DataChangeFilter *filter, UA_MonitoredItemCreateRequest *out)
 {
     out->itemToMonitor.attributeId = UA_ATTRIBUTEID_VALUE;
@@ -148,8 +147,8 @@ static void refuse(struct opcua_client *client, size_t node, UA_StatusCode statu
     client->events->refused(client->events->arg, node, status, UA_StatusCode_name(status));
 }
 
-/* Handles the server's result for one node. A node whose deadband the server refuses is requested again without a deadband, which only
- * causes more notifications. */
+/* Handles the server's result for one node. A node whose deadband the server refuses is requested again without a deadband; the only
+   effect is more notifications. */
 static void take_result(struct opcua_client *client, size_t node, UA_StatusCode status)
 {
     bool of_filter = status == UA_STATUSCODE_BADFILTERNOTALLOWED || status == UA_STATUSCODE_BADMONITOREDITEMFILTERUNSUPPORTED ||
@@ -165,7 +164,7 @@ static void take_result(struct opcua_client *client, size_t node, UA_StatusCode 
     }
 }
 
-/* Creates monitored items for a batch of nodes whose NodeIds have been made. Returns the codes of opcua_call(). */
+/* Creates monitored items for a batch of nodes, whose NodeIds are set in `items`. Returns the codes of opcua_call(). */
 static int create_items(struct opcua_client *client, const size_t *batch, UA_MonitoredItemCreateRequest *items, size_t count, int stop_fd,
                         int64_t deadline_mono_ns, char why[200])
 {

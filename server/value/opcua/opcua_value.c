@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads numbers of all built-in types; arrays of several dimensions are indexed as one-dimensional arrays, in the order in which they are
- * sent. */
+/* Converts values of all numeric types of OPC UA to doubles. An array of several dimensions is indexed like a one-dimensional array, in
+   the order in which its elements are sent. */
 #include "value/opcua/opcua_value.h"
 
 #include <open62541/types_generated.h>
