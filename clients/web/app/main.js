@@ -14,9 +14,11 @@ import { Tools } from './toolbar/tools.js';
 import { Toolbar } from './toolbar/toolbar.js';
 
 const ADDRESS_WAIT_MS = 400, TOAST_MS = 6000;
-const WATCH_AFTER_MS = 5000; // delay in milliseconds after which the watchdog is loaded, so that the first picture comes first
-const MANY_PICTURES = 30; // number of pictures after which H.264, which encodes only differences, pays off
-// names of the commands that main.js passes to modules loaded on first use
+const WATCH_AFTER_MS = 5000; // delay in milliseconds before the watchdog is loaded, so that the first picture comes first
+// Number of pictures after which the page tests for H.264. H.264 encodes only differences between pictures, so it saves data only with many
+// pictures.
+const MANY_PICTURES = 30;
+// names of the commands (input/commands.js) that main.js passes to modules loaded on first use
 const COMMANDS = ['selectTag', 'showTag', 'flyToTag', 'fitView', 'selectAsset', 'showTrend', 'addTrend', 'showAsset'];
 
 const selection = { tag: address.tag, hover: null };
@@ -24,7 +26,7 @@ const modules = new LazyModules(page, tell);
 const does = (name) => (...given) => modules.use('commands', (commands) => commands[name](...given));
 new Toolbar({ session, does });
 const rightOf = (params) => params.split && { ...params, ...params.split };
-// if both halves of a split view need the same legend, one is enough
+// one legend is enough if the legends of both halves of a split view would be equal
 const isShared = (params, right) => right && legend.contents(params) === legend.contents(right);
 const legend = new Legend({ session, element: byId('legend'), lying: page.lying,
     paramsOf: (params) => !isShared(params, rightOf(params)) && params });
@@ -62,7 +64,7 @@ const BUTTONS = { fit: 'fit', home: 'home', measure: 'measure', snapshot: 'snaps
 for (const [id, name] of Object.entries(BUTTONS))
     byId(id).addEventListener('click', does(name));
 
-// Stores the pointer's position, for commands that are still loading, and passes it to them once they are loaded.
+// Stores the pointer's position for commands.js, which may still be loading, and passes it on once that is loaded.
 function point(place) {
     page.pointed = place;
     modules.there('commands')?.point(place);
@@ -86,7 +88,7 @@ viewport.onDrawn = (newPicture, isWarped) => {
             probeCodecs();
     }
     if (newPicture && (session.picture.past || status.past))
-        status.show(); // updates the status bar with the picture: its texts about the past must change at the same moment as the picture
+        status.show(); // updates the status bar together with the picture, because its texts about the past must match the picture
     if (newPicture || isWarped || overlay.dirty) {
         for (const name of ['card', 'place', 'measure', 'clipGizmo', 'notes'])
             modules.there(name)?.show();
@@ -153,7 +155,7 @@ session.on('welcome', () => {
     viewport.invalidate();
 });
 session.on('status', () => status.show());
-// Clears the page and asks for a token, after access was denied or the session was locked for inactivity.
+// Clears the page and asks for a token, after the server denied access or locked the session for inactivity.
 session.on('denied', ({ code }) => {
     document.body.classList.add('denied');
     modules.use('token', (token) => token.ask(code));
@@ -167,13 +169,13 @@ session.on('followers', () => modules.get('share'));
 session.on('following', () => session.leader !== null && modules.get('following'));
 session.on('ignored', (what) => console.warn(`ignored: ${what}`));
 
-// Loads the panel of views, and then a module that is shown inside that panel.
+// Loads the panel of views, and then a module whose content is shown inside that panel.
 async function bring(name) {
     await modules.get('views');
     modules.get(name);
 }
 
-// Opens the view that the URL names, or takes parameters from it, once the server has sent the list of views.
+// Opens the saved view that the URL names, or takes parameters from that view, once the server has sent the list of views.
 let fields = new URLSearchParams(location.hash.slice(1));
 session.named = fields.get('named');
 session.on('views', () => {
@@ -185,8 +187,7 @@ session.on('views', () => {
     fields = new URLSearchParams();
 });
 
-// Goes to the destination of the link that opened the page. Reports parts of the link, or of the previous view, that this plant does not
-// have.
+// Shows what the link that opened the page names. Reports parts of the link, or of the previous view, that this plant does not have.
 let arrived = false, astray = [];
 session.on('astray', (message) => astray.push(message));
 function arrive() {
@@ -201,14 +202,14 @@ let toastTimer;
 session.on('error', async ({ text, about, code, refusal }) => {
     console.warn(`error about ${about}: ${text}`);
     if (['ack', 'share_view'].includes(about))
-        // shows no message for two requests: acknowledgements are not caused by the user, and if a view gets no short link, the share
+        // shows no message for two kinds of requests: the user does not cause acknowledgements, and if a view gets no short link, the share
         // dialog shows the long link
         return;
     const { put, refusalText } = await import('../core/refusals.js');
     tell(put('page.refused', { text: refusalText(text, refusal, code) }));
 });
 
-// Reports that an action was done but is not, or not completely, on the server's disk.
+// Reports that an action took effect, but that the server could not, or not completely, write it to its disk.
 session.on('unkept', async ({ not_kept: count, why, refusal, unaudited, unaudited_refusal: missing }) => {
     const { put, refusalText } = await import('../core/refusals.js');
     tell(count ? put('page.unkept', { text: refusalText(why, refusal) })
@@ -224,7 +225,7 @@ function tell(text, ms = TOAST_MS) {
 
 // --- the page
 
-// Returns true if the user has changed nothing since the greeting; the URL then stays unchanged.
+// Returns true if the user has changed nothing since the page opened; the URL then stays unchanged.
 const isUntouched = () => !location.hash && session.paramsSeq <= 1 && !moved && !selection.tag && session.time.atUs === null;
 
 let addressTimer;
@@ -234,7 +235,7 @@ function saveAddress() {
     clearTimeout(addressTimer);
     addressTimer = setTimeout(async () => {
         if (session.leader !== null)
-            return; // keeps the URL, because it names the session to follow
+            return; // leaves the URL unchanged, because it names the session to follow
         const { addressOf } = await import('../core/address.js');
         history.replaceState(null, '', location.pathname + location.search + addressOf(session, selection.tag));
     }, ADDRESS_WAIT_MS);
@@ -268,10 +269,10 @@ offerVr();
 // Loads the watchdog of the main thread; if the server does not answer, tries again later.
 const watch = () => setTimeout(() => import('./common/watchdog.js').then(({ watchMainThread }) => watchMainThread(
     { scale: () => page.unit, reloads: document.body.classList.contains('wall') && parent === window })).catch(watch), WATCH_AFTER_MS);
-// no watchdog in a pane of a wall: the pane shares its main thread with the wall's page, which has a watchdog
+// no watchdog in a pane of a wall: the pane has the same main thread as the wall's page, which has a watchdog
 if (!new URLSearchParams(location.search).has('pane'))
     watch();
-// Opens the equipment list at the start if there is room for it.
+// Opens the equipment list at the start if the window has room for it.
 const showAssets = () => !narrow.matches && !document.body.classList.contains('wall') && modules.get('assets');
 narrow.addEventListener('change', showAssets);
 showAssets();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The alarm bar, which counts the alarms and is always visible. The alarm list is loaded when it is first opened.
+// The alarm bar at the top of the page: always visible, it counts the alarms. The alarm list is loaded when the user first opens it.
 import { decimalsFor, numberText, unitText, zoneClock } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
@@ -8,7 +8,8 @@ export const badge = (priority, hollow = false) => make('span', {
     class: `priority p${priority}${hollow ? ' hollow' : ''}`, title: say(hollow ? 'alarms.gone' : 'alarms.priority', { priority }),
 }, String(priority));
 
-// Returns since when an alarm has no usable reading, and so keeps its state; null if it has one or never had one.
+// Returns since when an alarm's tag has had no usable reading, so that the alarm keeps its state; null if the tag has a usable reading or
+// never had one.
 export function heldSince(session, { tag, kind }) {
     const { model, time } = session, bad = model.readings[tag.index]?.quality === 'bad';
     const ageMs = bad && kind !== 'BAD' ? model.ageMs(tag.index, session.now()) : null, nowUs = time.atUs ?? session.clockUs();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table element of the alarm list and of the journal: sortable columns, and the cells that both have.
+// The table element of the alarm list and of the alarm journal: sortable columns, and the cells that both tables have.
 import { nextSort, sortable, sortRows } from '../../core/alarm_table.js';
 import { isGone } from '../../core/alarms.js';
 import { ageText, decimalsFor, numberText, unitText, zoneClock } from '../../core/format.js';
@@ -15,15 +15,16 @@ const ICONS = {
 };
 
 export class AlarmTable {
-    // table: an empty <table>; select: a selection list of the same sort orders, for screens without column titles; pick: node in the title
-    // of the first column (selection of rows), or null. changed(): called after the user chose another order.
+    // table: an empty <table>; select: a selection list with the same sort orders, for screens without column titles; pick: node in the
+    // title of the first column, which selects rows, or null. changed(): called after the user has chosen another sort order.
     constructor(table, select, pick, changed) {
         Object.assign(this, { select, changed, sort: { by: null, down: false } });
         this.heads = COLUMNS.filter(sortable).map((name) => [name, make('th', { scope: 'col', 'data-col': name, 'aria-sort': 'none' },
             make('button', { type: 'button', title: say('column.sort', { what: say(`column.${name}`) }),
                 onclick: () => this.order(nextSort(this.sort, name)) }, say(`column.${name}`)))]);
         const heads = new Map(this.heads), other = (name) => (name === 'pick'
-            ? make('th', { 'data-col': name, ...pick ? {} : { role: 'none' } }, pick) // without a node: no column title for screen readers
+            // without `pick`, the first column has no title for screen readers
+            ? make('th', { 'data-col': name, ...pick ? {} : { role: 'none' } }, pick)
             : make('th', { scope: 'col', 'data-col': name }, say(`column.${name}`)));
         table.prepend(make('thead', {}, make('tr', {}, ...COLUMNS.map((name) => heads.get(name) ?? other(name)))));
         fillSelect(select, [['', say('column.order')], ...this.heads.map(([name]) => [name, say(`column.${name}`)])], '');
@@ -42,8 +43,8 @@ export class AlarmTable {
         return sortRows(rows, this.sort);
     }
 
-    // Fills a <tbody>. Keeps the elements of rows whose text said(row) did not change, so that a button does not move while it is being
-    // pressed. Returns [[element, row]].
+    // Fills a <tbody>. said(row) is the row's text. A row whose text did not change keeps its element, so that a button does not move while
+    // the user presses it. Returns [[element, row]].
     fill(body, rows, said, draw) {
         const before = new Map([...body.children].map((element) => [element.said, element]));
         const drawn = rows.map((row) => {
@@ -58,13 +59,13 @@ export class AlarmTable {
     }
 }
 
-// Returns a function that formats a number in a tag's unit and decimals.
+// Returns a function that formats a number in the unit and with the decimals of a tag.
 function textsOf(model, tag) {
     const group = model.group(tag.group), decimals = group ? decimalsFor(group.max - group.min) : 2;
     return { unit: unitText(tag.unit || group?.unit), text: (value) => (value === null ? '' : numberText(value, decimals)) };
 }
 
-// Returns the content and the title of a cell with a value of a row. A row of the journal may have another unit than the tag has now, or an
+// Returns the text and the title of a cell with a value from the journal. The journal row may have another unit than the tag has now, or an
 // unknown one (null).
 function thenTexts(model, { tag, unit: was }, value) {
     const { text, unit } = textsOf(model, tag), then = text(value);
@@ -82,7 +83,7 @@ function nowTexts({ model, time }, tag, fresh) {
     return !fresh || time.atUs !== null ? ['–'] : reading.quality === 'bad' ? [say('novalue')] : [text(reading.value), unit];
 }
 
-// Updates the cells that change by themselves: the present value and the age.
+// Updates the cells that change while the alarm does not: the present value and the age.
 export function refreshCells(session, element, row, fresh) {
     const now = session.clockUs(), cell = element.querySelector('[data-col=now]');
     const [value, unit = ''] = nowTexts(session, row.tag, fresh), text = unit ? `${value} ${unit}` : value;
@@ -103,8 +104,8 @@ function timeText(session, us) {
 const flyButton = (tag, name, fly) => make('button', { type: 'button', class: 'alarm-go', title: say('alarms.fly', { tag: tag.name }),
     onclick: () => fly(tag) }, name);
 
-// Returns the <tr> of a row of the alarm list or the journal, which pass different parts: look (attributes of the <tr>), pick (checkbox),
-// state (text), note and also (texts in the description), buttons. fly(tag): called when the user presses the tag's button.
+// Returns the <tr> for a row of the alarm list or of the journal. The two pass different parts: look (attributes of the <tr>), pick
+// (checkbox), state (text), note and also (texts in the description), buttons. fly(tag): called when the user presses the tag's button.
 export function rowOf(session, row, fresh, { look, pick, state, note, also = '', buttons, fly }) {
     const { tag, kind, priority } = row, name = make('b', {}, tag.name);
     const cell = (col, title, ...content) => make('td', { 'data-col': col, title }, ...content);
@@ -123,7 +124,7 @@ export function rowOf(session, row, fresh, { look, pick, state, note, also = '',
     return element;
 }
 
-// Returns the button of an action on a row.
+// Returns the button of an action, such as acknowledge, for a row of the alarm list.
 export const actionButton = (action, onclick) => make('button', { type: 'button', 'data-action': action, title: say(`action.${action}`),
     'aria-label': say(`action.${action}`), onclick }, makeSvg('svg', { viewBox: '0 0 20 20', 'aria-hidden': 'true' },
     makeSvg('path', { d: ICONS[action] })));

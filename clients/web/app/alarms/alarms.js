@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The alarm list: one row per tag, with actions on one or several alarms. Its second tab is the journal.
+// The alarm list: one row per tag, with actions on one or several alarms. Its second tab is the alarm journal.
 import { allOf, asideOf, inMessages, passes, rowActions, targetsOf } from '../../core/alarm_actions.js';
 import { areaOf, areasOf, isIn, tableCsv } from '../../core/alarm_table.js';
 import { zoneClock } from '../../core/format.js';
@@ -21,8 +21,8 @@ const FILTERS = { words: 'alarms-words', which: 'alarms-which', priority: 'alarm
 const NO_FILTER = { words: '', which: 'all', priority: '', area: '' };
 
 export class AlarmList {
-    // showTag(tag) selects a tag, flyToTag(tag) moves the camera to it. The list reads only overlay.fresh (true: messages arrive from the
-    // server).
+    // showTag(tag) selects a tag, flyToTag(tag) moves the camera to it. overlay: the markers over the picture; the list reads only
+    // overlay.fresh (true: messages arrive from the server).
     constructor({ session, modules, overlay, showTag, flyToTag }) {
         Object.assign(this, { session, modules, overlay, showTag, flyToTag });
         // selected rows: tag -> signature of the tag's alarms at the time of selection (see signatureOf)
@@ -79,7 +79,7 @@ export class AlarmList {
 
     setOpen(open) {
         for (const name of open ? ['engineer', 'import'] : [])
-            this.modules.there(name)?.close(); // closes other panels that use the same space
+            this.modules.there(name)?.close(); // closes other panels, which use the same space
         this.shareRoom(open);
         byId('alarms').hidden = !open;
         byId('alarm-strip').setAttribute('aria-expanded', open);
@@ -91,7 +91,7 @@ export class AlarmList {
             byId('alarm-strip').focus();
     }
 
-    // Closes the equipment list while the table is open, so that the picture keeps room, and opens it again afterwards.
+    // Closes the equipment list while the alarm list is open, so that the picture keeps room, and opens it again afterwards.
     shareRoom(open) {
         const assets = this.modules.there('assets');
         if (open && assets?.open && WIDE.matches) {
@@ -103,7 +103,7 @@ export class AlarmList {
         }
     }
 
-    // Switches the panel to its tab with the journal (journal true) or to the one with the present alarms.
+    // Switches the panel to the tab with the journal (journal true) or to the tab with the present alarms.
     turnTo(journal, focus = false) {
         for (const [id, on] of [['alarms-tab', !journal], ['journal-tab', journal]]) {
             byId(id).setAttribute('aria-selected', on);
@@ -177,14 +177,14 @@ export class AlarmList {
         this.showChosen();
     }
 
-    // Returns what the filter chooses, as texts. The journal has a filter of changes instead of that of states.
+    // Returns what the filter chooses, as texts. The journal filters by kind of change instead of by state.
     get applied() {
         const { words, which, priority, area } = this.filter;
         return [words.trim() && `“${words.trim()}”`, !this.journalOpen && which !== 'all' && say(`which.${which}`),
             priority && say('alarms.priority', { priority }), area].filter(Boolean);
     }
 
-    // Says what the filter chooses, in a button that ends the filter: on small screens the filter's fields may be out of sight. range: the
+    // Shows what the filter chooses, on a button that ends the filter: on small screens the filter's fields may be out of sight. range: the
     // journal's time range, which the button does not end; it is shown where the field of the range is hidden (common/sheet.css).
     showApplied(count, all, applied, range = '') {
         const button = byId('alarms-applied'), some = applied.length > 0;
@@ -196,18 +196,18 @@ export class AlarmList {
         button.setAttribute('aria-label', button.title);
     }
 
-    // Ends the filter that the button `alarms-applied` names.
+    // Ends the filter whose choices the button `alarms-applied` shows.
     unfilter() {
         for (const [name, id] of Object.entries(FILTERS))
             if (name !== 'which' || !this.journalOpen)
                 byId(id).value = this.filter[name] = NO_FILTER[name];
         if (this.journalOpen)
             this.modules.there('journal')?.unfilter();
-        byId(this.journalOpen ? 'journal-tab' : 'alarms-tab').focus(); // the button is about to be hidden
+        byId(this.journalOpen ? 'journal-tab' : 'alarms-tab').focus(); // moves the focus away from that button, which is about to be hidden
         this.show();
     }
 
-    // Fills the filter's lists: areas, and states with the number of alarms in each state.
+    // Fills the filter's selection lists: areas, and states with the number of alarms in each state.
     showChoices(all) {
         const choices = WHICH.map((name) => [name, `${say(`which.${name}`)} (${all.filter((row) => passes(row, '',
             { which: name, words: '' })).length})`]);
@@ -241,12 +241,13 @@ export class AlarmList {
 
     // --- selecting rows of the alarm list, and actions on all selected alarms
 
-    // Returns the ids and times of a row's alarms. While they are the same, the row shows the alarms that the user selected.
+    // Returns the ids and times of a row's alarms as a text. As long as the text stays the same, the row has the alarms that the user has
+    // selected.
     signatureOf = (row) => allOf(row).map(({ id, raisedUs }) => `${id}@${raisedUs}`).join();
 
     can = (row) => rowActions(row, this.alarms.mode, this.role).some((action) => ['acknowledge', 'shelve'].includes(action));
 
-    // Deselects rows whose alarms have changed since the rows were selected, because the user has not seen the new alarms.
+    // Deselects rows whose alarms have changed since the user selected the rows, because the user has not seen the new alarms.
     forgetChanged(all) {
         const now = new Map(all.map((row) => [row.tag.name, this.can(row) ? this.signatureOf(row) : null]));
         for (const [name, was] of this.chosen)
@@ -277,7 +278,7 @@ export class AlarmList {
         this.showChosen();
     }
 
-    // Returns the selected rows that are visible; rows hidden by the filter are not acted on.
+    // Returns the selected rows that are visible. Actions do not apply to rows that the filter hides.
     get chosenRows() {
         return this.rows.filter(({ tag }) => this.chosen.has(tag.name));
     }
@@ -298,7 +299,7 @@ export class AlarmList {
             box.checked = this.chosen.has(box.value);
     }
 
-    // Shows or hides the actions on several alarms. If they had the keyboard focus, the first row gets it.
+    // Shows or hides the buttons for actions on several alarms. If they had the keyboard focus, the first row gets it.
     showMany(shown) {
         const many = byId('alarms-many'), hadFocus = many.contains(document.activeElement);
         many.hidden = !shown;
@@ -321,7 +322,8 @@ export class AlarmList {
             actOnAlarm(this.session, action, some, more);
     }
 
-    // Calls f, which rebuilds rows, and then gives the keyboard focus back to the same alarm, or to the next row if that alarm is gone.
+    // Calls f, which rebuilds rows, and then gives the keyboard focus back to the same alarm, or to the next row if that alarm is no longer
+    // listed.
     keepFocus(f) {
         const held = document.activeElement, row = held.closest('#alarms-now tbody tr');
         const place = row && [...row.parentElement.children].indexOf(row);
@@ -333,7 +335,7 @@ export class AlarmList {
         (held.isConnected ? held : next?.querySelector('[data-col=do] button, button') ?? byId('alarms-close')).focus();
     }
 
-    // Gives the keyboard focus to the row of an alarm, or to the first row, unless something else has it.
+    // Gives the keyboard focus to the row of an alarm, or to the first row, unless another element has the focus.
     focusRow(id) {
         const { activeElement: held } = document;
         if (held !== document.body && held.checkVisibility())
@@ -344,7 +346,7 @@ export class AlarmList {
 
     // --- rows
 
-    // Returns what a row says in addition to its columns: the end of shelving, the user who last acted on the alarm, the reason, and
+    // Returns the text of a row in addition to its columns: the end of shelving, the user who last acted on the alarm, the reason, and
     // whether the measurement is bad.
     noteOf(row) {
         const { state, who, reason, untilUs, held } = row;
@@ -380,7 +382,7 @@ export class AlarmList {
         this.flyToTag(tag);
     }
 
-    // Closes the list on narrow screens, which show either the plant or the list.
+    // Closes the list on narrow screens, which have room for either the plant or the list.
     giveRoom() {
         if (this.small.matches)
             this.setOpen(false);

@@ -6,8 +6,8 @@ import { say } from '../../core/words.js';
 import { byId } from '../common/dom.js';
 import { limitText } from './alarm_bar.js';
 
-const MOST = 3; // maximum number of alarms whose text is read out in one announcement; of the others, only the number is read out
-const READ_MS = 3000; // shortest time between two announcements: a screen reader drops a text that is replaced too soon
+const MOST = 3; // maximum number of alarms whose text one announcement reads out; of further alarms it says only the number
+const READ_MS = 3000; // shortest time between two announcements: a screen reader skips a text that is replaced too soon
 
 const isOpen = ({ state }) => calls(state) && state !== 'acknowledged';
 

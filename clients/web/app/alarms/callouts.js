@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Call-outs: two-line labels next to alarm rings (circles around the markers of tags in alarm). Rings that are close together share one
-// call-out. Also labels alarms whose reading is bad.
+// call-out. Also makes the labels of alarms whose reading is bad.
 import { graver } from '../../core/alarms.js';
 import { placeRings } from '../../core/callouts.js';
 import { say } from '../../core/words.js';
@@ -18,8 +18,8 @@ export class Callouts {
         refresh();
     }
 
-    // Returns the label of an alarm whose reading is bad, and which therefore keeps the state that it had at the last usable value. Returns
-    // null if there never was a value.
+    // Returns the label of an alarm whose reading is bad, so that the alarm keeps the state that it had at the last usable value. Returns
+    // null if the tag never had a value.
     held(tag, { kind }) {
         const since = heldSince(this.session, { tag, kind });
         return since && [[kind, 700, null], [say('alarms.since', { time: since }), 400, INK_2]];

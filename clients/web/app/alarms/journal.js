@@ -12,7 +12,7 @@ import { saveFile } from '../common/save_file.js';
 import { AlarmTable, momentButton, refreshCells, rowOf } from './alarm_table.js';
 
 const SPANS = ['shift', 'day', 'today', 'yesterday', 'week', 'chosen'];
-const STEP = 5000, SHOWN = 200; // STEP: number of rows per request; SHOWN: maximum number of rows in the document
+const STEP = 5000, SHOWN = 200; // STEP: number of journal rows per request; SHOWN: maximum number of rows in the document
 const READ_AGAIN_MS = 3000;     // shortest time in milliseconds between two requests for a time span that ends now
 const EVENTS = { raised: ['raise', 'call'], cleared: ['clear'], acknowledged: ['acknowledge', 'reset'],
     shelved: ['shelve', 'unshelve', 'suppress', 'unsuppress', 'out_of_service', 'in_service', 'carry'] };
@@ -49,7 +49,7 @@ export class Journal {
             make('div', { class: 'scroll' }, this.element, this.more));
     }
 
-    // list: the alarm list, whose filters also apply here.
+    // list: the alarm list, whose filters also apply to the journal.
     open(list) {
         this.list = list;
         return this.read();
@@ -81,7 +81,7 @@ export class Journal {
             : this.span.selectedOptions[0].text;
     }
 
-    // Shows all changes of the time range.
+    // Shows all kinds of changes of the time range.
     unfilter() {
         byId('journal-which').value = '';
     }
@@ -102,8 +102,8 @@ export class Journal {
         return this.read();
     }
 
-    // Requests the journal rows of the chosen time span and shows them. If a newer request has started meanwhile, the rows of this one are
-    // dropped.
+    // Requests the journal rows of the chosen time span and shows them. If a newer request has started meanwhile, the rows of the older one
+    // are dropped.
     async read() {
         const [fromUs, toUs] = this.limits, number = this.number = (this.number ?? 0) + 1;
         Object.assign(this, { dirty: false, readAt: performance.now() });

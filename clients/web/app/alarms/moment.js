@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The moment before an alarm: flies to its tag, goes to 30 s before the raise, and names the alarm large over the picture.
+// The moment before an alarm: flies to the alarm's tag, shows the plant 30 s before the raise, and names the alarm in large letters over
+// the picture.
 import { zoneClock } from '../../core/format.js';
 import { travel } from '../../core/requests.js';
 import { say } from '../../core/words.js';
@@ -25,7 +26,8 @@ export class Moment {
         setInterval(() => this.say(), 500);
     }
 
-    // alarm: { tag, kind, priority, us (microseconds, time of the raise) }. afterUs: how long after the raise the shown instant is.
+    // alarm: { tag, kind, priority, us (time of the raise, microseconds) }. afterUs: how long after the raise the shown instant is;
+    // negative: before.
     show(alarm, afterUs = -BEFORE_US) {
         Object.assign(this, { alarm, arrived: false });
         this.mark.replaceChildren(badge(alarm.priority));
@@ -50,7 +52,7 @@ export class Moment {
         travel(this.session, this.alarm.us + afterUs);
     }
 
-    // Closes this notice when the page shows the present again after it showed the moment.
+    // Closes the alarm's name when the page shows the present again after it showed the moment.
     hear() {
         const { atUs } = this.session.time;
         if (this.alarm && atUs === null && this.arrived)

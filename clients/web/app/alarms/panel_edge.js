@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The left edge of the alarm list: dragging it, or the arrow keys on it, divide the room between picture and list. A double click restores
-// the usual width.
+// The left edge of the alarm list. Dragging it, or arrow keys while it has the focus, change the widths of picture and list. A double click
+// restores the usual width.
 import { say } from '../../core/words.js';
 import { make, setVariable } from '../common/dom.js';
 import { store, stored } from '../common/storage.js';

@@ -9,7 +9,7 @@ import { narrow } from '../startup.js';
 import { LongList } from './list.js';
 
 const SEARCH_MS = 80, ASSET_PX = 53;
-// keys that the rows handle; other keys are left to other handlers
+// keys that the rows of the list handle; other keys are left to other handlers
 const KEYS = /^(Arrow(Up|Down|Left|Right)|Home|End|Page(Up|Down)|Enter| )$/;
 const keyOf = ({ kind, id }) => `${kind}/${id}`;
 
@@ -53,7 +53,7 @@ export class Assets {
                 return;
             this.does((rows) => rows.press(event.key));
             event.preventDefault();
-            event.stopPropagation(); // ends the event here, because the key would also move the camera
+            event.stopPropagation(); // stops the event here, because the key would also move the camera
         });
     }
 
@@ -71,7 +71,7 @@ export class Assets {
         const { model } = this.session, before = this.tree;
         this.tree = new Tree(model, say('assets.loose'));
         if (before)
-            // after a reconnect, the same areas and assets stay expanded
+            // after a reconnect, the same areas and assets stay expanded as before
             Object.assign(this.tree, { open: before.open, folded: before.folded });
         setText(byId('assets-count'), String(model.assets.length));
         this.selected = undefined;
@@ -158,7 +158,7 @@ export class Assets {
         setAlarm(element, model.alarms.gravest(tag.index));
     }
 
-    // Schedules an update for the next animation frame, however many messages arrive until then.
+    // Schedules one update of the rows for the next animation frame, however many messages arrive until then.
     soon() {
         this.mark();
         this.asked ??= requestAnimationFrame(() => {

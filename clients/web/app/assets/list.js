@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A virtual list: only the rows in sight are in the document. One row is active, which means that the keyboard acts on it (rows.js).
+// A virtual list: only the rows in sight are in the document. One row is active: keys act on it (rows.js).
 import { rowsInSight, stack } from '../../core/list_window.js';
 import { make } from '../common/dom.js';
 
-const MORE = 8; // extra rows beyond both edges
+const MORE = 8; // number of rows beyond each edge that are in the document in advance
 
 export class LongList {
     // make(row) creates the element of a row, fill(row, element) updates its content, height(row) returns CSS pixels, keyOf(row) returns a
@@ -43,7 +43,7 @@ export class LongList {
         for (let i = from; i < to; i++)
             wanted.add(i);
         if (this.active !== null)
-            // the active row keeps its element also out of sight, or keyboard users would lose their position
+            // the active row keeps its element even out of sight, because keyboard users would otherwise lose their position
             wanted.add(this.places.get(this.active));
         const before = this.shown;
         this.shown = new Map();

@@ -56,7 +56,7 @@ export class Rows {
             list.shown.get(list.active).focus({ preventScroll: true });
     }
 
-    // Makes the row with this key the active row, because it has received the focus.
+    // Makes the row with this key the active row, because it has received the keyboard focus.
     isAt(key) {
         if (key !== this.list.active)
             this.goTo(this.placeOf(key), false);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A notice over the picture that part of the plant is hidden, with a button that shows everything. Loaded when something is hidden,
+// A notice over the picture that part of the plant is hidden, with a button that shows everything. Loaded when equipment is hidden,
 // isolated or transparent.
 import { showAll } from '../../core/section.js';
 import { say } from '../../core/words.js';
@@ -31,7 +31,7 @@ export class Shown {
         setText(this.words, [gone > 0 && say('shown.hidden', { hidden: gone, all: all.length }),
             ghosts > 0 && say('shown.ghosts', { count: ghosts })].filter(Boolean).join(', '));
         this.stand();
-        this.refresh(); // draws the labels over the picture again, so that those under the notice move aside
+        this.refresh(); // draws the sensor labels over the picture again, so that those under the notice move aside
     }
 
     // Moves the notice below the legend if the legend lies across the top of the picture.

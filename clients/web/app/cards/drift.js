@@ -22,7 +22,7 @@ export async function driftOf(session, query) {
     return rows ?? [];
 }
 
-// Returns a text such as +1.4 °C ± 0.2, or null if the drift is unknown.
+// Returns a sensor's drift as text, such as +1.4 °C ± 0.2, or null if the drift is unknown.
 function changeText({ change, error }, group) {
     const digits = Math.max(1, decimalsFor(group.max - group.min));
     return `${change < 0 ? '−' : '+'}${numberText(Math.abs(change), digits)} ${unitText(group.unit)} ± ${numberText(error, digits)}`;
@@ -34,11 +34,11 @@ export function driftText(row, group) {
     return say(`drift.${row.verdict}`, { by: changeText(row, group) });
 }
 
-// Returns the residual of each hour: reading minus prediction; null if reading or prediction is unknown. Pure.
+// Returns the residual of each hour: reading minus prediction; null if reading or prediction is unknown. Has no side effects.
 export const residuals = (hours) => hours.map(([, value, predicted]) => (value === null || predicted === null ? null : value - predicted));
 
-// Returns a list of polylines, one for each stretch of hours without a gap. Their vertical scale spans at least 6 sigma, so that mere noise
-// does not fill the height. Pure.
+// Returns polylines of the residuals, one for each stretch of hours without a gap. Their vertical scale spans at least 6 sigma, so that
+// mere noise does not fill the height. Has no side effects.
 export function stretches(values, sigma) {
     const known = values.filter((value) => value !== null), low = Math.min(...known), high = Math.max(...known), all = [[]];
     const span = Math.max(high - low, 6 * sigma || 0) || 1;
@@ -53,7 +53,7 @@ export function stretches(values, sigma) {
     return all.filter((points) => points.length > 1).map((points) => points.join(' '));
 }
 
-// Returns the week as a curve (SVG), or null if there is nothing to draw.
+// Returns the drift of the week as a curve (SVG), or null if there is nothing to draw.
 export function driftCurve(row) {
     if (row.scatter === null)
         return null;

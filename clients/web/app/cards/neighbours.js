@@ -12,7 +12,7 @@ const AGAIN_MS = 3000, LISTED = 5;
 const sensors = (query, token) => ask('api/v1/neighbours', query, token).then((answer) => answer.json()).then((rows) => rows.sensors)
     .catch(() => []); // after a failed request no prediction is shown, because an old one would mislead
 
-// Returns a text such as 81.3 °C ± 2.0 with the deviation of the reading from the prediction, or null if there is no prediction.
+// Returns the prediction as text, such as 81.3 °C ± 2.0, with the deviation of the reading from it; null if there is no prediction.
 export function neighbourText(row, group) {
     if (!row || row.predicted === null)
         return null;
@@ -23,7 +23,7 @@ export function neighbourText(row, group) {
     return say(row.residual < 0 ? 'neighbours.below' : 'neighbours.above', { predicted, by: `${number(Math.abs(row.residual))} ${unit}` });
 }
 
-// Requests predictions again and again while isSeen() returns true, but not while the past is shown, because the daemon predicts only the
+// Requests predictions at intervals while isSeen() returns true, but not while the past is shown, because the daemon predicts only the
 // present. onRows(rows) is called with each answer.
 export class Neighbours {
     constructor(session, isSeen, onRows) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The card of a point on the plant's surface: its equipment, the field's value there, the sensors that contribute to it, and the
-// uncertainty.
+// The card of a point on the plant's surface: its equipment, the field's value at the point, the sensors that contribute to the value, and
+// the uncertainty.
 import { decimalsFor, numberText, unitText } from '../../core/format.js';
 import { askPick } from '../../core/requests.js';
 import { say } from '../../core/words.js';
@@ -53,14 +53,15 @@ export class Place {
     hear(picked) {
         if (this.asked === null)
             return; // the card was closed meanwhile
-        if (picked.purpose !== 'place') { // ignores the answer to another module's pick request, which has replaced this one
+        // ignores the answer to another module's pick request, which has replaced the request of this card
+        if (picked.purpose !== 'place') {
             this.asked = null;
             return;
         }
         const again = this.asked === 'again';
         this.asked = null;
         if (again && !this.isSamePlace(picked)) {
-            this.close(); // the point is now covered or hidden, so its card closes
+            this.close(); // the point is now covered or hidden by equipment, so its card closes
             return;
         }
         this.picked = picked.asset === null ? null : picked;

@@ -17,7 +17,7 @@ export function keepScreenOn() {
     ask();
 }
 
-// Calls onWake() after the device has slept, when all known values are outdated.
+// Calls onWake() after the device has slept, because all values that the page knows are then outdated.
 export function watchSleep(onWake) {
     const wake = new Wake({
         now: () => performance.now(), date: () => Date.now(),

@@ -28,9 +28,9 @@ function furnish(element, attributes, children) {
     return element;
 }
 
-// Inserts words into the elements below `root`, by keys in their attributes: data-say gives the text, data-label the aria-label, data-title
-// the title, data-hint placeholder and aria-label, data-name title and aria-label. data-key is the keyboard shortcut, which the title
-// shows. data-icon is drawn before the text. In the collapsed toolbar each icon shows its name.
+// Inserts words into the elements below `root`. Attributes of the elements hold the keys of the words: data-say gives the text, data-label
+// the aria-label, data-title the title, data-hint placeholder and aria-label, data-name title and aria-label. data-key is the keyboard
+// shortcut, which the title shows. data-icon is drawn before the text. In the collapsed toolbar each icon shows its name.
 export function sayAll(root) {
     for (const element of root.querySelectorAll('[data-say], [data-label], [data-title], [data-hint], [data-name], [data-icon]')) {
         const { say: text, label, title, hint, name, key, icon: drawn } = element.dataset;
@@ -49,7 +49,7 @@ export function sayAll(root) {
     }
 }
 
-// Writes a text only if it has changed, to spare screen readers and the layout.
+// Writes a text only if it has changed, so that screen readers do not repeat it and the layout is not computed again.
 export function setText(element, text) {
     if (element.textContent !== text)
         element.textContent = text;
@@ -90,7 +90,7 @@ export function glyph(quality) {
 export const limitFlag = ({ kind, priority, state }) =>
     make('span', { class: `limit-flag p${priority}${isGone(state) ? ' hollow' : ''}` }, kind);
 
-// Matches small screens, on which the legend lies along the edge and panels are sheets.
+// Matches small screens, on which the legend is a strip along the edge and panels are sheets.
 export const phone = globalThis.matchMedia?.('(max-width: 719px), (max-width: 1023px) and (max-height: 480px)');
 
 export function icon(id) {

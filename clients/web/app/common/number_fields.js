@@ -7,7 +7,8 @@ import { byId, make, setText } from './dom.js';
 const explained = (kind, ...values) => values.map((value) => [value, say(`${kind}.${value}`), say(`${kind}.${value}.why`)]);
 export const distances = (group) => explained('distance', 'geodesic', 'euclidean', 'heat')
     .filter(([value], i) => i < 2 || group?.prepared?.includes(value));
-// Interpolations that a group offers: the first two are always available, the others only if they were prepared for the group.
+// Returns the interpolations that a sensor group offers: the first two are always available, the others only if they were prepared for the
+// group.
 export const interpolations = (group) => explained('interpolation', 'shepard', 'paper', 'harmonic', 'fin', 'gp')
     .filter(([value], i) => i < 2 || group?.prepared?.includes(value));
 export const fills = () => explained('fill', 'none', 'neighbours');
@@ -19,7 +20,7 @@ export function numberField(id, words, attributes, onNumber) {
     return { input, label: make('label', { class: 'choice' }, make('span', {}, words), input) };
 }
 
-// Sets the field's value, unless the user is typing in it.
+// Writes a number into a field, unless the user is typing in it.
 export function writeNumber({ input }, value) {
     if (document.activeElement !== input)
         input.value = value ?? '';

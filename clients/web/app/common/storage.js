@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values stored in this browser. If the browser refuses storage, they are lost on a reload of the page.
+// Values stored in this browser. If the browser refuses to store them, a reload of the page loses them.
 
 const KEYS = { theme: 'localStorage', token: 'sessionStorage', renewed: 'sessionStorage', accepted: 'sessionStorage',
-    // values in localStorage are permanent, those in sessionStorage last until the tab closes
+    // where each value is stored: localStorage is permanent, sessionStorage lasts until the tab closes
     renewedWall: 'sessionStorage', desk: 'localStorage', alarmsWidth: 'localStorage', wall: 'localStorage' };
 
 export function stored(name) {

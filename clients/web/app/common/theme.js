@@ -11,7 +11,7 @@ export function wear(theme) {
     return theme;
 }
 
-// Sets the theme: ?theme=dark or ?theme=light of the URL, else the stored theme. Returns the theme.
+// Sets the theme: from ?theme=dark or ?theme=light in the URL, else the stored theme. Returns the theme.
 export function chooseTheme(query) {
     return wear((query.get('theme') ?? stored('theme')) === 'dark' ? 'dark' : 'light');
 }

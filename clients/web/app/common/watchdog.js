@@ -6,8 +6,8 @@ import { make } from './dom.js';
 
 const BEAT_MS = 1000, BAND_PX = 92;
 
-// scale() returns the size of the words relative to a desktop page. reloads true: the page is a wall, where no user is present to reload
-// it.
+// scale() returns the size of the warning's letters relative to a desktop page. reloads true: the page is a wall, where no user is present
+// to reload it.
 export async function watchMainThread({ scale = () => 1, reloads = false } = {}) {
     if (!('transferControlToOffscreen' in HTMLCanvasElement.prototype))
         return;

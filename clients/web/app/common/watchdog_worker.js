@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Worker of watchdog.js. When the page's main thread hangs, the worker draws a warning over the page and tells the keeper (a frame in
 // another process) to reload a wall. Messages from the page: first { veil, band (canvases), words, keeper }; later { width, height, scale }
-// of the band; 'beat' while the page runs; 'rest' when it is hidden, because timers are then slow.
+// of the band; 'beat' at intervals while the page runs; 'rest' when the page is hidden, because timers are then slow.
 'use strict';
 
 // Silence is counted in ticks and not by a clock, because neither this worker nor the page runs while the machine sleeps. The warning is
-// shown for some ticks before the reload, so that people can see it.
+// shown for some ticks before the reload, so that people can read it.
 const TICK_MS = 1000, SILENT_TICKS = 10, RELOAD_TICKS = 13;
 let veil = null, band = null, words = null, keeper = null, scale = 1;
 let silent = 0, rests = false, isSaid = false;
@@ -17,16 +17,17 @@ onmessage = ({ data }) => {
         ({ scale } = data);
         [band.width, band.height] = [data.width, data.height];
     }
-    // `rests` (the page is hidden, and its silence is no fault) changes only by the messages 'beat' and 'rest': a hidden page may send
-    // its new size, but remains hidden
+    // Only the messages 'beat' and 'rest' change `rests` (the page is hidden, so its silence is no fault). A hidden page may send its new
+    // size, but remains hidden.
     if (typeof data === 'string')
         rests = data === 'rest';
     silent = 0;
-    // clears the warning; also draws once at the start, because the first frame, the size and the font of a canvas need the main thread
+    // Clears the warning. Also draws once at the start, because the first frame of a canvas, its size and its font need the main thread.
     if (isSaid || data.width)
         draw();
     if (data.width)
-        requestAnimationFrame(() => postMessage('watches')); // tells the page that the worker watches, once the first frame is presented
+        // tells the page that the worker is ready, once the canvas has shown its first frame
+        requestAnimationFrame(() => postMessage('watches'));
 };
 
 setInterval(() => {
@@ -38,7 +39,7 @@ setInterval(() => {
     draw();
 }, TICK_MS);
 
-// Draws a translucent veil over the whole page, so that a frozen picture does not look live, and a band with the words.
+// Draws a translucent veil over the whole page, so that nobody takes a frozen picture for a live one, and a band with the warning.
 function draw() {
     const { width, height } = band, shade = veil.getContext('2d'), c = band.getContext('2d');
     isSaid = silent >= SILENT_TICKS;

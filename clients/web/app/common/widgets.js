@@ -6,7 +6,7 @@ import { icon, make } from './dom.js';
 // Replaces the children of an element; null children are skipped.
 export const fill = (element, ...children) => element.replaceChildren(...children.filter((child) => child !== null));
 
-// Splits a text at its placeholder and inserts a node there. Returns the parts.
+// Splits a text at its placeholder and inserts a node at that position. Returns the parts.
 export function around(text, node) {
     const [before, after] = text.split('\u0000');
     return [before, node, after];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Accepts the assumed positions of many sensors in one step, filtered by equipment, name, distance from the surface and confidence of the
-// match. The sensors are counted and marked on the model before that, and the previous tag list can be restored.
+// match. Before that, the page counts these sensors and marks them on the model. Afterwards, the user can restore the previous tag list.
 import { tellAsEngineer } from '../../core/requests.js';
 import { whyNotSaved } from '../../core/refusals.js';
 import { say } from '../../core/words.js';
@@ -14,11 +14,11 @@ export class Accepting {
     constructor({ session, refresh }) {
         Object.assign(this, { session, refresh });
         this.names = new Set(); // tags that would be accepted
-        this.found = null;      // newest message `places_accepted` for the current filter; null: none yet
-        this.sent = null;       // request that waits for `tags_saved`: 'accept' or 'restore'; null: none
-        // name of the version of the tag list from before the last acceptance; stored, so that it survives a page reload
+        this.found = null;      // newest message `places_accepted` (the sensors that the current filter chooses); null: none yet
+        this.sent = null;       // request whose answer `tags_saved` is pending: 'accept' or 'restore'; null: none
+        // name of the tag list's version before the last acceptance; stored, so that it survives a page reload
         this.kept = stored('accepted') || null;
-        this.restores = false; // true: the `tags_diff` that was requested compares with an earlier version
+        this.restores = false; // true: the requested `tags_diff` (differences between two tag lists) is against an earlier version
         this.build();
         session.on('places_accepted', (message) => this.onFound(message));
     }
@@ -66,14 +66,14 @@ export class Accepting {
     ask() {
         clearTimeout(this.timer);
         if (this.sent)
-            return; // a request is running; end() or onSaved() calls ask() again when it ends
+            return; // a request is running; end() or onSaved() calls ask() again when that request ends
         this.onFound(null);
         if (this.element.open && [this.within, this.confidence].every((field) => field.validity.valid))
             this.timer = setTimeout(() => { this.asked = tellAsEngineer(this.session, 'accept_places', this.filter); }, ASK_MS);
     }
 
-    // Handles `places_accepted`. The server also sends it as the answer to an acceptance: with the same hash if it is applying the list,
-    // with another hash if the list has changed in the meantime.
+    // Handles `places_accepted`. The server also sends this message as the answer to an acceptance: with the same hash of the tag list if
+    // the server applies the list, with another hash if the list has changed in the meantime.
     onFound(message) {
         if (message && message.seq !== this.asked)
             return;
@@ -98,7 +98,7 @@ export class Accepting {
         this.send('accept', 'accept_places', { ...this.filter, confirm: this.found.hash });
     }
 
-    // Ends a request that has not changed the list: shows the text and allows the next request.
+    // Ends a request that has not changed the tag list: shows the text and allows the next request.
     end(text) {
         if (this.sent) {
             this.sent = null;
@@ -127,7 +127,7 @@ export class Accepting {
             this.end('');
     }
 
-    // Handles `tags_saved`. Returns true if it answers a request of this module.
+    // Handles `tags_saved`. Returns true if the message answers a request of this module.
     onSaved(message) {
         const { saved, kept } = message;
         const { sent } = this;

@@ -41,7 +41,7 @@ export class Engineer {
     toggle() {
         const [alarms, imports] = ['alarms', 'import'].map((name) => this.page.modules.there(name));
         if (!this.open && alarms?.open)
-            alarms.setOpen(false); // closes the alarm list, which uses the same space
+            alarms.setOpen(false); // closes the alarm list, which uses the same space as this panel
         if (!this.open)
             imports?.close();
         this.element.hidden = this.open;
@@ -51,7 +51,7 @@ export class Engineer {
         this.page.refresh();
     }
 
-    // Opens the tab named `part` as if its button had been pressed.
+    // Opens the tab named `part`, as if the user had pressed its button.
     take(part) {
         this.element.querySelector(`input[value="${part}"]`).click();
     }
@@ -78,19 +78,19 @@ export class Engineer {
         return this.open && this.part === part && this.parts[part][name] === tag.name;
     }
 
-    // Returns true if the current filter would accept the tag's assumed position.
+    // Returns true if the current filter of the acceptance (accepting.js) chooses the tag's assumed position.
     isAccepted(tag) {
         return this.open && this.part === 'place' && this.parts.place.accepting.names.has(tag.name);
     }
 
-    // Returns true if mark() draws rings for the tag; such a marker is drawn even where many markers overlap.
+    // Returns true if mark() draws rings for the tag. Such a marker is drawn even where many markers overlap.
     isMarked(tag) {
         return this.page.session.model.placed.has(tag.name) || this.isAccepted(tag) || this.isAt('place', 'tag', tag) ||
             this.isAt('prove', 'stirred', tag);
     }
 
-    // Draws rings around a tag's marker: dashed for a draft position, blue if its assumed position would be accepted, solid if it is
-    // selected, double if its reading changed during a loop check.
+    // Draws rings around a tag's marker: dashed for a draft position, blue if the acceptance would include its assumed position, solid if
+    // the tag is selected, double if its reading changed during a loop check.
     mark(tag) {
         const c = this.page.overlay.context, moved = this.page.session.model.placed.has(tag.name);
         const stirred = this.isAt('prove', 'stirred', tag);

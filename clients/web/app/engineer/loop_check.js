@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loop checks of one tag after the other, device by device: shows which reading changed when a transmitter was forced, and whether the
-// reading has the expected value.
+// Loop checks of one tag after the other, device by device: shows which reading changed when a technician forced a transmitter, and whether
+// the reading has the expected value.
 import { decimalsFor, numberText, unitText } from '../../core/format.js';
 import { readExpected, LoopCheckSession } from '../../core/loop_check.js';
 import { ask } from '../../core/history.js';
@@ -15,8 +15,8 @@ export class LoopCheck {
         Object.assign(this, { session, showTag, refresh });
         this.loopCheck = new LoopCheckSession();
         this.tag = null;             // name of the tag that is being checked; null: none
-        this.stirred = null;         // name of the tag whose reading changed most since the check began; null: none
-        this.expected = new Map();   // tag -> expected value, read from a CSV file
+        this.stirred = null;         // name of the tag whose reading changed most since the check started; null: none
+        this.expected = new Map();   // tag -> expected value, read from the user's CSV file
         this.build();
         session.on('tags', () => this.onTags());
         session.on('proofs', () => this.show());
@@ -147,7 +147,7 @@ export class LoopCheck {
         }
     }
 
-    // Sends the result of a check. In a number, a decimal comma counts as a decimal point.
+    // Sends the result of a check to the server. In a number, a decimal comma counts as a decimal point.
     send(fail) {
         const read = (input) => (input.value.trim() ? Number(input.value.replace(',', '.')) : NaN);
         const expected = read(this.wanted), tolerance = read(this.tolerance);

@@ -56,7 +56,7 @@ export class Placing {
         session.on('gaps', (message) => this.showGaps(message));
         session.on('tags_diff', (message) => this.showDiff(message));
         session.on('tags_saved', (message) => this.onSaved(message));
-        // the server refused a position: the sensor stays where it was
+        // the server refused a position: the sensor stays at its previous one
         session.on('error', ({ about }) => { if (about === 'place') this.step(); });
         session.on('error', ({ about }) => { if (SAVING.includes(about)) this.stopSaving(); });
         session.on('hello', () => this.stopSaving()); // after a reconnect, the answer to a save will not arrive any more
@@ -72,7 +72,7 @@ export class Placing {
     // Sends the unsaved draft positions again after a reload of the plant.
     onWelcome() {
         if (this.saving)
-            // a save is running and its answer is pending: the server will send the result, so the draft positions need not be sent again
+            // a save is running: the server will send its result, so the draft positions need not be sent again
             return;
         const known = ({ tag, asset }) => this.session.model.tag(tag) && this.session.model.asset(asset);
         this.moves = this.moves.filter(known);
@@ -105,7 +105,7 @@ export class Placing {
         return true;
     }
 
-    // Sets the position of the tag to place. A whole click or drag is one step for undo, however many positions a drag passes.
+    // Sets the position of the tag to place. A whole click or drag is one undo step, however many positions a drag passes.
     put(asset, position) {
         if (!this.tag)
             return;
@@ -168,7 +168,7 @@ export class Placing {
         this.refresh();
     }
 
-    // Returns the equipment of the tag's saved position if the draft position is on other equipment; else null.
+    // Returns the equipment of the tag's saved position if the tag's draft position is on other equipment; else null.
     left({ tag, asset }) {
         const known = this.session.model.tag(tag), own = (known?.saved ?? known)?.asset;
         return own && own !== asset ? own : null;
@@ -200,7 +200,7 @@ export class Placing {
         this.tag = this.tag === tag.name ? null : tag.name;
         if (this.tag)
             this.showTag(tag);
-        this.selectTag(null); // deselects the tag, because its card would cover the surface to click on
+        this.selectTag(null); // deselects the tag, because its card would cover the surface on which the user must click
         this.show();
     }
 
@@ -220,7 +220,7 @@ export class Placing {
 
     showDiff({ file, conflict, hash, lines, more }) {
         if (hash !== null && hash === this.confirmed)
-            return; // ignores this difference of tag lists, because the user has confirmed the same list already and it is being saved
+            return; // ignores this difference of tag lists, because the user has already confirmed it and the list is being saved
         this.stopSaving();
         const close = () => this.dialog.close();
         const change = ([number, before, after]) => make('div', { class: 'change' }, make('span', {}, say('eng.diff.line', { n: number })),
@@ -239,7 +239,7 @@ export class Placing {
             this.dialog.showModal();
     }
 
-    // Ends a save that has not changed the list, and allows the next save.
+    // Ends a save that has not changed the tag list, and allows the next save.
     stopSaving() {
         if (this.saving)
             setText(this.note, '');

@@ -4,7 +4,7 @@ import { say } from '../../core/words.js';
 import { byId, make, makeSvg } from '../common/dom.js';
 import { closeButton } from '../common/widgets.js';
 
-// Rows of the table: name, then the words or keys of each column; '' for an empty cell.
+// Rows of the table of controls: name, then the words or keys of each column; '' for an empty cell.
 const ROWS = [
     ['help.turn', 'help.turn.mouse', 'help.turn.touch', '[←] [→] [↑] [↓]'],
     ['help.move', 'help.move.mouse', 'help.move.touch', '[W] [A] [S] [D]'],

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sends import requests to the server, and polls the server's progress.
+// Sends import requests to the server (models, tag lists), and polls their progress.
 import { answerText } from '../../core/refusals.js';
 import { say } from '../../core/words.js';
 
@@ -28,7 +28,7 @@ export class Exports {
         return this.ask(path, { method: 'POST', query, body });
     }
 
-    // Polls until no job is running. sent: the request that was accepted just before, or null.
+    // Polls the server until no import job is running. sent: the request that the server has just accepted, or null.
     async look(sent = null) {
         clearTimeout(this.timer);
         const before = this.state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Drawings over the picture during an import: boxes around the candidate assets of a tag, and a person of 1.8 m as a scale.
+// Drawings over the picture during an import: boxes around the assets that a tag may belong to, and a person of 1.8 m as a scale.
 import { basis, projector } from '../../core/camera.js';
 import { halves } from '../../core/split_view.js';
 import { say } from '../../core/words.js';
@@ -19,7 +19,7 @@ export class Highlights {
         overlay.drawMore = () => this.draw();
     }
 
-    // assets: candidates for a tag; the first one is the chosen one. person: true: draw the person.
+    // assets: those that a tag may belong to, the chosen one first. person: true: draw the person.
     show({ assets = this.assets, person = this.person }) {
         Object.assign(this, { assets, person });
         this.refresh();
@@ -80,7 +80,7 @@ export class Highlights {
     write(text, x, y) {
         const c = this.overlay.context;
         if (x < 0 || x > this.overlay.wide || y > this.overlay.high)
-            return; // writes nothing if the position of the text is outside the picture
+            return; // writes nothing if the position of the asset's name is outside the picture
         c.font = `600 13px ${this.overlay.font}`;
         const width = c.measureText(text).width + 10;
         const left = Math.min(Math.max(4, x - width / 2), this.overlay.wide - width - 4), bottom = Math.max(24, y);
@@ -107,7 +107,7 @@ export class Highlights {
             c.stroke();
             c.fill();
         }
-        if (feet[1] - top[1] < LEAST_PERSON_PX) { // marks the position with a circle where the person would be too small to see
+        if (feet[1] - top[1] < LEAST_PERSON_PX) { // marks the position with a circle, because the person would be too small to see
             c.beginPath();
             c.arc(feet[0], feet[1], LEAST_PERSON_PX, 0, 2 * Math.PI);
             Object.assign(c, { strokeStyle: LIT, lineWidth: 2 });

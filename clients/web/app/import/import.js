@@ -15,7 +15,7 @@ const UNITS = ['', 'm', 'mm', 'cm', 'in', 'ft'], AXES = ['', 'y', 'z'];
 // Encodings of `plantcast match --encoding` that the panel offers; others can be chosen on the command line.
 const ENCODINGS = ['UTF-8', 'GB18030', 'Big5', 'Shift-JIS', 'EUC-JP', 'EUC-KR', 'Windows-1250', 'Windows-1251', 'Windows-1252',
     'Windows-1253', 'Windows-1254', 'KOI8-R', 'CP866', 'CP850', 'UTF-16LE', 'UTF-16BE'];
-const PLACEHOLDER = 'person'; // id of the only asset in a plant that is new, before anything is imported into it
+const PLACEHOLDER = 'person'; // id of the only asset of a new plant, before the user has imported a model
 
 const choice = (key, values, onchange) => {
     const select = make('select', { onchange }, ...values.map((value) =>
@@ -24,11 +24,11 @@ const choice = (key, values, onchange) => {
 };
 const button = (key, onclick, attributes = {}) => make('button', { type: 'button', onclick, ...attributes }, say(key));
 const megabytes = (bytes) => say('import.bytes', { mb: numberText(bytes / 1e6, bytes < 1e7 ? 2 : 0) });
-// Removes the path of the exports folder from the programs' output.
+// Removes the path of the exports folder from texts that the server's programs print.
 const plain = (text) => text.replace(/\S*\/exports\//g, '');
 
-// Returns in words the encoding of each file, from program output such as "tags.csv: read as Windows-1251", and the second likely encoding
-// if the output names one.
+// Returns in words the encoding of each file, from program output such as "tags.csv: read as Windows-1251", and the second most likely
+// encoding if the output names one.
 const readAs = (said) => [...new Set([...plain(said).matchAll(/^(.*): read as ([^,\n]+)(?:, but it may be ([^:\n]+))?/gm)]
     .map(([, file, name, other]) => say(other ? 'import.encoding.unsure' : 'import.encoding.read', { file, name, other })))].join(' · ');
 
@@ -87,7 +87,7 @@ export class Import {
                     make('div', { class: 'line' }, this.phase, this.cancel, this.again), this.wrong),
                 this.report.element, this.measures, this.source.element, this.table.element));
         byId('viewport').parentElement.append(this.element);
-        // covers the picture of a plant that has no model yet
+        // a drop zone for files, which covers the picture of a plant that has no model yet
         this.zone = make('label', { class: 'drop-zone', for: this.pick.id, hidden: true }, make('span', { class: 'frame' },
             make('b', {}, say('import.drop')), make('span', {}, say('import.formats'))));
         byId('viewport').append(this.zone);
@@ -103,7 +103,7 @@ export class Import {
     }
 
     toggle() {
-        for (const name of ['alarms', 'engineer']) { // closes alarm list and engineering panel, which use the same space
+        for (const name of ['alarms', 'engineer']) { // closes alarm list and engineering panel, which use the same space as this panel
             const other = this.page.modules.there(name);
             if (!this.open && other?.open)
                 other.toggle();
@@ -139,7 +139,7 @@ export class Import {
         try {
             this.report.set((await this.exports.report()).models);
         } catch (error) {
-            if (error.status === 404) // 404: no model was read yet; other errors leave the report unchanged
+            if (error.status === 404) // 404: the server has not read a model yet; other errors leave the report unchanged
                 this.report.set([]);
         }
     }
@@ -148,7 +148,7 @@ export class Import {
         try {
             this.table.set(this.isNew ? '' : await this.exports.matches());
         } catch (error) {
-            if (error.status === 404) // 404: no tags were matched yet; other errors leave the decisions unchanged
+            if (error.status === 404) // 404: no tags were matched yet; other errors leave the list of matches unchanged
                 this.table.set('');
         }
     }
@@ -230,7 +230,8 @@ export class Import {
             setText(this.wrong, plain(state.failed ?? ''));
     }
 
-    // Shows the settings with which the models in use were read. Choices that are not applied yet stay until these settings change.
+    // Shows the settings with which the server has read the present models. Choices that the user has not applied yet stay until these
+    // settings change.
     takeUnits({ units, up, encoding, mesh_units }) {
         if (this.known?.encoding !== encoding) {
             if (encoding && ![...this.encoding.options].some(({ value }) => value === encoding))

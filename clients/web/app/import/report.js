@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The report of an import: lists of elements that were lost or left out and of errors, and a question for each unit that was guessed.
+// The report of an import: lists of model elements that were lost or left out, errors, and a question for each unit that the server
+// guessed.
 import { shortNumberText } from '../../core/format.js';
 import { timesOf } from '../../core/matches.js';
 import { say } from '../../core/words.js';
@@ -18,7 +19,7 @@ function fold(key, count, lines) {
 }
 
 export class Report {
-    // answer(unit) is called with the unit that the user chose for files that state none.
+    // answer(unit) is called with the unit that the user chose for model files that state none.
     constructor({ answer }) {
         this.answer = answer;
         this.element = make('section', { class: 'report', hidden: true });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of tags with their matches (tag to asset): filtering, deciding by pointer or keyboard, and saving.
+// The table of tags with their matches (tag to asset): the user filters it, decides by pointer or keyboard, and saves the decisions.
 import { FILTERS, Matches, patternOf, readMatches } from '../../core/matches.js';
 import { rowAt } from '../../core/list_window.js';
 import { scrollTo } from '../../core/scroll.js';
@@ -56,7 +56,7 @@ export class TagTable {
         this.matches.set(readMatches(text));
         this.element.hidden = this.matches.all.length === 0;
         this.chosen = this.matches.all.find(({ tag }) => tag === this.chosen?.tag) ?? null;
-        this.light(); // highlights the boxes again after a reload of the plant
+        this.light(); // draws the boxes of the assets again after a reload of the plant
         this.list.renew(() => this.refresh());
     }
 
@@ -120,7 +120,7 @@ export class TagTable {
         return this.matches.decisions.has(row.tag) || row.reason === 'by hand' ? say('import.byhand') : row.reason;
     }
 
-    // Selects a row and highlights its assets, first the matched or most likely one.
+    // Selects a row and highlights the assets that its tag may belong to, first the matched or most likely one.
     choose(row) {
         this.chosen = row;
         this.goTo(this.list.places.get(row.tag));
@@ -152,7 +152,7 @@ export class TagTable {
         list.shown.get(row.tag)?.focus({ preventScroll: true });
     }
 
-    // Handles the keys of the table: letters for decisions, digits for the candidates.
+    // Handles the keys of the table: letters for decisions, digits to choose an asset.
     press(event) {
         if (event.ctrlKey || event.altKey || event.metaKey)
             return;
@@ -176,7 +176,7 @@ export class TagTable {
         else
             return;
         event.preventDefault();
-        event.stopPropagation(); // ends the event here, because the key would also move the camera
+        event.stopPropagation(); // stops the event here, because the key would also move the camera
     }
 
     chooseAt(i) {
@@ -187,7 +187,7 @@ export class TagTable {
 
     // --- deciding
 
-    // Accepts the asset and moves to the next row, because the filter may hide the decided row.
+    // Accepts the asset for the selected row, and selects the next row, because the filter may hide the decided one.
     accept(asset) {
         if (asset === undefined)
             return;
@@ -209,7 +209,7 @@ export class TagTable {
         this.refresh();
     }
 
-    // Isolates one asset so that clicks hit only it: its neighbours become transparent, and all else is hidden.
+    // Isolates one asset so that clicks hit only this asset: its neighbours become transparent, and all else is hidden.
     showAlone(id) {
         const { session } = this.page, { model, params } = session, asset = model.asset(id);
         if (!asset)
@@ -228,7 +228,7 @@ export class TagTable {
             session.setParams({ isolate, ghost });
     }
 
-    // Opens the engineering panel to place the tag on its equipment.
+    // Opens the engineering panel, in which the user places the tag on its equipment.
     place() {
         const tag = this.page.session.model.tag(this.chosen.tag);
         if (!tag?.group)

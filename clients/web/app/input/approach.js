@@ -10,12 +10,13 @@ import { length, subtract } from '../../core/vector.js';
 const ANSWER_MS = 700, TRIES = 3; // a pick is sent up to TRIES times, because another module's pick request may replace it
 const SEARCH_MS = 1500, MOST_SEEN_THROUGH = 4, MOST_GHOSTS = 8;
 const AROUND = [[-0.12, 0], [0.12, 0], [0, -0.12], [0, 0.12], [-0.2, -0.2], [0.2, -0.2], [-0.2, 0.2], [0.2, 0.2]], BEFORE = 0.9;
-// a surface nearer to a sensor than this is the one on which the sensor is mounted: metres, and at most a part of the asset's size
+// A surface nearer to a sensor than this is the one on which the sensor is mounted: NEAR_M metres, but at most the fraction NEAR_PART of
+// the asset's size.
 const NEAR_M = 0.05, NEAR_PART = 0.02;
 const MOST_COVERED = 9; // number of cameras that are compared if the tag's own asset hides the tag from all sides
-// MOST_WALLS: maximum number of walls that the eye passes; CLEAR: part of the way to the last wall at which the eye stops
+// MOST_WALLS: maximum number of walls that the eye passes; CLEAR: fraction of the way to the last wall at which the eye stops
 const MOST_WALLS = 6, CLEAR = 0.95;
-const ROOMY = 0.4; // a room is large enough to look at a tag from inside if it allows this part of the distance from outside
+const ROOMY = 0.4; // a room is large enough to look at a tag from inside if the eye can be at this fraction of its distance outside
 
 const has = (list, id) => (list ?? []).includes(id);
 const without = (list, id) => (list ?? []).filter((other) => other !== id);
@@ -23,8 +24,9 @@ const without = (list, id) => (list ?? []).filter((other) => other !== id);
 export class Approach {
     constructor({ session, viewport }) {
         Object.assign(this, { session, viewport });
-        this.ghosts = [];    // ids of assets that were made transparent because they hide the tag (not by the user)
-        this.number = 0; // sequence number of the newest approach; an earlier one that is still running compares it and stops
+        // ids of assets that this module made transparent because they hide the tag (not those that the user made transparent)
+        this.ghosts = [];
+        this.number = 0; // sequence number of the newest approach: an older one that is still running finds another number here and stops
         this.heard = null;
         session.on('picked', (picked) => picked.purpose === 'sight' && this.heard?.(picked));
     }
@@ -46,7 +48,7 @@ export class Approach {
             this.session.setParams(change);
     }
 
-    // Replaces the set of assets that are transparent because they hide the tag; those that the user made transparent stay so.
+    // Replaces the assets that this module made transparent because they hide the tag; those that the user made transparent stay so.
     setGhosts(ids) {
         const now = this.session.params.ghost ?? [], own = now.filter((id) => !has(this.ghosts, id));
         this.ghosts = ids.filter((id) => !has(own, id));
@@ -55,7 +57,7 @@ export class Approach {
             this.session.setParams({ ghost });
     }
 
-    // Calls fly(camera) immediately, and again with another camera if it turns out that assets block the first view.
+    // Calls fly(camera) immediately, and again with another camera if assets turn out to block the first view of the tag.
     async go(tag, asset, fly) {
         const number = ++this.number, isOvertaken = () => number !== this.number;
         this.setGhosts([]);
@@ -67,7 +69,8 @@ export class Approach {
             whole: model.plant.bounds, solid: solid !== null });
         fly(cameras[0]);
         const behind = [], own = []; // cameras whose view of the tag is blocked by another asset, or by the tag's own asset
-        const latest = performance.now() + SEARCH_MS; // deadline, after which the best view found so far is used, as on a slow network
+        // deadline, after which the best view found so far is used, for example on a slow network
+        const latest = performance.now() + SEARCH_MS;
         let best = null, least = Infinity;
         for (const camera of cameras) {
             const found = await this.look(camera, tag), covered = found?.seen ? await this.coverAround(camera, asset, least) : Infinity;
@@ -111,7 +114,7 @@ export class Approach {
     }
 
     // Returns a camera in the same room as the tag: the one with the longest free way to the tag, or else to the equipment that the tag is
-    // in. Returns null if no camera has at least the part ROOMY of its distance free.
+    // in. Returns null if no camera has at least the fraction ROOMY of its distance free.
     async findInside(cameras, tag, solid, isOvertaken) {
         const latest = performance.now() + SEARCH_MS;
         let best = null, most = -Infinity;
@@ -128,7 +131,7 @@ export class Approach {
     }
 
     // Moves the eye towards the tag, past one wall after the other, but not into the asset `solid`. Returns { camera, seen: true if the tag
-    // is visible, free: metres from the eye to the tag or to the asset }; null: there is no place for the eye behind the walls.
+    // is visible, free: metres from the eye to the tag or to the asset }; null: the eye finds no position behind the walls.
     async passWalls(camera, tag, solid) {
         for (let walls = 0, eye = camera; walls < MOST_WALLS; walls++) {
             const found = await this.look(eye, tag), metres = found?.position ? length(subtract(found.position, tag.position)) : 0;
@@ -168,8 +171,8 @@ export class Approach {
         return { seen: isThere || (sensor === tag.name && !occluded), asset, position };
     }
 
-    // Picks at the points AROUND, near the centre of the camera's picture. Returns the number of points at which an asset other than `id`
-    // is clearly in front of the target; stops counting at `most`.
+    // Asks the server what is at the points AROUND, near the centre of the camera's picture. Returns the number of points at which an asset
+    // other than `id` is clearly in front of the target; stops counting at `most`.
     async coverAround(camera, { id }, most) {
         const far = length(subtract(camera.target, camera.eye));
         let count = 0;
@@ -182,7 +185,8 @@ export class Approach {
         return count;
     }
 
-    // Picks at an offset from the centre of the picture, in units of the picture's height. Returns null if there is no answer.
+    // Asks the server what is at an offset from the centre of a camera's picture, in units of the picture's height. Returns null if there
+    // is no answer.
     async ask(camera, [right, down]) {
         const { session, viewport } = this, { width } = halfAt(session.params, viewport.width, 0), { height } = viewport;
         for (let tries = 0; tries < TRIES; tries++) {

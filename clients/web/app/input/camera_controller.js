@@ -14,11 +14,12 @@ import { clock } from '../common/clock.js';
 import { probeCodecs } from '../startup.js';
 import { isOnPicture } from './input.js';
 
-const DEGREES_PER_HEIGHT = 180; // angle by which a drag over the whole height of the picture orbits the camera
+const DEGREES_PER_HEIGHT = 180; // angle in degrees by which a drag over the whole height of the picture orbits the camera
 const DOUBLE_CLICK_MS = 350, DOUBLE_CLICK_PX = 24;
-// a wheel event within this time and distance of the previous one continues it, zooming about the same point
+// A wheel event within this time and distance of the previous one belongs to the same turn of the wheel, and zooms about the same point.
 const ANCHOR_MS = 600, ANCHOR_PX = 10;
-const LEAST_ARRIVAL_DEG = 15;   // smallest elevation of the camera at the end of a flight, so that it stays above the floor
+// smallest elevation of the camera in degrees at the end of a flight, so that the camera stays above the floor
+const LEAST_ARRIVAL_DEG = 15;
 const MOST_BACK = 30; // maximum number of flights that can be undone
 const WRITTEN = 'input:not([type="radio"], [type="checkbox"], [type="range"]), select, textarea'; // fields that take typed text
 
@@ -26,18 +27,19 @@ const WRITTEN = 'input:not([type="radio"], [type="checkbox"], [type="range"]), s
 const isNear = (a, b) => ['eye', 'target'].every((name) => length(subtract(a[name], b[name])) < 0.02 * length(subtract(b.eye, b.target)));
 
 export class CameraController {
-    // handlers: functions for input that does not move the camera: { click(x, y, kind), point({ x, y } or null), command(name),
-    // group(index) }.
+    // handlers: functions for input that does not move the camera: { click(x, y, kind), point({ x, y } or null: the pointer has left),
+    // command(name), group(index) }.
     constructor({ viewport, session, handlers, modules }) {
         Object.assign(this, { viewport, session, handlers });
         this.gestures = new Gestures();
         this.keys = new HeldKeys();
         this.fly = null;
-        this.before = []; // stack for going back: { camera, ghosts } before each flight; ghosts: ids of assets drawn transparent
+        this.before = []; // stack for the command "back": { camera, ghosts } before each flight; ghosts: ids of assets drawn transparent
         this.approach = new Approach({ session, viewport });
         this.lastTick = null;
         this.lastClick = null;
-        // point of the surface that the pointer grabbed: { x, y, time, point }; until the server answers, estimated from bounding boxes
+        // point of the surface that the pointer grabbed: { x, y, time, point }; `point` is estimated from bounding boxes until the server
+        // answers
         this.anchor = null;
         session.on('picked', ({ purpose, position }) => {
             if (purpose === 'anchor' && this.anchor)
@@ -45,7 +47,7 @@ export class CameraController {
         });
         window.addEventListener('blur', () => this.keys.clear());
         new ResizeObserver(() => this.stayHome()).observe(viewport.element);
-        // a view that is split or unsplit gives pictures another shape: a camera in the home view is fitted to the new shape
+        // splitting a view, or ending the split, changes the shape of pictures: a camera in the home view is fitted to the new shape
         session.on('params', () => this.stayHome());
         probeCodecs(); // tests now whether the browser decodes H.264, which the pictures of a moving camera will need
         session.greeted(() => session.reprojects && modules.prepare('warp'));
@@ -68,12 +70,12 @@ export class CameraController {
         const place = this.place(event);
         if (!this.gestures.active)
             this.takeHold(place);
-        // starts an animation frame, in which warp.js uploads the picture to the GPU before the pointer's first move
+        // starts an animation frame, in which warp.js uploads the picture to the GPU before the pointer first moves
         this.viewport.invalidate();
         this.gestures.down({ ...place, kind: event.pointerType, button: event.button, shift: event.shiftKey, ctrl: event.ctrlKey });
     }
 
-    // Grabs the surface point under the pointer as the centre of orbit and zoom; over the sky, the previous centre stays.
+    // Makes the surface point under the pointer the centre of orbit and zoom. Over the sky, the previous centre stays.
     takeHold({ x, y, time }) {
         const { camera } = this.session;
         if (!camera || !this.session.model)
@@ -144,7 +146,7 @@ export class CameraController {
 
     keydown(event) {
         if (event.defaultPrevented || document.querySelector('dialog[open]') || event.target.closest(WRITTEN))
-            return; // ignores a key with defaultPrevented, because a control, such as the time slider, has already handled it
+            return; // ignores a key whose event has defaultPrevented, because a control, such as the time slider, has already handled it
         const meaning = keyMeaning(event);
         if (!meaning || (meaning.motion?.startsWith('Arrow') && event.target.closest('fieldset, [type="range"]')))
             return; // leaves arrow keys to the browser within radio buttons and sliders
@@ -227,7 +229,7 @@ export class CameraController {
         this.viewport.invalidate();
     }
 
-    // Stores where a flight starts, for going back. A second flight that begins during the first keeps the first one's start.
+    // Stores where a flight starts, for the command "back". If a second flight begins during the first, the first one's start is kept.
     remember() {
         if (!this.fly)
             this.before = [...this.before.slice(1 - MOST_BACK), { camera: this.session.camera, ghosts: this.approach.ghosts }];
@@ -247,7 +249,7 @@ export class CameraController {
         return this.session.homeIn(width, this.viewport.height);
     }
 
-    // Moves the camera so that the whole plant stays in view when the picture changes shape, if it was in view before.
+    // When the picture changes shape, moves the camera so that the whole plant stays in view, if the camera showed the home view before.
     stayHome() {
         const { session } = this;
         if (!session.model)

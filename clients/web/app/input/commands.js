@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Commands that clicks, keys and buttons trigger: selecting, flying to the selection, and opening parts of the page. Loaded on first use.
+// Commands that clicks, keys and buttons cause: selecting, flying to the selection, and opening parts of the page. Loaded on first use.
 import { nearestMarker } from '../../core/nearest.js';
 import { travel } from '../../core/requests.js';
 import { byId, phone } from '../common/dom.js';
@@ -11,8 +11,8 @@ const ARRIVAL_MARGIN = 1.7; // distance factor that leaves a margin around an as
 const REACH_PX = { mouse: 14, pen: 18, touch: 26 };
 const HELD_US = 3.5e6;      // microseconds; an instant less than this ago counts as now
 
-// Returns the tags of the shown group that have a position and distances to the other points of the asset's surface. A single sensor on an
-// asset whose surface was not subdivided has no distances.
+// Returns the tags of the shown group from which distances along the surface can be shown: those with a position and distances to the other
+// points of the asset's surface. A single sensor on an asset whose surface was not subdivided has no distances.
 export function sensorsOf({ model, params }) {
     const all = model.tags.filter(({ group, asset, position }) => group === params.group && asset && position);
     if (model.group(params.group)?.singles !== 'whole')
@@ -91,7 +91,7 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
 
     const opens = (name) => (event) => modules.use(name, (part) => part.toggle(event), 'toggle');
 
-    // Closes the parts that would cover the alarm list or the equipment list of a phone.
+    // On a phone, closes the panels that would cover the alarm list or the equipment list.
     function closeSheetsBut(name) {
         const parts = ['alarms', 'assets', 'engineer', 'import', 'place', 'views', 'picture', 'trends'].filter((one) => one !== name)
             .map((one) => modules.there(one)).filter((part) => part && part.open !== false);
@@ -100,7 +100,7 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
         selectTag(null);
     }
 
-    // Opens or closes a list. On a phone, another part may cover an open list; then the list is shown instead of closed.
+    // Opens or closes a list. On a phone, another panel may cover an open list; then the list is shown instead of closed.
     const opensList = (name) => () => modules.use(name, (list) => {
         const opens = !list.open || !byId(name).checkVisibility();
         if (opens && phone.matches)
@@ -128,7 +128,7 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
             openPlace(x, y, session.camera);
     }
 
-    // Opens the card of a point, unless the camera has moved since the click: another point would be under the pointer.
+    // Opens the card of a clicked point, unless the camera has moved since the click: another point would be under the pointer.
     const openPlace = (x, y, camera) => modules.use('place', (place) => camera === session.camera && place.open(x, y));
 
     function point(place) {
@@ -142,8 +142,8 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
         }
     }
 
-    // Returns the parameters that show the quantity `show`. A distance also needs a sensor: the selected one, else the first of the group.
-    // A difference without a baseline is taken from the present readings.
+    // Returns the parameters that show the value kind `show` (value, distance, difference, ...). A distance also needs a sensor: the
+    // selected one, else the first of the group. A difference without a baseline is taken from the present readings.
     function showParams(show) {
         const { model, params } = session;
         const chosen = [selection.tag, params.sensor].map((name) => model.tag(name)).find((tag) => tag?.group === params.group);

@@ -33,7 +33,7 @@ export class Measure {
         this.show();
     }
 
-    // Takes a point at x, y in CSS pixels of the viewport. A third click starts another measurement.
+    // Takes a clicked point at x, y in CSS pixels of the viewport. A third click starts another measurement.
     click(x, y) {
         if (this.places.length === 2)
             this.places = [];

@@ -25,7 +25,7 @@ export class Notes {
         this.list = make('ul', { id: 'notes-list' });
         this.ofPlant = make('ul', { id: 'plant-notes', hidden: true }); // list over the picture with the notes about the whole plant
         viewport.element.append(this.ofPlant);
-        this.edited = null; // the note that the form changes; null: the form adds a note
+        this.edited = null; // the note that the user changes in the form; null: the form adds a note
         this.text = make('input', { maxlength: LONGEST, placeholder: say('notes.text'), 'aria-label': say('notes.text'), id: 'note-text' });
         this.at = make('select', { id: 'note-at', 'aria-label': say('notes.at') });
         this.until = make('select', { id: 'note-until', 'aria-label': say('notes.until') });
@@ -50,7 +50,7 @@ export class Notes {
         this.point();
     }
 
-    // Returns true if the user may add and remove notes, which is not so while the past is shown.
+    // Returns true if the user may add and remove notes, which no user may while the past is shown.
     get may() {
         return MAY.includes(this.session.role) && this.session.time.atUs === null;
     }
@@ -66,7 +66,7 @@ export class Notes {
 
     // --- making a note
 
-    // Returns the things to which a note can be attached now: the selected tag, equipment or point, and the whole plant.
+    // Returns what a note can be attached to now: the selected tag, equipment or point, and the whole plant.
     get places() {
         const { model, params } = this.session, picked = this.modules.there('place')?.picked, out = [];
         if (model?.tag(this.selection.tag))
@@ -87,7 +87,7 @@ export class Notes {
         this.at.disabled = Boolean(this.edited);
     }
 
-    // Fills the selection list of times at which the note ends. If a note is edited, its present end comes first.
+    // Fills the selection list of times at which the note ends. If the user edits a note, its present end comes first.
     offerEnds() {
         const { edited } = this, kept = edited && endText(this.session.model, edited);
         fillSelect(this.until, [...(kept ? [['kept', kept]] : []), ...UNTIL.map((name) => [name, say(`until.${name}`)])],
@@ -139,7 +139,7 @@ export class Notes {
         return inForce(this.session.notes, this.session.clockUs(), this.session.time.atUs);
     }
 
-    // Removes notes that have ended, and offers the current selection as a thing to attach a note to.
+    // Removes notes that have ended, and offers the current selection as something to attach a note to.
     tick() {
         this.offer();
         if (this.notes.length !== this.list.children.length)
@@ -188,7 +188,7 @@ export class Notes {
             this.isOwn(note) || (this.may && this.session.role === 'engineer') ? button('end', () => this.remove(note.id)) : null);
     }
 
-    // Returns true if the user's account wrote the note and may still change it.
+    // Returns true if the note is by the user's account, and the user may still change it.
     isOwn(note) {
         return this.may && note.by === this.name;
     }
@@ -229,8 +229,9 @@ export class Notes {
 
     // positions that follow the picture
 
-    // Places the pins in the left half. The newest pins are placed first, so that only older pins, which are drawn below the others, get
-    // longer stems. While the camera moves, a pin keeps its distance from its point as long as it covers nothing, so that it does not jump.
+    // Places the pins of notes in the left half of the picture. The newest pins are placed first, so that only older pins, which are drawn
+    // below the others, get longer stems. While the camera moves, a pin keeps its distance from its point as long as it covers nothing, so
+    // that it does not jump.
     show() {
         const { picture, shown } = this.session, half = picture && halves(shown, picture.shownWidth)[0];
         const project = half && projector(picture.camera, half.width, picture.fullHeight), { width, height } = this.viewport;
@@ -244,7 +245,7 @@ export class Notes {
             element.hidden = !at || x < 0 || y < 0 || x > wide || y > high || at[0] > half.width;
             if (element.hidden)
                 continue;
-            if (pin.room !== `${area.right}/${high}`) { // measures the pin only if the space for it has changed
+            if (pin.room !== `${area.right}/${high}`) { // measures the pin only if the room for it has changed
                 setVariable(element, '--most', `${area.right - 4}px`);
                 Object.assign(pin, { room: `${area.right}/${high}`, wide: element.offsetWidth, high: element.offsetHeight });
             }
@@ -273,7 +274,7 @@ export class Notes {
             boxes(this.overlay.markers.filter(({ alarm }) => !alarm), MARK)];
     }
 
-    // Scale of the pins, which are larger on a wall.
+    // Scale factor of the pins, which are larger on a wall.
     get scale() {
         return document.body.classList.contains('wall') ? Number(document.body.style.getPropertyValue('--wall')) || 1 : 1;
     }
