@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses attribute files line by line. Assigns an element of the file to the node of the same name below the node of the enclosing element;
- * if there is none, to any node of that name. */
+/* Parses attribute files of RVM models line by line. Assigns an element of the file to the model node of the same name below the node of
+ * the enclosing element; if there is none, to any node of that name. */
 #include "preprocess/import/cad_attributes.h"
 
 #include <stdio.h>
@@ -89,7 +89,7 @@ static void take_line(struct cad_model *model, int node, char *line, const char 
     }
 }
 
-/* Reads the separator of entries from the file's header line: the text after "sep:", such as "&end&". */
+/* Reads from the attribute file's header line the text that separates entries: the text after "sep:", such as "&end&". */
 static void take_separator(const char *line, char *separator, size_t separator_bytes)
 {
     const char *at = strstr(line, "sep:");

@@ -7,14 +7,14 @@
 #include "preprocess/import/cad_model.h"
 
 struct attribute_counts {
-    /* elements: number of NEW ... END blocks in the file; matched: number of those for which the model has a node */
+    /* elements: number of NEW ... END blocks in the attribute file; matched: number of those for which the model has a node */
     size_t elements, matched;
     size_t attributes; /* number of attributes added to nodes */
     struct charset_choice encoding;
 };
 
 struct attribute_params {
-    const char *encoding; /* encoding of the attribute file that the user stated; NULL: none */
+    const char *encoding; /* encoding of the attribute file, as the user stated it; NULL: none */
     /* encoding of the names in the model file, tried first, because one program writes both files; "": unknown */
     const char *model_encoding;
 };

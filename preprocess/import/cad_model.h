@@ -40,12 +40,13 @@ struct cad_model {
 
 /* Creates an empty model, which the caller frees with cad_model_destroy(). */
 struct cad_model *cad_model_create(void);
-/* Frees the model and all it holds, and sets *model to NULL. *model may be NULL. */
+/* Frees the CAD model with its nodes, and sets *model to NULL. *model may be NULL. */
 void cad_model_destroy(struct cad_model **model);
 
-/* Appends a node below `parent` (-1: a root) and returns its index. Copies `name`. */
+/* Appends a node to the model below the node `parent` (-1: a root) and returns its index. Copies `name`. */
 int cad_model_add_node(struct cad_model *model, int parent, const char *name);
-/* Appends a vertex and returns its index in the node. `normal` may have any length and is normalised; a zero vector becomes (0, 0, 1). */
+/* Appends a vertex to the node and returns its index in the node. `normal` may have any length and is normalised; a zero vector becomes (0,
+ * 0, 1). */
 uint32_t cad_node_add_vertex(struct cad_node *node, const double position_m[3], const double normal[3]);
 void cad_node_add_triangle(struct cad_node *node, uint32_t a, uint32_t b, uint32_t c);
 void cad_node_add_line(struct cad_node *node, const double from_m[3], const double to_m[3]);

@@ -22,11 +22,11 @@
 #include "preprocess/child/work_folder.h"
 #include "preprocess/match/file_set.h"
 
-enum { RVM_ITEM_LEVEL = 3 }; /* index of the tree level of equipment in RVM files: file (0), sites, zones, equipment (3) */
+enum { RVM_ITEM_LEVEL = 3 }; /* level of the tree of an RVM file whose nodes are equipment: file (0), sites, zones, equipment (3) */
 
 struct import_command {
     const char *folder, *name;
-    const char *report; /* path of the JSON file for findings; NULL: none */
+    const char *report; /* path of the JSON file for the readers' reports (findings.h); NULL: none */
     bool undo, force, dry_run;
     int lent; /* descriptor of a folder lock held by the parent process (plant_folder.h); 0: none */
     struct conversion_params conversion;
@@ -82,8 +82,8 @@ static void print_lines(const char *path, const char *lines)
 }
 
 /* Reads the outline (nodes, sizes) of a converted model, without the triangles of nodes that have no area, because plantcast-prep refuses
- * such nodes. said: the reader's output. Returns false with the reason in why; then there is no outline to free. Rejects a model without
- * triangles, which would give a plant without assets. */
+ * such nodes. said: output of the reader that converted the model. Returns false with the reason in why; then there is no outline to free.
+ * Rejects a model without triangles, which would give a plant without assets. */
 static bool read_outline(struct model_outline *outline, const char *glb, const char *said, char why[CONVERSION_WHY_BYTES])
 {
     if (!model_outline_read(outline, glb, why, CONVERSION_WHY_BYTES))
@@ -101,7 +101,7 @@ static bool read_outline(struct model_outline *outline, const char *glb, const c
     return false;
 }
 
-/* Converts one model. On success appends it to import->models. */
+/* Converts one model file to GLB. On success appends it to import->models. */
 static void convert(struct import_command *import, const char *path)
 {
     int number = import->count;
@@ -172,7 +172,8 @@ static int convert_all(struct import_command *import)
     return 0;
 }
 
-/* Writes the report of findings. A failure does not fail the import, because the plant does not need the report. */
+/* Writes the JSON file of the readers' findings (lost shapes, errors). A failure does not fail the import, because the plant does not need
+ * the file. */
 static void write_report(const struct import_command *import)
 {
     char *text = json_text(json_pack("{s:O}", "models", import->findings), 0);
@@ -226,8 +227,8 @@ static int run_import(struct import_command *import)
         &(struct plant_folder_params){ .folder = import->folder, .own = import->work.path, .lent = import->lent }, &why);
     if (lock < 0)
         status = import_fail(import->folder, why);
-    /* ignore EEXIST and create the folder again if it is missing: the previous holder of the folder lock may have deleted it as a leftover
-     * of a dead process */
+    /* ignore EEXIST and create the work folder again if it is missing: the previous holder of the folder lock may have deleted it as a
+     * leftover of a dead process */
     else if (mkdir(import->work.path, 0700) != 0 && errno != EEXIST)
         status = import_fail(import->work.path, strerror(errno));
     mem_free(why);

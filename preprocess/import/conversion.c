@@ -31,7 +31,7 @@
 enum { MAX_NAMED = 20 };
 static const size_t max_bytes = (size_t)4 << 30;
 
-/* Formats the error message into why. Always returns false. */
+/* Formats an error message into `why`. Always returns false, so that callers can return the result. */
 static bool fail(char why[CONVERSION_WHY_BYTES], const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 static bool fail(char why[CONVERSION_WHY_BYTES], const char *fmt, ...)
 {
@@ -134,7 +134,7 @@ static bool convert_rvm(const char *path, const char *attributes, const char *gl
 
 struct model_reading {
     const struct import_format *format;
-    const char *path, *attributes; /* path: of the model; attributes: path of an RVM attribute file, NULL if there is none */
+    const char *path, *attributes; /* path: path of the model; attributes: path of an RVM attribute file; NULL: there is none */
     const char *output;            /* path of the GLB file that the reader writes */
     const char *folder;
     const struct conversion_params *params;
@@ -142,7 +142,7 @@ struct model_reading {
     char *encoding;
 };
 
-/* Runs a built-in reader (RVM or glTF); called in the child process. Returns the exit status of the child: 0, or 1 with the reason on
+/* Runs the built-in reader for RVM or glTF; called in the child process. Returns the exit status of the child: 0, or 1 with the reason on
  * stderr. */
 static int read_ourselves(void *arg)
 {
@@ -234,7 +234,8 @@ static bool run_reading(const struct model_reading *reading, struct child_params
     return good;
 }
 
-/* Unpacks the model to the path that the reader will read; called in a child process. Returns the exit status of the child. */
+/* Unpacks a compressed model to the path from which its reader will read it; called in a child process. Returns the exit status of the
+ * child. */
 static int unpack_model(void *arg)
 {
     const struct model_reading *reading = arg;
@@ -247,8 +248,8 @@ static int unpack_model(void *arg)
     return good ? 0 : 1;
 }
 
-/* Unpacks a compressed model into the reading's folder, where its name ends in `ending`. Returns the path, which the caller frees with
- * mem_free, or NULL with the reason in why. */
+/* Unpacks a compressed model into the reading's folder, to a file whose name ends in `ending`. Returns the file's path, which the caller
+ * frees with mem_free, or NULL with the reason in why. */
 static char *unpacked(const struct model_reading *packed, const char *ending, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     struct child_paths paths = { 0 };
@@ -339,7 +340,7 @@ static bool build_curved_solids(const struct model_reading *reading, const char 
 /* an external reader program, from the table of formats (formats.h) */
 struct reader_program {
     char *program, *runtime;           /* paths of the reader and of its interpreter; runtime NULL: the reader is an executable */
-    char encoding[CHARSET_NAME_BYTES]; /* name of the encoding that is passed to the reader; "-": the reader chooses */
+    char encoding[CHARSET_NAME_BYTES]; /* name of the encoding of names that is passed to the reader; "-": the reader chooses */
 };
 
 static bool run_reader(const struct model_reading *reading, const struct reader_program *reader, struct child_paths *paths,
@@ -429,7 +430,7 @@ static bool take_output(const struct model_reading *reading, const char *glb, st
 static bool read_model(const struct import_format *format, const char *path, const char *glb, const char *folder,
                        const struct conversion_params *params, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
-    /* each reading has a separate folder, so that a compromised reader cannot replace models that were read earlier */
+    /* each run of a reader has a separate folder, so that a compromised reader cannot replace models that were read earlier */
     char *own = mem_printf("%s/reading", folder), *output = mem_printf("%s/output.glb", own), *input = realpath(path, NULL);
     bool made = mkdir(own, 0700) == 0;
     char *attributes = input && format->reader == FORMAT_RVM ? attributes_beside(input) : NULL;

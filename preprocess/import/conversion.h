@@ -13,8 +13,8 @@ enum { CONVERSION_WHY_BYTES = 512 };
 
 struct conversion_params {
     double chord_m;
-    const char *units, *up; /* units and up axis to assume for formats that do not state them; NULL: guess and print the guess */
-    const char *mesh_units; /* units to assume for OBJ, STL, PLY and 3DS if `units` is NULL; NULL: guess and print the guess */
+    const char *units, *up; /* length unit and up axis to assume for formats that do not state them; NULL: guess and print the guess */
+    const char *mesh_units; /* length unit to assume for OBJ, STL, PLY and 3DS if `units` is NULL; NULL: guess and print the guess */
     /* encoding of names in the model; "": the encoding that the file states, else a detected one, which is printed */
     char encoding[CHARSET_NAME_BYTES];
     bool keep_covered;   /* RVM: true keeps faces that the face of a neighbouring primitive covers; false leaves them out */

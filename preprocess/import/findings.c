@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Splits the output of a reader into records and fields. The reader may be compromised: fields may be missing and bytes may be invalid
- * UTF-8. */
+/* Splits the output of a model reader into records and fields. The reader may be compromised: fields may be missing and bytes may be
+ * invalid UTF-8. */
 #include "preprocess/import/findings.h"
 
 #include <math.h>
@@ -28,7 +28,7 @@ static char *clean(const char *text, size_t length)
     return out.at;
 }
 
-/* Splits a line at its tabs, which it overwrites. Missing fields become "". */
+/* Splits a line of a reader's output at its tabs, which it overwrites. Missing fields become "". */
 static void split(char *line, const char *fields[MAX_FIELDS])
 {
     for (int i = 0; i < MAX_FIELDS; i++) {

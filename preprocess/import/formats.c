@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of supported file formats. */
+/* The table of model file formats that can be imported. */
 #include "preprocess/import/formats.h"
 
 #include <limits.h>

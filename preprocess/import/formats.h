@@ -9,14 +9,14 @@ enum format_reader { FORMAT_RVM, FORMAT_GLTF, FORMAT_PROGRAM };
 
 struct import_format {
     const char *name;    /* name for people: "STEP" */
-    const char *endings; /* file endings: ".step .stp", lower case */
+    const char *endings; /* file endings of the format, such as ".step .stp", in lower case */
     enum format_reader reader;
     /* file name of the reader program, only for FORMAT_PROGRAM; searched in the folder of this program and in ../libexec/plantcast/ */
     const char *program;
     const char *runtime; /* interpreter that runs the reader, such as "node"; NULL: the reader is an executable */
-    const char *missing; /* advice printed if the build has no such reader */
+    const char *missing; /* advice printed if the reader program is not installed */
     const char *beside;  /* file endings of further files that a model may refer to, such as ".mtl", lower case; NULL: none */
-    bool unitless;       /* true: the format states no units, so --units applies */
+    bool unitless;       /* true: the format states no length unit, so --units applies */
     bool upless;         /* true: the format does not state which axis is up, so --up applies */
 };
 
@@ -28,8 +28,8 @@ struct import_format {
 const struct import_format *import_format_of(const char *path);
 /* Finds the reader program of a format. Returns its path, which the caller frees with mem_free, or NULL if it is not installed. */
 char *import_format_program(const struct import_format *format);
-/* Finds the interpreter of a format's reader in PATH. Returns its path, which the caller frees with mem_free. NULL: the format needs none,
- * or it is not installed. */
+/* Finds the interpreter of a format's reader, such as node, in the folders of $PATH. Returns its path, which the caller frees with
+ * mem_free. NULL: the format needs none, or it is not installed. */
 char *import_format_runtime(const struct import_format *format);
 /* Returns the advice to print if import_format_program() found no reader (static text). */
 const char *import_format_missing(const struct import_format *format);

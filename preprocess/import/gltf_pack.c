@@ -16,7 +16,7 @@ struct pack {
     json_t *root;
     struct model_bytes binary;
     struct text bytes;
-    json_int_t *offsets; /* by original buffer: its offset in `bytes`, the merged buffer */
+    json_int_t *offsets; /* by buffer of the original model: its offset in `bytes`, the merged buffer */
     char *why;
 };
 
@@ -57,7 +57,7 @@ static bool take_buffers(struct pack *pack)
         const char *uri = uri_of(json_array_get(list, i));
         size_t size = pack->binary.size;
         if (!uri && standins[i])
-            continue; /* leave out an empty fallback buffer (EXT_meshopt_compression): its data is in compressed buffers */
+            continue; /* leave out an empty buffer that is only a fallback (EXT_meshopt_compression): its data is in compressed buffers */
         if (!uri && (i > 0 || !pack->binary.at)) {
             good = wrong(pack->why, "buffer %zu has no data: export the model again, as a GLB file", i);
             break;

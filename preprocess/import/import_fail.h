@@ -4,7 +4,7 @@
 #define PREPROCESS_IMPORT_IMPORT_FAIL_H
 #include <stdio.h>
 
-/* Prints why the file or folder stopped the import. Always returns 1, the exit status. */
+/* Prints why the file or folder `path` stopped the import. Always returns 1, the exit status. */
 static inline int import_fail(const char *path, const char *why)
 {
     fprintf(stderr, "plantcast import: %s: %s\n", path, why);

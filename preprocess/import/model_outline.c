@@ -109,7 +109,7 @@ bool model_outline_extent(const struct model_box *box, double size[3], double ce
 {
     static const struct {
         int from, sign;
-        /* by plant axis (Z up): index and sign of the glTF axis (Y up) from which it comes */
+        /* by plant axis (Z up): index and sign of the glTF axis (Y up) that becomes this plant axis */
     } axes[3] = { { 0, 1 }, { 2, -1 }, { 1, 1 } };
     for (int axis = 0; axis < 3; axis++) {
         int from = axes[axis].from;
@@ -121,8 +121,8 @@ bool model_outline_extent(const struct model_box *box, double size[3], double ce
     return true;
 }
 
-/* Returns whether the model was written by plantcast-import, so that its unit, metres, is certain: the source file stated the unit, or the
- * import has printed its guess. */
+/* Returns whether plantcast-import wrote the model. Its unit, metres, is then certain: the source file stated its unit, or the import has
+ * printed its guess. */
 static bool knows_units(const struct model_outline *outline)
 {
     const char *generator = json_string_value(json_object_get(json_object_get(outline->header.json, "asset"), "generator"));

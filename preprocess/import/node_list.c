@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prints nodes line by line without building the whole text: a model may have a hundred thousand nodes. */
+/* Prints a model's nodes line by line without building the whole text: a model may have a hundred thousand nodes. */
 #include "preprocess/import/node_list.h"
 
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 #include "base/text/json_text.h"
 #include "preprocess/report/text_table.h"
 
-/* Appends `name=value` for each property, including properties inside groups. */
+/* Appends `name=value` for each of a node's properties, including properties inside groups. */
 static void add_properties(struct text *out, const json_t *extras, int level)
 {
     const char *key;

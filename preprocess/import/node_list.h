@@ -13,7 +13,7 @@ struct node_list_params {
     bool json;
 };
 
-/* Prints one line per node. Returns the number of nodes printed. */
+/* Prints one line per node of a model. Returns the number of nodes printed. */
 size_t node_list_print(const struct model_outline *outline, const struct node_list_params *params, FILE *out);
 
 #endif

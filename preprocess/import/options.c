@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses the options that several commands share: numbers within ranges, words of fixed lists. */
+/* Parses the command-line options that `import` and `nodes` share: numbers within ranges, words of fixed lists. */
 #include "preprocess/import/options.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Generates the first plant file of an import, which people continue to edit by hand or with the tag matcher. */
+/* Generates the first plant file of an import, which users then edit by hand or with `plantcast match`. */
 #include "preprocess/import/plant_draft.h"
 
 #include <stdio.h>
@@ -53,7 +53,7 @@ static bool is_printable(const char *text)
 
 struct draft_choice {    /* choices for each outline node */
     bool *item, *unique; /* by node: item: the node becomes an asset; unique: no other node has the same name */
-    bool typed, classed; /* typed: the model has nodes whose type is ZONE; classed: it has nodes with IFC classes */
+    bool typed, classed; /* typed: the model has nodes whose property for the type is ZONE; classed: it has nodes with IFC classes */
 };
 
 static int by_name(const void *a, const void *b)
@@ -64,7 +64,7 @@ static int by_name(const void *a, const void *b)
 static void find_unique(const struct model_outline *outline, bool *unique)
 {
     size_t count = outline->header.count;
-    const struct outline_node **sorted = mem_array(count + 1, sizeof(*sorted)); /* nodes sorted by name, terminated by NULL */
+    const struct outline_node **sorted = mem_array(count + 1, sizeof(*sorted)); /* the model's nodes sorted by name, terminated by NULL */
     for (size_t i = 0; i < count; i++)
         sorted[i] = &outline->nodes[i];
     qsort(sorted, count, sizeof(*sorted), by_name);
@@ -115,8 +115,9 @@ static bool is_spatial(const char *class)
     return false;
 }
 
-/* Chooses the nodes that become assets: the children of ZONE nodes; else the IFC elements; else the nodes of one level (equipment, pipes,
- * structures). A node above a chosen one is chosen too if it has triangles of its own. Nodes below a chosen node are not chosen. */
+/* Chooses the nodes of a model that become assets: the children of ZONE nodes; else the IFC elements; else the nodes of one level of the
+ * tree (equipment, pipes, structures). A node above a chosen one is chosen too if it has triangles of its own. Nodes below a chosen node
+ * are not chosen. */
 static void choose(const struct plant_draft_model *from, struct draft_choice *choice)
 {
     const struct model_outline *outline = &from->outline;
@@ -260,7 +261,7 @@ int plant_draft_write(const struct plant_draft *draft)
     return status;
 }
 
-/* Writes a GLB model of a person made of boxes: feet on the ground at the origin, facing the viewer, Y up. */
+/* Writes the model of the starter plant, a person made of boxes, as GLB: feet on the ground at the origin, facing the viewer, Y up. */
 static int write_person(const char *path)
 {
     static const float parts[][2][3] = { /* centre and size in metres of each box */

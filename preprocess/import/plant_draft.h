@@ -20,11 +20,11 @@ struct plant_draft {
     bool anew; /* true: replace an existing plant file and tag list; false: leave them */
 };
 
-/* Appends a line of the plant file for each asset of the model, as far as the asset's node is marked in `wanted` (NULL: all are). ids: a
- * JSON object whose keys are the asset ids in use; new ids are added as keys. Returns the number of assets. */
+/* Appends a line of the plant file for each asset of the model whose node is marked in `wanted` (NULL: all are). ids: a JSON object whose
+ * keys are the asset ids in use; new ids are added as keys. Returns the number of assets. */
 size_t plant_draft_add_assets(const struct plant_draft_model *model, const bool *wanted, json_t *ids, struct text *out);
 
-/* Returns the text of the plant file, which the caller frees with mem_free. *assets receives the number of its assets. */
+/* Returns the text of the new plant file, which the caller frees with mem_free. *assets receives the number of its assets. */
 char *plant_draft_text(const struct plant_draft *draft, size_t *assets);
 /* Returns the text of a tag list without tags (static, not to be freed). */
 const char *plant_draft_tags(void);

@@ -32,12 +32,14 @@ namespace
 {
 
 constexpr size_t MOST_NAMED = 20;
-constexpr double LONGEST_IN_METRES = 300; /* metres; a model whose size would exceed this in metres is assumed to be in millimetres */
+/* metres; if a model without a stated unit would be larger than this in metres, its unit is assumed to be millimetres */
+constexpr double LONGEST_IN_METRES = 300;
 
 struct format {
     const char *ending;
     const char *unit, *up; /* unit and up axis of the data that Assimp returns for this format; NULL: the file does not state them */
-    bool own_normals;      /* true: use the file's normals; false: they are normals of facets, so smooth normals are computed */
+    /* true: use the normals that the file states; false: they are normals of flat facets, so smooth normals are computed */
+    bool own_normals;
 };
 
 /* Assimp converts COLLADA and 3DS to Y up and applies the units of COLLADA. For FBX, older versions of Assimp convert neither axes nor
@@ -48,22 +50,22 @@ const format formats[] = { { ".obj", nullptr, nullptr, true }, { ".stl", nullptr
 struct assimp_reader {
     const aiScene *scene;
     struct glb_scene *out;
-    text_encoding encoding;     /* encoding of the names, which Assimp returns as the file's raw bytes */
-    /* by index of the Assimp material: index of the output material (glb_scene.h); -2: not created yet */
+    text_encoding encoding;     /* text encoding of the names, which Assimp returns as the file's raw bytes */
+    /* by index of the Assimp material: index of the material in the written GLB file (glb_scene.h); -2: not created yet */
     std::vector<int> materials;
-    /* index of the output mesh, by the list of Assimp meshes of a node; nodes with the same list share a mesh */
+    /* by the list of Assimp meshes of a node: index of the mesh in the written GLB file; nodes with the same list share a mesh */
     std::map<std::vector<unsigned>, int> meshes;
     size_t triangles = 0, lost = 0; /* lost: number of triangles left out because a corner is not finite */
-    std::vector<std::string> lines; /* names of nodes that consist only of lines or points */
-    std::vector<std::string> holed; /* names of nodes that lost triangles */
+    std::vector<std::string> lines; /* names of nodes left out because they consist only of lines or points */
+    std::vector<std::string> holed; /* names of nodes of which some triangles were left out */
 };
 
 /* --- files ---------------------------------------------------------------------------------------------------- */
 
-constexpr size_t PLY_HEAD = 100; /* bytes within which a PLY file states its format */
+constexpr size_t PLY_HEAD = 100; /* number of bytes at the start of a PLY file within which it states its format */
 constexpr char BLANK = 0x1f; /* character that replaces blanks within names of an OBJ or STL file, because Assimp ends a name at a blank */
 
-/* Replaces the blanks inside names (BLANK): in lines `o NAME` and `g NAME` of an OBJ file, `solid NAME` of an STL file. */
+/* Replaces the blanks inside names by BLANK: in lines `o NAME` and `g NAME` of an OBJ file, `solid NAME` of an STL file. */
 void keep_blanks(char *bytes, size_t count, bool stl)
 {
     const size_t word = stl ? 5 : 1;
@@ -83,8 +85,8 @@ void keep_blanks(char *bytes, size_t count, bool stl)
     }
 }
 
-/* Returns the encoding stated in an XML declaration and overwrites it with blanks, because the text is converted to UTF-8 before
- * parsing. */
+/* Returns the text encoding stated in an XML declaration and overwrites the statement with blanks, because the text is converted to UTF-8
+ * before parsing. */
 std::string take_declared(std::string *text)
 {
     size_t end = text->compare(0, 5, "<?xml") == 0 ? text->find("?>") : std::string::npos, from = text->find("encoding=");
@@ -111,7 +113,8 @@ bool is_text_of_stl(const std::string &bytes)
 /* Converts the keywords of an STL text to lower case, the only case Assimp accepts. The names of solids stay unchanged. */
 std::string with_small_words(std::string text)
 {
-    bool blank = true, named = false; /* blank: the current line has only had blanks so far; named: the current position is in a name */
+    /* blank: the current line has only had blanks so far; named: the position is inside the name of a solid */
+    bool blank = true, named = false;
     for (size_t i = 0; i < text.size(); i++) {
         bool space = isspace(static_cast<unsigned char>(text[i])) != 0;
         if (text[i] == '\n' || text[i] == '\r') {
@@ -139,8 +142,9 @@ Assimp::IOStream *of_text(const std::string &text)
     return new Assimp::MemoryIOStream(copy, text.size(), true);
 }
 
-/* Supplies Assimp with file contents that are converted to UTF-8 and have blanks in names replaced (BLANK). The encoding found for the
- * first file (the model) applies to all others, because names in material files must match those in the model. */
+/* Supplies Assimp with the contents of the model and of the files that it names, converted to UTF-8 and with blanks in names replaced
+ * (BLANK). The encoding found for the first file (the model) applies to all others, because names in material files must match those in the
+ * model. */
 struct files : Assimp::DefaultIOSystem {
     text_encoding *encoding;
     const char *asked;
@@ -256,7 +260,7 @@ double fbx_axes(const aiScene *scene, const char **axis)
     return std::isfinite(centimetres) && centimetres > 0 ? centimetres : 1;
 }
 
-/* Computes the root transform from units and up axis: the user's choice, else what the file states, else a guess. */
+/* Computes the transform of the root node from the model's unit and up axis: the user's choice, else what the file states, else a guess. */
 void root_matrix(const aiScene *scene, const format &from, const char *units, const char *up, double out[16])
 {
     const char *unit = strcmp(units, "-") != 0 ? units : from.unit;
@@ -344,7 +348,8 @@ void add_primitive(assimp_reader *r, int to, const aiMesh *mesh, const std::vect
     r->triangles += corners.size() / 3;
 }
 
-/* Returns the name in UTF-8. Names in angle brackets, such as <STL_BINARY>, come from Assimp and not from the file, so they become "". */
+/* Returns an Assimp name in UTF-8. Names in angle brackets, such as <STL_BINARY>, come from Assimp and not from the file, so they become
+ * "". */
 std::string name_of(const assimp_reader *r, const aiString &from)
 {
     std::string name = from.C_Str()[0] == '<' ? "" : r->encoding.utf8(from.C_Str());
@@ -367,7 +372,7 @@ void say_empty(assimp_reader *r, const aiNode *node)
                types == 0 ? "the node's mesh has no triangles" : "none of the node's triangles has finite corners");
 }
 
-/* Returns the output mesh of a node, creating it if necessary, or -1 if the node has no triangles. */
+/* Returns the mesh of a node in the written GLB file, creating it if necessary, or -1 if the node has no triangles. */
 int mesh_of(assimp_reader *r, const aiNode *node)
 {
     std::vector<unsigned> parts(node->mMeshes, node->mMeshes + node->mNumMeshes);
@@ -443,7 +448,7 @@ void collect(const aiScene *scene, const aiNode *node, std::string *out)
         collect(scene, node->mChildren[i], out);
 }
 
-/* Returns whether the node is one of the chain of nodes into which Assimp splits the transform of an FBX node. The reader merges such a
+/* Returns whether the node is one of the chain of nodes into which Assimp splits the transform of one FBX node. This program merges such a
  * chain into one node again. */
 bool is_step(const aiNode *node)
 {
@@ -509,7 +514,7 @@ std::string listed(const std::vector<std::string> &names)
     return all + (names.size() > MOST_NAMED ? ", ..." : "");
 }
 
-/* Prints that textures are ignored: the reader keeps only the colours of materials. */
+/* Prints that the textures of a model are ignored: this program keeps only the colours of materials. */
 void say_textures(const aiScene *scene)
 {
     std::set<std::string> names;
@@ -534,14 +539,14 @@ void convert(const char *input, const char *output, const char *units, const cha
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true); /* otherwise children inherit GeometricTranslation */
-    text_encoding of_file;                             /* encoding of the text in text formats, which is decoded before Assimp reads it */
+    text_encoding of_file;                             /* encoding of the content of text files, which is decoded before Assimp reads it */
     importer.SetIOHandler(new files(&of_file, asked)); /* Assimp takes ownership */
     std::map<std::string, size_t> logged;
     Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
     Assimp::DefaultLogger::get()->attachStream(new assimp_log(logged), Assimp::Logger::Err | Assimp::Logger::Warn); /* Assimp owns it */
     steps |= from.own_normals ? 0U : static_cast<unsigned>(aiProcess_RemoveComponent);
     const aiScene *scene = importer.ReadFile(input, steps);
-    /* Assimp refuses a whole model because of one empty mesh: reads it again without the steps that check this */
+    /* Assimp refuses a whole model because of one empty mesh: read the model again without the post-processing steps that check this */
     if (!scene && strstr(importer.GetErrorString(), "contains no "))
         scene = importer.ReadFile(input, steps & ~static_cast<unsigned>(aiProcess_ValidateDataStructure | aiProcess_SortByPType));
     if (!scene || !scene->mRootNode)

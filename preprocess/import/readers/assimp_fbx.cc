@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds models and values of an FBX file that Assimp leaves out, repeats or reads differently without a message. */
+/* Finds models and values of an FBX file that Assimp silently omits, duplicates or misreads. */
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -53,7 +53,7 @@ namespace
 
 constexpr const char *SCENE = "0"; /* id of the scene's root node in the connections of an FBX file */
 
-/* The models of an FBX text, and their connections. Keys are ids. */
+/* The models of an FBX file in text form, and the connections between them. Keys are FBX ids. */
 struct fbx_graph {
     std::map<std::string, std::string> models; /* names */
     std::set<std::string> geometries, shown;   /* shown: models with a geometry */
@@ -61,7 +61,7 @@ struct fbx_graph {
     std::map<std::string, size_t> parents; /* number of parents */
 };
 
-/* Returns the text between two marks, the second of which may be missing; "" if the line lacks the first. */
+/* Returns the part of a line between two marks, the second of which may be missing; "" if the line lacks the first. */
 std::string between(std::string_view line, const char *first, char second)
 {
     const size_t at = line.find(first), from = at + strlen(first);
@@ -81,8 +81,8 @@ void add_link(fbx_graph *graph, std::string_view line)
     graph->parents[child]++;
 }
 
-/* Overwrites a line that states a property a second time with blanks: of equal properties the last one counts, but Assimp takes the first
- * one. known: positions of the properties of one list, by name. */
+/* Overwrites a line that states a property a second time with blanks: of several statements of a property the last one counts, but Assimp
+ * takes the first one. known: positions of the properties of one list, by name. */
 void keep_last(std::string *text, size_t at, std::string_view line, std::map<std::string, size_t> *known, const std::string &owner,
                bool say)
 {

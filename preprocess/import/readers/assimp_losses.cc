@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds shapes that Assimp skips without a message, by searching the text of the file for their statements. */
+/* Finds shapes that Assimp skips without a message, by searching the text of the model file for keywords of such shapes. */
 #include "preprocess/import/readers/assimp_losses.hh"
 #include "preprocess/import/readers/reader.hh"
 
@@ -45,7 +45,8 @@ void assimp_log::write(const char *message)
         return;
     const size_t place = text.find(" (TOK_"), end = place == text.npos ? place : text.find(')', place);
     if (end != text.npos)
-        text.erase(place, end + 1 - place); /* remove the position in the file, so that equal errors are counted together */
+        /* remove the position in the file from the error text, so that equal errors are counted together */
+        text.erase(place, end + 1 - place);
     const size_t source = text.find(": "); /* after "Error, T0" */
     counts[source == std::string::npos ? text : text.substr(source + 2)]++;
 }

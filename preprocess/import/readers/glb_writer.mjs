@@ -12,7 +12,7 @@ export function multiplied(a, b) {
     return out;
 }
 
-function inverted(m) { // inverse of an affine matrix; null: not invertible
+function inverted(m) { // returns the inverse of an affine matrix; null: not invertible
     const [a, b, c, , d, e, f, , g, h, i] = m;
     const determinant = a * (e * i - f * h) - d * (b * i - c * h) + g * (b * f - c * e);
     if (!(Math.abs(determinant) > 1e-300))
@@ -63,8 +63,8 @@ export class GlbWriter {
         return this.materials.get(key);
     }
 
-    // Adds triangles, transformed by the matrix `place`, as a glTF primitive. vertices: six numbers per vertex, position and normal.
-    // corners: vertex indices. Returns null if no triangle remains.
+    // Adds triangles, transformed by the matrix `place`, to the file as a glTF primitive. vertices: six numbers per vertex, position and
+    // normal. corners: vertex indices. Returns null if no triangle remains.
     addPrimitive({ vertices, corners }, place, color) {
         const count = Math.floor(vertices.length / 6), positions = new Float32Array(count * 3), normals = new Float32Array(count * 3);
         const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity], good = new Uint8Array(count);
@@ -113,7 +113,7 @@ export class GlbWriter {
         Object.assign(this.json.nodes[node], { mesh, matrix });
     }
 
-    // Returns the whole file as a buffer.
+    // Returns the whole GLB file as a buffer.
     finished() {
         this.json.buffers = [{ byteLength: this.length }];
         let text = Buffer.from(JSON.stringify(this.json));

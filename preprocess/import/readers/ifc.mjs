@@ -13,7 +13,7 @@ import { readSolids, takeSolids, withPlacements } from './ifc_solids.mjs';
 
 const CORNERS = 24; // corners of a full circle
 const MAX_NAMED = 20;
-const MAX_DEPTH = 400; // maximum levels of the tree; plantcast-prep reads at most 512
+const MAX_DEPTH = 400; // maximum levels of the tree of nodes; plantcast-prep reads at most 512
 const NOT_SHOWN = new Set(['IfcOpeningElement', 'IfcOpeningStandardCase', 'IfcSpace', 'IfcDistributionPort', 'IfcVirtualElement']);
 
 const webIfc = createRequire(import.meta.url)('./web-ifc-api-node.js');
@@ -51,7 +51,7 @@ class Model {
             yield ids.get(i);
     }
 
-    // Calls f(relating, related) for each pair of a relationship of this type, with the ids of both objects.
+    // Calls f(relating, related) for each pair that an IFC relationship of this type states, with the ids of both objects.
     relate(type, one, many, f) {
         for (const id of this.ofType(type)) {
             const line = this.line(id), relating = line?.[one]?.value, related = [line?.[many] ?? []].flat();
@@ -112,7 +112,7 @@ class Model {
     }
 }
 
-// Returns one mesh for an element, in the frame of the first of its geometries (parts). Elements with equal parts at equal relative
+// Returns one mesh for an IFC element, in the frame of the first of its geometries (parts). Elements with equal parts at equal relative
 // positions share a mesh.
 function meshOf(glb, geometries, parts, name) {
     const frame = parts[0].flatTransformation;
@@ -127,7 +127,7 @@ function meshOf(glb, geometries, parts, name) {
     return { mesh: geometries.made.get(key), matrix: frame };
 }
 
-// Reads the triangles of all elements from web-ifc. Copies each mesh while web-ifc streams it, because web-ifc does not keep it.
+// Reads the triangles of all IFC elements from web-ifc. Copies each mesh while web-ifc streams it, because web-ifc does not keep it.
 function readGeometry(api, id, model) {
     const shown = new Map(), known = new Map(), cutters = new Map();
     const copy = (geometryId) => {
@@ -204,8 +204,8 @@ function inUtf8(bytes, encoding) {
     return Buffer.from(decoder.decode(bytes));
 }
 
-// Writes the list of elements that Open CASCADE should build; plantcast-import then runs this program a second time. If the list exists
-// already, this is the second run.
+// Writes the list of elements that Open CASCADE should build in place of web-ifc; plantcast-import then runs this program a second time. If
+// the list exists already, this is the second run.
 function askForSolids(list, elements) {
     if (elements.length > 0 && !existsSync(list))
         writeFileSync(list, `${[...new Set(elements)].join('\n')}\n`);
@@ -220,7 +220,8 @@ async function main([input, output, , , , encoding]) {
         throw new Error('it is no IFC file: it does not begin with ISO-10303-21');
     if (!bytes.subarray(-4096).toString('latin1').includes('END-ISO-10303-21'))
         throw new Error('it is cut off: it does not end with END-ISO-10303-21');
-    const errors = collectErrors(); // must run before web-ifc is initialised, because web-ifc keeps the console functions that it finds
+    // must run before web-ifc is initialised, because web-ifc keeps references to the console functions that it finds at that time
+    const errors = collectErrors();
     const api = new webIfc.IfcAPI();
     api.SetWasmPath(`${folder}/`, true);
     await api.Init();
@@ -262,7 +263,8 @@ async function main([input, output, , , , encoding]) {
 }
 
 main(process.argv.slice(2)).catch((error) => {
-    // only exceptions of this program are Error objects with a message for users; others come from web-ifc, so their text is only quoted
+    // only exceptions that this program throws are Error objects with a message for users; others come from web-ifc, so their text is only
+    // quoted
     const reason = String(error?.message ?? error).split('\n')[0], ours = error?.constructor === Error;
     process.stderr.write(`${ours && reason ? reason : `its content could not be read (${reason || 'no reason is known'})`}\n`);
     process.exit(1);

@@ -21,9 +21,10 @@ namespace
 constexpr double STEP_RAD = 0.05;    /* largest turn of a curve, in radians, between two interpolated points */
 constexpr double MOST_TURN_RAD = 50; /* maximum turn of one segment */
 constexpr double LEAST_MM = 1e-3;    /* millimetres; a segment shorter than this only marks the end of its curve */
-constexpr double JOINT_MM = 1;       /* millimetres; the heights must begin this close to the start of the plan */
+constexpr double JOINT_MM = 1;       /* millimetres; the grades of an alignment must begin this close to the start of its plan curve */
 
-/* A segment of the plan. turn(d): direction at d millimetres from its start minus the direction at the start, in radians. */
+/* A segment of the plan curve of an alignment. turn(d): direction at d millimetres from its start minus the direction at the start, in
+ * radians. */
 struct plan_segment {
     gp_XY start;
     double heading_rad, length_mm;
@@ -31,8 +32,8 @@ struct plan_segment {
     bool straight;
 };
 
-/* One grade of the heights: from at_mm along the plan to the next grade. height(d): height in millimetres, and slope, d millimetres after
- * at_mm. */
+/* One grade of an alignment. It ends where the next grade begins. height(d): height in millimetres, and slope, d millimetres after at_mm,
+ * which is a length along the plan curve. */
 struct grade {
     double at_mm;
     std::function<gp_XY(double)> height;
@@ -43,8 +44,8 @@ struct grade {
 struct segment_values {
     entity parent;
     gp_XY start;
-    /* from_mm: length along the parent curve at which the segment starts; length_mm: negative if the segment runs against the parent's
-     * direction */
+    /* from_mm: length along the segment's parent curve at which the segment starts; length_mm: negative if the segment runs against the
+     * parent curve's direction */
     double heading_rad, from_mm, length_mm;
 };
 
@@ -80,7 +81,7 @@ segment_values segment_of(const ifc_model &in, const value &reference)
 
 /* --- the plan */
 
-/* Returns the direction of a parent curve at a length from its origin, in radians. */
+/* Returns a function: the direction in radians of a segment's parent curve at a length from the parent curve's origin. */
 std::function<double(double)> heading_of(const ifc_model &in, const entity &parent)
 {
     if (parent.is("IFCLINE"))
@@ -103,7 +104,7 @@ plan_segment plan_segment_of(const ifc_model &in, const segment_values &from)
     return { from.start, from.heading_rad, std::fabs(from.length_mm), turn, from.parent.is("IFCLINE") };
 }
 
-/* Converts a piece of a curve to a segment of the plan. Throws `unsupported` unless the piece is a line or an arc. */
+/* Converts a piece of a curve to a segment of a plan curve. Throws `unsupported` unless the piece is a line or an arc. */
 plan_segment plan_segment_of(const curve_piece &piece)
 {
     gp_Vec along = piece.tangent(false);
@@ -144,8 +145,8 @@ std::function<gp_XY(double)> arc_of(double height, double heading, double radius
     };
 }
 
-/* Returns the heights of an IfcPolynomialCurve, such as a parabola. Throws `unsupported` unless the curve's x coordinate is its
- * parameter. */
+/* Returns a function for the heights along an IfcPolynomialCurve, such as a parabola. Throws `unsupported` unless the curve's x coordinate
+ * is its parameter. */
 std::function<gp_XY(double)> polynomial_of(const ifc_model &in, const segment_values &segment)
 {
     const std::vector<value> &x = segment.parent[1].list, &y = segment.parent[2].list;
@@ -182,7 +183,7 @@ grade grade_of(const ifc_model &in, const segment_values &segment)
     return { at, arc_of(height, heading, std::copysign(radius, segment.length_mm)), false };
 }
 
-/* Returns the heights of an IfcGradientCurve. *end_mm receives the distance at which they end, if a segment without length states it. */
+/* Returns the grades of an IfcGradientCurve. *end_mm receives the distance at which they end, if a segment without length states it. */
 std::vector<grade> grades_of(const ifc_model &in, const entity &curve, double *end_mm)
 {
     std::vector<grade> out;
@@ -202,8 +203,8 @@ std::vector<grade> grades_of(const ifc_model &in, const entity &curve, double *e
 
 /* --- curves in space */
 
-/* Returns the point `to` millimetres after the start of a segment, given the point `from` millimetres after it. Integrates the direction by
- * Simpson's rule. */
+/* Returns the point `to` millimetres after the start of a plan segment, given the point `at`, which is `from` millimetres after it.
+ * Integrates the direction by Simpson's rule. */
 gp_XY advanced(const plan_segment &along, const gp_XY &at, double from, double to)
 {
     gp_XY sum(0, 0);
@@ -215,8 +216,8 @@ gp_XY advanced(const plan_segment &along, const gp_XY &at, double from, double t
     return at + sum * ((to - from) / 6);
 }
 
-/* Builds the part of a segment between two distances from its start, under one grade. before_mm: distance of the segment's start from the
- * start of the plan. *at: the plan's point at `from`; receives that at `to`. */
+/* Builds the part of a plan segment between two distances from its start, with the heights of one grade. before_mm: distance of the
+ * segment's start from the start of the plan curve. *at: the plan curve's point at `from`; receives the point at `to`. */
 curve_piece piece_of(const ifc_model &in, const plan_segment &along, const grade &heights, double before_mm, double from, double to,
                      gp_XY *at)
 {

@@ -63,7 +63,8 @@ class step_writer
     {
         add(root);
         std::ostringstream head;
-        head << std::showpoint << std::setprecision(17); /* showpoint: STEP requires a decimal point in real numbers, also in whole ones */
+        /* showpoint: a STEP file requires a decimal point in real numbers, also in whole ones */
+        head << std::showpoint << std::setprecision(17);
         head << "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
              << "FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\n"
              << "#1=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));\n"
@@ -84,7 +85,7 @@ class step_writer
     const ifc_model &in;
     std::ostringstream out;
     std::set<int> done;
-    int made = 0; /* number of added statements without a counterpart in the IFC file; their ids are 2000000000, 1999999999, ... */
+    int made = 0; /* number of STEP statements without a counterpart in the IFC file; their ids are 2000000000, 1999999999, ... */
 
     void write(std::ostream &to, const value &from)
     {
@@ -110,7 +111,7 @@ class step_writer
         }
     }
 
-    /* Writes a number. STEP wants whole numbers without a decimal point (`whole_numbers`) and real numbers with one. */
+    /* Writes a number to the STEP file. STEP wants whole numbers without a decimal point (`whole_numbers`) and real numbers with one. */
     void write_number(std::ostream &to, double number)
     {
         char text[40];
@@ -188,7 +189,8 @@ class step_writer
             std::string swept = swept_curve(from);
             return "SURFACE_OF_REVOLUTION(''," + swept + ',' + text_of(from[2]) + ')';
         }
-        if (type == "IFCCARTESIANPOINT" || type == "IFCDIRECTION") { /* always write three coordinates, because IFC may omit the third */
+        /* always write three coordinates to the STEP file, because IFC may omit the third */
+        if (type == "IFCCARTESIANPOINT" || type == "IFCDIRECTION") {
             for (size_t i = 0; i < 3; i++) {
                 to << (i > 0 ? "," : "");
                 write_number(to, i < from[0].list.size() ? file::number(from[0].list[i]) : 0);

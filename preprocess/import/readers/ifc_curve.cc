@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads points, placements and curves from an IFC file. A curve becomes a list of pieces, each an Open CASCADE curve. */
+/* Reads points, placements and curves from an IFC file. A curve becomes a list of consecutive pieces, each an Open CASCADE curve. */
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
 #include <GCPnts_AbscissaPoint.hxx>
@@ -31,8 +31,9 @@ namespace ifc
 namespace
 {
 
-constexpr double SHORTEST_MM = 1e-4; /* millimetres; shorter pieces of a curve are dropped, because sweeps along them fail */
-constexpr double JOINT_MM = 1;       /* millimetres; ends of consecutive pieces that are nearer to each other than this are joined */
+constexpr double SHORTEST_MM = 1e-4; /* millimetres; shorter pieces of a curve are dropped, because sweeping a profile along them fails */
+/* millimetres; the ends of two consecutive pieces of a curve are joined if they are nearer to each other than this */
+constexpr double JOINT_MM = 1;
 
 std::vector<curve_piece> pieces_within(const ifc_model &in, const entity &curve, int depth);
 

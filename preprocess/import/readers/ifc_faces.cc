@@ -45,8 +45,8 @@ TopoDS_Wire wire_through(const polygon &points)
     return wire.IsDone() ? wire.Wire() : TopoDS_Wire();
 }
 
-/* Adds a face. A face whose corners are not in a plane becomes a fan of triangles. Returns false, and adds nothing, if the face has no
- * area. */
+/* Adds a flat face to the compound `to`. A face whose corners are not in a plane becomes a fan of triangles. Returns false, and adds
+ * nothing, if the face has no area. */
 bool add_face(const flat_face &from, TopoDS_Compound *to)
 {
     BRep_Builder builder;
@@ -110,8 +110,8 @@ polygon loop_of(const ifc_model &in, const entity &bound)
     return out;
 }
 
-/* Reads a face. A face with several outer bounds becomes several faces. If no bound is marked as outer, the largest bound is taken as the
- * outer one. */
+/* Reads an IFC face and appends it to `out`. A face with several outer bounds becomes several faces. If no bound is marked as outer, the
+ * largest bound is taken as the outer one. */
 void take_face(const ifc_model &in, const entity &face, std::vector<flat_face> *out)
 {
     std::vector<polygon> inner;

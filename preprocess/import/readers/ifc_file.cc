@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the position of every statement in one pass; parses the values of a statement on demand. */
+/* Finds the position of every statement of an IFC file in one pass; parses the values of a statement on demand. */
 #include "preprocess/import/readers/ifc_file.hh"
 
 #include <cctype>
@@ -15,7 +15,7 @@ namespace
 
 constexpr int MAX_NESTING = 64; /* nesting depth of lists */
 
-/* Returns the offset after the string, the comment or the single character that begins at `at`. */
+/* Returns the offset after the string, the comment or the single character of an IFC file that begins at `at`. */
 size_t skip_one(const std::string &bytes, size_t at)
 {
     size_t end = at + 1;

@@ -2,12 +2,12 @@
 // Reports losses of an IFC file: elements that have a shape but no triangles, and errors that web-ifc prints.
 const LINES = /Curve|Polyline|IfcLine|Circle|Ellipse|Point|Text|Annotation|GeometricSet|BoundingBox|Vertex|Edge|Alignment/;
 const REFERENCE = 5; // web-ifc's type code of values that refer to a statement
-// Formats a record in the format of findings.h.
+// Formats values as a line of the readers' output, with tabs between them (format: findings.h).
 export const fields = (...values) => values.map((value) => String(value).replace(/\s+/g, ' ').trim()).join('\t');
 const GRID = 'IfcGridPlacement';
-const MAX_IDS = 20; // maximum number of statement ids listed per kind of error
+const MAX_IDS = 20; // maximum number of IFC statement ids that are listed per kind of error
 
-// Returns the ids of the given statements and of all statements that they refer to, directly or indirectly.
+// Returns the ids of the given IFC statements and of all statements that they refer to, directly or indirectly.
 function reached(model, ids) {
     const found = new Set(), open = ids.map((value) => ({ type: REFERENCE, value }));
     while (open.length > 0) {
@@ -45,8 +45,8 @@ export function collectErrors() {
     return { stop: () => Object.assign(console, { log, error }), at: () => new Set([...found.values()].flat()), lines };
 }
 
-// Returns the items of a shape, including those of mapped representations. Visits each representation once, because a damaged file may map
-// one into itself.
+// Returns the geometry items of an IFC shape, including those of mapped representations. Visits each representation once, because a damaged
+// file may map one into itself.
 function itemsOf(model, shape) {
     const items = new Set(), seen = new Set(), open = [model.line(shape)?.Representations ?? []].flat().map((one) => one?.value);
     while (open.length > 0) {

@@ -3,7 +3,7 @@
 import { fields } from './ifc_losses.mjs';
 
 const SAMPLES = 24; // points tested within each opening
-// directions of the test rays; parallel to no usual face
+// directions of the rays that test whether a point is inside an element; parallel to no usual face
 const RAYS = [[0.2672612, 0.5345225, 0.8017837], [-0.6337502, 0.4436252, -0.6337502]];
 const SHARE = 0.1; // an opening is not cut if more than this share of its points is inside the element
 
@@ -11,7 +11,7 @@ const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
-// Returns the triangles of an element's parts, in metres.
+// Returns the triangles of an element's geometries (parts), in metres.
 function trianglesOf(parts, geometryOf) {
     const out = [];
     for (const { geometryExpressID, flatTransformation: m } of parts) {
@@ -55,8 +55,9 @@ function innerPoints(triangles) {
 // Returns the elements from which an opening of `host` is cut: the host, or, if it has no shape, the elements that it consists of.
 export const voidedElements = (model, host) => (model.line(host)?.Representation?.value ? [host] : model.children.get(host) ?? []);
 
-// Returns the openings that are not cut: [{ opening, host, elements, why }]. elements: see voidedElements(). why: the reason, or ''.
-// geometry: what readGeometry() of ifc.mjs returns; `cutters` are the openings that web-ifc built, by id.
+// Returns the openings of an IFC file that are not cut from their element: [{ opening, host, elements, why }]. elements: see
+// voidedElements(). why: the reason, or ''. geometry: what readGeometry() of ifc.mjs returns; `cutters` are the openings that web-ifc
+// built, by id.
 export function uncutOpenings(model, voids, geometry, solids) {
     const { shown, known, cutters } = geometry;
     const out = [], triangles = new Map(), geometryOf = (id) => known.get(id);

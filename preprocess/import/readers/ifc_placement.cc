@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the placements of objects, and restates placements in a grid, which web-ifc does not compute, as local placements. */
+/* Computes the placements of IFC objects, and restates placements in a grid, which web-ifc does not compute, as local placements. */
 #include <GeomAPI.hxx>
 #include <Geom2dAPI_InterCurveCurve.hxx>
 #include <Geom2d_TrimmedCurve.hxx>
@@ -56,7 +56,7 @@ Handle(Geom2d_Curve) in_plane(const curve_piece &piece, bool whole)
     return new Geom2d_TrimmedCurve(curve, std::fmin(piece.first, piece.last), std::fmax(piece.first, piece.last));
 }
 
-/* Finds the first point where the axes meet. whole: also beyond the ends of the axes. */
+/* Finds the first point where two grid axes meet. whole: also beyond the ends of the axes. */
 bool find_crossing(const std::vector<curve_piece> &first, const std::vector<curve_piece> &second, bool whole, crossing *out)
 {
     for (const curve_piece &one : first)
@@ -101,7 +101,7 @@ int grid_placement(const ifc_model &in, int axis)
     return found == in.grids.end() ? 0 : found->second;
 }
 
-/* A placement relative to another one, `above`. */
+/* An IFC placement relative to another one, `above`. */
 struct relative_placement {
     value above;
     gp_Trsf place;
@@ -109,7 +109,8 @@ struct relative_placement {
 
 relative_placement in_grid(const ifc_model &in, const entity &from)
 {
-    size_t at = from.values.size() > 2 ? 1 : 0; /* IFC 4.3 adds a first value: the placement to which this one is relative */
+    /* IFC 4.3 adds a first value to the statement: the placement to which this one is relative */
+    size_t at = from.values.size() > 2 ? 1 : 0;
     crossing origin = crossing_of(in, from[at]);
     relative_placement out;
     if (at > 0)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds solids that pass through cross-sections along a curve. */
+/* Builds solids that are swept along a curve through several cross-sections. */
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_GTransform.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
@@ -66,7 +66,7 @@ struct station {
     int profile;
 };
 
-/* Returns the parameter of the point at a distance from the start of a piece. */
+/* Returns the curve parameter of the point at a distance from the start of a piece of a curve. */
 double parameter_at(const curve_piece &part, double distance_mm)
 {
     if (part.level_mm > 0)
@@ -77,7 +77,7 @@ double parameter_at(const curve_piece &part, double distance_mm)
     return point.Parameter();
 }
 
-/* Returns the placement of an upright section on the curve: X points left, Y up. */
+/* Returns the placement of a section that stands upright on the curve: X points left, Y up. */
 gp_Trsf upright(const std::vector<curve_piece> &pieces, const station &at)
 {
     double left_mm = at.along_mm;
@@ -116,7 +116,7 @@ station station_of(const ifc_model &in, const value &reference, const value &pro
     return { length(0), gp_Vec(length(1), length(2), length(3)), profile.id };
 }
 
-/* Returns the number of chords for the length of a piece that `length_mm` states. */
+/* Returns the number of chords by which a piece of a curve is approximated. length_mm: the piece's length. */
 int chords_of(const ifc_model &in, const curve_piece &piece, double length_mm)
 {
     if (piece.curve->IsKind(STANDARD_TYPE(Geom_Line)))
@@ -173,7 +173,7 @@ TopoDS_Shape horizontal_of(const ifc_model &in, const entity &item)
 struct section_frame {
     gp_Pnt at;
     gp_Dir along, x;
-    gp_Dir plane; /* normal of the section; differs from `along` at a corner */
+    gp_Dir plane; /* normal of the section's plane; differs from the curve's direction `along` at a corner */
 };
 
 section_frame frame_at(const curve_piece &piece, double parameter, const gp_Dir &reference)
@@ -190,7 +190,7 @@ section_frame frame_at(const curve_piece &piece, double parameter, const gp_Dir 
     return { at, gp_Dir(along), gp_Ax3(at, gp_Dir(along), reference).XDirection(), gp_Dir(along) };
 }
 
-/* Returns the transform from the XY plane to a section. At a corner the profile is moved along its curve into the plane of the section. */
+/* Returns the transform from the XY plane to a section's plane. At a corner the profile is moved along its curve into that plane. */
 gp_GTrsf section_place(const section_frame &from)
 {
     gp_Trsf upright;
@@ -215,7 +215,8 @@ bool same_section(const section_frame &a, const section_frame &b)
     return (first - second).Modulus() < 1e-3;
 }
 
-/* Returns the frames of the sections of one or more solids. A new solid begins at a corner where the profile turns about its curve. */
+/* Returns the frames of the sections of one or more solids. A corner of the curve where the profile would turn about the curve ends one
+ * solid and begins the next. */
 std::vector<std::vector<section_frame>> frames_of(const ifc_model &in, const std::vector<curve_piece> &pieces, const gp_Dir &reference)
 {
     std::vector<std::vector<section_frame>> out(1);

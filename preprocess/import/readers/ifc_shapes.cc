@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the items to build by following products to their representations, and tessellates each item once. */
+/* Finds the IFC geometry items to build by following products to their representations, and tessellates each item once. */
 #include "preprocess/import/readers/ifc_shapes.hh"
 
 #include <BRepAlgoAPI_Cut.hxx>
@@ -86,7 +86,7 @@ struct ifc_writer {
     std::map<int, ifc_part> parts; /* built items, by statement id */
     /* by statement id of an item or element that could not be built, and so is left to web-ifc: the reason */
     std::map<int, std::string> failed;
-    std::map<int, std::vector<int>> openings; /* ids of openings, by the element from which they are cut */
+    std::map<int, std::vector<int>> openings; /* by element from which openings are cut: ids of these openings */
     std::set<int> asked; /* ids of elements that web-ifc cannot build, or only in part */
     size_t elements = 0, placements = 0;
 };
@@ -121,7 +121,7 @@ ifc_part add_mesh(ifc_writer *w, const TopoDS_Shape &shape, int id)
     return out;
 }
 
-/* Calls f(). If it throws, keeps the reason for the statement `id` and returns false. */
+/* Calls f(). If it throws, stores the exception's text as the reason why statement `id` could not be built, and returns false. */
 template <typename function> bool attempt(ifc_writer *w, int id, const function &f)
 {
     std::string why;
@@ -139,7 +139,8 @@ template <typename function> bool attempt(ifc_writer *w, int id, const function 
     return false;
 }
 
-/* Builds and tessellates an item, unless that was done before. Returns false if the item could not be built; reports the reason once. */
+/* Builds and tessellates a geometry item, unless that was done before. Returns false if the item could not be built; reports the reason
+ * once. */
 bool build(ifc_writer *w, const entity &item)
 {
     if (w->parts.count(item.id) > 0 || w->failed.count(item.id) > 0)
@@ -149,7 +150,7 @@ bool build(ifc_writer *w, const entity &item)
 
 /* --- items */
 
-/* Returns whether an item, or an operand of a boolean item, is of a type that this program always builds (is_built()). */
+/* Returns whether a geometry item, or an operand of a boolean item, is of a type that this program always builds (is_built()). */
 bool wanted(const ifc_model &in, const entity &item, int depth)
 {
     if (depth > MAX_CHAIN)
@@ -164,8 +165,8 @@ struct placed_item {
     gp_GTrsf place;
 };
 
-/* Collects the items of a representation and of the representations it maps. Sets *whole to false if any item is left to web-ifc. all: true
- * collects items of every type, false only those that is_built() names. */
+/* Collects the geometry items of a representation and of the representations it maps. Sets *whole to false if any item is left to web-ifc.
+ * all: true collects items of every type, false only those that is_built() names. */
 void collect(ifc_writer *w, const entity &representation, const gp_GTrsf &above, int depth, bool all, std::vector<placed_item> *out,
              bool *whole)
 {
@@ -214,7 +215,7 @@ bool is_body(const entity &representation)
     return representation.is("IFCSHAPEREPRESENTATION");
 }
 
-/* Collects the items that show the body of a product. Returns whether no item is left to web-ifc. */
+/* Collects the geometry items that show the body of a product. Returns whether no item is left to web-ifc. */
 bool collect_all(ifc_writer *w, const entity &product, bool all, std::vector<placed_item> *out)
 {
     bool whole = true;
@@ -237,8 +238,8 @@ TopoDS_Shape shape_at(const ifc_model &in, int item, const gp_GTrsf &place)
     return BRepBuilderAPI_Transform(shape, place.Trsf(), Standard_True).Shape();
 }
 
-/* Cuts all openings of an element from each of its items, and gives each item the mesh that remains; an item of which nothing remains is
- * removed. */
+/* Cuts all openings of an element from each of its geometry items, and gives each item the mesh that remains; an item of which nothing
+ * remains is removed. */
 void cut_openings(ifc_writer *w, const entity &product, std::vector<placed_item> *items, std::map<int, ifc_part> *meshes)
 {
     const ifc_model &in = w->in;
@@ -270,7 +271,7 @@ void cut_openings(ifc_writer *w, const entity &product, std::vector<placed_item>
     *items = left;
 }
 
-/* Finds the openings of each element. Those of an element without a shape are cut from the elements that it consists of. */
+/* Finds the openings of each IFC element. Openings of an element without a shape are cut from the elements that it consists of. */
 std::map<int, std::vector<int>> find_openings(const file &in)
 {
     std::map<int, std::vector<int>> openings, consists_of;
@@ -327,8 +328,8 @@ bool has_any(const file &in)
     return any;
 }
 
-/* Writes the grid placements, restated as local placements, to properties of an output node. ifc.mjs puts them into the IFC file that
- * web-ifc reads. */
+/* Writes the grid placements, restated as local placements, to properties of a node of the written GLB file. ifc.mjs puts them into the IFC
+ * file that web-ifc reads. */
 void add_placements(ifc_writer *w)
 {
     std::map<int, std::string> statements;
@@ -356,7 +357,7 @@ void add_placements(ifc_writer *w)
 
 } // namespace ifc
 
-/* Reads a list of numbers separated by blanks. */
+/* Reads a list of statement numbers separated by blanks from the file `path`. */
 static std::set<int> numbers_in(const char *path)
 {
     std::ifstream list(path);

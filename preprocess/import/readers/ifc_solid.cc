@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds those kinds of solid items that no other file here builds, and boolean operations on solids. */
+/* Builds those kinds of IFC solids that no other file here builds, and boolean operations on solids. */
 #include <BRepAlgoAPI_Common.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepAlgoAPI_Fuse.hxx>
@@ -32,9 +32,10 @@ namespace ifc
 namespace
 {
 
-constexpr double FAR_MM = 1e6; /* millimetres; a half space with a boundary extends this far from its plane */
+/* millimetres; a half space with a boundary is built as a prism that extends this far on both sides of its plane */
+constexpr double FAR_MM = 1e6;
 
-/* Calls build(face) for each face and returns a compound of the results; the result itself if there is only one face. */
+/* Calls build(face) for each face of a profile and returns a compound of the results; the result itself if there is only one face. */
 template <typename builder> TopoDS_Shape each(const std::vector<TopoDS_Shape> &faces, const builder &build)
 {
     TopoDS_Compound out;
@@ -137,7 +138,7 @@ TopoDS_Shape pyramid(double x, double y, double height)
     return loft.Shape();
 }
 
-/* Builds a primitive such as a block or a cylinder, or returns a null shape for another type. */
+/* Builds an IFC primitive such as a block or a cylinder, or returns a null shape for another type. */
 TopoDS_Shape primitive(const ifc_model &in, const entity &item)
 {
     TopoDS_Shape out;

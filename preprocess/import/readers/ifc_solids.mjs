@@ -60,7 +60,7 @@ export function withPlacements(bytes, placements) {
     return from > 0 ? Buffer.concat([...out, bytes.subarray(from)]) : bytes;
 }
 
-// Returns a function that returns the colour of an item from its style, or nothing if the item has no style.
+// Returns a function that maps a geometry item to the colour of its style, or to nothing if the item has no style.
 function styles(model, type) {
     const found = new Map();
     const colorOf = (id, depth) => {

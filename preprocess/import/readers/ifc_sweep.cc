@@ -29,7 +29,8 @@ namespace ifc
 namespace
 {
 
-/* relative tolerance between the volume of a sweep and area times length; tessellation with 24 corners to a circle alone loses 1.1 % */
+/* allowed relative difference between the volume of a sweep and area times length; tessellation with 24 corners to a circle alone loses 1.1
+ * % */
 constexpr double VOLUME_SLACK = 0.04;
 
 TopoDS_Shape wire_swept(const TopoDS_Wire &outline, const TopoDS_Wire &spine, const gp_Dir *up)
@@ -74,7 +75,7 @@ TopoDS_Shape along(const TopoDS_Face &face, const std::vector<curve_piece> &piec
     return out;
 }
 
-/* Sweeps a disk along one piece. Lines and arcs are exact. */
+/* Sweeps a disk along one piece of a curve. Lines and arcs are exact. */
 TopoDS_Shape along_piece(const TopoDS_Face &face, const curve_piece &part)
 {
     TopoDS_Face placed = TopoDS::Face(BRepBuilderAPI_Transform(face, start_of({ part }, nullptr), Standard_True).Shape());
@@ -109,9 +110,9 @@ TopoDS_Shape mitred(const TopoDS_Face &face, const std::vector<curve_piece> &pie
     return along(face, pieces, nullptr, nullptr);
 }
 
-/* Sweeps a disk along all pieces. The expected volume is known: area times length. If the volume that a sweeping method gives differs from
- * that, some triangles are wrong, and the next method is tried. The last method sweeps each piece separately, with closed ends and without
- * mitred corners. */
+/* Sweeps a disk along all pieces of a curve. The expected volume is known: area times length. If the volume that a sweeping method gives
+ * differs from that, some triangles are wrong, and the next method is tried. The last method sweeps each piece separately, with closed ends
+ * and without mitred corners. */
 TopoDS_Shape disk_along(const ifc_model &in, const TopoDS_Face &face, double area, const std::vector<curve_piece> &pieces)
 {
     using way = TopoDS_Shape (*)(const TopoDS_Face &, const std::vector<curve_piece> &);

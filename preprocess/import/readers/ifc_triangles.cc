@@ -16,7 +16,8 @@ namespace ifc
 namespace
 {
 
-constexpr double ANGLE_RAD = M_PI / 12; /* largest angle between neighbouring facets: 24 facets to a circle, as web-ifc does */
+/* largest angle between neighbouring facets of a curved surface: 24 facets to a circle, as web-ifc does */
+constexpr double ANGLE_RAD = M_PI / 12;
 
 void take_face(const TopoDS_Face &face, triangles *to)
 {

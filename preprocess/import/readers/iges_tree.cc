@@ -49,7 +49,7 @@ struct iges_tree {
     Handle(XCAFDoc_ColorTool) colors;
     Handle(XCAFDoc_LayerTool) layers;
     const struct text_encoding *encoding;
-    Handle(Transfer_TransientProcess) process; /* map of Open CASCADE that finds the shape into which an entity was read */
+    Handle(Transfer_TransientProcess) process; /* map of Open CASCADE from an IGES entity to the shape into which the entity was read */
     double unit_mm;
     std::map<const Standard_Transient *, TDF_Label> made;
 };
@@ -105,7 +105,7 @@ std::string layer_of(const entity &from)
     return out;
 }
 
-/* Returns the members of a group, in file order. */
+/* Returns the members of an IGES group, in file order. */
 std::vector<entity> members_of(const entity &from)
 {
     std::vector<entity> out;
@@ -121,7 +121,7 @@ std::vector<entity> members_of(const entity &from)
     return out;
 }
 
-/* Returns the subfigure definition of which the entity is an instance; the entity itself if it is no instance. */
+/* Returns the definition of an IGES subfigure if the entity is an instance of one; otherwise the entity itself. */
 entity product_of(const entity &from)
 {
     Handle(IGESBasic_SingularSubfigure) place = Handle(IGESBasic_SingularSubfigure)::DownCast(from);
@@ -146,7 +146,7 @@ TopoDS_Shape shape_of(const iges_tree &t, const entity &from)
     return binder.IsNull() ? TopoDS_Shape() : TransferBRep::ShapeResult(binder);
 }
 
-/* an entity and its shape, placed, in Open CASCADE's form */
+/* an IGES entity and its Open CASCADE shape, which includes the entity's placement */
 struct iges_item {
     entity from;
     TopoDS_Shape shape;
@@ -180,7 +180,8 @@ void describe_layer(const iges_tree &t, const TDF_Label &label, const std::strin
         t.layers->SetLayer(label, TCollection_ExtendedString(t.encoding->utf8(layer).c_str(), Standard_True));
 }
 
-/* Copies the name, colour and layer of an entity to a label. Attributes that the entity lacks stay unchanged at the label. */
+/* Copies the name, colour and layer of an IGES entity to a label of the XCAF document. Attributes that the entity lacks stay unchanged at
+ * the label. */
 void describe(const iges_tree &t, const TDF_Label &label, const entity &from)
 {
     Quantity_Color color;
@@ -199,8 +200,8 @@ bool has_faces(const TopoDS_Shape &shape)
 
 enum class shape_kind { nothing, surface, part };
 
-/* Returns how an entity becomes a part of the model. A loose surface is joined with other loose surfaces of its group; a solid or a group
- * becomes a part of its own. */
+/* Returns how an IGES entity becomes a part of the model. A loose surface is joined with other loose surfaces of its group; a solid or a
+ * group becomes a part of its own. */
 shape_kind kind_of(const iges_item &what)
 {
     if (!has_faces(what.shape))
@@ -228,7 +229,7 @@ TDF_Label add_surfaces(const iges_tree &t, const std::vector<iges_item> &surface
     return label;
 }
 
-/* Sorts loose surfaces by layer; the surfaces of each layer become one part. */
+/* Sorts loose surfaces of a group by layer; the surfaces of each layer become one part. */
 std::map<std::string, std::vector<iges_item>> by_layer(const std::vector<iges_item> &loose)
 {
     std::map<std::string, std::vector<iges_item>> out;
@@ -311,7 +312,8 @@ TDF_Label add_group(iges_tree *t, const iges_item &group, int depth)
     return label;
 }
 
-/* Returns the label of a part's shape without placement, which all instances of the part share. Creates the label at the first call. */
+/* Returns the XCAF label of a part's shape without placement, which all instances of the part share. Creates the label at the first
+ * call. */
 TDF_Label label_of(iges_tree *t, const iges_item &what, int depth)
 {
     if (depth > MAX_DEPTH)

@@ -47,10 +47,11 @@
 namespace
 {
 
-/* maximum number of output nodes; assemblies that contain others several times can have exponentially many */
+/* maximum number of nodes in the written GLB file; assemblies that contain others several times can have exponentially many */
 constexpr size_t MAX_NODES = 2'000'000;
 constexpr size_t MOST_NAMED = 20;
-constexpr double CHORDS_PER_MODEL = 100; /* the chord error is at most this part of a model, so that tiny models keep their shape */
+/* the allowed chord error is at most the model's size divided by this number, so that tiny models keep their shape */
+constexpr double CHORDS_PER_MODEL = 100;
 constexpr double ANGLE_RAD = 0.5; /* largest angle in radians between neighbouring facets, where the chord error would allow more */
 const double PLAIN[4] = { 0.35, 0.35, 0.35, 1 };
 
@@ -64,7 +65,8 @@ std::string utf8_of(const TCollection_ExtendedString &from)
     return at;
 }
 
-/* Returns the name of a label, or "" for a generated name such as "=>[0:1:1:3]", which Open CASCADE gives to components without a name. */
+/* Returns the name of an XCAF label, or "" for a generated name such as "=>[0:1:1:3]", which Open CASCADE gives to components without a
+ * name. */
 std::string name_of(const TDF_Label &label)
 {
     Handle(TDataStd_Name) name;
@@ -85,7 +87,7 @@ std::string layers_of(const Handle(XCAFDoc_LayerTool) & tool, const TDF_Label &l
     return out;
 }
 
-/* Reads the colour of the label itself, not of its parts. */
+/* Reads the colour of the XCAF label itself, not of its parts. */
 void take_color(const Handle(XCAFDoc_ColorTool) & tool, const TDF_Label &label, XCAFPrs_Style *style)
 {
     Quantity_ColorRGBA color;
@@ -195,7 +197,7 @@ void write_groups(occt_reader *r, const std::map<key, color_group> &groups, cons
     }
 }
 
-/* Returns why a shape has no faces, as a text for a message; "" if it consists only of curves or points, which is no loss. */
+/* Returns why a shape has no faces, as a text for the readers' output; "" if it consists only of curves or points, which is no loss. */
 std::string reason_without_faces(const occt_reader *r, const TopoDS_Shape &shape)
 {
     if (!shape.IsNull() && TopExp_Explorer(shape, TopAbs_VERTEX).More())
@@ -204,7 +206,7 @@ std::string reason_without_faces(const occt_reader *r, const TopoDS_Shape &shape
     return missing ? "the part's shape is empty, or in a missing file" : "the part's shape is empty";
 }
 
-/* Prints a line about a part that lost some or all of its faces. */
+/* Prints a line of the reader's output about a part that lost some or all of its faces. */
 void say_lost_part(occt_reader *r, const TDF_Label &label, const char *id, const mesh_outcome &of)
 {
     std::string name = one_line(name_of(label)), why;
@@ -299,7 +301,7 @@ bool has_ending(const char *path, const char *ending)
     return length > count && !strcasecmp(path + length - count, ending);
 }
 
-/* Reads a STEP file into the document. Returns the units that the file states. */
+/* Reads a STEP file into the XCAF document. Returns the length units that the file states. */
 std::string read_step(const char *path, const char *output, Handle(TDocStd_Document) document, const char *asked,
                       std::map<std::string, step_external> *externals)
 {
@@ -361,7 +363,7 @@ void say_lines(const occt_reader &r)
                r.lines.size() > MOST_NAMED ? ", ..." : "");
 }
 
-/* Computes the root matrix: millimetres to metres, and Z up to Y up (y_up false) or no rotation (y_up true). */
+/* Computes the matrix of the root node: millimetres to metres, and Z up to Y up (y_up false) or no rotation (y_up true). */
 void root_matrix(bool y_up, double out[16])
 {
     const double z_up[16] = { 1e-3, 0, 0, 0, 0, 0, -1e-3, 0, 0, 1e-3, 0, 0, 0, 0, 0, 1 };
@@ -369,7 +371,7 @@ void root_matrix(bool y_up, double out[16])
     memcpy(out, y_up ? as_is : z_up, sizeof(z_up));
 }
 
-/* Returns the diagonal of the box around all shapes; infinity if they have no box. */
+/* Returns the diagonal of the bounding box around all shapes; infinity if they have no box. */
 double longest_mm(const occt_reader &r, const TDF_LabelSequence &shapes)
 {
     Bnd_Box box;

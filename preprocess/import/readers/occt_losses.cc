@@ -40,8 +40,8 @@ namespace
 
 using entity = Handle(Standard_Transient);
 
-constexpr size_t MOST_KINDS = 100; /* maximum number of different errors that are printed */
-constexpr size_t MOST_IDS = 5;     /* maximum number of entity ids in one printed line */
+constexpr size_t MOST_KINDS = 100; /* maximum number of different errors that are printed per file */
+constexpr size_t MOST_IDS = 5;     /* maximum number of entity ids in one printed line of errors */
 constexpr size_t MOST_VISITED = 10000;
 
 struct file_losses {
@@ -52,7 +52,8 @@ struct file_losses {
 
 /* --- errors ------------------------------------------------------------------------------------------------------------------------- */
 
-/* Returns a message without the index of a parameter ("n0.12 "), so that errors that differ only in this index are counted together. */
+/* Returns an error text of Open CASCADE without the index of a parameter ("n0.12 "), so that errors that differ only in this index are
+ * counted together. */
 std::string without_number(const std::string &text)
 {
     size_t from = text.find("n0."), end = from == std::string::npos ? from : text.find_first_not_of("0123456789", from + 3);
@@ -145,8 +146,7 @@ std::string product_name(const entity &from)
     return name.IsNull() ? "" : one_line(name->ToCString());
 }
 
-/* owner of a face. body: the body that contains the face, or the face itself if there is none; name: of the product that contains the
- * body. */
+/* body: the body that contains the face, or the face itself if there is none; name: name of the product that contains the body */
 struct face_owner {
     entity body;
     std::string name;
@@ -201,7 +201,7 @@ void say_lost(const file_losses &of, const lost_faces &lost)
 
 void say_lost_faces(const file_losses &of, const Interface_Graph &graph)
 {
-    std::map<int, lost_faces> bodies; /* lost faces, by index of the body entity in the model */
+    std::map<int, lost_faces> bodies; /* counts of lost faces, by index of the body entity in the model */
     for (int i = 1; i <= of.model->NbEntities(); i++) {
         const entity face = of.model->Value(i);
         if (!is_face(face) || has_shape(of, face))
@@ -215,7 +215,7 @@ void say_lost_faces(const file_losses &of, const Interface_Graph &graph)
         say_lost(of, entry.second);
 }
 
-/* Prints a line about instances of a product that are missing although the product itself was read. */
+/* Prints a line of the reader's output about instances of a product that are missing although the product itself was read. */
 void say_lost_places(const file_losses &of)
 {
     for (int i = 1; i <= of.model->NbEntities(); i++) {

@@ -17,13 +17,13 @@ namespace
 
 constexpr char MARK[] = "`|";
 constexpr size_t MOST_FILES = 5000;
-constexpr size_t MOST_BEFORE = 1000; /* number of bytes at the start of a statement that are searched for its keyword */
+constexpr size_t MOST_BEFORE = 1000; /* number of bytes at the start of a STEP statement that are searched for its keyword */
 
 struct preparing {
     std::string input_folder, output_folder;
     const char *asked;
     step_files out;
-    /* file names of the copies, by path of the original; by the name that the model states if the original is missing */
+    /* file names of the copies, by path of the original; if the original is missing, by the name that the model states */
     std::map<std::string, std::string> names;
     std::vector<std::string> open; /* paths of external files that are not copied yet */
 };
@@ -88,8 +88,8 @@ std::string without_escapes(const std::string &text)
     return out;
 }
 
-/* Finds a file that a model names, in the model's folder and ignoring upper and lower case. Tries several spellings, because the confined
- * reader cannot list the folder. Returns its path, or "" if there is none. */
+/* Finds an external file that a STEP file names, in the model's folder and ignoring upper and lower case. Tries several spellings, because
+ * the confined reader cannot list the folder. Returns its path, or "" if there is none. */
 std::string find_beside(const preparing &p, const std::string &named)
 {
     const std::string base = named.substr(named.find_last_of("/\\") == std::string::npos ? 0 : named.find_last_of("/\\") + 1);
@@ -127,8 +127,8 @@ bool names_files(const std::string &statement)
     return false;
 }
 
-/* Returns the form that one quoted string (a file name, a data format or a name) gets in the copy. before: text of the copy before the
- * string. statement: offset in `before` at which the string's statement begins. */
+/* Returns the form that one quoted string (a file name, a data format or a name) gets in the copy of a STEP file. before: text of the copy
+ * before the string. statement: offset in `before` at which the string's statement begins. */
 std::string converted_string(preparing *p, const std::string &before, size_t statement, const std::string &text)
 {
     if (is_step_name(text) && names_files(before.substr(statement, MOST_BEFORE)))
