@@ -17,7 +17,7 @@
 struct sensor_direction {
     float vector[3]; /* vector in the axes of the asset file; its length is the reading */
     bool configured; /* the sensor has a direction */
-    bool known;      /* true: reading and direction are usable, Good or Uncertain */
+    bool known;      /* true: both the reading and the direction are usable (quality Good or Uncertain) */
     bool uncertain;
 };
 /* Reads the vectors of the group's sensors on the asset, in the order of the prepared sensors. Returns the number of vectors; 0: the asset

@@ -35,7 +35,7 @@ struct triangle_piece {  /* part of a triangle; the error is sampled at the midd
     float corners[3][3]; /* barycentric coordinates of its corners */
 };
 
-struct sampler { /* state of the sampling in one thread */
+struct sampler { /* working memory of one thread that samples triangles */
     const struct weights *of;
     const struct asset_view *file;
     struct field_layout layout;

@@ -107,7 +107,7 @@ static int reduce(struct drift_rows *rows, double largest)
             continue;
         for (int i = 0; i < n; i++)
             rows->at[kept][i] = column[i] / length;
-        for (int k = 0; k < kept; k++) /* orthogonalises twice, so that the columns are orthogonal to within rounding */
+        for (int k = 0; k < kept; k++) /* orthogonalises a second time, because rounding errors of the first time may be large */
             take_out(rows->at[kept], rows->at[k], n);
         kept++;
     }

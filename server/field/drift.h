@@ -21,7 +21,7 @@ enum { DRIFT_NEAREST = 2 }; /* largest number of nearest sensors whose readings 
 /* least estimated drift for a verdict, in standard deviations; below DRIFT_SIGMAS, because estimates of a drift of DRIFT_SIGMAS are
    sometimes too small */
 #define DRIFT_SIGMAS_LEAST 2.5
-#define DRIFT_ERRORS 5.0 /* an estimated drift must also be this many times its own standard error */
+#define DRIFT_ERRORS 5.0 /* a drift is found only if the estimate is also at least this many times its own standard error */
 
 enum drift_verdict {
     DRIFT_UNKNOWN, /* unknown: there are too few data or fewer than three sensors, or changes of the plant hide any drift */

@@ -54,9 +54,7 @@ struct field;
 struct field *field_create(struct workers *workers, const struct scene *scene);
 /* Frees the field and its cache. Accepts a pointer to NULL; sets the pointer to NULL. */
 void field_destroy(struct field **field);
-/* Returns the scene with which the field was created. */
 const struct scene *field_scene(const struct field *field);
-/* Returns the workers with which the field was created. */
 struct workers *field_workers(const struct field *field);
 /* Sets the registry in which differences look up their baselines; it must outlive the field. Without it, or for a forgotten baseline, a
    difference has no data. */
@@ -78,7 +76,7 @@ bool field_baseline(const struct field *field, const struct field_params *params
 /* Sets the limit of the cache in bytes; initially FIELD_DEFAULT_BYTES. The field of the parameters requested last is kept even if it
    alone exceeds the limit. */
 void field_set_cache_limit(struct field *field, size_t bytes);
-/* Returns the bytes that the field's cache takes now. */
+/* Returns the size in bytes of the field's cache. */
 size_t field_bytes(const struct field *field);
 /* Frees all cached fields and weights. */
 void field_clear_cache(struct field *field);

@@ -15,7 +15,7 @@ struct weights **field_cache_bucket(struct field *field, uint64_t hash)
     return &field->weights[hash % FIELD_BUCKETS];
 }
 
-/* Unlinks the weights at *link from their list and destroys them. */
+/* Removes the weights at *link from the hash table and destroys them. */
 static void weights_remove(struct field *field, struct weights **link)
 {
     struct weights *weights = *link;

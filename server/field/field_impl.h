@@ -12,7 +12,7 @@ struct field {
     const struct scene *scene;
     struct field_layout **layouts;          /* sensor layouts by [asset][group]; NULL: not created yet, or the asset has no sensor of the
                                                group */
-    struct field_state **states;            /* list of the states of each asset, by asset */
+    struct field_state **states;            /* by asset: linked list of the asset's cached states (computed fields) */
     struct weights *weights[FIELD_BUCKETS]; /* hash table of all cached weights, by their key */
     struct baselines *baselines;            /* NULL: none */
     struct trials *trials;                  /* NULL: none */
@@ -41,11 +41,11 @@ bool field_begin_update(struct field *field, struct field_state *state, const st
 
 /* --- the cache (field_cache.c) --- */
 
-/* Returns the hash bucket (a linked list of weights) for this hash. */
+/* Returns the bucket (linked list) of the hash table of cached weights in which weights with this hash are stored. */
 struct weights **field_cache_bucket(struct field *field, uint64_t hash);
-/* Releases the state's reference to its weights. */
+/* Releases the state's reference to its weights, which can then be evicted. */
 void field_cache_release_weights(struct field_state *state);
-/* Unlinks the state at *link from its list and destroys it. */
+/* Removes the state at *link from its asset's list of cached states and destroys it. */
 void field_cache_remove_state(struct field *field, struct field_state **link);
 /* Evicts entries last used before tick `before`, except states of the parameters `keep`, until `need` more bytes fit the limit. Evicts
    the oldest entries first, an eighth of the time span of last uses in one search, so that searches are rare. Returns false if the bytes

@@ -18,7 +18,7 @@ struct scalar;
 void kernel_distances(const uint16_t *restrict codes, size_t count, float *restrict out_m);
 /* Writes the straight-line distance of each position from the point. */
 void kernel_euclidean(const float (*positions_m)[3], size_t count, const float point_m[3], float *restrict out_m);
-/* Lowers near_m[i] to distance_m[i] if that is smaller. */
+/* For one sensor: lowers near_m[i], the distance of vertex i from the nearest sensor so far, to distance_m[i] if that is smaller. */
 void kernel_nearest(const float *restrict distance_m, size_t count, float *restrict near_m);
 /* Returns the largest finite distance, or most_m if that is larger. */
 float kernel_largest(const float *distance_m, size_t count, float most_m);

@@ -24,7 +24,7 @@ struct neighbours;
 /* Prepares predictions for a group on an asset. Returns NULL if no sensor has a known position. The scene must outlive the result; the
    caller destroys it. */
 struct neighbours *neighbours_create(const struct scene *scene, int asset, int group);
-void neighbours_destroy(struct neighbours **neighbours); /* frees the predictions and sets *neighbours to NULL; accepts a pointer to NULL */
+void neighbours_destroy(struct neighbours **neighbours); /* frees the object and sets *neighbours to NULL; accepts a pointer to NULL */
 size_t neighbours_count(const struct neighbours *neighbours);
 /* Returns the index of the tag of a sensor in the plant. */
 int neighbours_tag(const struct neighbours *neighbours, size_t sensor);
@@ -42,7 +42,7 @@ size_t neighbours_nearest(const struct neighbours *neighbours, size_t sensor, co
 struct neighbours_cache {
     struct neighbours_kept {
         struct neighbours *of;  /* sensors of the group; NULL: the group has no sensor with a known position on the asset */
-        struct neighbour *list; /* predictions by sensor, in the order of `of` (struct neighbours) */
+        struct neighbour *list; /* predictions, one for each sensor of `of`, in the same order */
         size_t count;
         int64_t taken_mono_ns, taken_utc_ns; /* time of the snapshot; 0: none yet */
     } * kept;                                /* [asset][group]; NULL: nothing cached yet */

@@ -45,7 +45,6 @@ void field_params_default(const struct plant *plant, int group, struct field_par
    operator` (the position of each reading between its tag's limits): `harmonic`, or `shepard` if that is not prepared, replaces it.
    Uncertainty uses `gp` wherever it is prepared. */
 void field_params_set_show(const struct plant *plant, struct field_params *params, enum field_show show);
-/* Returns whether two sets of parameters are equal. */
 bool field_params_equal(const struct field_params *a, const struct field_params *b);
 /* Returns whether each sensor that the parameters name (`sensor`, overrides) belongs to the shown group and has a position. */
 bool field_params_placed(const struct plant *plant, const struct field_params *params);

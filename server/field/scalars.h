@@ -30,7 +30,7 @@ struct scalars {
     /* sum, over all versions so far, of the largest change of a value in each: a copy of the scalars made when `travel` was t is wrong by
        at most travel - t */
     double travel;
-    size_t count;   /* number of vertices in the asset file */
+    size_t count;   /* number of elements of `at`: one for each vertex in the asset file */
     size_t ready;   /* the first `ready` vertices are up to date: as many as the requested levels of detail need */
     uint64_t grown; /* number of times that `ready` has grown */
     const struct scalar *at;

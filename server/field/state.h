@@ -9,7 +9,7 @@
 
 struct update; /* defined in update.h */
 
-struct state_input {           /* one sensor's inputs to the sums */
+struct state_input {           /* a sensor's contribution to the sums from which the field is computed */
     double value;              /* value of the sensor's reading in engineering units; for interpolation paper scaled to 0..1 */
     uint8_t usable, uncertain; /* usable: enum sensor_use */
 };
@@ -23,8 +23,8 @@ struct field_state {
     double *sums;            /* by vertex: numerator of the value; NULL: not stored, because few sensors are summed again as quickly */
     size_t room;             /* number of vertices that `at` and `sums` have room for */
     double error_limit;      /* vertices with a larger weights->errors are marked uncertain; initially 0 */
-    unsigned errors_version; /* value of weights->errors_version for which the flags were set */
-    double error_scale;      /* factor from weights->errors to the largest error drawn */
+    unsigned errors_version; /* value of weights->errors_version when the vertices were last marked by these errors */
+    double error_scale;      /* factor that converts an element of weights->errors to the error of a drawn value */
     unsigned added;          /* number of updates since the sums were last recomputed in full */
     /* by sensor of the layout. now: inputs from the newest snapshot; shown: inputs from which the scalars were computed */
     struct state_input *now, *shown;
@@ -46,7 +46,6 @@ struct field_state {
 struct field_state *state_create(int asset, struct field_layout *layout, const struct field_params *params);
 /* Frees the state. Accepts a pointer to NULL; sets the pointer to NULL. */
 void state_destroy(struct field_state **state);
-/* Returns the bytes that the state takes. */
 size_t state_bytes(const struct field_state *state);
 /* Returns by how many bytes the state would grow with room for the first `count` vertices. */
 size_t state_more_bytes(const struct field_state *state, size_t count);

@@ -24,7 +24,7 @@
 #define STEP_LIMIT 1e6
 /* number of updates after which everything is summed again, so that the accumulated rounding stays below 1e-9 of the range */
 #define MAX_ADDED 4096
-#define JOB_WORK 30000.0 /* nanoseconds of work that justify waking another thread */
+#define JOB_WORK 30000.0 /* estimated work in nanoseconds from which another thread is woken to share an update */
 #define SMALL_WORK 1e6   /* nanoseconds; if many assets are updated, an update with less work than this runs on one thread */
 #define MAKE_WORK 1.0    /* estimated nanoseconds to compute one sensor's weight at one vertex and add it */
 #define ADD_WORK 0.15    /* estimated nanoseconds to add a weight that was computed before */
@@ -38,7 +38,7 @@ struct update {
     size_t next, old, end;
     bool anew;  /* true: sums the weights of all sensors; false: in blocks below `old`, adds only the changes of changed readings */
     bool flags; /* true: qualities changed, so flags of all blocks are set; false: flags in blocks below `old` stay */
-    bool marks; /* true: at least one sensor in the sum is Uncertain */
+    bool marks; /* true: the reading of at least one sensor in the sum has the quality Uncertain */
     pthread_mutex_t lock;
     /* --- below: under lock */
     bool value_changed, flag_changed;

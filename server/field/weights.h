@@ -17,7 +17,7 @@ enum sensor_use {
     SENSOR_ASIDE      /* the sensor is ignored, because another one gives the asset's value */
 };
 
-/* Kind of the sensor that is nearest to a vertex. */
+/* Whether a vertex has data, by the sensor that is nearest to the vertex. */
 enum place {
     PLACE_GOOD,     /* the nearest configured sensor is usable and within reach */
     PLACE_LOST,     /* the nearest sensor is not usable; another one is within reach */
@@ -49,7 +49,7 @@ struct weights {
     float *strength, *decay;                     /* by sensor of the layout */
     /* for each sensor of the layout: 1: it would contribute if its quality were good; 0: it would not; more than 1: SENSOR_NO_LIMITS */
     uint8_t *configured;
-    uint8_t *takes_part; /* for each sensor of the layout: 1 if it is used */
+    uint8_t *takes_part; /* for each sensor of the layout: 1 if its reading is used, else 0 */
     /* members of the sum, in the order of the columns: the used sensors of the layout; for prepared interpolations all sensors */
     uint32_t *members;
     size_t member_count;
@@ -76,7 +76,7 @@ struct weights {
     /* erring[b]: fraction of the surface (of the vertices for prepared interpolations) whose interpolation error is at least 2^-b; the
        largest such fraction of all measured levels of detail */
     float erring[WEIGHTS_ERRING];
-    uint64_t measured_levels; /* bits of the levels of detail whose triangles `errors` covers */
+    uint64_t measured_levels; /* bit mask of the levels of detail whose triangles are included in `errors` */
     unsigned errors_version;  /* number of changes of `errors` so far */
     float *beyond_m;          /* for interpolations fin and gp, by vertex: metres beyond the border of the area with data; else NULL */
     float *columns; /* cached weights, [block][member][KERNEL_BLOCK], of the first kept_blocks blocks, or NULL; those of other blocks are
@@ -84,7 +84,7 @@ struct weights {
     uint8_t *kept;  /* [block][member]: 1 if the member's cached weights in that block are filled */
     size_t kept_blocks;
     int users;           /* number of states that use these weights */
-    uint64_t used, sums; /* used: tick of the last use; sums: how often the weights were summed */
+    uint64_t used, sums; /* used: tick (field_impl.h) of the last use; sums: how often the weights were summed */
     struct weights *next;
 };
 
@@ -94,7 +94,6 @@ void weights_key_init(struct weights_key *key, const struct field_layout *layout
                       const uint8_t *usable);
 /* Frees the key. */
 void weights_key_finish(struct weights_key *key);
-/* Returns whether two keys are equal. */
 bool weights_key_equal(const struct weights_key *a, const struct weights_key *b);
 
 /* Creates the weights of this key and takes ownership of the key. Nothing is computed yet. Returns NULL when out of memory. The caller

@@ -47,8 +47,9 @@ struct frame {
     struct view view; /* the view that the frame shows */
     int width_px, height_px, stride_bytes;
     uint8_t *bgrx;                /* 4 bytes per pixel (blue, green, red, unused), rows from the top */
-    struct frame *whole;          /* reference to the frame that owns the pixels; NULL: this frame owns them */
-    struct frame_pool *pool;      /* pool of the pixels that this frame owns; NULL: none */
+    /* if this frame is a part of another (frame_cut): reference to the other frame, which owns the pixels; NULL: this frame owns them */
+    struct frame *whole;
+    struct frame_pool *pool;      /* pool to which this frame's pixel buffer returns; NULL: the buffer is from no pool */
     struct frame_marker *markers; /* sensors of the shown group */
     size_t marker_count;
     /* visible points on isolines at which the isoline's value may be written (more points than labels fit), and the arrows of fields that
@@ -64,7 +65,8 @@ struct frame {
     /* time that the render thread spent on this frame, waiting for the GPU included; 0: not drawn by a render thread */
     int64_t turn_ns;
     struct baseline baseline;    /* baseline from which the frame shows differences; id 0: none */
-    struct frame_record *record; /* readings that the frame was drawn from (render/frame_record.h); NULL: not requested */
+    /* copies of the readings from which the frame was drawn (render/frame_record.h); NULL: none were requested */
+    struct frame_record *record;
     struct depth_grid *depth[2]; /* depth grid of the frame, or of each half of a split view; NULL: none */
     /* hash of the view and of the versions of its fields, without sequence numbers and times; two frames with the same hash look the
        same */

@@ -19,7 +19,7 @@ struct frame_context {
     const struct light_set *light;
     const struct target *target;
     struct field *field;
-    const struct fields_entry **fields; /* by asset: its field; NULL: the asset shows no field */
+    const struct fields_entry **fields; /* by index of the asset: cache entry with its field values; NULL: the asset shows no field */
     const int *visible;                 /* indices of the visible assets, the nearest asset first */
     size_t visible_count;
     struct shaded_colormap colormap;
@@ -33,7 +33,7 @@ struct frame_context {
 
 /* Returns the level of detail that the frame plan chose for an asset. */
 const struct model_level *frame_level(const struct frame_context *context, int asset);
-/* Returns whether the selected asset is among the visible ones. */
+/* Returns whether view->selected_asset is among the visible assets. */
 bool frame_shows_selected(const struct frame_context *context);
 /* Returns the number of triangles of the planned levels of detail of all visible assets. */
 int frame_triangles(const struct frame_context *context);

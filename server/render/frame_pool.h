@@ -15,7 +15,8 @@ void frame_pool_unref(struct frame_pool **pool);
 uint8_t *frame_pool_take(struct frame_pool *pool, size_t bytes);
 /* Releases a buffer of frame_pool_take(). pixels may be NULL. */
 void frame_pool_give(struct frame_pool *pool, uint8_t *pixels, size_t bytes);
-size_t frame_pool_bytes(const struct frame_pool *pool); /* returns the bytes of all buffers, in use or kept for reuse */
+/* returns the total size in bytes of all buffers of the pool, both in use and kept for reuse */
+size_t frame_pool_bytes(const struct frame_pool *pool);
 void frame_pool_drop_spares(struct frame_pool *pool);   /* frees the buffers kept for reuse */
 
 #endif

@@ -29,7 +29,7 @@ struct render_backend {
     /* Draws at least one step of the job's frame, and more steps for about budget_ns. The job's light must be ready. Returns true when only
        end() is left to call. */
     bool (*step)(struct renderer *renderer, struct render_job *job, int64_t budget_ns);
-    /* Completes the frame of a job. Returns false on failure, logged. */
+    /* Completes job->frame: its pixels, markers and labels. Returns false on failure, logged. */
     bool (*end)(struct renderer *renderer, struct render_job *job);
     /* Frees the state that the backend has stored in the job (render_job.of). */
     void (*abandon)(struct renderer *renderer, struct render_job *job);

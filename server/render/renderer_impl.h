@@ -31,7 +31,8 @@ struct renderer {
     bool always_gl;
     bool gives_depth; /* frames get depth grids */
     int64_t bake_budget_ns;  /* time that each preview spends on baking light, ns; 0: a preview waits until its light is baked */
-    struct visibility shown; /* visibility of assets in the last frame that was drawn in one call */
+    /* which assets the last frame that was drawn in one call showed; light is baked only while this does not change */
+    struct visibility shown;
 };
 
 /* Fills in a frame context from the plan. Light, colour map and target are set later. The context points into the plan, which must outlive

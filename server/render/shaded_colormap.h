@@ -15,9 +15,10 @@ enum { COLORMAP_BELOW = 0, COLORMAP_ABOVE = COLORMAP_PLACES + 1, COLORMAP_PATTER
 enum colormap_pattern { PATTERN_HATCH_LIGHT, PATTERN_HATCH_DARK, PATTERN_STIPPLE, PATTERN_PLAIN_LIGHT, PATTERN_PLAIN_DARK, PATTERN_COUNT };
 enum { COLORMAP_COLUMNS = COLORMAP_PATTERNS + PATTERN_COUNT };
 
-extern const uint8_t colormap_no_data[2][3];   /* sRGB of the two stripes of the no-data hatch */
-extern const uint8_t colormap_no_limits[2][3]; /* sRGB of background and lines of the pattern for tags without alarm limits */
-extern const uint8_t colormap_uncertain[3];    /* sRGB of the dots of the uncertain pattern */
+extern const uint8_t colormap_no_data[2][3];   /* sRGB colours of light and dark stripes of the hatch that marks places without data */
+/* sRGB colours of background and lines of the pattern that marks tags without alarm limits */
+extern const uint8_t colormap_no_limits[2][3];
+extern const uint8_t colormap_uncertain[3];    /* sRGB colour of the dots that mark uncertain values */
 
 /* Columns of colormap_shades: the map's 256 colours, the colour below the range, the colour above it, then the colours of patterns. Each
    row is one brightness step. */

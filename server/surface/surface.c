@@ -21,7 +21,7 @@
 /* distance up to which vertices are welded (treated as one), relative to the model's size: the resolution of float positions */
 #define WELD_OF_SIZE 1e-6
 #define TOLERANCE_OF_SIZE 5e-4
-#define SAMPLES 15000.0        /* number of points that sampling aims at, in addition to the model's vertices */
+#define SAMPLES 15000.0        /* number of points that sampling should add to the model's vertices */
 #define SPACING_GROWTH 1.25    /* if sampling gives too many points, it is repeated with a spacing larger by this factor */
 #define POINTS_PER_SPACING 2.7 /* number of points that sampling by halving edges gives in a square whose side is the spacing; measured */
 

@@ -27,7 +27,9 @@ struct surface {
     struct propagation propagation;
     struct bvh *bvh;
     uint32_t *plane; /* by model triangle: lowest index of the coplanar model triangles with which it was merged (decimate.h) */
-    uint32_t *piece_first, *pieces; /* visible triangles grouped by `plane` of their model triangle */
+    /* pieces: visible triangles, grouped by `plane` of their model triangle; piece_first: by plane, index in `pieces` of its first
+       triangle */
+    uint32_t *piece_first, *pieces;
     double edge_m;                  /* mean edge length */
     struct surface_report report;
     struct crack_bridge *bridges;

@@ -11,7 +11,7 @@ struct depth_query {
     const struct depth_cell *cells; /* cells that the GPU computes, in GPU memory that is mapped into this process */
     size_t capacity;
     struct depth_lens lens;
-    int width_px, height_px; /* size of the frame in pixels; 0: the frame gets no depth grid */
+    int width_px, height_px; /* size in pixels of the frame whose cells are computed; 0: the frame gets no depth grid */
 };
 
 /* Starts computing the cells of the frame's depth grid on the GPU, if the frame gets a grid. Call it after the multisampled frame is

@@ -23,7 +23,7 @@ struct draw_batch_state {
     /* buffers (pool.h) with baked light and with field values per vertex; field NULL: the asset has no group of sensors or no reading */
     const struct pool_page *light, *field;
     int front;    /* as scene_asset.front */
-    int material; /* index of the material in the model; -1: the program uses no material */
+    int material; /* index of the material in the model; -1: the shader program reads no material */
     int alone;    /* index of an asset that must not share its batch; -1: may be shared */
     bool two_sided, mirrored, cut, blend;
 };
@@ -46,7 +46,8 @@ struct draw_batches { /* zero-initialise, then set log */
     struct draw_batch *at;
     size_t count, from; /* count: number of batches; from: a new draw command may only join batches from this index on */
     struct draw_instance *instances;
-    struct draw_command *commands, *sorted; /* commands: in the order added; sorted: by batch */
+    /* commands: draw commands in the order in which they were added; sorted: the same commands, ordered by batch */
+    struct draw_command *commands, *sorted;
     uint32_t *batch_of, *place_of;          /* by index in `commands`: index of the command's batch, and the command's index in `sorted` */
     size_t *newest;                         /* by model: index of its most recently made batch */
     size_t instance_count, command_count;
@@ -55,7 +56,7 @@ struct draw_batches { /* zero-initialise, then set log */
     size_t instance_room, command_room, place_room;
 };
 
-/* Frees all memory and GL buffers. */
+/* Frees the memory and the GL buffers of *batches. */
 void draw_batches_finish(struct draw_batches *batches);
 /* Removes all batches, commands and instances at the beginning of a pass. */
 void draw_batches_begin(struct draw_batches *batches, size_t model_count);

@@ -24,7 +24,7 @@ struct frames_in_flight {
 /* Compiles the shader programs. Returns false on failure, logged. */
 bool frames_in_flight_init(struct frames_in_flight *frames_in_flight, struct log *log);
 void frames_in_flight_finish(struct frames_in_flight *frames_in_flight);
-/* Takes a free slot. Returns NULL if all are taken; logged. */
+/* Takes a free slot for a frame that is to be submitted to the GPU. Returns NULL if all slots are taken; logged. */
 struct frame_in_flight *frames_in_flight_take(struct frames_in_flight *frames_in_flight, struct log *log);
 /* Frees a slot whose results have been read or are no longer wanted. Accepts NULL. */
 void frames_in_flight_give(struct frame_in_flight *in_flight);

@@ -21,7 +21,7 @@ struct gl_backend {
     GLuint frame_buffer; /* uniform buffer of struct frame_uniforms */
     struct targets targets;
     double pixel_ns[GL_PASSES]; /* last measured drawing time per pixel in nanoseconds, by pass (enum gl_pass) */
-    int64_t refined_ns;         /* GPU time of the last refined frame; 0: unknown */
+    int64_t refined_ns;         /* GPU time in nanoseconds that the last refined frame took; 0: unknown */
 };
 
 /* Binds the light set, the colour map and the uniforms of a frame in GL. Call it again when the frame is continued after others were drawn.

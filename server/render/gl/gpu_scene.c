@@ -112,7 +112,7 @@ void gpu_scene_clip_end(const struct clip *clip)
         glDisable(GL_CLIP_DISTANCE0 + (GLenum)i);
 }
 
-/* Uniform locations and the texture unit; must match the shaders. */
+/* Uniform locations and the texture unit of shaders/depth.vert and depth.frag; must match these shaders. */
 enum { CLIP_FROM_FILE = 0, MATERIAL = 2, PLANES = 4, UNIT_BASE_COLOR = 3 };
 
 static void set_planes(const double clip_from_plant[16], const struct clip *clip)

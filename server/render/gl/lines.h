@@ -14,7 +14,7 @@ struct gl_lines {
 /* Compiles the shader programs for edges and outlines. Returns false on failure, logged. */
 bool lines_init(struct gl_lines *lines, struct log *log);
 void lines_finish(struct gl_lines *lines);
-/* Darkens the frame where depth or normal change abruptly. */
+/* Draws feature edges: darkens the frame where its depth has a step, so that the shapes of assets are visible. */
 void lines_draw_edges(const struct gl_lines *lines, const struct frame_context *context);
 /* Returns the width in pixels of the outline's dark line; the light line next to it has the same width. Pure. */
 double lines_outline_px(const struct view *view);

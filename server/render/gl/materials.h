@@ -9,7 +9,7 @@
 /* Uploads materials and textures of a model that model_init() made. up: the plant's up direction. Returns false when the GPU is out of
    memory. */
 bool materials_upload(struct gl_model *model, struct gl *gl, const struct environment_light *sky, const double up[3]);
-/* Deletes the objects that materials_upload() made; call before model_finish(). */
+/* Deletes the GL textures and buffers that materials_upload() made; call before model_finish(). */
 void materials_finish(struct gl_model *model);
 
 #endif

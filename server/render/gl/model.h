@@ -33,7 +33,7 @@ struct model_level {
 
 struct model_material {
     GLuint maps[MODEL_MAPS]; /* GL texture of each material map (enum model_map), owned by the model; 0: none */
-    int mask;                /* bit mask, by enum model_map: maps that the material has */
+    int mask;                /* bit mask, by enum model_map: texture maps that the material has */
     int second;              /* bit mask, by enum model_map: maps that use the second set of texture coordinates */
     bool masked;             /* true: alpha of the base colour cuts holes (glTF alphaMode MASK) */
 };
@@ -50,7 +50,7 @@ struct gl_model {
     GLuint ramps[MODEL_RAMPS];          /* textures of the colour ramps, by MODEL_MUTED and MODEL_OWN; one row per material */
 };
 
-struct model_draws { /* scratch memory for the draws of one submesh; zero-initialise */
+struct model_draws { /* working memory for the index ranges with which one submesh is drawn; zero-initialise */
     GLsizei *counts;
     const void **offsets;
     size_t count_capacity, offset_capacity;

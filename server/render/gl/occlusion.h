@@ -29,7 +29,7 @@ struct occlusion { /* culling state of the frame drawn last; zero-initialise, th
     size_t box_room;                     /* number of bytes for which the GPU buffer box_buffer has room */
 };
 
-/* Compiles the shader program of the box test. Returns false on failure, logged. */
+/* Compiles the shader program that tests bounding boxes. Returns false on failure, logged. */
 bool occlusion_init(struct occlusion *occlusion, struct log *log);
 void occlusion_finish(struct occlusion *occlusion);
 /* Collects the boxes of all visible assets; call before the opaque draw commands are collected. Returns false if the frame has fewer than

@@ -9,7 +9,7 @@
 #include "render/plan/culling.h"
 #include "render/matrix.h"
 
-/* Uniform locations and texture units; must match the shaders. */
+/* Uniform locations of the shaders preview.* and refined.*; must match these shaders. */
 enum { MATERIAL = 2, TEXTURES = 3 };
 /* Polygon offset factor per unit of scene_asset.front, the rank among assets whose faces coincide. GPUs round corners to fractions of a
    pixel, differently for each triangle, so coincident faces differ in depth by a fraction of their depth slope. */

@@ -37,7 +37,8 @@ struct surface_pass {
     int least_hiding;
     bool one_by_one; /* true: each asset is drawn with GL calls of its own instead of in batches; for comparison in tests */
     struct draw_batches opaque, blended;
-    int triangles;                                       /* triangles submitted so far, not counting culled ones; the caller resets it */
+    /* number of triangles submitted to GL so far, without culled ones; the caller sets it to 0 for each frame */
+    int triangles;
     GLuint programs[SURFACE_KINDS][2][SURFACE_VARIANTS]; /* [kind][refined][features]; 0: not compiled yet */
 };
 

@@ -18,7 +18,7 @@ bool targets_take(struct targets *targets, struct log *log, int width_px, int he
 void targets_give(struct targets *targets, const struct target *target);
 /* Returns the bytes of GPU memory that the free targets take. */
 size_t targets_bytes(const struct targets *targets);
-/* Sets the memory limit, and deletes the targets that exceed it. */
+/* Sets the memory limit of the cache, and deletes free targets that exceed it. */
 void targets_bound(struct targets *targets, size_t bytes);
 /* Deletes all free targets. */
 void targets_finish(struct targets *targets);

@@ -17,7 +17,7 @@ struct bake_faces {
 /* Finds the triangles of an asset's finest level of detail that have an edge of at least least_m metres. Returns false when the GPU is out
    of memory, logged; `count` is 0 then. */
 bool bake_faces_init(struct bake_faces *faces, const struct gpu_scene *gpu_scene, size_t asset, double least_m);
-/* Deletes the buffers and sets count to 0. */
+/* Deletes the GL buffers of `faces` and sets its count to 0. */
 void bake_faces_finish(struct bake_faces *faces);
 
 #endif

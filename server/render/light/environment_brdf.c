@@ -6,7 +6,7 @@
 
 enum { SAMPLES = 512 };
 
-struct facets { /* half vectors sampled from the GGX distribution of one roughness */
+struct facets { /* sampled half vectors (microfacet normals) of a surface of one roughness, distributed by GGX */
     double alpha, n_h[SAMPLES], side[SAMPLES];
 };
 

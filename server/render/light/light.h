@@ -24,7 +24,7 @@ struct light {
     struct openness_writer *writer; /* thread that writes the openness file; NULL: not writing */
 };
 
-/* Compiles the programs; bakes nothing yet. Returns false on failure, logged. */
+/* Compiles the shader programs for baking; bakes no light yet. Returns false on failure, logged. */
 bool light_init(struct light *light, const struct gpu_scene *gpu_scene, struct environments *environments);
 void light_finish(struct light *light);
 /* Returns the light set (baked light) for `key`; if it is not cached, bakes it and waits. With key->rough, the bake takes a fraction of the

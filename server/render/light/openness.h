@@ -8,7 +8,7 @@
 #include "gpu/pool.h"
 #include "render/gl/gpu_scene.h"
 
-enum { OPENNESS_GROUND_PX = 256 }; /* size of the ground's texture in texels */
+enum { OPENNESS_GROUND_PX = 256 }; /* width and height, in texels, of the texture with the ground's light */
 
 struct openness { /* the mapped file: openness of the ground's texels, then of the vertices, asset by asset */
     struct cache_file file;

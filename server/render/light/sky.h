@@ -14,7 +14,7 @@ struct sky {
     GLuint vao;                             /* without attributes */
 };
 
-/* Compiles the programs and computes the backdrops. Returns false on failure, logged. */
+/* Compiles the shader programs and computes the colours of the backdrops. Returns false on failure, logged. */
 bool sky_init(struct sky *sky, struct log *log);
 void sky_finish(struct sky *sky);
 /* Returns whether the ground is drawn: the camera is above it, and no asset is cut, hidden or ghosted, since the ground's shadow is that of

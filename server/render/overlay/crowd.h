@@ -8,7 +8,7 @@
 struct crowd_item {
     double x, y, depth_m;
     bool occluded;
-    bool kept; /* true: the marker is drawn however many other markers are near it */
+    bool kept; /* true: the marker is always drawn, however many other markers are near */
     bool held; /* true: the marker was drawn in the previous frame */
 };
 

@@ -11,7 +11,8 @@
    shared a call-out in the previous frame */
 static const double CLOSE = 26, STILL_CLOSE = 34;
 static const double GROWTH = 1.25; /* factor by which CLOSE and STILL_CLOSE grow, repeatedly, until at most MAX_GROUPS labels remain */
-enum { MAX_GROUPS = 24 }; /* more alarm rings are a flood */
+/* maximum number of labels; more alarm rings than this count as a flood, in which rings of one asset share a call-out */
+enum { MAX_GROUPS = 24 };
 /* Grid of further label positions around the centre of a group of alarm rings, tried nearest first. STEP_X, STEP_Y: spacing in units;
    STEPS: number of steps to each side of the centre. */
 enum { STEP_X = 24, STEP_Y = 15, STEPS = 60, SIDE = 2 * STEPS + 1, OFFSETS = SIDE * SIDE, NOWHERE = -2, FORCED = 1000000 };

@@ -92,7 +92,7 @@ static void draw_header(struct pen *pen)
     pen_take(pen, &box);
 }
 
-/* Returns whether any shown sensor has a reading that is not Bad. */
+/* Returns whether any sensor of the shown group has a reading that is not Bad. */
 static bool is_live(const struct pen *pen)
 {
     const struct plant *plant = pen->scene->plant;
@@ -155,7 +155,7 @@ static void draw_rest(struct pen *pen)
     bool shared = pen->frame->view.split && overlay_legend_is_shared(pen);
     for (int half = shared ? 1 : 0; half < halves; half++) {
         pen_choose_half(pen, half);
-        if (pen->view.look != LOOK_MATERIALS) /* a half of the view that shows no field gets no legend */
+        if (pen->view.look != LOOK_MATERIALS) /* LOOK_MATERIALS: a half of the view that shows no field needs no legend */
             overlay_legend(pen);
     }
     if (!pen->bare)

@@ -24,7 +24,7 @@ enum row {
     ROW_NOWHERE,
     ROW_ALARM /* priority 1; further priorities follow */
 };
-/* Texts of the legend, and positions of its parts. */
+/* Texts of the legend, and positions of its card (background) and colour bar. */
 struct legend {
     char title[160], above[60], below[60], since[120], longest[80], drawn_error[120];
     enum row rows[ROWS]; /* rows below the colour bar */

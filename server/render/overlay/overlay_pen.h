@@ -39,14 +39,14 @@ bool pen_is_free(const struct pen *pen, const struct label_box *box);
 void pen_take(struct pen *pen, const struct label_box *box);
 /* Draws a card with a thin border, as a background for text: light or dark, like the backdrop. */
 void pen_card(struct pen *pen, const struct label_box *box);
-/* Sets the path to the outline of a box with rounded corners. */
+/* Sets cairo's current path to the outline of a box with rounded corners. */
 void pen_rounded_path(struct pen *pen, const struct label_box *box);
 /* pen_rgb sets an sRGB colour. pen_ink sets the colour of text on cards. pen_dark sets the colour of markers and lines, which have light
    rims. */
 void pen_rgb(struct pen *pen, const uint8_t rgb[3]);
 void pen_ink(struct pen *pen, double alpha);
 void pen_dark(struct pen *pen, double alpha);
-/* Sets the font of the following texts. size: a multiple of text_px. */
+/* Sets the font in which the pen draws from now on. size: a multiple of text_px. */
 void pen_font(struct pen *pen, double size, bool bold);
 /* Returns the width of a text in the current font. */
 double pen_text_width(struct pen *pen, const char *text);
@@ -78,7 +78,7 @@ void overlay_strip(struct pen *pen, uint8_t *bgrx, int stride_bytes);
 void overlay_legend(struct pen *pen);
 /* Returns whether both halves of a split view have equal legends. Afterwards the pen draws on the right half. */
 bool overlay_legend_is_shared(struct pen *pen);
-/* Returns the width of the legend with its margins. */
+/* Returns the width of the legend in pixels, with the margins around it. */
 double overlay_legend_width(struct pen *pen);
 /* Draws a caption in each half of a split view: the caption lists how the half differs from the other, except what the legends show. The
    view must be split. Afterwards the pen draws on the right half (pen_choose_half). */

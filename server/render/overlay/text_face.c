@@ -34,7 +34,7 @@ static void free_found(void *arg)
     mem_free(found);
 }
 
-/* Returns NULL if memory is short. */
+/* Returns the cached font for regular or bold text, of which the drawing context keeps one each. NULL: out of memory. */
 static struct found_face *found_of(cairo_t *cairo, bool bold)
 {
     struct found_face *found = cairo_get_user_data(cairo, &found_key);

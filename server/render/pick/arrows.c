@@ -51,7 +51,7 @@ static void add_triangle(struct arrow_candidates *candidates, const uint32_t cor
         return;
     int cuts = (int)min_of(ceil(2 * longest_m / candidates->spacing_m), MAX_CUTS);
     for (int i = 0; i < cuts; i++)
-        for (int j = 0; j < 2 * (cuts - i) - 1; j++) { /* every second part (odd j) is an upside-down triangle */
+        for (int j = 0; j < 2 * (cuts - i) - 1; j++) { /* every second small triangle (odd j) points the other way */
             double third = j % 2 ? 2.0 / 3 : 1.0 / 3, a = (i + third) / cuts, b = (j / 2 + third) / cuts;
             mem_grow(&candidates->at, &candidates->capacity, candidates->count + 1, sizeof(*candidates->at));
             candidates->at[candidates->count++] =

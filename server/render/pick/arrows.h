@@ -18,7 +18,7 @@ struct arrow_set {                  /* arrows of one asset; zero-initialise, fre
 
 /* Returns how many of the asset's vertices, from the first on, must have current field values, because arrows read them. Pure. */
 size_t arrows_vertex_count(const struct scene_asset *asset);
-/* Updates the directions of the arrows from the asset's field entry. */
+/* Computes the directions of the asset's arrows from the sensor directions in `field`, if these have changed. */
 void arrows_update(struct arrow_set *set, const struct scene *scene, int asset, const struct fields_entry *field);
 /* Returns the field's value at the position with index `place`, in the field's unit; NaN where there is no data. */
 double arrows_value(const struct arrow_set *set, size_t place, const struct asset_view *file, const struct fields_entry *field);

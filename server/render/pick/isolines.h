@@ -36,7 +36,7 @@ struct isoline_points { /* isoline points of one frame; zero-initialise, free `a
     uint16_t stroke_count;
 };
 
-/* Returns whether a frame of this view has arrows. Pure. */
+/* Returns whether frames of this view show arrows or strokes for the directions of a field. Pure. */
 bool isolines_has_arrows(const struct scene *scene, const struct view *view);
 void isolines_init(struct isolines *isolines, size_t asset_count);
 void isolines_finish(struct isolines *isolines);

@@ -20,7 +20,7 @@ struct stroke_set { /* strokes of one asset; zero-initialise, free with strokes_
     int *lengths; /* number of points per stroke; 0: the direction at its start is unknown */
     size_t count;
     bool sought;
-    uint64_t content; /* hash of the sensor directions that the strokes follow */
+    uint64_t content; /* hash of the sensor directions from which the strokes were traced */
 };
 
 /* Traces the asset's strokes (short streamlines) again if the directions of its arrows changed; `arrows` must be up to date. */

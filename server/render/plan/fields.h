@@ -21,7 +21,7 @@ struct fields_entry {
        - travel` is an upper bound of the error of any shown value */
     double travel;
     uint64_t content; /* hash of the first `hashed` values in `shown`, as many as the last request needed */
-    size_t hashed;    /* number of shown scalars that `content` covers; SIZE_MAX: `content` is out of date */
+    size_t hashed;    /* number of values in `shown` that the hash `content` covers; SIZE_MAX: `content` is out of date */
     /* sensors of a field that is evaluated at pixels; count 0: the field is interpolated between vertices, from `shown` */
     struct pixel_field pixels;
     struct scalar *shown;
@@ -30,7 +30,7 @@ struct fields_entry {
     bool uploaded;  /* true: `slice` (range of a GPU buffer) holds the shown values */
     GLuint sensors; /* buffer of sensors for shaders that compute the field at each fragment (render/reference/reference.h); 0: none */
     int64_t oldest_age_ns;
-    double drawn_error; /* largest error of the shown values (field/scalars.h) */
+    double drawn_error; /* bound of the error of interpolating `shown` within triangles (struct scalars, field/scalars.h) */
     uint64_t used;
     struct sensor_direction *directions; /* directions of the group's sensors (field/directions.h); NULL: the group has none */
     size_t direction_count;
@@ -69,7 +69,7 @@ size_t fields_vertices(const struct fields *fields, int asset, const struct fiel
 /* Uploads the entries of these assets; call before the GPU draws with them. Returns false if an entry did not fit, which is logged: its
    element of `entries` then points to an entry that shows no data. */
 bool fields_upload(struct fields *fields, const int *assets, size_t count, const struct fields_entry **entries);
-/* Evicts entries that exceed the memory limit. Call between frames. */
+/* Evicts cache entries until the rest fits the memory limit. Call between frames. */
 void fields_trim(struct fields *fields);
 void fields_drop(struct fields *fields); /* evicts all entries */
 

@@ -23,7 +23,7 @@ void view_constants_init(struct view_constants *constants, const struct view *vi
 /* Narrows the frustum planes to a rectangle of the frame; the matrices stay unchanged. low, high: corners of the rectangle in normalised
    device coordinates (-1 to 1). */
 void view_constants_narrow(struct view_constants *constants, const double low[2], const double high[2]);
-/* Returns whether the asset's bounds intersect the frustum. */
+/* Returns whether the asset's bounding box intersects the view frustum. */
 bool view_constants_sees(const struct view_constants *constants, const struct scene_asset *asset);
 /* Shifts an asset's clip-space matrix towards the viewer where its faces coincide with another asset's (scene/coincident.h). */
 void view_constants_bring_forward(const struct view_constants *constants, const struct scene_asset *asset, double clip_from_file[16]);

@@ -17,7 +17,7 @@ struct soft_kernels {
     void (*carry_part)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
     /* Lists the faces (front-facing triangles) of a part (group of triangles) that need no clipping and whose corners are all projected. */
     void (*find_faces)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_found *found, const struct soft_part *part);
-    /* Draws depth and marks (contents of pixels, soft_impl.h) of all listed faces. */
+    /* Draws all faces that find_faces listed: writes the depth and the mark (32-bit content, soft_impl.h) of each pixel. */
     void (*raster_faces)(const struct soft_tile *tile, uint32_t mark);
     /* Counts closed bodies along the view ray of each pixel, for section caps, and stores the count as the pixel's mark: a listed face that
        looks away from the eye adds 1, a face towards the eye subtracts 1. */

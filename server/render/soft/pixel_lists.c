@@ -262,7 +262,8 @@ SOFT_INLINE lanes distances_of(const struct eight_sensors *of, const struct box 
    sensor of that state */
 struct nearest_bounds {
     float used, lost, no_limits;
-    float top; /* base-2 logarithm of a number close to the largest weight in the box */
+    /* base-2 logarithm of a number close to the largest weight in the box; weights are divided by that number to fit in floats */
+    float top;
 };
 
 SOFT_INLINE void bound_nearest(const struct pixel_field *field, const struct node *from, const struct box *box, struct nearest_bounds *out)
@@ -346,7 +347,7 @@ SOFT_INLINE float bound_errors(const struct building *building, const struct nod
     return fmaxf(sum_of(least), square ? least_by_centre(&sums) : 0);
 }
 
-/* Returns the sum of those errors that are at most `most`. */
+/* Returns the sum of all elements of errors[] that are at most `most`. */
 SOFT_INLINE float sum_up_to(const float *errors, int count, float most)
 {
     lanes sum = { 0 };

@@ -24,7 +24,7 @@ struct pixel_list {
                                 `count` sensors */
     size_t first;            /* index of the list's first sensor in pixel_lists.sensors */
     int count;
-    bool all_used;  /* true: all listed sensors have a reading that counts */
+    bool all_used;  /* true: all sensors in the list have a usable reading */
     bool has_far;   /* true: at least one sensor with a reading is not in the list; the polynomials below approximate its weight */
     bool has_marks; /* true: at least one far sensor has a reading of quality Uncertain */
     /* Polynomials that replace sums over the far sensors: of their weights, of weights times values, and of the weights of those that are

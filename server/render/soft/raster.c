@@ -145,7 +145,7 @@ SOFT_INLINE void narrow(const struct setup *setup, float y, int *left, int *righ
     }
 }
 
-/* Clears the lanes of pixels at which the texture has a hole. */
+/* Returns the mask `seen` without those of eight pixels at which the face's texture has a hole. */
 SOFT_INLINE lanes_int leave_out_holes(const struct soft_cutout *cutout, lanes x, float y, lanes_int seen)
 {
     for (uint32_t bits = lanes_bits(seen); bits; bits &= bits - 1) {

@@ -52,7 +52,7 @@ struct refined {
 
 struct refined_item { /* one surface within a pixel */
     struct soft_triangle triangle;
-    float x, y;     /* position in the frame, in pixels, at which the surface is shaded */
+    float x, y;     /* point of the frame, in pixels, at which the surface's light is computed */
     uint16_t share; /* area of the pixel that the surface covers, 0..VISIBILITY_SHARES */
 };
 

@@ -164,11 +164,12 @@ struct raster { /* source and target of one frame's rasterization; its memory is
        through which view rays enter the space that is kept */
     float cuts[CLIP_MAX_PLANES][4];
     int cut_count, entry_count;
-    float shift_px[2];  /* offset of this pass's samples from the pixel centres, in pixels */
+    float shift_px[2];  /* offset in pixels of the samples that are now drawn from the pixel centres; 0 in previews */
     bool counts_bodies; /* true: the frame has section caps, for which the closed bodies at each pixel are counted (caps.c) */
     bool blends;        /* true: some of the parts (groups of triangles) found are blended (transparent) */
     bool has_ground;
-    bool greys;                                                                /* assets without a field are drawn grey */
+    /* true: assets without a field are drawn grey (in views of values relative to alarm limits) */
+    bool greys;
     float sun_from_pixel[4][4], ground_from_pixel[3][3], ray_from_pixel[3][3]; /* matrices, as columns */
     /* cells of the depth grid; finds_cells: true: raster_tiles() with SOFT_COLORS computes the cells, too */
     struct depth_cell *cells;
@@ -242,8 +243,10 @@ float raster_entry_depth(const struct raster *raster, float x, float y);
 /* Lists the meshes and parts (groups of triangles) that may be visible. bodies: also lists parts that bound closed bodies which a section
    plane cuts open. Returns false when out of memory. */
 bool raster_find(struct raster *raster, bool bodies);
-bool raster_find_only(struct raster *raster, int asset); /* lists one asset's parts; their back faces are drawn, too */
-bool raster_find_ghosts(struct raster *raster);          /* lists the parts (groups of triangles) of ghosted assets */
+/* like raster_find(), but lists the parts of one asset only; their back faces are drawn, too */
+bool raster_find_only(struct raster *raster, int asset);
+/* like raster_find(), but lists the parts (groups of triangles) of ghosted assets */
+bool raster_find_ghosts(struct raster *raster);
 /* draws the lines of ghosted assets into `veil` (rows of width_px): by pixel, the part that a line covers, 0..255; overwrites the marks.
    bgr: receives the lines' colour. Returns false when out of memory */
 bool raster_ghosts(struct raster *raster, uint8_t *veil, uint8_t bgr[3]);
@@ -275,6 +278,7 @@ void raster_find_triangle(const struct raster *raster, uint32_t id, struct soft_
 /* Computes the weights of the triangle's three corners at any point of the frame, up to a common factor: weight i = weights[i][0] x +
    weights[i][1] y + weights[i][2]. vertices: indices in the asset file. */
 void soft_weights(const struct soft_mesh *mesh, const uint32_t vertices[3], double weights[3][3]);
-void raster_outline(const struct raster *raster); /* draws an outline around all pixels that have a mark; overwrites raster->depth */
+/* draws the outline of the selected asset around all pixels that have a mark; overwrites raster->depth */
+void raster_outline(const struct raster *raster);
 
 #endif

@@ -60,7 +60,7 @@ struct soft_tile {
     struct soft_rect rect; /* rectangle of the tile; its width is a multiple of LANES */
     struct soft_sample samples[MOST_SAMPLES];
     int sample_count, pitch_px; /* number of samples per pixel; pitch_px: number of elements from one row of samples to the next */
-    float reach_px;             /* largest distance of a sample from the pixel's centre along either axis */
+    float reach_px;             /* largest offset of a sample from its pixel's centre, along x or y, in pixels */
     float farthest[BLOCK_ROWS][BLOCK_COLUMNS]; /* farthest depth in each block of 8 x 8 pixels; a surface entirely behind it is hidden */
     struct soft_corners corners;
     struct soft_face faces[MOST_FACES];

@@ -176,7 +176,7 @@ static void look_at_all(struct soft_tile *tile)
     tile->raster->soft->kernels->look_again(tile, &blocks);
 }
 
-/* Draws section caps first: they hide everything behind them. */
+/* Draws the tile's section caps before all other parts, because caps hide everything behind them. */
 static void draw_caps(struct soft_tile *tile, const struct tile_list *list)
 {
     const struct raster *raster = tile->raster;

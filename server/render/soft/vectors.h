@@ -68,7 +68,7 @@ SOFT_INLINE vec unit(vec a)
     return times(a, 1.0f / root(most_of(dot(a, a), all(1e-30f))));
 }
 
-/* Packs colours of 0..1 into 24 bits, blue lowest. */
+/* Packs colour channels of 0..1 into 24-bit colours: blue | green << 8 | red << 16. */
 SOFT_INLINE lanes_int pack_color(lanes red, lanes green, lanes blue)
 {
     return lanes_whole(blue * 255.0f + 0.5f) | lanes_whole(green * 255.0f + 0.5f) << 8 | lanes_whole(red * 255.0f + 0.5f) << 16;

@@ -98,7 +98,7 @@ struct visibility_buffer {
     uint8_t *ink;
     uint8_t *veil; /* by pixel: coverage by ghost lines, 0..255; NULL: there are no ghosts */
     uint8_t veil_bgr[3];
-    bool lined;   /* true: slopes of corner weights are stored, because isolines need them */
+    bool lined;   /* true: the bands' `slopes` are stored, because the frame has isolines */
     float *depth; /* depth of each pixel, for placing isoline labels; rows of width_px; NULL: not stored */
     struct visibility_band *bands;
     struct visibility_mesh *meshes;
@@ -106,7 +106,8 @@ struct visibility_buffer {
     bool evaluates; /* true: the field of at least one mesh is evaluated at pixels */
     /* true: resolve_read() must compute the bands' `cells` again, because the set of meshes with many sensors has changed */
     bool finds_cells;
-    float scale[4];     /* value of struct frame_uniforms.scale with which the vertices' values were converted */
+    /* frame_uniforms.scale (MIN, range and logarithm of the colour scale) by which the values in `carried` were computed */
+    float scale[4];
     uint32_t *vertices; /* vertices that some pixel shows, mesh by mesh: index of each in the asset's file */
     /* value at each visible vertex, which is interpolated over triangles: column of the colour map (on a logarithmic scale the field's
        value); NAN: a flag of the vertex selects a pattern */

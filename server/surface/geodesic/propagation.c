@@ -34,7 +34,7 @@ static void tri_sides(const struct propagation *propagation, const struct intrin
 
 /* --- fans ---------------------------------------------------------------------------------------------------------------------- */
 
-struct end { /* other end of a triangle's side that begins at the current point */
+struct end { /* other end, and length, of a triangle's side that begins at the point whose fan is being built */
     uint32_t to;
     float length_m; /* as in struct propagation_fan */
 };

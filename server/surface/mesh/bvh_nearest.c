@@ -193,7 +193,7 @@ void bvh_set_labels(struct bvh *bvh, const uint32_t *label)
 
 struct nearest_search {
     const struct bvh *bvh;
-    uint32_t skipped; /* label of triangles that the search skips; BVH_MIXED: it skips none */
+    uint32_t skipped; /* label of the triangles that the search skips (bvh_set_labels); BVH_MIXED: it skips none */
     const double *point;
     bool (*allowed)(const void *arg, uint32_t tri);
     const void *arg;

@@ -42,7 +42,7 @@ struct solids {
     size_t count;
     uint32_t (*tris)[3];    /* triangles of all parts, sorted by part */
     signed char *sides;     /* orientations of all these triangles (body_parts.side), in the same order */
-    struct solid **of_part; /* by part: the part's entry in `at`; NULL: the part is not closed */
+    struct solid **of_part; /* by part: the part as a struct solid; NULL: the part is not closed */
 };
 
 static void solids_finish(struct solids *solids)

@@ -13,7 +13,7 @@ struct mesh_edit {
     } * items;
     struct mesh_edit_pair {
         uint32_t a, b;
-    } * pairs, *joins; /* pairs: points to merge; joins: points to connect by an edge */
+    } * pairs, *joins; /* pairs: pairs of points to merge; joins: pairs of points to connect by an edge */
     size_t item_count, item_capacity, pair_count, pair_capacity, join_count, join_capacity;
     double longest_m;
 };

@@ -164,7 +164,7 @@ static void number_parts(struct parts_finding *f, const struct branches *b)
     uint32_t *number = mem_array(tri_count, sizeof(*number)), *part = parts->of_tri;
     memcpy(part, f->patch, tri_count * sizeof(*part));
     join_patches(f, b, part);
-    /* the lowest triangle of a part identifies the part, and has the part's index before the other triangles look it up there */
+    /* the lowest triangle of a part is visited first: it gets the part's index, which the part's other triangles copy */
     for (uint32_t t = 0; t < tri_count; t++)
         number[t] = trimesh_root(part, t) == t ? (uint32_t)parts->count++ : number[trimesh_root(part, t)];
     memcpy(part, number, tri_count * sizeof(*part));
