@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Counts what each client address uses, and compares it with the quotas. */
+/* Counts what each client address uses (connections, requests, bytes), and compares it with the quotas. */
 #include "net/address_limits.h"
 
 #include <arpa/inet.h>
@@ -13,7 +13,7 @@ struct address_limits {
     /* usage of each known address: a few thousand at most, because the list is searched when a connection opens */
     struct address_usage **all;
     size_t count, capacity;
-    uint64_t payers; /* newest address id (address_share.account) that was given out; ids count up from 1 */
+    uint64_t payers; /* newest id of an address (address_share.account) that was assigned; ids count up from 1 */
     bool exempt;
 };
 

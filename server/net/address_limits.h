@@ -10,26 +10,26 @@ struct address_usage {
     bool local;          /* loopback: 127.x or ::1 */
     int refs, connections, sessions;
     int named;               /* number of connections from a reverse proxy whose last request named this client address */
-    int pictures, questions; /* numbers of HTTP requests that are being answered: for pictures, and for history */
+    int pictures, questions; /* numbers of HTTP requests of the address that are being answered: requests for pictures, and for history */
     int64_t answer_bytes;    /* bytes of HTTP answers that the client has not read yet */
     struct address_share share;
     int64_t rate_begin_ns, messages; /* number of stream messages within the second that began at rate_begin_ns (monotonic) */
 };
 
 struct address_limits;
-/* exempt: true: loopback addresses have no limits of their own unless the user set one; the server's total limits still apply. Never
-   returns NULL. */
+/* exempt true: loopback addresses have no limits of their own unless the user set one; the server's total limits still apply. Never returns
+   NULL. */
 struct address_limits *address_limits_create(const struct quotas *quotas, bool exempt);
 void address_limits_destroy(struct address_limits **limits); /* destroys the limits and sets *limits to NULL; accepts a pointer to NULL */
 
 /* Returns the usage of a numeric address, and creates it if needed. The caller owns a reference (address_limits_unref). All texts that are
-   no address share one usage struct. */
+   not a valid address share one struct. */
 struct address_usage *address_limits_ref(struct address_limits *limits, const char *address);
 /* Releases a reference and sets *usage to NULL; accepts a pointer to NULL. */
 void address_limits_unref(struct address_limits *limits, struct address_usage **usage);
 
-/* Each function checks one quota and returns whether the address may have one more of these, in this order: connection; stream; connection
-   of a proxy; history query; HTTP answer of `count` bytes; picture over HTTP. */
+/* Each function checks one quota of the address and returns whether it allows one more. The functions check in this order: connection;
+   stream; connection of a proxy; history query; HTTP answer of `count` bytes; picture over HTTP. */
 bool address_limits_may_connect(const struct address_limits *limits, const struct address_usage *usage);
 bool address_limits_may_stream(const struct address_limits *limits, const struct address_usage *usage);
 bool address_limits_may_be_named(const struct address_limits *limits, const struct address_usage *usage);

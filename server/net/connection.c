@@ -12,7 +12,8 @@
 #include "net/tls.h"
 
 static const char LOCAL[] = "local";            /* name that journals show for a user on this machine who needs no token */
-static const char SIGNED_IN[] = " (signed in)"; /* suffix added to a signed-in user's name if a token has the same name */
+static const char SIGNED_IN[] = " (signed in)"; /* suffix added to the name of a user who signed in with OpenID Connect, if a token has the
+                                                   same name */
 
 static const struct http_refusal NO_HOST = { 400, "HTTP/1.1 requires the header Host\n", REFUSAL_NONE };
 static const struct http_refusal WRONG_HOST = { 403, "the header Host has a name that this server does not accept; --host NAME allows it\n",
@@ -173,7 +174,7 @@ static bool find_client(struct server_context *server, struct lws *wsi, struct c
 
 static bool has_token_in_query(struct lws *wsi)
 {
-    char argument[4096]; /* size of the header buffer: larger than all headers of a request together that libwebsockets keeps */
+    char argument[4096]; /* room for one header; larger than all headers of a request together that libwebsockets keeps */
     for (int i = 0; lws_hdr_copy_fragment(wsi, argument, sizeof(argument), WSI_TOKEN_HTTP_URI_ARGS, i) >= 0; i++)
         if (access_argument_is_token(argument))
             return true;
@@ -267,7 +268,7 @@ void connection_log_login(struct server_context *server, struct lws *wsi, const 
                  LOGIN_WAIT_S);
 }
 
-/* Checks a token. Returns NULL and sets connection->holder if the token is accepted; otherwise the refusal to answer with. */
+/* Checks a token. Returns NULL and sets connection->holder if the token is accepted; otherwise the refusal with which to answer. */
 static const struct http_refusal *judge_token(struct server_context *server, struct lws *wsi, const char *token)
 {
     struct connection *connection = connection_of(wsi);
@@ -284,8 +285,8 @@ static const struct http_refusal *judge_token(struct server_context *server, str
     return login_is_good(login) ? NULL : login == LOGIN_HELD ? &HELD : &BAD_TOKEN;
 }
 
-/* Appends a suffix to a signed-in user's name. No token's name can have these characters, so a signed-in user and a token never look alike
-   in journals. */
+/* Appends a suffix to a signed-in user's name. Names of tokens cannot contain the suffix's characters, so that journals show whether a user
+   signed in or used a token. */
 void connection_tell_apart(const struct server_context *server, struct token_holder *person)
 {
     size_t length = strlen(person->name), most = sizeof(person->name) - sizeof(SIGNED_IN);

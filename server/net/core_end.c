@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Connects the sessions of a renderer with the renderer's core. */
+/* Connects a renderer (daemon that draws for a core) with its core: forwards users' actions, takes what the core sends. */
 #include "net/core_end.h"
 
 #include <stdio.h>
@@ -60,7 +60,7 @@ static void follow(const struct server_context *server, uint64_t session, const 
 }
 
 /* Handles the core's refusal of this daemon because their configurations differ: loads this daemon's files again, since the core's new
-   files may be there by now. Tries once for each configuration that the core names. */
+   files may have arrived on this machine. Tries once for each configuration that the core names. */
 static void take_refusal(struct server_context *server, const json_t *refusal)
 {
     const char *configuration = json_string_value(json_object_get(refusal, "configuration"));
@@ -71,8 +71,8 @@ static void take_refusal(struct server_context *server, const json_t *refusal)
     follow(server, 0, configuration);
 }
 
-/* Handles the core's acceptance of this daemon. If the leader has just loaded its plant, a standby now loads its own again: models may have
-   changed, although the configuration, which covers only plant file and tag list, is the same. */
+/* Handles the core's message that it accepts this daemon. If the leading core has just loaded its plant, a standby core now loads its own
+   again: models may have changed, although the configuration, which covers only plant file and tag list, is the same. */
 static void take_introduction(struct server_context *server, const json_t *message)
 {
     take_key(server, message);
@@ -82,8 +82,8 @@ static void take_introduction(struct server_context *server, const json_t *messa
     server->core.reloads = false;
 }
 
-/* Handles the core's message that it loads its plant. A renderer loads the plant at the same time. A standby waits until the leader uses
-   its new plant: if that plant makes the leader fail, the standby takes over with the old one. */
+/* Handles the core's message that it loads its plant. A renderer loads the plant at the same time. A standby core waits until the leading
+   core uses its new plant: if that plant makes the leader fail, the standby takes over with the old one. */
 static void take_reload(struct server_context *server)
 {
     server->core.reloads = server->params.is_core;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A renderer's side of /core in the event loop: forwards users' actions to the core, and distributes what arrives from the core. Thread:
-   the event loop. */
+/* A renderer's (or standby's) side of the connection /core to its core, in the event loop: forwards users' actions to the core, and
+   distributes what arrives from the core. Thread: the event loop. */
 #ifndef NET_CORE_END_H
 #define NET_CORE_END_H
 #include "net/server_context.h"
 
-/* On a renderer, makes sessions forward users' actions to the core over the plant's core_link. On other daemons, which have no core_link,
-   does nothing. */
+/* On a renderer, makes sessions forward users' actions to the core over the plant's core_link. Does nothing on other daemons, which have no
+   core_link. */
 void core_end_bind(struct server_context *server);
 /* Returns whether this daemon polls devices and owns alarms: it is neither a renderer nor a standby core. */
 bool core_end_leads(const struct server_context *server);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The load balancer asks each renderer at its agent port (agent.h) once a second and thereby learns that a core is lost. With its next
-   check it sends its own state, from which core_loss decides whether sessions move. */
+/* A renderer whose core is lost tells the load balancer, which asks each renderer's agent port (agent.h) once a second. With each check of
+   a node, the balancer says whether it still sends users there. From this, core_loss decides whether sessions move. */
 #include "net/core_loss.h"
 
 #include <stdio.h>
@@ -8,10 +8,11 @@
 
 #include "base/clock.h"
 
-/* delay after the loss of a core from which the balancer's statement counts: renderers that lost the same core may notice it half a second
-   apart, and the balancer asks each renderer once a second */
+/* delay after the loss of a core before the load balancer's state counts. Renderers that lost the same core may notice it half a second
+   apart, and the balancer asks each renderer only once a second */
 static const int64_t SETTLE_NS = 2500 * NS_PER_MS;
-static const int64_t CHECKED_NS = 3 * NS_PER_S; /* validity of a balancer's statement: three checks, of which it makes one a second */
+/* time for which a state that the load balancer sent counts: three checks, of which it makes one a second */
+static const int64_t CHECKED_NS = 3 * NS_PER_S;
 
 static bool is_elsewhere(const char *state)
 {

@@ -6,17 +6,18 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-struct core_loss {   /* zero-initialised: a core sends readings, and no balancer has asked */
+struct core_loss {   /* zero-initialise; zero means that a core sends readings, and that no load balancer has checked this node */
     int64_t lost_ns; /* monotonic time since when no core sends readings; 0: a core sends readings */
-    /* monotonic time when a balancer last stated that only other nodes get users; 0: its last statement was different */
+    /* monotonic time when a load balancer last said that it sends users only to other nodes; 0: its last check did not say so */
     int64_t elsewhere_ns;
-    int64_t moves_ns; /* monotonic time since when sessions are being moved; 0: they stay */
+    int64_t moves_ns; /* monotonic time since when this daemon's sessions are moved to other nodes; 0: they stay */
 };
 
-/* Takes the header X-Haproxy-Server-State of a balancer's check, such as "DOWN 2/2; ...; weight=0/100; ...". The balancer sends users only
-   to other nodes if this node is DOWN and the second number of `weight`, the sum of the weights of all nodes in use, is above 0. */
+/* Takes the header X-Haproxy-Server-State of a load balancer's check of this node, such as "DOWN 2/2; ...; weight=0/100; ...". The balancer
+   sends users only to other nodes if this node is DOWN and the second number of `weight`, the sum of the weights of all nodes in use, is
+   above 0. */
 void core_loss_on_check(struct core_loss *loss, const char *state, int64_t now_ns);
-/* Updates the decision. Call it at each tick. Returns true when the sessions begin to be moved. */
+/* Decides again whether sessions move. Call it at each tick. Returns true when the sessions begin to be moved. */
 bool core_loss_on_tick(struct core_loss *loss, bool has_core, int64_t now_ns);
 
 #endif

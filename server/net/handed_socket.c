@@ -58,7 +58,7 @@ int handed_socket_callback(struct lws *wsi, enum lws_callback_reasons reason, vo
         if (fd < 0)
             break;
         if (connection_may_open(server, fd))
-            lws_adopt_socket_vhost(lws_get_vhost(wsi), fd); /* libwebsockets closes the socket itself if adopting it fails */
+            lws_adopt_socket_vhost(lws_get_vhost(wsi), fd); /* libwebsockets closes the accepted socket itself if adopting it fails */
         else
             close(fd);
     }

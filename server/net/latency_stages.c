@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measures the durations of the latency stages. */
+/* Measures how long frames spend in each stage from an input to the client (latency stages). */
 #include "net/latency_stages.h"
 
 #include "base/mem.h"

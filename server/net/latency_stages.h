@@ -17,9 +17,9 @@ struct latency_stages {
 
 /* Registers the histograms of all latency stages with the server's metrics. */
 void latency_stages_init(struct latency_stages *stages, struct counters *counters);
-/* Records the stages of a frame whose first byte is being sent. */
+/* Records how long a frame, whose first byte is being sent, spent in the stages before sending. */
 void latency_stages_sent(struct latency_stages *stages, const struct encoded_frame *encoded, int64_t now_ns);
-/* Records the stages of the frame that was acknowledged last (pacer->acked). */
+/* Records how long the frame that the client acknowledged last (pacer->acked) spent in the stages after sending. */
 void latency_stages_shown(struct latency_stages *stages, const struct pacer *pacer);
 
 #endif

@@ -34,7 +34,7 @@ static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S;
 static const int64_t GOODBYE_NS = 500 * NS_PER_MS;       /* time for which shutdown waits until close frames and answers are sent */
 static const int64_t RECORD_INTERVAL_NS = 60 * NS_PER_S; /* minimum time between two audit entries about tokens not checked */
 static const int64_t FILE_CHECK_INTERVAL_NS = NS_PER_S;  /* interval between checks of the token and certificate files */
-enum { SPARE_FILES = 256 }; /* file descriptors reserved for uses other than connections: models, sources, the database */
+enum { SPARE_FILES = 256 }; /* file descriptors reserved for uses other than connections: for example models, data sources, the database */
 
 static const struct lws_protocols protocols[] = {
     { .name = "http", .callback = http_callback, .per_session_data_size = sizeof(void *) },
@@ -58,8 +58,8 @@ static void lws_log_line(int level, const char *line)
 
 /* --- periodic work ---------------------------------------------------------------------------------------------------- */
 
-/* Checks whether the files of tokens and certificate have changed. A file is read only once it has stopped changing, so a further check may
-   follow. */
+/* Checks whether the files of tokens and certificate have changed. A file is read only once it has stopped changing; until then it is
+   checked again. */
 static void look_at_files(struct net *net, int64_t now_ns)
 {
     struct server_context *server = &net->server;
@@ -73,8 +73,8 @@ static void look_at_files(struct net *net, int64_t now_ns)
         tls_look(server->tls);
     if (server->logins.tokens) {
         tokens_look(server->logins.tokens);
-        /* also ends sessions of signed-in users who lost their rights. The branch covers all such users, because sign-in with OpenID
-           Connect requires a token file */
+        /* also closes sessions of signed-in users who lost their rights; checking them only if there is a token file suffices, because
+           sign-in with OpenID Connect requires a token file */
         streams_check_tokens(server, clock_utc_ns());
     }
 }
@@ -150,7 +150,7 @@ static void say_status(const struct server_context *server)
                             });
 }
 
-/* Measures how long the daemon took to start. At shutdown, clients are told to reconnect after that time. */
+/* Measures how long the daemon took to start. At shutdown, the daemon tells clients to reconnect after that time. */
 static void time_start(struct server_context *server, int64_t now_ns)
 {
     if (!server->life.start_s && render_service_ready(server->params.plant.render_service))
@@ -223,8 +223,8 @@ bool net_settle_answers(struct net *net)
     return answers->waiting;
 }
 
-/* Does what is due now, and schedules the wake-up for what is due next. libwebsockets waits in whole milliseconds, rounded down, and polls
-   repeatedly in the last one; so work that is due within a millisecond is done now. */
+/* Does the event loop's work that is due now, and schedules the wake-up for what is due next. libwebsockets waits in whole milliseconds,
+   rounded down, and polls repeatedly in the last one; so work that is due within a millisecond is done now. */
 static void do_what_is_due(struct net *net)
 {
     int64_t soon_ns = clock_mono_ns() + NS_PER_MS, readings_ns = net_update_readings(net, soon_ns);
@@ -557,7 +557,7 @@ void net_destroy(struct net **net_ptr)
     if (!net)
         return;
     lws_sul_cancel(&net->timer);
-    /* destroyed first: its threads wake the event loop, so they must not outlive it */
+    /* destroys these first, because their threads wake the event loop */
     history_queries_destroy(&net->server.history_queries);
     picture_signer_destroy(&net->server.signing.signer);
     history_loader_destroy(&net->server.history_loader);
@@ -594,7 +594,7 @@ int net_port(const struct net *net)
     return net->server.params.socket_fd >= 0 ? net->server.params.port : lws_get_vhost_listen_port(net->vhost);
 }
 
-/* At shutdown, continues serving until the clients' actions are on disk (or can never be) and renderers have the answers. */
+/* At shutdown, continues serving until the clients' actions are on disk (or cannot be written) and renderers have the answers. */
 static void finish_actions(struct net *net)
 {
     for (int64_t now_ns = clock_mono_ns(), end_ns = now_ns + SETTLED_NS;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The event loop: HTTP and WebSocket on one port, sessions, timers. Thread: the one that calls net_run(), for functions below "in the
-   event loop"; net_wake, net_stop and net_call: any thread. */
+/* The event loop: HTTP and WebSocket on one port, sessions, timers. Thread: the one that calls net_run(), unless a function's comment says
+   otherwise. */
 #ifndef NET_NET_H
 #define NET_NET_H
 #include "net/net_params.h"
@@ -20,7 +20,7 @@ int net_port(const struct net *net);
 void net_run(struct net *net);
 /* Wakes the event loop to collect frames and answers that other threads have finished. Any thread. */
 void net_wake(struct net *net);
-/* Ends net_run. A core that leads and has a standby first gives the lead to the standby. Any thread; safe in a signal handler. */
+/* Makes net_run() end. A core that leads and has a standby first gives the lead to the standby. Any thread; safe in a signal handler. */
 void net_stop(struct net *net);
 /* Drains the daemon, so that clients move to other daemons: each session is closed at some instant within 10 s, after load balancers had 2
    s to notice (net_status.drains). Any thread; safe in a signal handler. */
@@ -31,8 +31,8 @@ bool net_call(struct net *net, void (*what)(void *arg), void *arg);
 /* Makes the event loop soon reload the plant and read the files of tokens and certificate again. Any thread; safe in a signal handler. */
 void net_check_credentials(struct net *net);
 
-/* Tells the event loop that everything has ended that only a leader may do, so that net_stop() of a leading core continues. Called by
-   net_params.end_leading. Any thread. */
+/* Tells the event loop of a stopping core that all work has ended that only a leader may do, so that it continues to stop. To be called
+   after net_params.end_leading was. Any thread. */
 void net_on_lead_ended(struct net *net);
 
 /* --- plant reload; call these functions in the event loop --- */
@@ -45,16 +45,16 @@ void net_release_recording(struct net *net);
 void net_announce_reload(struct net *net);
 /* Releases everything that belongs to the plant, which is about to be destroyed. Sessions stay. */
 void net_release_plant(struct net *net);
-/* Called when this standby takes over: the core that it followed is gone, and the link to that core has stopped. plant: the same plant
-   without the link. */
+/* Called when this standby takes over: the core that it followed is gone, and the link to that core has stopped. plant: services of the
+   same plant, without core_link. */
 void net_lead(struct net *net, const struct plant_services *plant);
-/* Switches to another plant; sessions keep showing what the new plant has under the same names. Returns false if history cannot be read
-   any more, already logged. */
+/* Switches to another plant; sessions keep their views as far as the new plant has items with the same names. Returns false if history
+   cannot be read any more, already logged. */
 bool net_take_plant(struct net *net, const struct plant_services *plant);
-/* Writes to `out` the distinct views, `most` at most, that the sessions will have in the next plant. Returns their number.
-   next->render_service may be NULL. */
+/* Writes to `out` at most `most` different views that sessions will show in the next plant, so that they can be drawn in advance. Returns
+   their number. next->render_service may be NULL. */
 size_t net_views(struct net *net, const struct plant_services *next, struct view *out, size_t most);
-/* Answers all requests for a reload with its result. */
+/* Answers all HTTP requests for a reload with the reload's result. */
 void net_report_reload(struct net *net, bool good, const char *text);
 /* Sends a client the result (as text) of saving the client's tag list. */
 void net_report_save(struct net *net, uint64_t client, const char *text);

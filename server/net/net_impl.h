@@ -9,7 +9,7 @@
 
 #define HANDED_PROTOCOL "plantcast-handed-socket"
 
-#define READINGS_INTERVAL_NS (100 * NS_PER_MS) /* minimum time between two snapshots, however often readings change */
+#define READINGS_INTERVAL_NS (100 * NS_PER_MS) /* minimum time between two snapshots of the readings, however often readings change */
 
 enum hand_over_step { HAND_OVER_NONE, HAND_OVER_ENDS_POLLING, HAND_OVER_SENDS, HAND_OVER_GIVES, HAND_OVER_DONE };
 
@@ -21,11 +21,11 @@ struct net {
     int64_t ticked_ns;   /* monotonic time when the sessions last ran their tick */
     int64_t readings_ns; /* monotonic time when the next snapshot of readings is due (reading_updates.c) */
     struct cpu_meter cpu;
-    int64_t cpu_ns; /* monotonic time when the processor load (cpu) was last read */
+    int64_t cpu_ns; /* monotonic time when the processors' load was last read */
     _Atomic bool stopping, look, drain, readings_changed, lead_ended;
     struct { /* hand_over.c */
         enum hand_over_step step;
-        int64_t until_ns; /* monotonic time limit of the current step of the hand-over */
+        int64_t until_ns; /* monotonic time at which the current step of handing the lead to the standby is given up */
     } hand_over;
     struct {
         pthread_mutex_t turn; /* lock that each caller of net_call() holds, so that one call is made at a time */
@@ -40,7 +40,7 @@ struct net {
 
 /* --- net.c; thread: the event loop --- */
 
-/* Answers the actions that are on disk by now, and those that could not be written. Returns whether other actions still wait for the
+/* Answers users' actions that are on disk by now, and those that could not be written. Returns whether other actions still wait for the
    disk. */
 bool net_settle_answers(struct net *net);
 
@@ -72,18 +72,18 @@ bool net_open_signer(struct net *net);
 
 /* --- readings.c, reading_updates.c; thread: the event loop --- */
 
-/* Updates server->readings.snapshot and next_change_ns. Returns whether readings changed since the last call. */
+/* Takes a new snapshot of the readings into server->readings. Returns whether readings changed since the last call. */
 bool net_take_snapshot(struct server_context *server);
-/* Updates which sources are connected and whether the clock is set. Returns whether any of that changed. */
+/* Updates which data sources are connected and whether this machine's clock is set. Returns whether any of these changed. */
 bool net_check_links(struct server_context *server);
-/* Takes a snapshot, checks the links, and notes in server->readings what changed. */
+/* Takes a snapshot of the readings, checks the connections to data sources, and notes in server->readings what changed. */
 void net_note_changes(struct server_context *server);
-/* Makes changes in the plant's store wake the event loop from now on, and takes a first snapshot. */
+/* From now on, changes in the plant's store of readings wake the event loop. Takes a first snapshot. */
 void net_watch_readings(struct net *net);
-/* Undoes net_watch_readings(): the store may be destroyed afterwards. */
+/* Undoes net_watch_readings(); the store of readings may be destroyed afterwards. */
 void net_unwatch_readings(struct net *net);
-/* Takes a snapshot if one is due, and tells streams and renderers what changed since the last call. Returns when the next snapshot is due;
-   INT64_MAX: not before a reading changes or a client connects. */
+/* Takes a snapshot of the readings if one is due, and tells streams and renderers what changed since the last call. Returns when the next
+   snapshot is due; INT64_MAX: not before a reading changes or a client connects. */
 int64_t net_update_readings(struct net *net, int64_t now_ns);
 
 #endif

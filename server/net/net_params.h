@@ -25,7 +25,7 @@
 struct net_status { /* state of the event loop, passed to the callback at each tick */
     struct render_service *render_service;
     size_t sessions;
-    int busy_percent;           /* percentage of the render thread's time spent on frames that a client waits for */
+    int busy_percent;           /* percentage of the render thread's time that is spent on frames for which a client waits */
     bool has_core;              /* true: readings arrive from the core; always true without --role render */
     const char *core;           /* role of this core in a pair of cores (static text); NULL: there is no pair */
     bool drains;                /* true: the daemon drains: it closes sessions so that their clients move to other daemons */
@@ -34,7 +34,7 @@ struct net_status { /* state of the event loop, passed to the callback at each t
 
 struct net_params {
     struct log *log;
-    struct plant_services plant; /* services of the loaded plant; net_limit_services() sets unusable ones to NULL */
+    struct plant_services plant; /* services of the loaded plant; net_limit_services() sets services that this daemon cannot use to NULL */
     struct counters *counters;
     struct audit *audit;             /* writer of the audit trail; NULL: nothing is recorded */
     struct file_writer *file_writer; /* thread that writes what users change to disk; the event loop collects its results */
@@ -49,7 +49,7 @@ struct net_params {
     const char *version;
     const char *node;            /* this daemon's name behind a load balancer; NULL: it runs alone */
     bool is_core;                /* true: this daemon is a core, to which renderers may connect */
-    const char *node_name;       /* this daemon's name among several */
+    const char *node_name;       /* name of this daemon, by which other daemons of the plant know it */
     struct lease_keeper *keeper; /* leadership lease of a core in a pair (leader or standby); NULL: there is no pair */
     /* callback in the event loop, only with `keeper`: starts to end everything that only a leader may do, on another thread. That thread
        calls net_on_lead_ended() when it is done */
@@ -62,7 +62,7 @@ struct net_params {
     /* callback in the event loop that activates a saved tag list and takes ownership of `save`; NULL: tag lists cannot be saved */
     void (*save)(void *arg, struct tag_save *save);
     struct plant_import *import; /* service that imports plants; NULL: import is off */
-    /* callback in the event loop after an import order of user `who` was accepted; set only with `import` */
+    /* called in the event loop after an engineer `who` ordered an import; set only with `import` */
     void (*import_ordered)(void *arg, const char *who);
     /* callback of the main program, called in the event loop once a second or more often; NULL: not needed */
     void (*tick)(void *arg, const struct net_status *status);

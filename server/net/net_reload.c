@@ -60,14 +60,14 @@ void net_announce_reload(struct net *net)
 void net_release_plant(struct net *net)
 {
     struct server_context *server = &net->server;
-    /* answers users' actions that were waiting for the old plant's journal, which has written all these actions to disk by now */
+    /* answers users whose actions were waiting for the old plant's journal, which has written all these actions to disk by now */
     net_settle_answers(net);
     for (struct stream *stream = server->streams.first; stream; stream = stream->next)
         stream->carried = session_carry(stream->session);
     http_release_plant(server);
     if (server->signing.signer)
         picture_signer_settle(server->signing.signer);
-    core_end_collect(server); /* takes the core's last answers */
+    core_end_collect(server); /* handles the last messages that the core sent */
     renderers_close(server, "the core has changed its configuration");
     net_unwatch_readings(net);
     history_queries_destroy(&server->history_queries);

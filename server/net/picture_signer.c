@@ -12,7 +12,7 @@ struct picture_signer {
     void (*notify)(void *arg);
     void *arg;
     pthread_cond_t settled;
-    /* cache used only by the signing thread: last packet and its signed form, so that sessions of one view share one signature */
+    /* used only by the signing thread: the last frame and its signed form, so that sessions of one view share one signature */
     struct packet *last, *last_signed;
     bool last_bare;
     /* --- below: protected by thread.lock */
@@ -165,7 +165,7 @@ void picture_signer_settle(struct picture_signer *signer)
     signer->waiting = NULL;
     while (signer->busy)
         pthread_cond_wait(&signer->settled, &signer->thread.lock);
-    forget_last(signer); /* no lock on the cache needed: the thread is idle and does not use it now */
+    forget_last(signer); /* needs no lock, because the signing thread is idle */
     free_all(signer->done);
     signer->done = NULL;
     pthread_mutex_unlock(&signer->thread.lock);

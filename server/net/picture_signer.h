@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Signs pictures on a thread of its own: the statement of 10,000 readings takes a tenth of a second, during which the event loop could
-   send nothing. Thread: the event loop. */
+/* Signs pictures on a thread of its own: signing a statement about 10,000 readings takes a tenth of a second, during which the event loop
+   could send nothing. Thread: the event loop. */
 #ifndef NET_PICTURE_SIGNER_H
 #define NET_PICTURE_SIGNER_H
 #include "provenance/signed_picture.h"
 #include "service/encoded_frame.h"
 
 struct signing {
-    struct encoded_frame *encoded; /* the frame to sign; NULL: the receiver has taken it out */
-    struct picture_origin origin;  /* the picture's plant, arguments and overlay for the signed statement; its args belong to this struct */
+    struct encoded_frame *encoded; /* the frame to sign; NULL: its receiver has taken it out of this struct */
+    /* facts that the signed statement contains: plant, arguments of the request and overlay; this struct owns the arguments */
+    struct picture_origin origin;
     bool good;                     /* true: the frame's packet is now the signed file; false: it could not be signed */
     struct signing *next;
 };
@@ -20,12 +21,12 @@ struct picture_signer;
 struct picture_signer *picture_signer_create(struct log *log, const struct signing_key *key, void (*notify)(void *arg), void *arg);
 /* Ends the thread and sets *signer to NULL; accepts a pointer to NULL. */
 void picture_signer_destroy(struct picture_signer **signer);
-/* Queues a frame that has a record of its inputs; takes the frame and copies the args. origin->scene must stay valid until
+/* Queues a frame that has the record of what it was drawn from; takes the frame and copies the args. origin->scene must stay valid until
    picture_signer_settle(). */
 void picture_signer_ask(struct picture_signer *signer, struct encoded_frame *encoded, const struct picture_origin *origin);
 /* Returns the list of pictures signed so far, oldest first; the caller frees each with signing_free(). NULL: none. */
 struct signing *picture_signer_collect(struct picture_signer *signer);
-/* Drops pictures not signed yet, and returns once the thread no longer reads anything of a plant. */
+/* Drops pictures that are not signed yet, and returns once the signing thread no longer uses data of a plant. */
 void picture_signer_settle(struct picture_signer *signer);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The core's connections to its renderers: sends an introduction, then all state that is newer than the renderer's. */
+/* A core's connections to its renderers and its standby: sends each an introduction, then everything that changed. */
 #include "net/renderers.h"
 
 #include <openssl/rand.h>
@@ -20,7 +20,8 @@
 #include "net/core_end.h"
 #include "session/session_proxy.h"
 
-#define ACTED "acted_ns" /* key in the JSON of a queued answer, with the monotonic time at which the answered action was on disk */
+#define ACTED "acted_ns" /* key in the JSON of a queued answer for the monotonic time at which the answered action was on disk; removed
+                            before sending */
 enum { TICK_US = 200000, MAX_MESSAGE_BYTES = 256 * 1024 /* maximum size of one message */, MAX_ANSWERS = 1024, SEND_TIMEOUT_S = 5 };
 static const int64_t MAX_READINGS_DELAY_NS = 500 * NS_PER_MS, STANDBY_TIMEOUT_NS = 2 * NS_PER_S;
 
@@ -37,8 +38,9 @@ struct deed {
 struct renderer_peer {
     struct lws *wsi;
     struct renderer_peer *next;
-    char name[64];                /* name of the peer's node, as the peer reports it */
-    char lease[LEASE_NODE_BYTES]; /* on a standby's connection: lease id, which distinguishes two nodes with the same name */
+    char name[64];                /* name of the renderer or standby at the other end, as it reports itself */
+    /* if the peer is a standby: the id with which it would take the leadership lease; it distinguishes two nodes with the same name */
+    char lease[LEASE_NODE_BYTES];
     struct text in, out;          /* in: message being received; out: message being built, after LWS_PRE spare bytes */
     /* state of the peer. RENDERER_VOTES: a core that only votes about which core leads: it may not follow this core, for example because
        its version differs, but its promises not to take the lead count (corelink/lease.h) */
@@ -49,16 +51,17 @@ struct renderer_peer {
     struct core_sent sent;
     bool alarms_sent, lists_sent, links_sent;
     bool stands_by; /* true: the peer is a standby, a core that follows this one and can take over */
-    /* true: the last samples message took all samples that waited, so the next message has readings, which resets the flag */
+    /* true: the last message with samples contained all samples that waited, so the next message has readings, which resets the flag */
     bool samples_sent;
     bool reloads; /* true: the message that this core loads the plant must still be sent to the peer */
-    bool asks;    /* true: the question for the peer's promise not to take the lead must still be sent (corelink/lease.h) */
-    /* standby: when this core ends, it asks once more for the promise, after all other messages; number of this question, 0: not sent */
+    bool asks;    /* true: the question whether the peer promises not to take the lead must still be sent (corelink/lease.h) */
+    /* standby: when this core ends, it asks a last time for the promise not to take the lead, after all other messages. Number of this
+       question; 0: not sent */
     uint64_t last_question;
-    bool is_complete;             /* standby: true: the standby has answered last_question, and so has received everything */
+    bool is_complete;             /* true: the standby has answered last_question, and so has received all messages before */
     struct core_samples *samples; /* samples for the peer's history, to be sent; NULL: none */
-    uint64_t told;                /* standby: sequence number of the newest notifier state that was sent to it */
-    uint64_t rows;                /* standby: sequence number of the last journal row that was sent to it */
+    uint64_t told;                /* standby: sequence number of the newest state of alarm notifications that was sent to it */
+    uint64_t rows;                /* standby: sequence number of the last row of the alarm journal that was sent to it */
     uint64_t alarms;              /* sequence number of the last change of alarms that was sent to the peer */
     struct lists_seen lists;
     bool *links;   /* connection state of each data source, as last sent to the peer; by source index */
@@ -68,11 +71,11 @@ struct renderer_peer {
     json_t *answers;
     struct deed *deeds;     /* forwarded actions whose answers wait until the actions are on disk */
     int64_t told_ns;        /* monotonic time when readings were last sent to the peer */
-    int64_t since_ns;       /* monotonic time since when a message waits to be sent; 0: no message waits */
+    int64_t since_ns;       /* monotonic time since when a message waits because the peer does not read; 0: no message waits */
     const char *close_text; /* reason to close the connection; NULL: the connection stays open */
 };
 
-/* Returns whether the peer is on this machine and needs no token; it then has the role engineer. */
+/* Returns whether the peer is on this machine and needs no token; then it has the rights of an engineer. */
 static bool is_local(const struct connection *connection)
 {
     return connection->role == ROLE_ENGINEER && !connection->holder.name[0];
@@ -167,7 +170,7 @@ static void end_deed(struct deed *deed)
     mem_free(deed);
 }
 
-/* Sends the answers to forwarded actions that are on disk by now, and to those that could not be written. */
+/* Queues the answers to forwarded actions that are on disk by now, and to those that could not be written. */
 static void settle(struct renderer_peer *renderer)
 {
     for (struct deed **at = &renderer->deeds, *deed; (deed = *at);) {
@@ -243,7 +246,7 @@ void renderers_close(struct server_context *server, const char *why)
 {
     for (struct renderer_peer *renderer = server->core.renderers; renderer; renderer = renderer->next) {
         renderer->close_text = why;
-        /* ends this queue of samples, because the store from which they come is about to be destroyed */
+        /* ends the peer's queue of samples, because the store that fills the queue is about to be destroyed */
         core_samples_end(&renderer->samples);
         lws_callback_on_writable(renderer->wsi);
     }
@@ -259,7 +262,7 @@ static void begin(struct renderer_peer *renderer)
 }
 
 /* Sends the message in renderer->out. libwebsockets stores what the socket does not accept, and calls back only once that is sent. Returns
-   false if the connection is gone. */
+   false if the connection is lost. */
 static bool send_out(struct renderer_peer *renderer, enum lws_write_protocol how)
 {
     size_t count = renderer->out.length - LWS_PRE;
@@ -286,7 +289,7 @@ static bool send_standby(struct renderer_peer *renderer)
     return send_message(renderer, json_pack("{s:s}", "type", "standby"));
 }
 
-/* Returns whether everything that the standby must receive has been sent. Samples that arrived before lead_ended_ns count as sent only
+/* Returns whether the standby was sent all state that it needs to take over. Samples that arrived before lead_ended_ns count as sent only
    after one more message of readings, because that message makes send_next() look for samples again. */
 static bool has_all(const struct server_context *server, const struct renderer_peer *renderer)
 {
@@ -325,8 +328,8 @@ static bool send_refusal(const struct server_context *server, struct renderer_pe
     return send_message(renderer, message);
 }
 
-/* Sends the next message to a core that only votes: the reason of its refusal, then questions for its promise not to take the lead
-   (corelink/lease.h), and nothing else. Returns false if the connection is gone. */
+/* Sends the next message to a core that may only vote about who leads: the reason of its refusal, then questions for its promise not to
+   take the lead (corelink/lease.h), and nothing else. Returns false if the connection is gone. */
 static bool send_to_voter(const struct server_context *server, struct renderer_peer *renderer)
 {
     return !renderer->refusal_sent ? send_refusal(server, renderer) : !renderer->asks || send_question(server, renderer, false);
@@ -405,8 +408,8 @@ static bool send_answer(struct renderer_peer *renderer)
     return send_message(renderer, answer);
 }
 
-/* Sends samples to a standby. After a message of samples that is not full, readings are sent next even if new samples have arrived; on a
-   slow network there would always be new samples. Returns false if the standby must be disconnected. */
+/* Sends a message with samples to a standby. After a message that contains all waiting samples, the next message has readings even if new
+   samples have arrived: on a slow network there would always be new samples. Returns false if the standby must be disconnected. */
 static bool send_samples(const struct server_context *server, struct renderer_peer *renderer)
 {
     begin(renderer);
@@ -427,7 +430,7 @@ static bool send_readings(struct server_context *server, struct renderer_peer *r
     return send_out(renderer, LWS_WRITE_BINARY);
 }
 
-/* Wakes the connections whose answers wait until a standby has the state that the actions changed. */
+/* Continues sending on connections whose answers wait until a standby has the state that the answered actions changed. */
 static void wake_answers(const struct server_context *server)
 {
     for (const struct renderer_peer *one = server->core.renderers; one; one = one->next)
@@ -435,8 +438,8 @@ static void wake_answers(const struct server_context *server)
             lws_callback_on_writable(one->wsi);
 }
 
-/* Returns whether an action has not been sent to a standby yet. Until then no client is told that the action is done: the standby might
-   take over without having received it. A standby that is too slow is not waited for. */
+/* Returns whether a standby was not sent the latest actions of users yet. Until then no client is told that the action is done: the standby
+   might take over without having received it. A standby that is too slow is not waited for. */
 static bool standby_lacks(const struct server_context *server)
 {
     struct lists_seen lists = lists_now(server);
@@ -465,7 +468,7 @@ static bool send_hello(struct renderer_peer *renderer)
     return send_message(renderer, hello);
 }
 
-/* Sends one message. Alarms and other rarely changing content go first and readings last, so that readings are never newer than the alarms
+/* Sends one message. Alarms and other rarely changing state go first and readings last, so that readings are never newer than the alarms
    sent with them. But readings that have waited too long go first: without them the renderer takes the core for lost. Returns false if the
    renderer must be disconnected. */
 static bool send_next(struct server_context *server, struct renderer_peer *renderer)
@@ -512,8 +515,8 @@ static bool send_next(struct server_context *server, struct renderer_peer *rende
 
 /* --- receiving ------------------------------------------------------------------------------------------------------------------------ */
 
-/* Returns an error message if the peer's token has the wrong role, otherwise NULL; the caller frees the message with mem_free. A renderer's
-   token is refused for a standby, because a standby takes over as core. */
+/* Returns an error message if the peer's token has the wrong role, otherwise NULL; the caller frees the message with mem_free. A standby
+   may not use a renderer's token, because it may become the core. */
 static char *role_refusal(const struct renderer_peer *one)
 {
     const struct connection *connection = connection_of(one->wsi);
@@ -527,8 +530,8 @@ static char *role_refusal(const struct renderer_peer *one)
 }
 
 /* Returns the reason why peer `one` cannot be a standby, or NULL; the caller frees the text with mem_free. Only one standby with one name
-   is accepted, so that every promise not to take the lead has one author. matches: `one` has this core's version and files, and may replace
-   a core that only votes. */
+   is accepted, so that it is clear which core made a promise not to take the lead. matches: `one` has this core's version and files, and
+   may replace a core that only votes. */
 static char *standby_refusal(const struct server_context *server, struct renderer_peer *one, const char *id, bool matches)
 {
     if (!server->params.keeper)
@@ -557,7 +560,7 @@ static void say_refusal(struct server_context *server, const struct renderer_pee
     memcpy(server->core.refused, said, sizeof(said));
 }
 
-/* Closes the connections of cores that only vote, once a standby with this version and these files has connected. */
+/* Closes the connections of cores that only vote, once a standby with this core's version and plant files has connected. */
 static void end_voters(struct server_context *server)
 {
     for (struct renderer_peer *one = server->core.renderers; one; one = one->next)
@@ -568,8 +571,8 @@ static void end_voters(struct server_context *server)
         }
 }
 
-/* Decides whether a peer is accepted. A standby whose plant has the same name but whose files or version differ is accepted only as a
-   voter: it may be about to be upgraded or reloaded, before or after this core. */
+/* Decides whether a renderer or standby that has introduced itself is accepted. A standby whose plant has the same name but whose files or
+   version differ is accepted only as a voter: it may be about to be upgraded or reloaded, before or after this core. */
 static void judge(struct server_context *server, struct renderer_peer *renderer, const json_t *message, const struct core_identity *own)
 {
     const char *plant = json_string_value(json_object_get(message, "plant")), *id = json_string_value(json_object_get(message, "id"));
@@ -682,7 +685,7 @@ static const char *on_message(struct server_context *server, struct renderer_pee
     else if (renderer->state != RENDERER_TAKEN)
         why = "the peer's first message is not an introduction (type renderer)";
     else if (server->life.hands_over)
-        /* ignores the message, because this core hands over the lead: when the connection ends, the renderer tells the user that the
+        /* ignores the message, because this core is handing over the lead. When the connection ends, the renderer tells the user that the
            connection was lost */
         why = NULL;
     else if (!strcmp(type, "act") && json_is_integer(json_object_get(message, "id")))
@@ -693,7 +696,7 @@ static const char *on_message(struct server_context *server, struct renderer_pee
     return json_array_size(renderer->answers) > MAX_ANSWERS ? "the peer does not read answers" : why;
 }
 
-/* Handles received bytes. Returns -1 if the connection must end. */
+/* Handles bytes that a renderer or standby sent. Returns -1 if the connection must end. */
 static int on_receive(struct server_context *server, struct renderer_peer *renderer, const void *bytes, size_t count_bytes)
 {
     const char *why = NULL;
@@ -739,7 +742,8 @@ static int on_writeable(struct server_context *server, struct renderer_peer *ren
 {
     if (!renderer->close_text)
         return send_next(server, renderer) ? 0 : -1;
-    /* the connection stays open until the answers to these actions are sent; settle() and on_beat() request the next callback for that */
+    /* the connection stays open until the answers to these forwarded actions are sent; settle() and on_beat() request the next callback for
+       that */
     if (renderer->deeds)
         return 0;
     if (json_array_size(renderer->answers) > 0 && !server->life.goes_down) {

@@ -32,7 +32,7 @@ struct wall_displays {
     struct wall_seen {
         char wall[NAMED_VIEW_ID_BYTES];
         int display;
-        /* connected_ns: monotonic time up to which all pictures on this display are current (its oldest picture counts); 0: the display is
+        /* connected_ns: monotonic time up to which all pictures on this display are current: that of its oldest picture; 0: the display is
            not connected. fresh_ns: the last such time, kept after the display disconnects */
         int64_t connected_ns, fresh_ns;
         counter *age;
@@ -40,12 +40,12 @@ struct wall_displays {
     size_t count;
 };
 
-/* Pictures over many displays, one entry for each wall (tile_walls.c). */
+/* Picture that spans the displays of a wall; one entry for each wall (tile_walls.c). */
 struct tile_wall {
     char wall[NAMED_VIEW_ID_BYTES]; /* id of the wall; "": this entry is not used */
     uint64_t leader;                /* id of the session that leads the wall; 0: none */
     uint64_t asked, presented;      /* ids of two pictures of the wall: of the picture requested last, and of the picture presented last */
-    /* quality ladder of the wall: steps of picture size, chosen by how long the server takes to draw and encode */
+    /* size of the wall's picture, chosen by how long the server takes to draw and encode it */
     struct quality_ladder made;
 };
 
@@ -57,12 +57,13 @@ struct server_context {
     struct lws_context *lws;
     struct { /* readings.c */
         struct snapshot *snapshot;
-        uint32_t *changes;      /* by tag: the counter `changes` of the reading in the last snapshot */
+        uint32_t *changes;      /* by tag: the change counter (reading.changes) of the reading in the last snapshot */
         int64_t data_ns;        /* monotonic time when the oldest of the readings arrived that changed in the last snapshot */
         /* monotonic time when the quality of a reading next changes because the reading grows old; INT64_MAX: never */
         int64_t next_change_ns;
         bool *links_up; /* connection state of each data source, by source index */
-        bool data_changed, links_changed; /* changes of which the loop has not told streams and renderers yet */
+        /* true: streams and renderers were not told yet that readings, or connections to data sources, changed */
+        bool data_changed, links_changed;
     } readings;
     struct history_queries *history_queries; /* NULL: nothing is recorded */
     struct history_loader *history_loader;   /* service that loads the readings of past instants; NULL: nothing is recorded */
@@ -76,19 +77,19 @@ struct server_context {
         size_t by_client_capacity;
         int count;
         uint64_t next_client;
-        bool restless;    /* true: some session has timed work within the next second, so the event loop ticks at the short interval */
-        int64_t still_ns; /* time to render the last refined frame that was drawn for one session alone, not shared */
+        bool restless;    /* true: a session has timed work within the next second, so the event loop ticks at the short interval */
+        int64_t still_ns; /* time that the last refined frame took that was drawn for only one session */
     } streams;
     struct {
         struct view_token_keys token_keys;      /* renderers only: keys that sign view tokens */
         char key[2 * VIEW_TOKEN_KEY_BYTES + 1]; /* cores only: view token key that is sent to renderers, hexadecimal; "": none */
         char refused[400]; /* text of the last refusal of a renderer that was logged, so that a repetition is not logged */
         bool listed;       /* renderers only: true: the core has sent its lists (of views, notes and so on) since the plant was loaded */
-        /* configuration named by the core's last refusal of this daemon, which then loaded its files again to match that configuration */
+        /* configuration that the core named when it last refused this daemon, which then loaded its files again to match it */
         char followed[64];
         bool reloads; /* standbys only: true: the leader announced a reload, and has not accepted or refused this core since */
         struct renderer_peer *renderers;        /* list of all connections to /core (renderers.c) */
-        uint64_t told_number;                   /* sequence number of the last notifier state that was sent to a standby */
+        uint64_t told_number;                   /* sequence number of the last state of alarm notifications that was sent to a standby */
     } core;
     struct {
         struct http_exchange *waiting; /* list of HTTP requests that wait for a frame, a pick or a reload */
@@ -98,7 +99,7 @@ struct server_context {
         int uploads;                   /* number of uploads in progress */
         struct web_site *site;         /* the web client's files */
         char *content_policy;          /* header Content-Security-Policy of every answer */
-        struct log_pace stuck_heads;   /* rate limit of log lines about requests whose head did not end */
+        struct log_pace stuck_heads;   /* rate limit of log lines about requests whose headers did not end (stuck_head.h) */
     } http;
     struct {
         const struct quotas *quotas;
@@ -111,14 +112,17 @@ struct server_context {
         struct openid *openid;           /* service for signing in with OpenID Connect; NULL: off */
         struct login_throttle *throttle;
         char *notice;      /* text that the page shows before users sign in; NULL: none */
-        int64_t held;      /* number of tokens not checked because of throttling and not recorded yet */
-        int64_t held_ns;   /* monotonic time when unchecked tokens were last recorded in the audit trail */
-        int64_t unasked;   /* number of unrecorded answers of the identity provider that belonged to no log-in or failed */
+        /* number of tokens that were not checked because their address had sent too many wrong ones, and that the audit trail does not list
+           yet */
+        int64_t held;
+        int64_t held_ns;   /* monotonic time when the audit trail last got a line about unchecked tokens */
+        /* number of answers of the identity provider that belonged to no sign-in or failed, and that the audit trail does not list yet */
+        int64_t unasked;
         int64_t looked_ns; /* monotonic time when the files of tokens and certificate were last checked */
     } logins;
     struct {
         bool hands_over; /* true: this leading core is handing the lead to its standby; users' messages are ignored meanwhile */
-        /* monotonic time since when nothing changes any more that the standby must receive; 0: changes are possible */
+        /* monotonic time since when the state that the standby must receive no longer changes; 0: changes are possible */
         int64_t lead_ended_ns;
         bool goes_down;    /* true: the server shuts down; connections are closed after their answer */
         char goodbye[64];  /* reason that streams send when they are closed at shutdown */
@@ -131,7 +135,7 @@ struct server_context {
         char *lists[LISTS];
         struct alarm_text_cache alarms;
         uint64_t alarms_number;           /* sequence number of the newest change of alarms that was sent to sessions */
-        struct marker_text_cache markers; /* alarm markers of the frame that was sent last */
+        struct marker_text_cache markers; /* JSON lists of sensor markers of the frame that was sent last, for all its clients */
         struct neighbour_text_cache neighbours;
     } texts;
     struct tls *tls;   /* NULL: no TLS */
@@ -163,13 +167,13 @@ static inline struct server_context *server_context_of(struct lws *wsi)
     return lws_context_user(lws_get_context(wsi));
 }
 
-/* Writes up to SLICE_BYTES to a connection. Returns false if the connection is gone. */
+/* Writes up to SLICE_BYTES bytes to a connection. Returns false if the connection is gone. */
 bool net_write(struct server_context *server, struct lws *wsi, const void *bytes, size_t count, enum lws_write_protocol how);
 
 /* --- readings.c --- */
 
-/* Takes a new snapshot if the last one is older than 100 ms. The loop tells streams and renderers of changes afterwards. Call it before
-   ages of readings are sent, or a message is acted on. */
+/* Takes a new snapshot if the last one is older than 100 ms. The event loop tells streams and renderers of changes afterwards. Call it
+   before ages of readings are sent, or a message is acted on. */
 void net_refresh_readings(struct server_context *server);
 
 /* --- stream.c, stream_table.c, stream_upgrade.c: connections to /stream --- */
@@ -178,8 +182,8 @@ void net_refresh_readings(struct server_context *server);
 int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
 /* Returns whether the client with that id is a connected stream and not an HTTP request. */
 bool stream_owns(const struct server_context *server, uint64_t client);
-/* The functions stream_on_...() pass an answer to the stream whose client asked for it; the stream must be connected. stream_on_frame()
-   takes ownership of the frame. */
+/* Functions stream_on_...() pass an answer to the stream whose client asked for it; the stream must be connected. stream_on_frame() takes
+   ownership of the frame. */
 void stream_on_frame(struct server_context *server, struct encoded_frame *encoded);
 void stream_on_pick(struct server_context *server, const struct pick_answer *answer);
 /* Sends a frame that picture_signer returned: signed, or unsigned if signing failed. Takes ownership of signing->encoded; the caller frees
@@ -190,9 +194,9 @@ void stream_on_historical_snapshot(struct server_context *server, const struct h
    nothing if the stream has gone. */
 void stream_on_coverage(struct server_context *server, const struct sensor_coverage_answer *answer);
 void stream_say(struct server_context *server, uint64_t client, const char *text);
-/* Tells sessions with trial sensor positions that distances were computed. */
+/* Tells sessions with sensors moved on trial that the distances along the surface from these sensors are computed. */
 void streams_on_placed(struct server_context *server);
-/* Runs the tick of all sessions, and sets server->streams.restless if any session has work that depends on time. */
+/* Does the timed work of all sessions, and sets server->streams.restless if any session has work that depends on time. */
 void streams_on_tick(struct server_context *server);
 /* Tells all sessions that readings, or the connection states of sources, changed. */
 void streams_on_readings(struct server_context *server, bool data_changed, bool links_changed);
@@ -219,11 +223,11 @@ void http_on_signed(struct server_context *server, struct signing *signing);
 void http_on_pick(struct server_context *server, const struct pick_answer *answer);
 void http_on_historical_snapshot(struct server_context *server, const struct history_loader_answer *answer);
 void http_on_history_answer(struct server_context *server, struct history_answer *piece);
-/* Answers browsers that the identity provider has sent back after a log-in. */
+/* Answers browsers that the identity provider has sent back after signing in. */
 void http_on_sign_ins(struct server_context *server);
 /* Answers the HTTP requests that asked for a reload, once it is done. good: the new plant is loaded; text: the result as JSON. */
 void http_on_reloaded(struct server_context *server, bool good, const char *text);
-/* Answers all requests that wait for something of the present plant, which is about to be replaced. */
+/* Answers all HTTP requests that wait for something of the present plant, because that plant is about to be destroyed. */
 void http_release_plant(struct server_context *server);
 /* Answers HTTP requests whose line in the audit trail is on disk by now, or could not be written. */
 void http_settle(struct server_context *server);

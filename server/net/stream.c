@@ -22,7 +22,7 @@ static const int64_t DRAIN_DELAY_NS = 2 * NS_PER_S;
 static const int64_t DRAIN_NS = 10 * NS_PER_S;
 /* time within which all sessions of a node that has lost its core are closed, so that they move to other nodes */
 static const int64_t MOVE_NS = 1 * NS_PER_S;
-static const int64_t MOVING_NS = 200 * NS_PER_MS; /* a session's camera counts as moving for this long after an input of its user */
+static const int64_t MOVING_NS = 200 * NS_PER_MS; /* time after a user's input for which the session's camera counts as moving */
 
 /* --- connecting and disconnecting ------------------------------------------------------------------------------------- */
 
@@ -51,7 +51,7 @@ static uint64_t new_number(const struct server_context *server)
     uint64_t number = 0;
     while (number == 0 || stream_called(server, number)) {
         if (RAND_bytes((unsigned char *)&number, sizeof(number)) != 1)
-            return 0; /* no random numbers available: the session gets number 0 and cannot be followed */
+            return 0; /* without random numbers the session gets number 0 and cannot be followed */
         number >>= 16;
     }
     return number;
@@ -136,7 +136,7 @@ static void on_close(struct server_context *server, struct stream **slot)
 
 /* --- work after each event of a session ------------------------------------------------------------------------------- */
 
-/* Advances playback, and requests the readings of the instant shown. Following sessions show the same instant. */
+/* Moves a session's playback on, and requests the readings of the past instant to be shown. Following sessions show the same instant. */
 static void travel(struct server_context *server, struct stream *stream, int64_t now_ns)
 {
     struct session *session = stream->session;
@@ -181,8 +181,8 @@ static void pump(struct server_context *server, struct stream *stream)
     server->streams.restless |= stream->sending || stream->cut || !session_rests(session, now_ns);
 }
 
-/* Returns whether the render thread is overloaded: refining every session at each change of readings, once a second, would take more
-   than a second. */
+/* Returns whether the render thread is overloaded: drawing a refined frame for every session at each change of readings, once a second,
+   would take more than a second. */
 static bool is_loaded(const struct server_context *server)
 {
     int count = 0;
@@ -221,8 +221,8 @@ static void log_silence(struct server_context *server, struct stream *stream, in
              (unsigned long long)session->id, connection_of(stream->wsi)->address, display, SILENT_S + PACER_STALL_S);
 }
 
-/* Watches a client that acknowledges no frame: sends it nothing more, reduces its session to the view, and closes the session if the
-   silence lasts 15 s. */
+/* Watches a client that acknowledges no frame: sends it no more frames, cuts a half-sent frame short, and closes the session if the client
+   acknowledges nothing for 15 s. */
 static void watch_stall(struct server_context *server, struct stream *stream, int64_t now_ns)
 {
     enum pacer_state state = session_state(stream->session, now_ns);
@@ -236,7 +236,7 @@ static void watch_stall(struct server_context *server, struct stream *stream, in
         return;
     counter_inc(server->counters.stalled, 1);
     close_with(stream, STREAM_CLOSE_STALLED, "no frame was acknowledged for 15 s");
-    /* closes the socket by a timeout, because it may not even accept the close frame */
+    /* closes the socket by a timeout, because the client may not even read the close frame */
     lws_set_timeout(stream->wsi, PENDING_TIMEOUT_CLOSE_SEND, LAST_WORDS_S);
 }
 
@@ -255,7 +255,7 @@ void streams_on_readings(struct server_context *server, bool data_changed, bool 
    instants, because the closed pages reconnect to other nodes immediately. */
 static bool is_due(const struct stream *stream, int64_t begun_ns, int64_t spread_ns, int64_t now_ns)
 {
-    /* Fibonacci hashing: multiplying ids by 2^64 / golden ratio spreads consecutive ids evenly */
+    /* Fibonacci hashing gives each session its own instant: multiplying ids by 2^64 / golden ratio spreads consecutive ids evenly */
     uint64_t spread = (stream->session->id + 1) * 0x9E3779B97F4A7C15u >> 32;
     return now_ns - begun_ns > (int64_t)(spread % 1000) * (spread_ns / 1000);
 }
@@ -413,7 +413,8 @@ void stream_say(struct server_context *server, uint64_t client, const char *text
     pump(server, stream);
 }
 
-/* Writes a stream's login to the log and the audit trail: once for each admitted session, and for each refused token. */
+/* Writes to the log and the audit trail that a user logged in over this stream: once for each admitted session, and for each refused
+   token. */
 static void note_login(struct server_context *server, struct stream *stream, bool was_in)
 {
     const struct session *session = stream->session;
@@ -423,7 +424,8 @@ static void note_login(struct server_context *server, struct stream *stream, boo
         return;
     if (good)
         holder.role = session->identity.role;
-    /* a login that was not checked because of throttling (LOGIN_HELD, close code 1013) is not counted here, because pump() counts it */
+    /* a login that was not checked because of throttling (LOGIN_HELD, close code 1013) is not counted here, because pump() counts it as
+       refused */
     if (!good)
         counter_inc(server->counters.refused, session->identity.login != LOGIN_HELD);
     if (!good || session->identity.role > ROLE_OPEN || holder.name[0])

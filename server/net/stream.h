@@ -15,16 +15,15 @@ struct stream {
     size_t in_count;             /* bytes of the current message received so far, including those that were too many to store */
     struct encoded_frame *sending;
     uint32_t seq;
-    enum session_depth depth; /* whether depth grids go with the frame being sent, and whether they are new */
-    int half;                 /* index of the depth grid being sent, among those of the frame */
+    enum session_depth depth; /* SESSION_DEPTH_...: whether depth grids are sent with the frame, and whether the client lacks them */
+    int half;                 /* index of the depth grid being sent: 0, or 1 for the right half of a split view */
     enum { SEND_MARKERS, SEND_DEPTH, SEND_HEADER, SEND_PAYLOAD } step;
-    int packet, part;      /* which packet of the frame is being sent, and which part of that packet (indexes from 0) */
+    int packet, part;      /* which packet of the frame is being sent, and which part of that packet (both count from 0) */
     size_t sent, sent_all; /* sent: bytes of the part that were sent; sent_all: bytes of the whole frame that were sent */
     bool cut;              /* the frame was cut short: only the end of its message is still to be sent */
     uint64_t ping, pong;   /* sequence numbers of the last ping sent and of the last pong received */
     int64_t ping_ns;       /* monotonic time when the last ping was sent */
-    /* progress of the first bandwidth measurement. It lasts from the sending of the first text to the pong of a ping that follows the first
-       texts */
+    /* progress of the first bandwidth measurement: it takes the time from sending the first texts to the pong that follows them */
     enum { FIRST_TEXTS, FIRST_PING, FIRST_DONE } first;
     size_t first_bytes;
     int64_t first_ns; /* monotonic time when the first text was sent; used until the first frame is sent */
@@ -36,7 +35,7 @@ struct stream {
     int64_t silent_ns;
     int close_code; /* WebSocket close code to send; 0: the connection stays open */
     const char *close_text;
-    int64_t messages, errors, dropped; /* values of the session's counters with these names that are already added to the metrics */
+    int64_t messages, errors, dropped; /* numbers of messages, errors and dropped frames of the session that the metrics include already */
 };
 
 /* --- stream_table.c --- */
@@ -76,14 +75,14 @@ void tiles_on_tick(struct server_context *server);
 
 /* --- stream_follow.c: sessions that are shown another session's view --- */
 
-/* Resolves what the session's client asked for: to follow another session, to hand over the lead, or to return with its followers. */
+/* Carries out what the session's client asked for: to follow another session, to hand over the lead, or to return with its followers. */
 void follow_resolve(struct server_context *server, struct stream *stream);
-/* Tells all followers that the leader's view changed. Returns false if there are no followers. */
+/* Tells all sessions that follow `leader` that its view changed. Returns false if there are no followers. */
 bool follow_spread(struct server_context *server, const struct stream *leader);
 /* Gives all viewers of one view the same step of the quality ladder. Call it every tick. */
 void follow_share_steps(struct server_context *server);
-/* Call it when a stream is being closed. If another connection has resumed its view, its followers follow that session; otherwise they
-   follow nobody. */
+/* Call it when a stream is being closed. Its followers then follow the session that has resumed its view over another connection, or nobody
+   if there is none. */
 void follow_forget(struct server_context *server, const struct stream *leader);
 /* Sends leaders the list of their followers if it changed. Call it every tick. */
 void follow_tell(struct server_context *server, int64_t now_ns);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Resolves which session follows which. Following is one level deep: a session that asks to follow a follower follows that follower's
+/* Keeps track of which session follows which. Following is one level deep: a session that asks to follow a follower follows that follower's
    leader. */
 #include "base/clock.h"
 #include "base/mem.h"

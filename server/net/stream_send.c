@@ -22,8 +22,8 @@ static const struct text *padded(struct text *text)
     return text;
 }
 
-/* Sends the alarm markers of the frame before the frame. Returns false if the connection is gone. *wrote: set to true if something was
-   sent. */
+/* Sends the message `markers` (sensor markers of the frame) before the frame. Returns false if the connection is gone. *wrote: set to true
+   if something was sent. */
 static bool write_markers(struct server_context *server, struct stream *stream, bool *wrote)
 {
     struct text text = { 0 };
@@ -181,7 +181,8 @@ static void part_sent(struct server_context *server, struct stream *stream)
     encoded_frame_destroy(&stream->sending);
 }
 
-/* Writes the header and the first bytes of the payload together: a separate write would cost a system call and a network packet. */
+/* Puts the frame's header before the first bytes of its payload, to send both together: a separate write would cost a system call and a
+   network packet. */
 static size_t put_header(const struct server_context *server, struct stream *stream, uint8_t *bytes)
 {
     struct wire_frame head = frame_header(server, stream);
@@ -250,8 +251,8 @@ static bool write_end(struct server_context *server, struct stream *stream)
 
 /* --- round trips ------------------------------------------------------------------------------------------------------ */
 
-/* Returns whether a ping is due: only between frames, as a pong behind a frame would measure the frame's transfer and not the round
-   trip. */
+/* Returns whether a WebSocket ping is due; pings are sent only between frames, as a pong behind a frame would measure the frame's transfer
+   and not the round trip. */
 static bool ping_due(const struct stream *stream, int64_t now_ns)
 {
     const struct pacer *pacer = &stream->session->delivery.pacer;
@@ -304,7 +305,7 @@ static void note_first(struct stream *stream, size_t bytes, int64_t now_ns)
         stream->first_bytes += bytes;
 }
 
-/* texts are sent between frames, never inside a frame */
+/* Texts are sent only between two frames, never between the parts of one frame. */
 bool stream_send(struct server_context *server, struct stream *stream)
 {
     struct session *session = stream->session;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks who may open a stream: path, origin and subprotocol of the handshake. */
+/* Decides whether a client may open a stream, by path, origin and subprotocol of the WebSocket handshake. */
 #include <stdio.h>
 #include <string.h>
 

@@ -7,7 +7,8 @@
 #include "net/stream.h"
 #include "session/tiles/tile_sync.h"
 
-/* more sessions than displays: a display may be open in several places, or reconnect before its old connection is found dead */
+/* maximum number of sessions of a wall's tiles; more than there are displays: a display may be open in several places, or reconnect before
+   its old connection is found dead */
 enum { MEMBERS = 4 * WALL_DISPLAYS };
 
 static bool is_of(const struct stream *stream, const char *wall)
@@ -61,7 +62,7 @@ static struct session *choose(struct server_context *server, const struct tile_w
 static void take_lead(const struct server_context *server, struct tile_wall *wall, struct session *leader, const struct stream *leaving)
 {
     const struct stream *before = wall->leader ? stream_find(server, wall->leader) : NULL;
-    /* finds the stream without stream_find(), because the leaving stream was already removed from the table */
+    /* stream_find() does not find the leaving stream, because it was already removed from the table */
     if (leaving && leaving->session->id == wall->leader)
         before = leaving;
     if (before)

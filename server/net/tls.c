@@ -24,7 +24,7 @@ struct tls {
     struct file_watch cert_watch, key_watch;
     SSL_CTX *checked; /* newest certificate that passed the checks; NULL: none yet */
     SSL_CTX *served;  /* the context of libwebsockets */
-    time_t warned_s;  /* seconds of UTC: when the last warning about the expiry was logged; 0: none yet */
+    time_t warned_s;  /* time when the last warning about the certificate's expiry was logged, in seconds of UTC; 0: none yet */
 };
 
 static const char *why(char out[200])

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* HTTP requests other than the stream: access rights, routes, and the files of the web client. */
+/* Handles HTTP requests other than the stream: checks rights, finds the handler of a path, and serves the files of the web client. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -28,8 +28,8 @@ static bool is_asked_as_renderer(struct http_exchange *request)
            !strcmp(argument, "role=render");
 }
 
-/* Takes the state that a load balancer states in its check of this node. Ignores requests with X-Forwarded-For, which come from clients and
-   may be forged. */
+/* Reads whether the load balancer sends users to this node from a header of its check. Ignores requests with X-Forwarded-For, which come
+   from clients and may be forged. */
 static void hear_balancer(struct server_context *server, struct http_exchange *request)
 {
     static const char header[] = "x-haproxy-server-state:";
@@ -60,7 +60,7 @@ static int ready(struct server_context *server, struct http_exchange *request)
 
 #define NGINX_LINES "proxy_http_version 1.1; proxy_set_header Upgrade $http_upgrade; proxy_set_header Connection \"upgrade\";"
 
-/* validity of a stored refusal of a stream handshake; within this time the page may ask for the reason */
+/* time for which the server remembers why it refused to open a stream: the page may ask for the reason within this time */
 static const int64_t REFUSED_NS = 15 * NS_PER_S;
 
 /* Logs a request to the stream's path without the header Upgrade, which a wrongly configured proxy sends: proxies drop Upgrade and
@@ -113,7 +113,8 @@ static int file(struct server_context *server, struct http_exchange *request, co
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "not found\n");
     if (lws_hdr_copy(request->wsi, seen, sizeof(seen), WSI_TOKEN_HTTP_IF_NONE_MATCH) > 0 && !strcmp(seen, found->etag))
         return request_answer(request, HTTP_STATUS_NOT_MODIFIED, found->type, NULL, 0, "etag:", found->etag);
-    char *bytes = mem_array(found->count + 1, 1); /* a copy: the site keeps its bytes, and the request frees those of its answer */
+    /* copies the file, because the request frees the bytes of its answer and the site keeps its own */
+    char *bytes = mem_array(found->count + 1, 1);
     memcpy(bytes, found->bytes, found->count);
     return request_answer(request, HTTP_STATUS_OK, found->type, bytes, found->count, "etag:", found->etag);
 }
@@ -134,12 +135,12 @@ static const struct {
     const char *path;
     int (*serve)(struct server_context *server, struct http_exchange *request);
     enum role least;
-    /* bit mask (VIEWS, DISPLAY, NODE) of the kinds of limited token that may use this path: tokens for some views only, for one display
-       only, or for renderers */
+    /* bit mask (VIEWS, DISPLAY, NODE) of the kinds of limited tokens that may use this path: tokens for some views only, for one display
+       only, or for other daemons */
     unsigned narrowed;
 } routes[] = {
     { "/healthz", alive, ROLE_NOBODY, 0 },
-    /* always ready: the event loop runs only once model, GL and store are ready, although GL may be lost later */
+    /* needs no check that the start is complete: the event loop runs only once models and GL are loaded */
     { "/readyz", ready, ROLE_NOBODY, 0 },
     { "/stream", stream_without_upgrade, ROLE_NOBODY, 0 },
     { "/login", ask_login, ROLE_NOBODY, 0 },
@@ -185,7 +186,7 @@ static int refuse(struct http_exchange *request, const struct http_refusal *refu
                           whose ? "Bearer realm=\"plantcast\"" : "5");
 }
 
-/* Returns whether another site's page sent the request. Other sites may link here, but may not embed our pictures. */
+/* Returns whether another site's page sent the request. Other sites may link here, but may not embed this server's pictures. */
 static bool is_foreign_page(struct lws *wsi)
 {
     char site[32];
@@ -263,7 +264,7 @@ static int serve(struct server_context *server, struct http_exchange *request, c
     bool get = lws_hdr_total_length(request->wsi, WSI_TOKEN_GET_URI) > 0;
     struct http_refusal refusal;
     request->head = lws_hdr_total_length(request->wsi, WSI_TOKEN_HEAD_URI) > 0;
-    /* clears the value of the previous request: libwebsockets reuses this struct for all requests of a connection */
+    /* clears the previous request's value: libwebsockets reuses this struct for all requests of a connection */
     request->sandboxed = false;
     counter_inc(server->counters.requests, 1);
     connection_set_answered(server, request->wsi, false);
@@ -326,7 +327,7 @@ static void request_end(struct server_context *server, struct http_exchange **sl
     *slot = NULL;
 }
 
-/* Handles events of a connection as a whole. Returns false for other events. */
+/* Handles libwebsockets events of a connection as a whole, such as its opening and closing. Returns false for other events. */
 static bool on_connection(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, int *result)
 {
     *result = 0;

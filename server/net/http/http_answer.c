@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Answers to HTTP requests: headers and body, including answers that must wait for their content. */
+/* Writes answers to HTTP requests: headers and body, including answers that must wait for their content. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -8,7 +8,8 @@
 #include "net/http/stuck_head.h"
 #include "net/connection.h"
 
-/* answers up to this size do not count in the quota of an address: memory suffices for one such answer on each permitted connection */
+/* HTTP answers up to this size do not count in an address's quota on unread bytes: memory suffices for one such answer on each permitted
+   connection */
 enum { SMALL_BYTES = 64 * 1024 };
 enum { HEAD_BYTES = 8192 }; /* room for the headers of an answer with the longest list of allowed origins, of 256 characters each */
 
@@ -34,8 +35,8 @@ static bool add_first(struct http_exchange *request, int status, const char *typ
     return lws_add_http_common_headers(wsi, (unsigned)status, type, status == HTTP_STATUS_NOT_MODIFIED ? 0 : count, p, end) == 0;
 }
 
-/* Adds the security policies. A sandboxed document has an opaque origin, so even its own script counts as cross-origin. Returns false if
-   the headers do not fit. */
+/* Adds the headers with security policies. A sandboxed document has an opaque origin, so even its own script counts as cross-origin.
+   Returns false if the headers do not fit. */
 static bool add_policies(struct http_exchange *request, const char *content_policy, unsigned char **p, unsigned char *end)
 {
     const char *resource_policy = request->sandboxed ? "cross-origin" : "same-origin";
@@ -46,7 +47,7 @@ static bool add_policies(struct http_exchange *request, const char *content_poli
     return added;
 }
 
-/* Adds the refusal's code as a header, in ASCII because headers allow nothing else. Returns false if that fails. */
+/* Adds a header with the refusal's code and arguments, in ASCII because headers allow nothing else. Returns false if that fails. */
 static bool add_refusal(const struct refusal *refusal, struct lws *wsi, unsigned char **p, unsigned char *end)
 {
     json_t *object = refusal_json(refusal);
@@ -101,7 +102,8 @@ void request_hold(struct http_exchange *request, char *body, size_t count)
     server->http.answer_bytes += (int64_t)count;
 }
 
-/* Returns whether the answer fits into the quotas. A large answer occupies memory until the client has read it, however slowly. */
+/* Returns whether an answer of `count` bytes is within the quotas on unread bytes. A large answer occupies memory until the client has read
+   it, however slowly. */
 static bool may_hold(const struct http_exchange *request, size_t count)
 {
     const struct server_context *server = server_context_of(request->wsi);
@@ -268,7 +270,7 @@ struct http_exchange *request_find(const struct server_context *server, uint64_t
     return request;
 }
 
-/* Frees the data about the frame or pick for which a request waits. &NULL is allowed; sets *asked to NULL. */
+/* Frees the data about the frame or pick for which a request waits. sets *asked to NULL; accepts a pointer to NULL. */
 static void asked_free(struct asked **asked)
 {
     if (!*asked)

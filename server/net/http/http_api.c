@@ -30,7 +30,8 @@ static int await_history(struct server_context *server, struct http_exchange *re
     return 0;
 }
 
-/* Returns whether the client may read this history. A paired device may read only what its display shows as trends. */
+/* Returns whether the client may read the history that the query asks for. A paired device may read only what its display shows as
+   trends. */
 static bool may_read(const struct server_context *server, const struct http_exchange *request, const struct history_query *query)
 {
     const struct token_holder *holder = &connection_of(request->wsi)->holder;
@@ -117,7 +118,7 @@ int ask_journal(struct server_context *server, struct http_exchange *request)
     return await_history(server, request, &query);
 }
 
-/* Sends the next piece (or the first) of an answer in several pieces. */
+/* Sends the next piece (or the first) of an answer to a history query, which is made in pieces. */
 static int take_piece(struct http_exchange *request, struct history_answer *piece, const char *type)
 {
     if (piece->first && chunked_begin(request, type) < 0)
@@ -180,7 +181,7 @@ int api_plant(struct server_context *server, struct http_exchange *request)
 
 enum { TAGS_PAGE = 1000, TAGS_PAGE_MAX = 5000 };
 
-/* Reads the arguments `first` and `count` of the query. Returns false if an argument is wrong. */
+/* Reads the arguments `first` and `count` of the query, which select a part of a list. Returns false if an argument is wrong. */
 static bool read_page(const struct args *args, size_t *first, size_t *count)
 {
     static const char *const names[] = { "first=", "count=" };
@@ -207,7 +208,7 @@ int api_tags(struct server_context *server, struct http_exchange *request)
     return request_answer_json(request, reply_api_tags_text(&server->session_context, first, count));
 }
 
-/* Compares each sensor of a group with the estimate from its neighbours; with tag=NAME only that sensor. */
+/* Answers with the estimate of each sensor of a group from its neighbouring sensors; with tag=NAME, of only that sensor. */
 int api_neighbours(struct server_context *server, struct http_exchange *request)
 {
     const struct plant *plant = server->session_context.plant;
@@ -287,7 +288,7 @@ int api_walls(struct server_context *server, struct http_exchange *request)
 }
 
 /* Forwards a pairing request to the core, which chooses the digits and sends them to its renderers. The renderer repeats this at each
-   request of the display, because the digits expire otherwise. Returns what this renderer knows of the request so far. */
+   request of the display, because the digits expire otherwise. Returns the state of the request as far as this renderer knows. */
 static enum pairing ask_core(struct server_context *server, const struct pairing_request *asked, char digits[PAIRING_DIGITS + 1],
                              int *left_s)
 {
@@ -299,7 +300,8 @@ static enum pairing ask_core(struct server_context *server, const struct pairing
     return now;
 }
 
-/* Answers an unpaired display that polls with its secret whether an engineer has accepted it. The display shows the digits meanwhile. */
+/* Answers a display without a token that asks, with its secret, whether an engineer has accepted it (pairing). Meanwhile the display shows
+   the digits that the engineer types. */
 static int pair(struct server_context *server, struct http_exchange *request, const struct pairing_request *asked)
 {
     char digits[PAIRING_DIGITS + 1];

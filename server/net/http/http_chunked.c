@@ -7,8 +7,8 @@
 #include "net/http/http_impl.h"
 
 static const char END[] = "0\r\n\r\n";
-/* CHUNK_FRAMING_BYTES: room reserved before and after each chunk for its length and line ends; WRITE_TIMEOUT_S: seconds allowed for one
-   write; NEXT_PIECE_TIMEOUT_S: seconds allowed until the next piece is made */
+/* CHUNK_FRAMING_BYTES: bytes reserved before and after each HTTP chunk for its length and line ends; WRITE_TIMEOUT_S: seconds allowed for
+   one write; NEXT_PIECE_TIMEOUT_S: seconds allowed until the next piece is made */
 enum { CHUNK_FRAMING_BYTES = 16, WRITE_TIMEOUT_S = 20, NEXT_PIECE_TIMEOUT_S = 60 };
 
 /* HTTP/1.0 has no chunked bodies: there the end of the connection ends the body. */

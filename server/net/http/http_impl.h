@@ -8,16 +8,17 @@
 struct asked { /* the frame, or the pick in a frame, for which an HTTP request waits */
     bool picks;
     struct frame_request frame_request;
-    char **args; /* decoded arguments of the URL, for the signed statement in a picture; freed by asked_free() */
+    char **args; /* percent-decoded arguments of the URL, which the signature of a picture covers; freed by asked_free() */
     size_t arg_count;
     struct pick_query pick;
-    /* readings of the picture's instant (a reference); NULL: the picture shows the present, or the readings are still being loaded */
+    /* readings of the past instant that the picture shows (a reference); NULL: it shows the present, or the readings are still being
+       loaded */
     const struct historical_snapshot *historical;
 };
 
 struct http_exchange {
     struct lws *wsi;
-    /* usage of the client's address while the request waits; no reference of its own: the connection holds one */
+    /* counts of the client's address, while the request waits; the connection holds the reference */
     struct address_usage *usage;
     bool head;              /* true: the request's method is HEAD, so the answer has no body */
     bool close;             /* true: the connection is closed after this answer */
@@ -26,21 +27,22 @@ struct http_exchange {
     struct refusal refusal; /* refusal to be sent in the header Plantcast-Refusal of the next answer; REFUSAL_NONE: no such header */
     char *body;
     size_t count, sent;
-    /* address in whose answer_bytes the body is counted; NULL: not counted. The connection holds the reference */
+    /* counts of the address to whose answer_bytes the body is added; NULL: the body is not counted. The connection holds the reference */
     struct address_usage *holder;
     bool asks;         /* true: the request's history query is being answered */
-    bool asks_instant; /* the query comes from a renderer and asks for the readings of an instant */
+    bool asks_instant; /* true: the request comes from a renderer and asks for the readings of a past instant */
     enum {
         PIECES_NONE,
         PIECES_CHUNKED,
         PIECES_TO_END
     } pieces; /* how the body follows the headers: at once, in HTTP chunks, or in pieces up to the end of the connection */
     bool last_piece;             /* `body` is the last piece */
-    uint64_t client;             /* id under which a waiting request is found (request_await) */
+    uint64_t client;             /* id by which request_find() finds the request while it waits */
     int64_t until_ns;            /* monotonic time at which a waiting request is answered with "not ready" */
     bool reloads;                /* true: the request waits for a reload of the plant */
-    bool recorded;               /* true: the requested action is done; its answer waits until the audit line `record` is on disk */
-    struct settling_ticket record; /* audit-trail line of the request */
+    /* true: the requested action is done, and its answer waits until the line `record` of the audit trail is on disk */
+    bool recorded;
+    struct settling_ticket record; /* line of the audit trail that records the request */
     struct upload_body *body_in; /* upload in progress; NULL: none */
     const char *step;            /* path of a POST request of an import (static text), for the audit trail */
     struct asked *asked;         /* frame or pick for which the request waits; NULL: none */
@@ -56,7 +58,7 @@ struct args { /* decoded arguments of a query */
 
 #define HTTP_TEXT "text/plain; charset=utf-8"
 
-/* Functions that return int return the result for the libwebsockets callback. */
+/* Functions that return int return what the libwebsockets callback must return: 0, or -1 to close the connection. */
 
 /* Sends an answer with one extra header (NULL: none). Takes ownership of body (mem_free), which is written as the socket accepts it. */
 int request_answer(struct http_exchange *request, int status, const char *type, char *body, size_t count, const char *extra_name,
@@ -67,7 +69,7 @@ int request_answer_text(struct http_exchange *request, int status, const char *t
 int chunked_begin(struct http_exchange *request, const char *type);
 /* Adds a piece of the body. Call it only after the previous piece was sent. Takes ownership of body (mem_free). */
 void chunked_append(struct http_exchange *request, char *body, size_t count, bool last);
-/* Writes as much of the current piece as one write takes. */
+/* Writes as much of the current piece of the body as the socket accepts in one write. */
 int chunked_write(struct server_context *server, struct http_exchange *request);
 /* Answers 503 with Retry-After. */
 int request_answer_later(struct http_exchange *request, const char *why);
@@ -80,15 +82,15 @@ int request_answer_unreadable(const struct server_context *server, struct http_e
 int request_answer_json(struct http_exchange *request, char *text);
 /* Answers 400 (bad request) with the error's text. */
 int request_answer_error(struct http_exchange *request, const struct message_error *error);
-/* Sets the body of the request's answer (NULL: none) and frees its previous body; takes ownership. Counts the bytes in the totals of the
-   server and of the address. */
+/* Sets the body of the request's answer (NULL: none) and frees its previous body; takes ownership. Counts the bytes as unread, for the
+   server and for the client's address. */
 void request_hold(struct http_exchange *request, char *body, size_t count);
 /* Writes status line and headers. Returns false if the connection is gone. */
 bool request_write_head(struct http_exchange *request, int status, const char *type, const char *extra_name, const char *extra);
 /* Ends the request once its answer is sent completely, and frees what it holds. Returns the result for the libwebsockets callback: 0
    keeps the connection, -1 closes it. */
 int request_done(struct http_exchange *request);
-/* Decodes the arguments of the query. Returns false with *error. */
+/* Percent-decodes the arguments of the URL's query. Returns false with *error. */
 bool request_args(struct lws *wsi, struct args *args, struct message_error *error);
 /* Returns the value of the first argument with that name; NULL: there is none. */
 const char *arg_of(const struct args *args, const char *name);
@@ -103,7 +105,7 @@ void request_forget(struct server_context *server, struct http_exchange *request
 /* Carries out the result of an answer that was given outside of the request's own callback: 0 keeps the connection, -1 closes it soon. */
 void request_answered(struct http_exchange *request, int result);
 
-/* Handlers by path: each answers the request or makes it wait. */
+/* Handlers of HTTP paths: each answers the request or makes it wait (request_await). */
 int ask_snapshot(struct server_context *server, struct http_exchange *request);
 int ask_pick(struct server_context *server, struct http_exchange *request);
 int ask_history(struct server_context *server, struct http_exchange *request);
@@ -134,7 +136,7 @@ int api_tags(struct server_context *server, struct http_exchange *request);
 int api_neighbours(struct server_context *server, struct http_exchange *request);
 int metrics(struct server_context *server, struct http_exchange *request);
 
-/* Answers the request that called ask_instant(), once the instant's readings are loaded or loading has failed. */
+/* Answers the request for which ask_instant() was called, once the readings of the past instant are loaded or loading has failed. */
 void answer_instant(struct server_context *server, struct http_exchange *request, const struct history_loader_answer *loaded);
 
 /* Returns whether the request may change state on the server. Returns false for a request that another site's page made the user's browser
@@ -143,13 +145,13 @@ bool request_may_change(struct server_context *server, struct http_exchange *req
 
 /* --- http_import.c: requests with which engineers import a plant; only if server->params.import is set */
 
-/* Returns whether this is an import path for POST. */
+/* Returns whether the path is one of the import's paths that accept POST. */
 bool import_takes_post(const struct server_context *server, const char *path);
-/* Appends ", PATH" for each import path for POST. */
+/* Appends ", PATH" for each of the import's paths that accept POST. */
 void import_add_posts(const struct server_context *server, struct text *out);
-/* Begins a POST, whose body may follow in later events. */
+/* Handles the head of a POST request to a path of the import; the body may follow in later events. */
 int import_post(struct server_context *server, struct http_exchange *request, const char *path);
-/* import_take_body() takes a piece of the body; import_end_body() is called after the last piece. */
+/* import_take_body() takes a piece of the POST request's body; import_end_body() is called after the last piece. */
 int import_take_body(struct server_context *server, struct http_exchange *request, const void *bytes, size_t count);
 int import_end_body(struct server_context *server, struct http_exchange *request);
 /* Removes the file of an upload that will not be completed. */

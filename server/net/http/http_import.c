@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Import of a plant by engineers: uploads of exported files, import orders, and reading matches. The event loop writes uploads to files,
-   piece by piece, without waiting for the disk. */
+/* Import of a plant by engineers: uploads of exported files, orders to import them, and files with proposed places of sensors. The event
+   loop writes uploads to files, piece by piece, without waiting for the disk. */
 #include <errno.h>
 #include <jansson.h>
 #include <stdio.h>
@@ -20,14 +20,16 @@ enum { MAX_FILES = 64, MATCHES_BYTES = 32 << 20, MAX_UPLOADS = 4, SLOW_S = 20, S
 
 struct upload_body {
     struct export_upload *upload;
-    int64_t left, bytes; /* left: bytes of the upload still to come; bytes: size of the whole file */
+    int64_t left, bytes; /* left: number of bytes of the upload still to come; bytes: size of the whole file */
     int64_t begun_ns;
     char name[256];
-    bool decides; /* true: the upload is a file of match decisions by an engineer; the end of the upload starts an import */
+    /* true: the upload is a file with an engineer's decisions about proposed places of sensors (plantcast match); the end of the upload
+       starts an import */
+    bool decides;
 };
 
-/* Adds an import step to the audit trail. result: as in struct audit_entry; why: the reason of a refusal, or NULL. The outcome of an import
-   order is recorded later, by the reload thread. */
+/* Adds a line about a step of an import (an upload, an order) to the audit trail. result: as in struct audit_entry; why: the reason of a
+   refusal, or NULL. The outcome of an import order is recorded later, by the reload thread. */
 static void record_file(struct http_exchange *request, const char *file, const char *result, const char *why)
 {
     char *line = why ? mem_printf("%.*s", (int)strcspn(why, "\n"), why) : NULL;
@@ -69,7 +71,7 @@ static int answer_empty(struct http_exchange *request)
 }
 
 /* Records the import step as done in the audit trail; http_settle() answers the request once that line is on disk, or can not be written.
-   file: the file that the step concerned; "": none. */
+   file: name of the uploaded file; "": none. */
 static int answer_done(struct http_exchange *request, const char *file)
 {
     struct server_context *server = server_context_of(request->wsi);
@@ -142,7 +144,7 @@ static int order(struct server_context *server, struct http_exchange *request, c
     return answer_empty(request);
 }
 
-/* Copies the value of NAME=value from the query; "" if the name is missing. Returns false if the value is too long. */
+/* Copies the value of the argument NAME=value of the query; "" if the name is missing. Returns false if the value is too long. */
 static bool take_argument(const struct args *args, const char *name, char *out, size_t size)
 {
     size_t length = strlen(name);
@@ -157,8 +159,8 @@ static bool take_argument(const struct args *args, const char *name, char *out, 
     return true;
 }
 
-/* Orders an import. Argument `what`: `tags` matches the tag list and keeps the models; `anew` replaces the plant; absent: updates the
-   models. */
+/* Orders an import of the uploaded files. Argument `what`: `tags` matches the tag list and keeps the models; `anew` replaces the plant;
+   absent: updates the models. */
 static int order_all(struct server_context *server, struct http_exchange *request, const struct args *args)
 {
     struct import_order wanted = { 0 };
@@ -206,7 +208,7 @@ static int remove_file(struct server_context *server, struct http_exchange *requ
 
 /* --- uploads ---------------------------------------------------------------------------------------------------------- */
 
-/* Returns whether `bytes` more may be uploaded; if not, *why is the reason. */
+/* Returns whether `bytes` more bytes may be uploaded as the file `name`; if not, *why is the reason. */
 static bool has_room(const struct server_context *server, const char *folder, const char *name, int64_t bytes, enum refusal_code *why)
 {
     struct export_list list = { 0 };
@@ -264,8 +266,8 @@ static int begin_decisions(struct server_context *server, struct http_exchange *
     return begin_body(server, request, plant_import_decisions(), true);
 }
 
-/* Returns whether an upload is slower than any real link and would thus occupy its slot for hours. An upload that stalls completely needs
-   no check here: libwebsockets closes its connection. */
+/* Returns whether an upload is slower than any real link and would occupy one of the few permitted uploads for hours. An upload that stalls
+   completely needs no check here: libwebsockets closes its connection. */
 static bool drips(const struct upload_body *body)
 {
     int64_t taken_s = (clock_mono_ns() - body->begun_ns) / NS_PER_S;

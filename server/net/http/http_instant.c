@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sends the readings of an instant to renderers, which keep no history of their own. */
+/* Sends the readings of a past instant to renderers (daemons that draw for a core), which keep no history of their own. */
 #include <stdlib.h>
 
 #include "corelink/core_instant.h"
@@ -15,7 +15,7 @@ static int answer(struct server_context *server, struct http_exchange *request, 
     return request_answer(request, HTTP_STATUS_OK, BINARY, text.at, text.length, NULL, NULL);
 }
 
-/* Answers with the readings of at_us; at_us=0: the answer has only the instant at which recorded history begins. */
+/* Answers with the readings of the past instant at_us. at_us=0: the answer has only the time at which recorded history begins. */
 int ask_instant(struct server_context *server, struct http_exchange *request)
 {
     struct message_error error = { 0 };

@@ -10,7 +10,7 @@
 #include "net/connection.h"
 #include "net/http/http_impl.h"
 
-enum { COOKIE_S = 600 }; /* lifetime in seconds of the cookie of a log-in: the identity provider's answer must arrive within this time */
+enum { COOKIE_S = 600 }; /* lifetime in seconds of the cookie for signing in: the identity provider's answer must arrive within this time */
 
 static int answer_redirect(struct http_exchange *request, const char *to)
 {
@@ -51,7 +51,7 @@ int ask_login(struct server_context *server, struct http_exchange *request)
     return result;
 }
 
-/* Refuses an identity provider's answer that belongs to no log-in in progress. Such an answer is counted, but neither recorded nor held
+/* Refuses an identity provider's answer that belongs to no sign-in in progress. Such an answer is counted, but neither recorded nor held
    against the client's address: it cannot be a guess at a secret of 256 bits, and another site's page can make a user's browser send it. */
 static int refuse_unasked(struct server_context *server, struct http_exchange *request, enum openid_finish why)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frames and picks over HTTP, of the present or of an instant. */
+/* Answers HTTP requests for pictures, and for what is at a pixel (picks), of the present or of a past instant. */
 #include <stdio.h>
 #include <string.h>
 
@@ -25,7 +25,8 @@ static struct params_context context_of(const struct server_context *server)
                                     .now_us = clock_plant_ns(server->params.plant.clock) / 1000 };
 }
 
-/* Adds an argument of the query to those of a view. Returns false with *error if the user may not use it, or there is no room. */
+/* Adds an argument of the request's query to the arguments of a saved view. Returns false with *error if the user may not use it, or there
+   is no room. */
 static bool add_own(struct view_address *out, const struct connection *connection, const char *arg, struct message_error *error)
 {
     char name[48];
@@ -45,9 +46,9 @@ static bool add_own(struct view_address *out, const struct connection *connectio
     return false;
 }
 
-/* Reads the view or the place that a query asks for. If the query names a view, *address receives the view's arguments, which may be those
-   of an engineer, and the query's own, which the role must permit (free with view_address_finish()); otherwise the arguments stay in *args.
-   place: as for view_query_parse(). Returns false with *error if the request is not valid. */
+/* Reads from a query which view it asks for and, for a pick, which pixel. If the query names a view, *address receives the view's
+   arguments, which may be those of an engineer, and the query's own, which the role must permit (free with view_address_finish());
+   otherwise the arguments stay in *args. place: as for view_query_parse(). Returns false with *error if the request is not valid. */
 static bool read_query(struct server_context *server, struct lws *wsi, struct args *args, struct view_address *address, struct view *view,
                        double place[2], struct message_error *error)
 {
@@ -159,7 +160,7 @@ int ask_snapshot(struct server_context *server, struct http_exchange *request)
     return result;
 }
 
-/* Adds a header with the age of the shown values, for programs that process the picture. */
+/* Adds a header with the age of the readings that the picture shows, for programs that process it. */
 static void say_values(const struct frame *frame, struct text *out)
 {
     text_add(out, "data_time_us=%lld, oldest_age_ms=", (long long)(frame->data_utc_ns / 1000));

@@ -70,8 +70,8 @@ static bool is_own_script(const char *path)
     return dot && !strcmp(dot, ".js") && strncmp(path, "/vendor/", 8) != 0;
 }
 
-/* Counts the backquotes of a line of script. Returns whether the line opens a template literal without closing it, or closes one that an
-   earlier line opened. */
+/* Counts the backquotes of a line of JavaScript. Returns whether the line opens a template literal without closing it, or closes one that
+   an earlier line opened. */
 static bool toggles_template(const char *line, const char *end)
 {
     bool toggles = false;
@@ -83,9 +83,9 @@ static bool toggles_template(const char *line, const char *end)
     return toggles;
 }
 
-/* Removes indentation and empties lines that hold only a comment, except the first line, which is the licence. A page thus loads a fifth
-   fewer bytes. Lines of template literals are left unchanged, and no line is removed, so that line numbers match the source. Returns how
-   many of the `count` bytes are left. */
+/* Removes the indentation of a script's lines, and empties lines that hold only a comment, except the first line, which is the licence. A
+   page thus loads a fifth fewer bytes. Lines of template literals are left unchanged, and no line is removed, so that line numbers match
+   the source. Returns how many of the `count` bytes are left. */
 static size_t drop_comments(char *bytes, size_t count)
 {
     size_t out = 0;

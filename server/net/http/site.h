@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The web client's files, as found when the daemon starts: read into memory from one folder, so that files of a newer version never meet
-   the running daemon. Thread: one creates it; immutable from then on. */
+/* The web client's files, as found when the daemon starts: read into memory from one folder, so that a running daemon never serves files of
+   a newer version. Thread: one creates it; immutable from then on. */
 #ifndef NET_SITE_H
 #define NET_SITE_H
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds out from the kernel (TCP_INFO) how many bytes a connection received and how long ago the last one arrived. */
+/* Finds out from the kernel (TCP_INFO) how many bytes a connection received and how long ago the last byte arrived. */
 #include "net/http/stuck_head.h"
 
 #include <linux/tcp.h>
@@ -12,7 +12,8 @@
 #include "base/clock.h"
 #include "net/connection.h"
 
-/* QUIET_MS: longer than 1 s, because a lost packet is retransmitted within 1 s, unless the retransmission is lost as well */
+/* QUIET_MS: time without a byte after which a request counts as stalled; longer than 1 s, because a lost packet is retransmitted within 1
+   s, unless the retransmission is lost as well */
 enum { CHECK_INTERVAL_US = 500000, QUIET_MS = 2000 };
 static const uint64_t NOT_WATCHED = UINT64_MAX;
 
@@ -30,14 +31,14 @@ void stuck_head_await(struct lws *wsi, bool first)
     lws_set_timer_usecs(wsi, CHECK_INTERVAL_US);
 }
 
-/* Stops the watch. The timer stays set and fires one last time: libwebsockets 4.1 cannot cancel a timer, and a delay of -1 makes it fire
-   immediately. */
+/* Stops to wait for the rest of the request's head. The timer stays set and fires one last time: libwebsockets 4.1 cannot cancel a timer,
+   and a delay of -1 makes it fire immediately. */
 void stuck_head_arrived(struct lws *wsi)
 {
     connection_of(wsi)->received_before_head = NOT_WATCHED;
 }
 
-/* Writes the answer 408 (request timeout) with a single call: bytes that the socket does not accept immediately are lost. */
+/* Writes the HTTP answer 408 (request timeout) with a single call: bytes that the socket does not accept immediately are lost. */
 static void tell(struct lws *wsi)
 {
     static const char body[] = "408 Request Timeout: the request's headers are incomplete. Is the name of a header truncated?\n";
@@ -64,8 +65,8 @@ static void note(struct server_context *server, struct lws *wsi)
              QUIET_MS / 1000, more);
 }
 
-/* Returns whether a request line was read. Over TLS the bytes of the handshake count as received, too, so received bytes alone do not
-   show that a request has begun. */
+/* Returns whether libwebsockets has read the request's first line. Over TLS the bytes of the handshake count as received, too, so received
+   bytes alone do not show that a request has begun. */
 static bool has_request_line(struct lws *wsi)
 {
     return lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0 || lws_hdr_total_length(wsi, WSI_TOKEN_HEAD_URI) > 0 ||

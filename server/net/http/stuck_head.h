@@ -5,10 +5,10 @@
 #define HTTP_STUCK_HEAD_H
 #include "net/server_context.h"
 
-/* Starts to watch for the next request's head: when a connection opens, and when a request is done. first: the wait is for the connection's
-   first request, whose bytes may have arrived before the connection was accepted. */
+/* Begins to watch for the next request's head (its first line and headers): call it when a connection opens, and when a request is done.
+   first: the wait is for the connection's first request, whose bytes may have arrived before the connection was accepted. */
 void stuck_head_await(struct lws *wsi, bool first);
-/* Ends the watch, because the request's head is complete. */
+/* Ends the watch for stalled heads, because the request's head is complete. */
 void stuck_head_arrived(struct lws *wsi);
 /* Handles LWS_CALLBACK_TIMER. Returns 0; or -1 if the connection must be closed because bytes arrived, then none for 2 s; the client was
    sent 408. */
