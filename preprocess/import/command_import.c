@@ -142,7 +142,7 @@ static void convert(struct import_command *import, const char *path)
     mem_free(glb);
 }
 
-enum found_plant { NO_PLANT, BEGUN_PLANT /* an empty plant, which `plantcast import --serve` created */, WHOLE_PLANT };
+enum found_plant { NO_PLANT, BEGUN_PLANT /* an empty plant, as `plantcast import --serve` writes it */, WHOLE_PLANT };
 
 static enum found_plant find_plant(const struct import_command *import)
 {

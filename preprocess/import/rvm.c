@@ -21,7 +21,8 @@ struct primitive {
     struct rvm_shape shape;
     int node;
     size_t byte; /* byte offset in the file of the primitive's chunk */
-    /* indices of the primitive's first contour and first point; pointers would become invalid, because the arrays still grow */
+    /* indices of the primitive's first contour and first point in the reader's arrays; pointers would become invalid, because the arrays
+     * still grow */
     size_t first_contour, first_point;
 };
 
@@ -45,7 +46,7 @@ struct rvm_reader {
     struct rvm_losses losses;
     size_t primitive_count, primitive_room, contour_count, contour_room, point_count, point_room, face_count, face_room;
     int stack[MAX_DEPTH], depth;
-    char *encoding; /* encoding that the file's header states; NULL: none */
+    char *encoding; /* text encoding that the RVM file's header states; NULL: none */
     char *why;
     size_t why_bytes;
 };
@@ -93,8 +94,8 @@ static bool read_float(struct rvm_reader *r, double *out)
     return true;
 }
 
-/* Reads a word count and that many words of text, which ends at the first zero byte. Returns the text in the file's encoding with control
- * characters replaced by blanks; the caller frees it with mem_free. Returns NULL on failure. */
+/* Reads a word count and that many 4-byte words of text, which ends at the first zero byte. Returns the text in the file's encoding with
+ * control characters replaced by blanks; the caller frees it with mem_free. Returns NULL on failure. */
 static char *read_text(struct rvm_reader *r)
 {
     uint32_t words;
@@ -122,7 +123,7 @@ static bool read_head(struct rvm_reader *r)
     uint32_t version;
     if (!read_word(r, &version))
         return false;
-    for (int i = 0; i < 4; i++) { /* skip four header texts: info, note, date and user */
+    for (int i = 0; i < 4; i++) { /* skip four texts of the file's header: info, note, date and user */
         char *ignored = read_text(r);
         if (!ignored)
             return false;
@@ -147,7 +148,7 @@ static bool read_color(struct rvm_reader *r)
 static bool begin_group(struct rvm_reader *r)
 {
     uint32_t version, material;
-    double reference_mm; /* reference point in millimetres; ignored, because primitives have absolute positions */
+    double reference_mm; /* reference point of a group in millimetres; ignored, because primitives have absolute positions */
     char *name = read_word(r, &version) ? read_text(r) : NULL;
     bool good = name != NULL;
     for (int axis = 0; good && axis < 3; axis++)
@@ -186,7 +187,7 @@ static bool read_facets(struct rvm_reader *r, struct primitive *primitive)
                 for (int axis = 0; axis < 3; axis++)
                     if (!read_float(r, &r->points[r->point_count][axis]))
                         return false;
-                r->at += 12; /* the file's vertex normal is ignored; each polygon's own normal is used */
+                r->at += 12; /* the vertex normal that the file states is ignored; each polygon's own normal is used */
             }
         }
     }
@@ -235,7 +236,7 @@ static bool read_chunk(struct rvm_reader *r, const char *id, bool *ended)
         return read_color(r);
     if (!strcmp(id, "CNTB"))
         return begin_group(r);
-    if (!strcmp(id, "CNTE")) { /* ignore an extra CNTE chunk: files of AVEVA Marine may end with one */
+    if (!strcmp(id, "CNTE")) { /* ignore an extra CNTE chunk (end of a group): files of AVEVA Marine may end with one */
         r->depth -= r->depth > 0;
         return true;
     }
@@ -295,7 +296,7 @@ static bool read_chunks(struct rvm_reader *r)
     return true;
 }
 
-/* Decodes all names together in one encoding, because a single short name has too few letters to detect the encoding. */
+/* Decodes the names of all nodes together in one text encoding, because a single short name has too few letters to detect the encoding. */
 static void decode_names(struct rvm_reader *r, size_t first, const char *asked)
 {
     struct text all = { 0 };
@@ -315,7 +316,7 @@ static void decode_names(struct rvm_reader *r, size_t first, const char *asked)
 
 static const double near_m = 0.001;
 
-/* Compares faces by plane: first by normal, then by distance from the origin. After sorting, faces in one plane are neighbours. */
+/* Compares flat faces by plane: first by normal, then by distance from the origin. After sorting, faces in one plane are neighbours. */
 static int by_plane(const void *a, const void *b)
 {
     const struct facet_face *x = a, *y = b;
@@ -430,7 +431,7 @@ bool rvm_read(struct cad_model *model, const void *bytes, size_t count, const st
     for (size_t i = 0; i < r->primitive_count; i++)
         if (r->primitives[i].shape.contour_count > 0) {
             r->primitives[i].shape.contours = r->contours + r->primitives[i].first_contour;
-            if (r->points) /* skipped if the file has no points: then all contours are empty */
+            if (r->points) /* skipped if no primitive of the file has points: then all contours are empty */
                 r->primitives[i].shape.points = (const double(*)[3])(r->points + r->primitives[i].first_point);
         }
     if (!params->keep_covered)

@@ -10,7 +10,7 @@
 struct rvm_counts {
     size_t primitives;
     size_t covered_faces; /* number of faces left out because a neighbouring primitive's face covers them */
-    double covered_m2;    /* total area of covered_faces, square metres */
+    double covered_m2;    /* total area in square metres of the faces that covered_faces counts */
     /* number of primitives left out because they have no extent or contain numbers that are not finite */
     size_t empty;
     size_t unknown_chunks, unknown_kinds; /* number of unknown chunks, and of primitives of unknown kinds; all are skipped */
@@ -21,7 +21,7 @@ struct rvm_counts {
 struct rvm_params {
     double chord_m;        /* largest allowed distance in metres between a chord and the true surface */
     bool keep_covered;     /* true: keep faces that a neighbouring primitive's face covers; false: leave them out */
-    const char *encoding;  /* encoding of the names that the user stated; NULL: the encoding that the file states, else a detected one */
+    const char *encoding;  /* encoding of the names, as the user stated it; NULL: the encoding that the file states, else a detected one */
     struct text *findings; /* receives report lines (format: findings.h) about lost primitives; NULL: not wanted */
 };
 

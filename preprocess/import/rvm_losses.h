@@ -21,7 +21,7 @@ struct rvm_losses { /* zero-initialise */
 };
 
 void rvm_losses_add(struct rvm_losses *losses, int node, int kind, size_t byte, const char *why);
-/* Sorts the losses and appends report lines (format: findings.h): each group without triangles, each group that lost part of its
+/* Sorts the lost primitives and appends report lines (format: findings.h): each group without triangles, each group that lost part of its
  * primitives, and the groups of obstruction and insulation volumes. primitives[i]: number of primitives that the file has for node i of the
  * model. */
 void rvm_losses_say(struct rvm_losses *losses, const struct cad_model *model, const size_t *primitives, struct text *said);

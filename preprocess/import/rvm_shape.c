@@ -17,10 +17,10 @@ const int rvm_numbers[RVM_FACETS + 1] = {
     [RVM_SPHERICAL_DISH] = 2, [RVM_SNOUT] = 9, [RVM_CYLINDER] = 2,          [RVM_SPHERE] = 1,         [RVM_LINE] = 2
 };
 
-struct primitive_frame { /* transform from the primitive's frame to the plant's frame */
+struct primitive_frame { /* transform from an RVM primitive's frame to the plant's frame */
     const double *m;
-    double normal_of[9]; /* inverse transpose of the linear part up to a factor, by columns; transforms normals */
-    double scale;        /* largest scale factor of lengths over the three axes */
+    double normal_of[9]; /* transforms normals: inverse transpose of the linear part up to a factor, by columns */
+    double scale;        /* largest factor by which the transform scales lengths along an axis */
     bool mirrored;
 };
 
@@ -78,8 +78,8 @@ static void add_quad(struct cad_node *node, const struct primitive_frame *frame,
     add_triangle(node, frame, a, c, d);
 }
 
-/* Returns the number of corners of a full circle. The number is a multiple of 4, so that corners lie on both axes of the section. Then the
- * corners of two primitives that meet coincide even if one section is mirrored. */
+/* Returns the number of corners by which a full circle is approximated. The number is a multiple of 4, so that corners lie on both axes of
+ * the section. Then the corners of two primitives that meet coincide even if one section is mirrored. */
 static int corners_of(double radius_m, double chord_m)
 {
     double cosine = radius_m > 0 ? 1 - chord_m / radius_m : -1;
@@ -140,7 +140,8 @@ static void add_cap(struct cad_node *node, const struct primitive_frame *frame, 
             add_triangle(node, frame, first, first + i, first + i + 1);
 }
 
-/* Joins two rows of `corners` vertices around a closed section by triangles; row `high` lies farther along the axis than row `low`. */
+/* Joins two rows of `corners` vertices around a closed cross-section by triangles; row `high` lies farther along the axis than row
+ * `low`. */
 static void join_rows(struct cad_node *node, const struct primitive_frame *frame, uint32_t low, uint32_t high, uint32_t corners)
 {
     for (uint32_t i = 0; i < corners; i++) {
@@ -202,7 +203,8 @@ static void add_rectangular_torus(struct cad_node *node, const struct primitive_
     double inner = n[0], outer = n[1], half = n[2] / 2, angle = n[3];
     int steps = steps_of(angle, outer * frame->scale, chord_m);
     const double section[4][2] = { { inner, -half }, { outer, -half }, { outer, half }, { inner, half } };
-    for (int side = 0; side < 4; side++) { /* the four sides of the rectangular section: below, outside, above, inside of the bend */
+    /* the four sides of the torus's rectangular section: below, outside, above, inside of the bend */
+    for (int side = 0; side < 4; side++) {
         const double *from = section[side], *to = section[(side + 1) % 4];
         double radial = to[1] - from[1], vertical = from[0] - to[0];
         if (radial == 0 && vertical == 0)
@@ -270,14 +272,14 @@ static void add_circular_torus(struct cad_node *node, const struct primitive_fra
     ends[1].phase = ends[0].phase + turn;
     if (fabs(angle) > 2 * M_PI - 1e-3)
         return;
-    /* the normal (x cross y) of a section points against the direction in which a bend of positive angle runs */
+    /* the normal (x cross y) of the end of a torus points against the direction in which a bend of positive angle runs */
     for (int end = 0; end < 2; end++)
         if (!(open_faces >> end & 1))
             add_cap(node, frame, &ends[end], corners, (end == 1) == (angle > 0));
 }
 
 struct dome {          /* part of an ellipsoid of revolution about the Z axis, from the angle `low` above the equator up to the pole */
-    double across, up; /* radius and height of the ellipsoid */
+    double across, up; /* across: radius of the ellipsoid; up: its height */
     double centre_z, low, phase;
     int corners;
 };
@@ -417,7 +419,7 @@ struct tessellated_polygon { /* state shared by GLU's callbacks */
     const double (*corner)[3];
     uint32_t three[3];
     int count;
-    double (*made)[3]; /* vertices that GLU requests where edges cross */
+    double (*made)[3]; /* vertices that GLU's tessellator requests where edges of the polygon cross */
     size_t made_count;
 };
 
@@ -431,7 +433,7 @@ static void on_vertex(void *vertex, void *user)
     }
 }
 
-/* GLU emits only separate triangles, no fans or strips, if this callback is registered */
+/* with this callback registered, GLU's tessellator emits only separate triangles, no fans or strips */
 static void on_edge_flag(GLboolean flag)
 {
     (void)flag;
@@ -575,7 +577,7 @@ static void circle_of(const struct primitive_frame *frame, const double centre[3
     vec_normalize(face->outward);
 }
 
-/* Builds a rectangular face. u, v: half sides as vectors in the primitive's frame. */
+/* Writes the rectangular face of a primitive. u, v: half sides as vectors in the primitive's frame. */
 static void rectangle_of(const struct primitive_frame *frame, const double centre[3], const double outward[3], const double u[3],
                          const double v[3], struct rvm_face *face)
 {

@@ -23,14 +23,14 @@ enum { RVM_MAX_NUMBERS = 9 };
 
 struct rvm_contour {
     size_t first, count; /* range in rvm_shape.points */
-    bool begins_polygon; /* true: this contour begins a polygon; false: it belongs to the same polygon as the contour before */
+    bool begins_polygon; /* true: this contour begins a polygon; false: it is a hole or further outline of the polygon before */
 };
 
-/* One primitive. Lengths in its own frame are usually millimetres; to_plant transforms to the plant's frame in metres. */
+/* One primitive of an RVM file. Lengths in its own frame are usually millimetres; to_plant transforms to the plant's frame in metres. */
 struct rvm_shape {
     enum rvm_kind kind;
     double to_plant[12];                /* 3 x 4 matrix by columns; the last column is the translation */
-    double numbers[RVM_MAX_NUMBERS];    /* dimensions in the order of the file; the first rvm_numbers[kind] are used */
+    double numbers[RVM_MAX_NUMBERS];    /* dimensions of the primitive in the order of the RVM file; the first rvm_numbers[kind] are used */
     const struct rvm_contour *contours; /* contours of a primitive of the kind RVM_FACETS; NULL for other kinds */
     const double (*points)[3];          /* points of a primitive of the kind RVM_FACETS, in its own frame */
     size_t contour_count;
@@ -47,9 +47,9 @@ struct rvm_face {
 };
 enum { RVM_MAX_FACES = 6 };
 
-/* Finds the flat faces that a neighbour may cover, in the order of the bits of `open_faces`. Returns their number. Such faces are both ends
- * of round or bent primitives, the base of a dish, the faces of a box, and top and bottom of a pyramid. Snouts with sheared ends have
- * none. */
+/* Finds the flat faces of a primitive that a neighbour's face may cover, in the order of the bits of `open_faces`. Returns their number.
+ * Such faces are both ends of round or bent primitives, the base of a dish, the faces of a box, and top and bottom of a pyramid. Snouts
+ * with sheared ends have none. */
 int rvm_shape_faces(const struct rvm_shape *shape, struct rvm_face faces[RVM_MAX_FACES]);
 
 /* Appends the primitive's triangles (or its line) to the node. Chords deviate from the true surface by at most chord_m, but a full turn

@@ -6,7 +6,7 @@
 struct serve_params {
     const char *folder; /* folder of the plant; created if missing */
     const char *port;
-    char **files; /* models and a tag list to start with, treated as if they had been dropped on the page */
+    char **files; /* models and a tag list to start with, imported as if an engineer had dropped them on the web page */
     int count;
 };
 

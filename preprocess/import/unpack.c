@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Unpacks ZIP with minizip and gzip with zlib. */
+/* Unpacks models compressed as ZIP with minizip, and as gzip with zlib. */
 #include "preprocess/import/unpack.h"
 
 #include <errno.h>
@@ -21,7 +21,7 @@ enum {
     MAX_RATIO = 200,
     NAME_BYTES = 512
 };
-static const size_t free_bytes = (size_t)64 << 20; /* bytes that may be unpacked regardless of the ratio */
+static const size_t free_bytes = (size_t)64 << 20; /* number of bytes that may be unpacked regardless of MAX_RATIO */
 
 static const struct {
     const char *packed, *ending;
@@ -33,7 +33,7 @@ static const char *ending_of(const char *path)
     return dot && (!slash || dot > slash) ? dot : "";
 }
 
-/* Returns whether a file begins as ZIP and gzip files do. */
+/* Returns whether a file begins with the bytes that mark a ZIP or gzip file. */
 static bool begins_packed(const char *path)
 {
     unsigned char head[4] = { 0 };
@@ -93,7 +93,7 @@ static bool finish(const struct archive_reading *from)
     return (!from->gzip || gzclose(from->gzip) == Z_OK) && good;
 }
 
-/* Copies the name that the manifest.xml of a COLLADA archive gives its first document, or "". */
+/* Copies to `root` the file name that the manifest.xml of a COLLADA archive gives its first document, or "". */
 static void read_root(unzFile zip, char root[NAME_BYTES])
 {
     char text[4096];
@@ -123,7 +123,8 @@ static bool is_named(const char *name, const char *root)
     return *base && !strcmp(text_base_name(name), base);
 }
 
-/* Opens the file of the archive with this ending: the one that its manifest names, else the first. Returns the reason if there is none. */
+/* Opens the file of a ZIP archive with this ending: the one that the archive's manifest names, else the first. Returns NULL, or the reason
+ * if there is none. */
 static const char *open_file(unzFile zip, const char *ending, struct text *said)
 {
     char name[NAME_BYTES], root[NAME_BYTES], taken[NAME_BYTES] = "";

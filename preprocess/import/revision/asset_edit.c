@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edits a plant file: finds the byte ranges of values with libyaml, and replaces them in the text. */
+/* Edits a plant file: finds the byte ranges of values with libyaml, and replaces these ranges in the text. */
 #include "preprocess/import/revision/asset_edit.h"
 
 #include <stdio.h>
@@ -77,7 +77,8 @@ static size_t line_end(const char *text, size_t at)
     return at + (text[at] == '\n');
 }
 
-/* Removes an item of a block list, from its first line to its last, including blank lines and comments between the item's keys. */
+/* Removes an item of a YAML list in block style from the text, from its first line to its last, including blank lines and comments between
+ * the item's keys. */
 static bool remove_item(struct editor *editor, const yaml_node_t *item)
 {
     const char *text = editor->text;
@@ -185,7 +186,8 @@ static char *spliced(struct editor *editor)
     if (editor->splice_count > 0)
         qsort(editor->splices, editor->splice_count, sizeof(*editor->splices), by_begin);
     for (size_t i = 0; i < editor->splice_count; i++) {
-        if (editor->splices[i].begin < at) /* skip a value that a YAML alias repeats, because the value at its anchor was edited already */
+        /* skip the replacement of a value that a YAML alias repeats, because the value at its anchor was replaced already */
+        if (editor->splices[i].begin < at)
             continue;
         text_add_bytes(&out, editor->text + at, editor->splices[i].begin - at);
         text_add(&out, "%s", editor->splices[i].with);

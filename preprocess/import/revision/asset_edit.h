@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-struct asset_edit { /* changes of one asset; all zero: the asset stays unchanged */
+struct asset_edit { /* changes of one asset of the plant file; all zero: the asset stays unchanged */
     bool removed;
     char *tag; /* new tag of the asset; NULL: unchanged */
     /* nodes[i]: new text of the asset's node pattern i; NULL: the pattern is deleted. nodes NULL: no pattern changes */
@@ -16,8 +16,9 @@ struct asset_edit { /* changes of one asset; all zero: the asset stays unchanged
 
 enum { ASSET_EDIT_WHY_BYTES = 200 };
 
-/* Applies edits[i] to asset i of the file, and appends the lines `added` to the list of assets (NULL: none). Returns the new text, which
- * the caller frees with mem_free. Returns NULL with the reason in why if the list of assets is not in block style, one item a line. */
+/* Applies edits[i] to asset i of the plant file, and appends the lines `added` to the list of assets (NULL: none). Returns the new text,
+ * which the caller frees with mem_free. Returns NULL with the reason in why if the list of assets is not in block style, one item a
+ * line. */
 char *asset_edit_apply(const char *text, const struct asset_edit *edits, size_t count, const char *added, char why[ASSET_EDIT_WHY_BYTES]);
 
 #endif

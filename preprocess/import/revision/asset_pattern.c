@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the nodes that a pattern matches: looks up plain names in a sorted list, and tests other patterns on all nodes. */
+/* Finds the model nodes that a pattern matches: looks up plain names in a sorted list, and tests other patterns on all nodes. */
 #include "preprocess/import/revision/asset_pattern.h"
 
 #include <stdio.h>
@@ -58,7 +58,7 @@ static size_t find_name(const struct model_header *header, const uint32_t *names
     return at;
 }
 
-/* Fills patterns->found with the nodes that match the pattern. Returns their number. */
+/* Fills patterns->found with the indices of the nodes that match the pattern. Returns their number. */
 static size_t find(struct asset_patterns *patterns, const struct model_header *header, const uint32_t *names, const char *pattern)
 {
     size_t count, first = find_name(header, names, pattern, &count);

@@ -10,7 +10,7 @@ struct asset_patterns {
     const struct model_header *before, *after; /* trees of nodes of the old and the new model; must outlive this struct */
     const struct node_pairs *pairs;
     uint32_t *old_names, *new_names; /* nodes of the old and of the new model, sorted by name */
-    uint32_t *found;                 /* nodes found by the last search; has room for all nodes of the larger model */
+    uint32_t *found;                 /* indices of the nodes found by the last search; has room for all nodes of the larger model */
 };
 
 void asset_patterns_init(struct asset_patterns *patterns, const struct model_header *before, const struct model_header *after,
@@ -23,9 +23,9 @@ enum asset_pattern_change { ASSET_PATTERN_SAME, ASSET_PATTERN_OTHER, ASSET_PATTE
  * receives the new pattern, which the caller frees with mem_free. */
 enum asset_pattern_change asset_patterns_follow(struct asset_patterns *patterns, const char *pattern, const bool *before, char **out);
 
-/* Updates an asset's patterns. lines: one pattern per line. Returns the new patterns in the same form, or NULL if no pattern is left that
- * matches a node. If any pattern changed, (*nodes)[i] is the new text of pattern i, or NULL if it is deleted. The caller frees the result,
- * each element of *nodes and *nodes with mem_free. */
+/* Updates an asset's node patterns to the new model. lines: one pattern per line. Returns the new patterns in the same form, or NULL if no
+ * pattern is left that matches a node. If any pattern changed, (*nodes)[i] is the new text of pattern i, or NULL if it is deleted. The
+ * caller frees the result, each element of *nodes and *nodes with mem_free. */
 char *asset_patterns_update(struct asset_patterns *patterns, const char *lines, char ***nodes, size_t *node_count);
 
 #endif

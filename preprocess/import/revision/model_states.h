@@ -6,7 +6,7 @@
 #include "preprocess/import/revision/node_pairs.h"
 #include "preprocess/model/gltf_shim.h"
 
-struct model_state { /* the old or the new model, loaded */
+struct model_state { /* a model before or after a revision, loaded into memory */
     struct model_outline outline;
     struct gltf_model model;
     /* by node of the outline: index in `model` of its first instance; further instances follow it and have the same node number */
@@ -19,7 +19,8 @@ struct model_states {
     struct node_pairs pairs;
 };
 
-/* Reads both files and pairs their nodes. Returns false with the reason in why. Call model_states_finish() in both cases. */
+/* Reads the model files before and after a revision and pairs their nodes. Returns false with the reason in why. Call model_states_finish()
+ * in both cases. */
 bool model_states_read(struct model_states *states, const char *before, const char *after, char why[MODEL_WHY_BYTES]);
 void model_states_finish(struct model_states *states);
 
@@ -32,7 +33,8 @@ struct states_motion {
     enum states_change change;
     bool known; /* the motion could be determined */
     double motion[16], moved;
-    /* parts: number of nodes with geometry; different: number of those that are missing from the new model or have another shape there */
+    /* parts: number of the asset's nodes with geometry; different: number of those that are missing from the new model or have another
+     * shape there */
     size_t parts, different;
 };
 /* Determines the motion of an asset: the motion that the old model's nodes marked in `taken` have in common. Distances below `tolerance`

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Applies methods of pairing nodes, from the most to the least certain. A pair once made is never changed. */
+/* Pairs the nodes of an old and a new model by several methods, from the most to the least certain. A pair once made is never changed. */
 #include "preprocess/import/revision/node_pairs.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Implements revise() and revise_undo(): plans a revision, checks the new plant file by loading it in a temporary folder, and replaces the
- * files. */
+/* Implements revise() and revise_undo(): plans how new models change a plant's files, checks the new plant file by loading it in a
+ * temporary folder, and replaces the files. */
 #include "preprocess/import/revision/revise.h"
 
 #include <errno.h>
@@ -87,7 +87,7 @@ static int read_plant(struct revising *r)
     return r->plant ? status : 1;
 }
 
-/* Collects the models whose content differs from the plant's current copy. */
+/* Collects the models whose content differs from the copy in the plant folder. */
 static void take_models(struct revising *r)
 {
     r->models = mem_array(r->params->count, sizeof(*r->models));
@@ -165,8 +165,8 @@ static void write_review(struct revising *r)
 
 /* --- the files ------------------------------------------------------------------------------------------------------------------ */
 
-/* Adds a text file to the transaction. text: new text; NULL: the file stays unchanged. before: text that the file must still have when it
- * is replaced; NULL: not checked, because only this program writes the file. */
+/* Adds a text file to the transaction that replaces the plant's files. text: new text; NULL: the file stays unchanged. before: text that
+ * the file must still have when it is replaced; NULL: not checked, because only this program writes the file. */
 static int add_text(struct revising *r, const char *name, const char *text, const char *before)
 {
     struct revision_file *file = &r->files[r->file_count++];
@@ -180,7 +180,8 @@ static const char *if_other(const char *text, const char *before)
     return text && strcmp(text, before) != 0 ? text : NULL;
 }
 
-/* Replaces the files, plant.yaml last. In this order the daemon can load the folder even if it reads it between two replacements. */
+/* Replaces the plant's files, plant.yaml last. In this order the daemon can load the folder even if it reads it between two
+ * replacements. */
 static int apply(struct revising *r)
 {
     r->files = mem_array(r->model_count + MAX_OWN_FILES, sizeof(*r->files));

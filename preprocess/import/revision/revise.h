@@ -6,7 +6,7 @@
 
 struct revise_params {
     const char *folder;                     /* plant folder; contains plant.yaml */
-    const char *work;                       /* a folder inside the plant folder; N.glb is the converted model N */
+    const char *work;                       /* temporary folder inside the plant folder; N.glb in it is the converted model N */
     const struct plant_draft_model *models; /* array of the converted models with their outlines */
     size_t count;
     bool dry_run; /* only print what would change */

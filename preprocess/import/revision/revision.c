@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Plans the revision of one model after the other: first its assets, then the tags on these assets. */
+/* Plans how new models change a plant's files, one model after the other: first its assets, then the tags on these assets. */
 #include "preprocess/import/revision/revision.h"
 
 #include <math.h>
@@ -15,12 +15,13 @@
 #include "preprocess/import/revision/asset_pattern.h"
 #include "preprocess/import/revision/model_states.h"
 
-static const double tolerance_m = 0.002; /* tolerance of positions in metres: exports round to a millimetre */
+/* tolerance in metres below which positions in the old and the new model count as equal: exports round to a millimetre */
+static const double tolerance_m = 0.002;
 
 struct planning {
     struct revision *revision;
     const struct revision_input *input;
-    struct asset_edit *assets; /* planned edits, by asset of the plant */
+    struct asset_edit *assets; /* planned edits of the plant file, by asset of the plant */
     struct tag_edit *tags;
     size_t tag_count, tag_room;
     struct text added;
@@ -31,7 +32,8 @@ struct planning {
     const char *file;
     struct model_states states;
     struct asset_patterns patterns;
-    bool *before, *after; /* before: by node of the old model, after: by node of the new model: whether it belongs to the current asset */
+    /* whether a node belongs to the current asset. before: by node of the old model; after: by node of the new model */
+    bool *before, *after;
     bool *covered;        /* by node of the new model: whether it belongs to any asset */
     bool *roots;          /* by node of the old model: whether a review row about an asset already mentions it */
     char *why;
@@ -66,7 +68,7 @@ static char *path_of(const struct model_outline *outline, size_t node)
     return path.at;
 }
 
-/* Adds review rows about nodes that were added, removed or renamed. Of a whole subtree, only its topmost node gets a row. */
+/* Adds rows to the review about nodes that were added, removed or renamed. Of a whole subtree, only its topmost node gets a row. */
 static void review_nodes(struct planning *p)
 {
     const struct model_outline *old = &p->states.before.outline, *new = &p->states.after.outline;
@@ -136,7 +138,7 @@ static struct tag_edit *edit_tag(struct planning *p, const struct plant_tag *tag
     return edit;
 }
 
-/* Records that a tag loses its exact position, and gets its equipment as its position instead. */
+/* Records that a tag loses its exact position on the model: the tag list then states only its equipment. */
 static void lose_place(struct planning *p, const struct plant_tag *tag, const char *detail)
 {
     edit_tag(p, tag)->place = "equipment";
@@ -162,7 +164,7 @@ static void follow_node(struct planning *p, const struct plant_tag *tag)
         if (tag->place.assumed)
             edit->place = "equipment";
         say(p, REVISION_TAG, "renamed", tag->name, "the tag's node %s is now %s", tag->place.node, pattern);
-        return; /* the edit now owns `pattern` and frees it */
+        return; /* the edit of the asset now owns `pattern` and frees it */
     }
     case ASSET_PATTERN_GONE: {
         char *detail = mem_printf("the tag's node %s is no longer in the model", tag->place.node);
@@ -222,7 +224,7 @@ static void follow_asset(struct planning *p, size_t index, const struct states_m
 
 /* --- assets --------------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the first of the asset's nodes in the old model, after which the asset is usually named. */
+/* Returns the first node, in the old model, of those that belong to the current asset. The asset usually has this node's name. */
 static int root_of(const struct planning *p)
 {
     size_t i = 0;
@@ -243,7 +245,7 @@ static void review_asset(struct planning *p, const struct plant_asset *asset, st
     if (other >= 0 && strcmp(old->nodes[root].name, new->nodes[other].name) != 0) {
         const char *name = new->nodes[other].name;
         p->roots[root] = true;
-        /* rename the asset's tag only if it still is the old node's name */
+        /* rename the asset's tag only if it still equals the node's name in the old model */
         if (!strcmp(asset->tag, without_slash(old->nodes[root].name)) && *name)
             edit->tag = mem_strdup(without_slash(name));
         say(p, REVISION_ASSET, "renamed", asset->id, "now %s; the id of the asset stays", name);
@@ -256,9 +258,9 @@ static void review_asset(struct planning *p, const struct plant_asset *asset, st
         say(p, REVISION_ASSET, "moved", asset->id, "%.3f m", moved_m);
 }
 
-enum taken { TAKEN, TAKEN_NOW /* the old model had no nodes of the asset, the new one has some */, TAKEN_NOTHING };
+enum taken { TAKEN, TAKEN_NOW /* the old model had no nodes of the asset, the new model has some */, TAKEN_NOTHING };
 
-/* Marks the nodes of the asset in the old and the new model (before[], after[]), and records changes of its patterns. */
+/* Marks the nodes of the asset in the old and the new model (before[], after[]), and records changes of the asset's node patterns. */
 static enum taken take(struct planning *p, const struct plant_asset *asset, struct asset_edit *edit)
 {
     const struct model_outline *old = &p->states.before.outline, *new = &p->states.after.outline;

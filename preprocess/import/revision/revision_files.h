@@ -17,15 +17,15 @@ struct revision_file {
     const char *before; /* text that the file had when it was read; NULL: not checked */
 };
 
-/* Saves the current files for undo, in place of those saved before, then replaces them in the order of the array. `work` is a folder inside
- * `folder`. -ESTALE: a file differs from its `before` text; *changed receives its name, and nothing was done. */
+/* Saves the current versions of the files for undo, in place of those saved before, then replaces the files in the order of the array.
+ * `work` is a folder inside `folder`. -ESTALE: a file differs from its `before` text; *changed receives its name, and nothing was done. */
 int revision_files_apply(const char *folder, const char *work, const struct revision_file *files, size_t count, const char **changed);
-/* Calls revision_files_apply(). Returns 0, or 1 with the reason printed. */
+/* Calls revision_files_apply(). Returns 0, or 1 after printing the reason. */
 int revision_files_replace(const char *folder, const char *work, const struct revision_file *files, size_t count);
 
 /* Restores the files saved by the last revision. Appends the names of files that changed since to `changed`, separated by ", ". If there
  * are any, does nothing unless forced; with forced, keeps those files as NAME.undone. Appends the names of restored files to `done`.
- * -ENOENT: there is no revision; -EBUSY: files have changed since. */
+ * -ENOENT: no revision can be undone; -EBUSY: files have changed since. */
 int revision_files_undo(const char *folder, bool forced, struct text *changed, struct text *done);
 
 #endif
