@@ -44,7 +44,8 @@ vec3 sun_shade(Surface s, vec3 v, vec3 l)
     vec3 f0 = mix(vec3(CLEAR_F0), s.base, s.metallic), diffuse = s.base * (1.0 - s.metallic);
     float x = 1.0 - max(dot(v, h), 0.0), x2 = x * x;
     float grazing = x2 * x2 * x;
-    vec3 fresnel = f0 + (1.0 - f0) * grazing; // fraction of the light that is mirrored; the rest is left for the diffuse part
+    // fraction of the light that the surface mirrors; only the remaining light is reflected diffusely
+    vec3 fresnel = f0 + (1.0 - f0) * grazing;
     float mirror = min(ggx_visible(n_l, n_v, max(dot(s.normal, h), 0.0), roughness * roughness), 50.0);
     vec3 c = diffuse * (0.96 - 0.96 * grazing) + fresnel * mirror;
     return c * (n_l * s.sun_visible * SUN_LIGHT);

@@ -236,9 +236,9 @@ static bool amplifies_distances(const struct weights *weights)
 }
 
 /* Writes the error that errors of distances cause at each vertex of some blocks. If the weights of some sensors grow by the factor 1 + e
-   and those of all others shrink by 1 - e, the value changes by up to 2 e a (1 - a) times the spread of the readings. `a` is the share of
-   the sensors whose weights grow. The nearest sensor's share `a` gives the largest change if it is at least 1/2, else a = 1/2. Errors below
-   half a colour step are left out: added to errors of interpolation just below a step, they would mark most of the surface. */
+   and those of all others shrink by the factor 1 - e, the value changes by up to 2 e a (1 - a) times the spread of the readings. `a` is the
+   share of the sensors whose weights grow. The nearest sensor's share `a` gives the largest change if it is at least 1/2, else a = 1/2.
+   Errors below half a colour step are left out: added to errors of interpolation just below a step, they would mark most of the surface. */
 static void amplify_some(void *arg, size_t begin, size_t end)
 {
     const struct drawn_error_job *job = arg;

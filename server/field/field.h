@@ -91,9 +91,9 @@ const struct scalars *field_scalars(struct field *field, int asset, const struct
    vertices are valid. */
 const struct scalars *field_scalars_of(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot,
                                        size_t count);
-/* Updates the fields of several small assets in parallel, each on one core. Skips large fields, fields of trials and fields that memory
-   is short for: the caller must call field_scalars_of() for each of these assets afterwards. counts: number of vertices wanted, by index
-   in `assets`. */
+/* Updates the fields of several small assets in parallel, each on one core. Skips large fields, fields of trials and fields for which there
+   is no memory: the caller must call field_scalars_of() for each of these assets afterwards. counts: number of vertices wanted, by index in
+   `assets`. */
 void field_update_all(struct field *field, const int *assets, const size_t *counts, size_t asset_count, const struct field_params *params,
                       const struct snapshot *snapshot);
 /* Does the work of field_scalars_of() in steps of about `work` nanoseconds (of one core), so that a large update does not block the thread.

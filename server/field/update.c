@@ -17,7 +17,9 @@
 #define DRAWN_ERROR (1 / 255.0) /* fraction of the range; a vertex whose triangles may be drawn with a larger error is marked uncertain */
 /* factor by which a newly chosen error limit is stricter than necessary, so that it stays valid when readings change slightly */
 #define ERROR_MARGIN 1.1
-#define ERROR_SLACK 1.5  /* an error limit that is stricter than necessary by more than this factor is replaced */
+/* the limit above which vertices are marked uncertain (error_limit) is replaced if it is stricter than necessary by more than this
+   factor */
+#define ERROR_SLACK 1.5
 #define MAX_BLIND 1000.0 /* largest height of a hot spot that is shown, in multiples of the group's range */
 /* largest change of a reading, in multiples of the range, that is added to existing sums, where its rounding errors stay. After a larger
    change, everything is summed again */

@@ -43,7 +43,7 @@ enum relocation_state {
     RELOCATION_WARMING,
     RELOCATION_WARM,
     RELOCATION_BROKEN
-}; /* RELOCATION_BROKEN: the surface cannot be built, because no triangle has an area or memory is short; the reason was logged */
+}; /* RELOCATION_BROKEN: the surface cannot be built, because no triangle has an area or memory ran out; the reason was logged */
 /* Returns the state of the surface: being built, ready, or impossible to build. */
 enum relocation_state relocation_state(struct relocation *relocation);
 

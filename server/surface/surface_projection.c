@@ -11,8 +11,7 @@
 #define ON_PIECE 1e-5
 /* if the model triangles have more pieces in the surface than this, the bounding volume hierarchy is searched instead of piece by piece */
 #define MAX_TRIED_PIECES 24
-/* maximum distance of a triangle with a fitting normal, as a multiple of the distance of the nearest triangle, at which the former is
-   preferred */
+/* a triangle with a fitting normal is preferred to the nearest triangle if it is at most this many times as far away */
 #define FACING_FACTOR 4.0
 #define ROUNDING 1e-9 /* relative allowance for rounding errors in a distance */
 

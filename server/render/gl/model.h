@@ -57,8 +57,8 @@ struct model_draws { /* working memory for the index ranges with which one subme
 };
 void model_draws_finish(struct model_draws *draws);
 
-/* Uploads the geometry of an asset file; materials_upload() uploads the rest. Returns false when the GPU is out of memory; model_finish()
-   must still be called. */
+/* Uploads the geometry of an asset file; materials_upload() uploads its materials and textures. Returns false when the GPU is out of
+   memory; model_finish() must still be called. */
 bool model_init(struct gl_model *model, struct gl *gl, const struct asset *file);
 void model_finish(struct gl_model *model);
 /* Returns the model's coarsest level of detail whose error is at most error_m metres. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws a refined frame step by step. */
+/* Draws a refined frame (camera at rest, four samples per pixel) with the software renderer, in steps of a few milliseconds. */
 #include "render/soft/soft.h"
 
 #include <math.h>

@@ -44,7 +44,7 @@ struct soft_sample { /* buffers with one sample for each pixel of a tile, row by
 #define ID_BACK 0x80000000u /* flag of a triangle id, only for meshes that a section plane cuts: the triangle looks away from the eye */
 
 struct soft_fragment { /* fragment: a blended (transparent) triangle at one sample of a pixel */
-    uint32_t pixel;    /* index of the pixel in the arrays of samples */
+    uint32_t pixel;    /* index of the pixel in the sample arrays (soft_sample) of the tile */
     uint32_t id, layer;
     float depth;
     uint8_t sample;

@@ -271,8 +271,8 @@ static bool tri_has_area(const struct trimesh *mesh, uint32_t a, uint32_t b, uin
     vec_sub(mesh->points[c], mesh->points[b], bc);
     vec_cross(ab, ac, n);
     double longest2 = max_of(vec_dot(ab, ab), max_of(vec_dot(ac, ac), vec_dot(bc, bc)));
-    /* A triangle flatter than a millionth of its longest edge is removed. Its third corner then is a hanging vertex (a vertex on an edge of
-     * which it is no end), which repair.h inserts into the edge. */
+    /* A triangle flatter than a millionth of its longest edge is removed. Its third corner then is a hanging vertex (a vertex that lies
+       inside an edge, not at its end), which repair.h inserts into the edge. */
     return vec_length(n) > 1e-6 * longest2;
 }
 

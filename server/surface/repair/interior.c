@@ -40,7 +40,7 @@ struct solid { /* closed part of the surface, in its state before surface sampli
 struct solids {
     struct solid *at;
     size_t count;
-    uint32_t (*tris)[3];    /* triangles of all parts, sorted by part */
+    uint32_t (*tris)[3];    /* triangles of all closed parts, part after part */
     signed char *sides;     /* orientations of all these triangles (body_parts.side), in the same order */
     struct solid **of_part; /* by part: the part as a struct solid; NULL: the part is not closed */
 };

@@ -38,8 +38,8 @@ void parts_init(struct body_parts *parts, const struct trimesh *mesh, size_t sou
 /* Frees the parts. */
 void parts_finish(struct body_parts *parts);
 
-/* Converts of_source[model triangle], a part or a body, to an array by current triangle of the mesh. The caller frees the array
- * (mem_free). */
+/* Returns an array with a number (such as that of its part or body) for each triangle of the mesh, taken from of_source[model triangle].
+   The caller frees the array (mem_free). */
 uint32_t *parts_spread(const struct trimesh *mesh, const uint32_t *of_source);
 
 #endif

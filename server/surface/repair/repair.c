@@ -122,8 +122,8 @@ static bool runs_along(const struct seams *s, uint32_t p, uint32_t e, const doub
     return false;
 }
 
-/* Returns whether the border passes straight through point p along edge e. Such a point is a hanging vertex of e (a vertex on an edge of
- * which it is no end), because the border of a gap is rarely that straight. */
+/* Returns whether the border passes straight through point p along edge e. Such a point is a hanging vertex of e (a vertex that lies inside
+   an edge, not at its end), because the border of a gap is rarely that straight. */
 static bool hangs(const struct seams *s, uint32_t p, uint32_t e)
 {
     double forth[3], back[3], within_m = STRAIGHT * s->tolerance_m;
@@ -141,8 +141,8 @@ static bool have_an_edge(const struct seams *s, uint32_t p, uint32_t q)
     return false;
 }
 
-/* Returns whether point p, at distance_m from an end of edge e, is treated as that end of the edge. Hanging vertices (vertices on an edge
-   of which they are no end) in one line stay separate points, however near each other they are. */
+/* Returns whether point p, at distance_m from an end of edge e, is treated as that end of the edge. Hanging vertices (vertices that lie
+   inside an edge, not at its end) in one line stay separate points, however near each other they are. */
 static bool is_at_end(const struct seams *s, uint32_t p, uint32_t e, uint32_t end, double distance_m, double length_m)
 {
     if (distance_m > max_of(REPAIR_AT_END * length_m, s->end_m))
@@ -151,9 +151,9 @@ static bool is_at_end(const struct seams *s, uint32_t p, uint32_t e, uint32_t en
     return !(apart && (have_an_edge(s, p, end) || (hangs(s, p, e) && hangs(s, end, e))));
 }
 
-/* Tries to insert a border point into edge e. A hanging vertex (a vertex on an edge of which it is no end) is inserted immediately, and so
- * into all edges along which the border runs. If it were inserted into the nearest edge only, some of these edges would be joined to each
- * other and the others would stay open. For another point, records e if it is the nearest edge so far. */
+/* Tries to insert a border point into edge e. A hanging vertex (a vertex that lies inside an edge, not at its end) is inserted immediately,
+   and so into all edges along which the border runs. If it were inserted into the nearest edge only, some of these edges would be joined to
+   each other and the others would stay open. For another point, records e if it is the nearest edge so far. */
 static void try_edge(struct seams *s, size_t i, uint32_t e)
 {
     const struct borders *b = s->borders;

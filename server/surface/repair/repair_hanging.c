@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Inserts hanging vertices (vertices on an edge of which they are no end) into edges that have several faces and so are no borders: one of
- * the bodies that meet there has a slit along the edge. */
+/* Inserts hanging vertices (vertices that lie inside an edge, not at its end) into edges that have several faces and so are no borders: one
+   of the bodies that meet there has a slit along the edge. */
 #include "surface/repair/repair.h"
 
 #include <math.h>
