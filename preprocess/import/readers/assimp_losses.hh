@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-/* Counts the errors that Assimp logs, by text, and those of its warnings that report a lost shape. */
+/* Counts the errors that Assimp logs, and those of its warnings that report a lost shape, by their text. */
 struct assimp_log : Assimp::LogStream {
     std::map<std::string, size_t> &counts;
 
@@ -26,11 +26,11 @@ void assimp_losses_of_dae(const std::string &text);
 /* Replaces numbers that are not finite in the spelling of Windows (-1.#IND, 1.#INF), which Assimp reads as 1, by "nan". */
 void assimp_plain_numbers(std::string *text);
 
-/* Prints the NURBS and patches of an FBX file, by the names of their models. */
+/* Prints the shapes of an FBX file that Assimp skips, NURBS and patches, by the names of their FBX models. */
 void assimp_losses_of_fbx(const std::string &bytes);
 
-/* Leaves the last of equal properties in an FBX file of text. say: prints these properties, models with more than one parent, and models
- * that are not connected with the scene. */
+/* Keeps only the last of several statements of a property in an FBX file in text form. say: also prints these properties, models with more
+ * than one parent, and models that are not connected with the scene. */
 void assimp_mend_fbx(std::string *text, bool say);
 
 #endif

@@ -11,7 +11,7 @@
 namespace ifc
 {
 
-/* Thrown if a statement is damaged, missing, or of a kind that this reader does not build. */
+/* Thrown if a statement of an IFC file is damaged, missing, or of a kind that this reader does not build. */
 struct unsupported : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -42,9 +42,9 @@ struct entity {
 class file
 {
   public:
-    /* Reads the file at `path` and finds its statements. Throws std::runtime_error if it cannot be read. */
+    /* Reads the IFC file at `path` and finds its statements. Throws std::runtime_error if it cannot be read. */
     explicit file(const char *path);
-    /* Returns a statement. Throws unsupported if the statement is missing or damaged. */
+    /* Returns the statement with this id. Throws unsupported if the statement is missing or damaged. */
     entity get(int id) const;
     /* Returns the statement that a value refers to. Throws unsupported if the value is no reference, or the statement is missing or
      * damaged. */
@@ -53,7 +53,7 @@ class file
      * number. */
     static double number(const value &from);
     static double number(const value &from, double otherwise);
-    /* Calls f(id, type) for each statement, in ascending order of ids. */
+    /* Calls f(id, type) for each statement of the file, in ascending order of ids. */
     void each(const std::function<void(int, const std::string &)> &f) const;
     /* Returns whether a statement's first value is a text. Products begin with such a text, their GUID. */
     bool is_rooted(int id) const;
@@ -61,7 +61,7 @@ class file
   private:
     struct statement_place {
         std::string type;
-        size_t at; /* byte offset of the statement's opening bracket */
+        size_t at; /* byte offset in the file of the statement's opening bracket */
     };
     std::string bytes;
     std::map<int, statement_place> places;

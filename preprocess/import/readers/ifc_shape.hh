@@ -20,11 +20,11 @@ constexpr int MAX_CHAIN = 200;
 
 struct ifc_model {
     const file &statements;
-    double length; /* millimetres per length unit of the file */
-    double angle;  /* radians per angle unit of the file */
+    double length; /* length unit of the IFC file in millimetres */
+    double angle;  /* angle unit of the IFC file in radians */
     double chord_mm;
     std::map<int, int> grids; /* by id of a grid axis: id of the placement of its grid; without the axes of grids that have none */
-    bool lacks_grid;          /* a grid statement is damaged, so that `grids` lacks its axes */
+    bool lacks_grid;          /* true: a grid statement is damaged, so that `grids` lacks its axes */
 };
 
 struct triangles {
@@ -33,16 +33,16 @@ struct triangles {
     std::vector<uint32_t> corners;
 };
 
-/* A section of a curve. `span`: length of its parameter range in the units of the IFC file. */
+/* A piece of a curve. `span`: length of its parameter range in the units of the IFC file. */
 struct curve_piece {
     Handle(Geom_Curve) curve;
     double first, last; /* parameter range; first > last: the piece runs against the curve's direction */
     double span;
-    double level_mm = 0; /* length of a piece of an alignment in plan; 0: not an alignment */
+    double level_mm = 0; /* length, in plan view, of a piece of an alignment; 0: the curve is not an alignment */
 
     gp_Pnt start() const;
     gp_Pnt end() const;
-    gp_Vec tangent(bool at_end) const; /* unit tangent vector in the direction of travel */
+    gp_Vec tangent(bool at_end) const; /* unit tangent vector of the piece at its start or end, in the direction of travel */
 };
 
 /* --- ifc_triangles.cc */
@@ -52,7 +52,8 @@ double volume_of(const triangles &all);
 
 /* --- ifc_curve.cc */
 double length_of(const curve_piece &part); /* in mm */
-/* Returns the length along which IFC measures distances, in mm: the length of an alignment in plan, the length of any other curve. */
+/* Returns the length along which IFC measures distances on a piece of a curve, in mm: for an alignment its length in plan view, for any
+ * other curve its length. */
 double distance_of(const curve_piece &part);
 gp_Pnt point_of(const ifc_model &in, const value &reference);
 /* Returns the points of an IfcCartesianPointList. */
@@ -76,7 +77,7 @@ bool is_alignment(const ifc_model &in, const entity &curve);
 std::vector<curve_piece> alignment_of(const ifc_model &in, const entity &curve);
 
 /* --- ifc_placement.cc */
-/* Adds the axes of an IfcGrid to out->grids. Of several grids with the same axis the first counts. */
+/* Adds the axes of the IfcGrid with this id to out->grids. If several grids have the same axis, the first counts. */
 void add_grid(int id, ifc_model *out);
 gp_Trsf object_placement(const ifc_model &in, const value &reference);
 /* Returns the statements of a local placement that is equal to an IfcGridPlacement and has its number. `unused` and the three numbers after
@@ -84,22 +85,23 @@ gp_Trsf object_placement(const ifc_model &in, const value &reference);
 std::string as_local_placement(const ifc_model &in, const entity &from, int unused);
 
 /* --- ifc_profile.cc */
-/* Returns the faces of a profile, in the XY plane. */
+/* Returns the faces of an IFC profile (cross-section), in the XY plane. */
 std::vector<TopoDS_Face> profile_of(const ifc_model &in, const entity &profile);
-/* Returns the faces of a profile. For an open profile, returns its curve instead, which sweeps a surface and not a solid. */
+/* Returns the faces of an IFC profile (cross-section). For an open profile, returns its curve instead, which sweeps a surface and not a
+ * solid. */
 std::vector<TopoDS_Shape> profile_shapes_of(const ifc_model &in, const entity &profile);
 
 /* --- ifc_sweep.cc */
-/* Sweeps faces perpendicularly along pieces. The faces lie in the XY plane; at the start their X axis is turned towards `x`. `up` is a
- * direction that stays fixed along the whole path. */
+/* Sweeps the faces of a profile perpendicularly along the pieces of a curve. The faces lie in the XY plane; at the start their X axis is
+ * turned towards `x`. `up` is a direction that stays fixed along the whole path. */
 TopoDS_Shape swept(const std::vector<TopoDS_Face> &faces, const std::vector<curve_piece> &pieces, const gp_Dir &x, const gp_Dir &up);
 TopoDS_Shape disk_of(const ifc_model &in, const entity &item);
 
 /* --- ifc_sections.cc */
-/* Joins consecutive faces to a solid: outline to outline and hole to hole. */
+/* Joins consecutive cross-sections to a solid: outline to outline and hole to hole. */
 TopoDS_Shape through_faces(const std::vector<TopoDS_Face> &faces);
-/* Sweeps faces along a curve that `reference` does not stay perpendicular to. The faces are perpendicular to the curve; their X axes point
- * towards `reference`. */
+/* Sweeps the faces of a profile along a curve that is not perpendicular to `reference` everywhere. The faces are perpendicular to the
+ * curve; their X axes point towards `reference`. */
 TopoDS_Shape along_frames(const ifc_model &in, const std::vector<TopoDS_Face> &faces, const std::vector<curve_piece> &pieces,
                           const gp_Dir &reference);
 TopoDS_Face moved(const TopoDS_Face &face, const gp_Trsf &place);
@@ -112,14 +114,16 @@ TopoDS_Shape brep_of(const ifc_model &in, const entity &item);
 
 /* --- ifc_faces.cc */
 bool has_flat_faces(const std::string &type);
-/* Returns whether the faces of an item are bounded by edges (curves), and not only by points. ifc_brep.cc reads items with edges. */
+/* Returns whether the faces of a geometry item are bounded by edges (curves), and not only by points. ifc_brep.cc reads items with
+ * edges. */
 bool has_edges(const ifc_model &in, const entity &item);
 TopoDS_Shape flat_faces_of(const ifc_model &in, const entity &item);
 
 /* --- ifc_solid.cc */
-/* Returns whether this program always builds items of this type. Items of other types are built only if web-ifc fails on them. */
+/* Returns whether this program always builds geometry items of this type. Items of other types are built only if web-ifc fails on them. */
 bool is_built(const std::string &type);
-/* Builds a solid item, or the boolean result of solid items. depth: number of items that refer to this one in a chain (MAX_CHAIN). */
+/* Builds a solid from an IFC geometry item, or from the boolean result of such items. depth: number of items that refer to this one in a
+ * chain (MAX_CHAIN). */
 TopoDS_Shape solid_of(const ifc_model &in, const entity &item, int depth);
 
 } // namespace ifc

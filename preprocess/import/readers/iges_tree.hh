@@ -14,7 +14,7 @@
  * afterwards: if Open CASCADE repaired them during transfer (read.iges.sequence), the tree could not find the shape of an entity. Names and
  * layers are converted from `encoding`. Throws what Open CASCADE throws. */
 void iges_tree_add(IGESControl_Reader &iges, const Handle(TDocStd_Document) & document, const struct text_encoding &encoding);
-/* Returns the name of the unit stated by the file, or "" if there is none. */
+/* Returns the name of the length unit that the IGES file states, or "" if it states none. */
 std::string iges_units(IGESControl_Reader &iges);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tessellates shapes by Open CASCADE. Thread: one per shape. */
+/* Tessellates shapes with the library Open CASCADE. Thread: one per shape. */
 #ifndef PREPROCESS_IMPORT_READERS_OCCT_MESH_HH
 #define PREPROCESS_IMPORT_READERS_OCCT_MESH_HH
 #include <TopoDS_Shape.hxx>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Functions that all C++ readers use: they reject a file, decode names, write the scene, and contain the main function. Thread: one. */
+/* Functions that all readers in C++ use: they reject a file, decode names, write the GLB scene, and contain the main function. Thread:
+ * one. */
 #ifndef PREPROCESS_IMPORT_READERS_READER_HH
 #define PREPROCESS_IMPORT_READERS_READER_HH
 #include <algorithm>
@@ -20,7 +21,7 @@ extern "C" {
 
 constexpr int MAX_DEPTH = 400; /* maximum levels of a model's tree; plantcast-prep reads at most 512 */
 
-/* Stops the reader with an error message; reader_main() prints it. */
+/* Stops the reader by throwing an exception with an error message; reader_main() prints it. */
 [[noreturn]] inline void refuse(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
 inline void refuse(const char *fmt, ...)
 {
@@ -39,7 +40,7 @@ inline std::string one_line(std::string text)
     return text;
 }
 
-/* The encoding of the texts in a file. */
+/* The text encoding of the names in a model file. */
 struct text_encoding {
     struct charset_choice choice = { "UTF-8", "", true };
 
@@ -84,8 +85,8 @@ inline std::string read_whole(const char *path)
     return out;
 }
 
-/* Writes the scene, destroys it and sets *scene to NULL. advice: text appended to the error message about a file over 4 GiB, on how to make
- * it smaller; may be "". */
+/* Writes the scene as a GLB file, destroys the scene and sets *scene to NULL. advice: text appended to the error message about a file over
+ * 4 GiB, on how to make it smaller; may be "". */
 inline void write_scene(struct glb_scene **scene, const char *output, const char *advice)
 {
     int status = glb_scene_write(*scene, output);

@@ -8,12 +8,12 @@
 #include <vector>
 
 struct step_external {
-    std::string named; /* name of the file as the STEP file that refers to it states it */
+    std::string named; /* name of the external file as the STEP file that refers to it states it */
     bool found;
 };
 
 struct step_files {
-    std::string main;                               /* path to read: that of the original file, or of its copy */
+    std::string main;                               /* path of the STEP file to read: that of the original file, or of its copy */
     std::map<std::string, step_external> externals; /* external files, by the name that copies use for them, such as "external_1.stp" */
     std::vector<std::string> copies;                /* paths to remove after reading */
 };
