@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that writes the audit trail. */
+/* The thread that writes the audit trail to its file, the log and a syslog server. */
 #include "audit/audit.h"
 
 #include <errno.h>
@@ -17,9 +17,9 @@ enum { MAX_QUEUED = 10000, FILE_BYTES = 64 << 20 };
 static const int64_t RETRY_NS = NS_PER_S;
 
 struct queued_entry {
-    struct audit_entry entry; /* the texts of the entry are stored in the same allocation, directly after the struct */
+    struct audit_entry entry; /* the texts of the entry are in the same allocation, directly after the struct */
     int64_t utc_us;
-    bool said; /* true: the log already has this entry, because the file could not be written */
+    bool said; /* true: the log already has this entry, because the audit file could not be written */
     struct queued_entry *next;
 };
 
@@ -34,7 +34,7 @@ struct audit {
     /* --- below: protected by thread.lock */
     struct queued_entry *first, **last;
     size_t count;
-    int64_t lost_count; /* number of entries lost since the last successful write */
+    int64_t lost_count; /* number of entries lost since the audit file was last written successfully */
     struct settling settling;
     pthread_cond_t settled;
 };
@@ -151,7 +151,7 @@ static void say_written(struct audit *audit, const char *why)
     counter_set(audit->good, !audit->failing);
 }
 
-/* Appends an entry to the file, the log and syslog. Returns 0, or -errno if the entry is not on disk. */
+/* Appends an entry to the audit file, the log and the queue for the syslog server. Returns 0, or -errno if the entry is not on disk. */
 static int write_entry(struct audit *audit, const struct audit_entry *entry, int64_t utc_us)
 {
     struct text line = { 0 };
@@ -174,7 +174,7 @@ static int write_entry(struct audit *audit, const struct audit_entry *entry, int
     return error;
 }
 
-/* Removes the first queued entry. The caller holds the lock. */
+/* Removes the oldest queued entry. The caller holds the lock. */
 static void free_first(struct audit *audit)
 {
     struct queued_entry *first = audit->first;
@@ -185,7 +185,8 @@ static void free_first(struct audit *audit)
     mem_free(first);
 }
 
-/* Writes the queued entries that the file cannot take now to the log. The caller holds the lock; only this thread removes entries. */
+/* Writes to the log the queued entries that cannot be written to the audit file now. The caller holds the lock; only this thread removes
+   entries. */
 static void log_waiting(struct audit *audit)
 {
     for (struct queued_entry *waiting = audit->first; waiting; waiting = waiting->next) {
@@ -195,7 +196,7 @@ static void log_waiting(struct audit *audit)
     }
 }
 
-/* Queues an entry that says how many entries were lost. The caller holds the lock. */
+/* If entries were lost, queues an entry that says how many. The caller holds the lock, which is released during the call. */
 static void say_lost(struct audit *audit)
 {
     int64_t lost = audit->lost_count;

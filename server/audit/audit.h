@@ -8,19 +8,19 @@
 #include "base/files/settling.h"
 
 struct audit;
-/* Opens the file and starts the thread. Returns NULL if that fails, already logged. */
+/* Opens the audit file and starts the thread. Returns NULL if that fails, already logged. */
 struct audit *audit_start(const struct audit_params *params);
-/* Writes the queued entries, if possible, and ends the thread. &NULL is allowed; sets *audit to NULL. */
+/* Writes the queued entries, if possible, and ends the thread. Accepts a pointer to NULL; sets *audit to NULL. */
 void audit_stop(struct audit **audit);
-/* Together with the next two functions tells whether the entries queued between audit_begin() and audit_end() are on disk
-   (base/files/settling.h). None of the three functions blocks. audit NULL: the entries count as on disk. */
+/* This function and the next two tell whether audit entries are on disk (base/files/settling.h): those queued between audit_begin() and
+   audit_end(). None of the three functions blocks. audit NULL: the entries count as on disk. */
 struct settling_ticket audit_begin(struct audit *audit);
 void audit_end(struct audit *audit, struct settling_ticket *ticket);
 int audit_settled(struct audit *audit, const struct settling_ticket *ticket);
-/* Waits for a second at most until audit_settled() knows the result, and returns that result. Thread: any except the event loop, which
+/* Waits for at most a second until audit_settled() knows the result, and returns that result. Thread: any except the event loop, which
    must not block. */
 int audit_wait(struct audit *audit, const struct settling_ticket *ticket);
-/* Queues a copy of an entry to be written. audit NULL: no-op. Thread: any. */
+/* Queues a copy of an entry for the audit trail. audit NULL: no-op. Thread: any. */
 void audit_say(struct audit *audit, const struct audit_entry *entry);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes the audit trail's file. */
+/* Writes the audit trail's file, and renames it when it is full. */
 #include "audit/audit_file.h"
 
 #include <errno.h>
@@ -21,7 +21,7 @@ static bool write_all(int fd, const char *bytes, size_t count)
     return true;
 }
 
-/* Finds the last complete line of the file and sets the chain to it. Returns the offset after that line. */
+/* Finds the last complete line of the audit file and sets the chain to it. Returns the offset after that line. */
 static size_t find_end(struct audit_file *file, size_t bytes, char **finding)
 {
     size_t window = bytes < 2 * AUDIT_LINE_BYTES ? bytes : 2 * AUDIT_LINE_BYTES;
@@ -40,7 +40,7 @@ static size_t find_end(struct audit_file *file, size_t bytes, char **finding)
     return bytes - window + end;
 }
 
-/* Sets the chain from the file's last complete line; cuts off an incomplete line that a crash left. */
+/* Sets the chain to the last complete line of the audit file; removes an incomplete line that a crash left. */
 static int find_chain(struct audit_file *file, char **finding)
 {
     struct stat st;
@@ -56,7 +56,8 @@ static int find_chain(struct audit_file *file, char **finding)
     return ftruncate(file->fd, (off_t)file->bytes) == 0 ? 0 : -errno;
 }
 
-/* Returns true if PATH is empty and the line that PATH.head names is the last line of a rotated file, so that no line is missing. */
+/* Returns true if the audit file is empty and the line that PATH.head names is the last one of a full file that was renamed, so that no
+   line is missing. */
 static bool is_rotated(const struct audit_file *file, const struct audit_chain *head)
 {
     char *full = mem_printf("%s.%012" PRIu64, file->path, head->seq);
@@ -65,8 +66,8 @@ static bool is_rotated(const struct audit_file *file, const struct audit_chain *
     return rotated;
 }
 
-/* Compares the end of the file with PATH.head. If PATH.head names a later line than the file has, lines were removed: numbering
-   continues after that line, so that the gap stays visible. */
+/* Compares the end of the audit file with PATH.head, which names the line written last. If PATH.head names a later line than the file
+   has, lines were removed: numbering continues after that line, so that the gap stays visible. */
 static void compare_head(struct audit_file *file, char **finding)
 {
     struct audit_chain head;
@@ -107,8 +108,8 @@ void audit_file_close(struct audit_file *file)
     *file = (struct audit_file){ .fd = -1 };
 }
 
-/* Opens PATH again if another program has renamed or removed it; renaming is allowed. If another program changed the file's content or
-   removed it, *finding receives a message about it. Returns 0 or -errno. */
+/* Opens the audit file again if another program has renamed it (which is allowed) or removed it. If another program changed the file's
+   content or removed it, *finding receives a message that says so. Returns 0 or -errno. */
 static int look_at_path(struct audit_file *file, char **finding)
 {
     struct stat ours, there;
@@ -129,7 +130,7 @@ static int look_at_path(struct audit_file *file, char **finding)
     return error;
 }
 
-/* Renames the full file to PATH.NUMBER. An existing file of that name is never overwritten. */
+/* Renames the full audit file to PATH.NUMBER. An existing file of that name is never overwritten. */
 static int rotate(struct audit_file *file)
 {
     char *full = mem_printf("%s.%012" PRIu64, file->path, file->chain.seq);
@@ -165,7 +166,8 @@ int audit_file_append(struct audit_file *file, const struct audit_entry *entry, 
     }
     file->chain = chain;
     file->bytes += count;
-    /* An error is ignored: the next append writes PATH.head again. Until then PATH.head names an earlier line, which loses nothing. */
+    /* An error is ignored, because the next append writes PATH.head again. Until then PATH.head names an earlier line, which loses
+       nothing. */
     audit_head_write(file->head_path, &chain);
     return 0;
 }

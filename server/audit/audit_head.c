@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes the file that says where the audit trail ends. */
+/* Reads and writes PATH.head, the file that names the last line of the audit trail. */
 #include "audit/audit_head.h"
 
 #include <fcntl.h>

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* PATH.head: sequence number and hash of the audit trail's last line. It has a fixed length and is overwritten in place, so that it can be
-   written on a full disk, too. Thread: one. */
+/* PATH.head: sequence number and hash of the audit trail's last line. Its length is fixed and it is overwritten in place, so that it can
+   be written even on a full disk. Thread: one. */
 #ifndef AUDIT_AUDIT_HEAD_H
 #define AUDIT_AUDIT_HEAD_H
 #include "audit/audit_chain.h"
 
-/* Parses `NUMBER HASH` or `NUMBER:HASH`. Returns false if the text is neither. */
+/* Parses a line's number and hash, `NUMBER HASH` or `NUMBER:HASH`. Returns false if the text is neither. */
 bool audit_head_parse(const char *text, struct audit_chain *head);
 /* Reads PATH.head. Returns false if the file does not exist or cannot be parsed. */
 bool audit_head_read(const char *path, struct audit_chain *head);
-/* Writes PATH.head. Returns true if it was written. */
+/* Writes PATH.head. Returns false if it cannot be written. */
 bool audit_head_write(const char *path, const struct audit_chain *head);
 
 #endif

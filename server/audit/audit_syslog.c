@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Syslog over TLS; libcurl makes the connection. */
+/* Sends audit lines to a syslog server over TLS; libcurl makes the connection. */
 #include "audit/audit_syslog.h"
 
 #include <curl/curl.h>
@@ -25,14 +25,14 @@ struct audit_syslog {
     char *url, host[256];
     pthread_t thread;
     counter *good, *lost;
-    CURL *connection; /* libcurl handle, used only by the thread; NULL: not connected */
-    bool failing;     /* used only by the thread: true while the newest line could not be sent */
+    CURL *connection; /* libcurl's handle of the connection, used only by the thread; NULL: not connected */
+    bool failing;     /* used only by the thread: true while the oldest queued line could not be sent */
     pthread_mutex_t lock;
     pthread_cond_t wake;
     /* --- below: protected by `lock` */
     struct framed *first, **last;
     size_t waiting;
-    int64_t stop_ns; /* monotonic time at which the thread must end; 0: no end requested */
+    int64_t stop_ns; /* monotonic time at which the thread must end; 0: it need not end */
 };
 
 void audit_syslog_frame(struct text *out, const struct syslog_message *message)
@@ -95,8 +95,8 @@ static bool connect_now(struct audit_syslog *syslog)
     return false;
 }
 
-/* Returns true if the connection is still open. Checked before each line, because a line sent to a server that has gone would be lost in
-   the socket. */
+/* Returns true if the connection is still open. Called before each line, because a line sent to a server that has closed the connection
+   would be lost unnoticed. */
 static bool is_alive(CURL *connection)
 {
     char byte;
@@ -161,7 +161,8 @@ static void *audit_syslog_main(void *arg)
             pthread_cond_wait(&syslog->wake, &syslog->lock);
         if (syslog->stop_ns && (!syslog->first || clock_mono_ns() >= syslog->stop_ns))
             break;
-        struct framed *first = syslog->first; /* the entry stays valid without the lock, because only this thread removes entries */
+        /* the line stays valid without the lock, because only this thread removes lines from the queue */
+        struct framed *first = syslog->first;
         pthread_mutex_unlock(&syslog->lock);
         bool sent = deliver(syslog, &first->text);
         pthread_mutex_lock(&syslog->lock);

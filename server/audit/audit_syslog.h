@@ -1,29 +1,29 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sends lines to a syslog server: RFC 5424 over TLS (RFC 5425), on a thread of its own. While the server is unreachable, lines wait in
-   memory up to a limit; lines beyond that are counted and reported as lost. */
+/* Sends audit lines to a syslog server: RFC 5424 over TLS (RFC 5425), on a thread of its own. While the server is unreachable, lines
+   wait in memory up to a limit; lines beyond that are counted and reported as lost. */
 #ifndef AUDIT_AUDIT_SYSLOG_H
 #define AUDIT_AUDIT_SYSLOG_H
 #include "audit/audit_params.h"
 #include "base/text/text.h"
 
 struct audit_syslog;
-/* Starts the thread. Returns NULL if it cannot start, already logged. */
+/* Starts the thread that sends audit lines. Returns NULL if it cannot start, already logged. */
 struct audit_syslog *audit_syslog_start(const struct audit_params *params);
-/* Sends the queued lines, for a few seconds at most, and ends the thread. &NULL is allowed; sets *syslog to NULL. */
+/* Sends the queued lines, for a few seconds at most, and ends the thread. Accepts a pointer to NULL; sets *syslog to NULL. */
 void audit_syslog_stop(struct audit_syslog **syslog);
-/* Queues a copy of a line to be sent. Thread: any. */
+/* Queues a copy of an audit line to be sent. good: the action of the line was done. Thread: any. */
 void audit_syslog_send(struct audit_syslog *syslog, const char *event, bool good, int64_t utc_us, const char *line, size_t count);
 
 struct syslog_message {
     const char *host; /* host name of this machine; "-" if unknown */
     int pid;
     const char *event;
-    bool good; /* the action was done */
+    bool good; /* true: the audited action was done; false: it was refused or failed */
     int64_t utc_us;
-    const char *line; /* the `count` bytes to send */
+    const char *line; /* the audit line to send, `count` bytes */
     size_t count;
 };
-/* Appends a syslog message to `out`, preceded by its length, as syslog over a stream requires. Pure. */
+/* Appends a syslog message to `out`, preceded by its length, as syslog over a stream requires. No input or output. */
 void audit_syslog_frame(struct text *out, const struct syslog_message *message);
 
 #endif

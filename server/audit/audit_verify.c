@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Verifies an audit trail. */
+/* Verifies an audit trail: all its lines, their hashes, and PATH.head. */
 #include <dirent.h>
 #include <errno.h>
 #include <inttypes.h>
@@ -14,7 +14,7 @@
 struct audit_walk {
     struct audit_report *report;
     const struct audit_chain *known;
-    struct audit_chain head; /* sequence number and hash from PATH.head; seq 0: the file does not exist */
+    struct audit_chain head; /* sequence number and hash in PATH.head, which names the last line; seq 0: the file does not exist */
 };
 
 static void set_fault(struct audit_report *report, char *text)
@@ -26,7 +26,8 @@ static void set_fault(struct audit_report *report, char *text)
     report->good = false;
 }
 
-/* Reports a fault if the line just read has the sequence number of `with` but another hash. */
+/* Reports a fault if the audit line that was read last has the sequence number of `with` but another hash. whose: what `with` was read
+   from, for the message. */
 static void compare(struct audit_walk *walk, const struct audit_chain *with, const char *path, const char *whose)
 {
     const struct audit_chain *end = &walk->report->end;

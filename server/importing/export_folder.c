@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lists, adds and removes the files of the exports folder. Uploads in progress are hidden files. */
+/* Lists, adds and removes the files of the exports folder. An upload in progress is a hidden file until it is complete. */
 #include "importing/export_folder.h"
 
 #include <dirent.h>
@@ -134,7 +134,7 @@ struct export_upload *export_upload_begin(const char *folder, const char *name, 
     upload->fd = mkostemp(upload->hidden, O_CLOEXEC);
     *error = upload->fd < 0 ? -errno : 0;
     if (upload->fd < 0) {
-        mem_free(upload->hidden); /* the hidden file could not be created, so there is no file to remove */
+        mem_free(upload->hidden); /* the hidden file could not be created, so none needs to be removed */
         upload->hidden = NULL;
         export_upload_abandon(&upload);
     }

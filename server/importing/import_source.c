@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads the data source of a plant, and turns it into program arguments. */
+/* Reads the data source of a plant (a Modbus device) for an import, and checks that it is safe as program arguments. */
 #include "importing/import_source.h"
 
 #include <stdio.h>

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The data source of an imported plant: one device that speaks Modbus TCP. Pure. Thread: any. */
+/* The data source of an imported plant: one device that speaks Modbus TCP. No input or output. Thread: any. */
 #ifndef IMPORTING_IMPORT_SOURCE_H
 #define IMPORTING_IMPORT_SOURCE_H
 #include <jansson.h>
 
 #include "plant/plant.h"
 
-struct import_source { /* data source as texts in the form of the arguments of `plantcast match`; empty: not stated */
-    char host[254], port[6], unit[4], order[5], base[2]; /* host "": no source */
+struct import_source { /* the data source in the form of the arguments of `plantcast match`; an empty text: not stated */
+    char host[254], port[6], unit[4], order[5], base[2]; /* an empty `host`: no data source */
 };
 
 /* Returns true if the texts are safe as program arguments: `host` is a host name or a numeric IPv4 address, port, unit and base are numbers

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Keeps the state and the messages of the current import order. */
+/* Keeps the state of the import that an engineer has ordered on the page, and its messages. */
 #include "importing/plant_import.h"
 
 #include <errno.h>
@@ -19,20 +19,23 @@
 enum { MAX_OUTPUT_BYTES = 64 * 1024 };
 
 struct plant_import {
-    /* path of the file that stores the chosen units, axis and encoding, so that they survive a restart of the daemon */
+    /* exports: folder of the uploaded files; matches: matches.csv; report: report of `plantcast import`; choice: file that stores the
+       chosen units, axis and encoding, so that they survive a restart of the daemon */
     char *exports, *matches, *report, *choice;
     pthread_mutex_t lock;
     /* --- below: under `lock` */
-    struct import_order order; /* the import order in progress; if none is in progress, the last one */
-    struct import_order read;  /* the last successful order that read models; its units, axis and encoding are in use */
+    struct import_order order; /* the import order in progress or, if none is, the last one */
+    /* the last successful import order that read models; its units, axis and encoding are those of the present models */
+    struct import_order read;
     bool ordered, busy, cancelled;
     enum import_phase phase;
-    unsigned number; /* number of orders so far */
+    unsigned number; /* number of import orders so far */
     struct text said;
     char *why; /* reason why the last import order failed; NULL: it succeeded */
 };
 
-/* Reads the stored choice from the file, whose text is "UNITS/UP/ENCODING/MESH_UNITS"; components at the end may be missing. */
+/* Reads the stored choice of units, axis and encoding from its file, whose text is "UNITS/UP/ENCODING/MESH_UNITS"; parts at the end may
+   be missing. */
 static void read_choice(struct plant_import *import)
 {
     struct import_order order = { 0 };
@@ -134,8 +137,8 @@ bool plant_import_order(struct plant_import *import, const struct import_order *
     bool taken = !import->busy;
     if (taken) {
         import->order = *order;
-        /* an order that only applies the user's match decisions, or only sets the plant's data source, does not state the character
-           encoding of the tag list: keep the encoding that the last import used */
+        /* An order that only applies match decisions or sets the data source does not state the encoding of the tag list: keeps the
+           encoding of the last import. */
         if (order->decides || *order->source.host)
             strcpy(import->order.encoding, import->read.encoding);
         import->ordered = import->busy = true;
@@ -193,8 +196,8 @@ char *plant_import_text(struct plant_import *import, const struct import_source 
 
 /* --- functions that the reload thread calls ----------------------------------------------------------------------------- */
 
-/* Appends the output of `plantcast import` to `out`. Writes '?' for each byte that is not UTF-8 or is a control character other than a new
-   line; names of files and tags may contain such bytes. */
+/* Appends the output of an import's program to `out`. Writes '?' for each byte that is not UTF-8 or is a control character other than a
+   new line, because names of files and tags may contain such bytes. */
 static void add_printable(struct text *out, const char *text)
 {
     for (size_t left = strlen(text), bytes; left > 0; text += bytes, left -= bytes) {
@@ -254,7 +257,7 @@ void plant_import_end(struct plant_import *import, bool in_force, const char *wh
     mem_free(import->why);
     import->why = line.at;
     pthread_mutex_unlock(&import->lock);
-    /* errors are ignored: if this file cannot be written, a restart only loses the chosen units, axis and encoding */
+    /* errors are ignored: if the file cannot be written, a restart of the daemon only loses the chosen units, axis and encoding */
     atomic_file_put(import->choice, choice, strlen(choice));
     mem_free(choice);
 }

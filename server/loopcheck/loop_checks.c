@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Appends loop checks to a file, and keeps the newest result of each tag. */
+/* Appends loop checks to a file, and keeps the newest check of each tag in memory. */
 #include "loopcheck/loop_checks.h"
 
 #include <errno.h>
@@ -30,11 +30,11 @@ struct loop_checks {
     const struct plant *plant;
     struct file_writer *writer;
     char *folder, *path;
-    struct loop_check *at; /* latest check by tag */
+    struct loop_check *at; /* newest loop check, by index of the tag */
     uint64_t *numbers;     /* by tag: sequence number (loop_checks_number()) of the tag's newest check */
     uint64_t number;
     bool begun;
-    /* atomic flags by tag, read by the render threads; true: pictures mark the tag as unproven (without a passed loop check) */
+    /* by index of the tag: true if pictures mark the tag as unproven (without a passed loop check); read by the render threads */
     atomic_bool *unproven;
 };
 
@@ -197,7 +197,9 @@ void loop_checks_close(struct loop_checks **pointer)
 }
 
 struct row_job {
-    struct file_job job; /* generic job, the first member because file_writer passes a pointer to it; job.owner is the struct loop_checks */
+    /* job of the thread that writes files; must be the first member, because that thread passes a pointer to it. job.owner is the struct
+       loop_checks, or NULL once it is closed */
+    struct file_job job;
     struct loop_checks *loop_checks;
     struct log *log;
     char *folder, *path;
@@ -206,8 +208,8 @@ struct row_job {
     struct loop_check check;
 };
 
-/* Appends a row to the file. An incomplete last line, for example after a power failure, is ended with a newline first. Creates the
-   folder if needed: the historian's thread creates it too, but may not have done so yet. */
+/* Appends a row to the file. If the file ends in an incomplete line, for example after a power failure, first ends that line. Creates
+   the folder if needed, because the historian's thread, which also creates it, may not have done so yet. */
 static int append(struct file_job *job)
 {
     const struct row_job *own = (const struct row_job *)job;
@@ -224,7 +226,7 @@ static int append(struct file_job *job)
         good = fseek(file, 0, SEEK_END) == 0 && fputc('\n', file) != EOF;
     good = good && fwrite(row->at, 1, row->length, file) == row->length && fflush(file) == 0 && fsync(fileno(file)) == 0;
     int error = good ? 0 : -errno;
-    /* after an error, truncates the file to remove the incomplete row, because the caller reports the check as not stored */
+    /* after an error, removes the incomplete row from the file, because the caller reports the check as not stored */
     if (!good && size >= 0 && ftruncate(fileno(file), size) != 0)
         log_err(own->log, "%s: %s", own->path, strerror(errno));
     fclose(file);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Records of loop checks. A tag passes if a value that was forced at its transmitter arrived under its name, which shows that it is
-   wired correctly. The records are in proofs.csv in the folder of the history, a file to which rows are only appended (LOOPCHECK.md).
-   Thread: the event loop. */
+/* Records of loop checks. A tag passes if a value that an engineer forced at its transmitter arrives as the tag's value, which shows
+   that the tag is wired correctly. The records are in proofs.csv in the history folder, a file to which rows are only appended
+   (LOOPCHECK.md). Thread: the event loop. */
 #ifndef LOOPCHECK_LOOP_CHECKS_H
 #define LOOPCHECK_LOOP_CHECKS_H
 #include "base/files/file_writer.h"
@@ -15,42 +15,43 @@ enum loop_check_state {
     LOOP_CHECK_NONE,
     LOOP_CHECK_PASSED,
     LOOP_CHECK_FAILED,
-    LOOP_CHECK_CHANGED /* the tag was checked, but its address, scaling or position has changed since then: it counts as not checked */
+    LOOP_CHECK_CHANGED /* the tag was checked, but its address, scaling or position has changed since then, so it counts as not checked */
 };
 extern const char *const loop_check_state_names[]; /* names of the states of a loop check, indexed by enum loop_check_state */
 
 struct loop_check {
     enum loop_check_state state;
     int64_t time_us;                  /* UTC */
-    double value, expected, tolerance; /* engineering units; NaN: none */
+    double value, expected, tolerance; /* in the tag's unit; NaN: none */
     char who[LOOP_CHECK_NAME_BYTES], remark[LOOP_CHECK_REMARK_BYTES];
 };
 
 #define LOOP_CHECKS_FILE "proofs.csv"
 
 struct loop_checks;
-/* Reads the records of a plant. A file that cannot be read counts as empty (logged). writer: the thread that writes records; NULL: they
-   are written at once. Never returns NULL. plant and writer must outlive the result. */
+/* Reads the loop checks of a plant. A file that cannot be read counts as empty (logged). writer: the thread that writes checks to disk;
+   NULL: they are written at once. Never returns NULL. plant and writer must outlive the result. */
 struct loop_checks *loop_checks_open(struct log *log, const struct plant *plant, const char *folder, struct file_writer *writer);
 /* destroys the loop checks and sets *loop_checks to NULL; accepts a pointer to NULL */
 void loop_checks_close(struct loop_checks **loop_checks);
-/* Queues a record of a loop check for writing to disk; after that, file_writer_collect() makes it the tag's newest check. Returns
-   REFUSAL_NONE, or why it could not be queued. */
+/* Queues a loop check to be written to disk; once it is, file_writer_collect() makes it the tag's newest check. Returns REFUSAL_NONE, or
+   why it could not be queued. */
 enum refusal_code loop_checks_add(struct loop_checks *loop_checks, int tag, const struct loop_check *check);
 /* Returns the newest loop check recorded for a tag. */
 const struct loop_check *loop_checks_of(const struct loop_checks *loop_checks, int tag);
-/* Returns true if any tag has been checked. From the first check on, all tags that have not passed are marked as unproven. */
+/* Returns true if any tag of the plant has been checked. From the first check on, all tags that have not passed are marked as unproven. */
 bool loop_checks_begun(
     const struct loop_checks *loop_checks);
-uint64_t loop_checks_number(const struct loop_checks *loop_checks); /* returns a number that increases with each recorded loop check */
-/* Returns the sequence number of the newest record of this tag; 0: it is from before the start of the daemon. */
+/* returns a sequence number that increases with each recorded loop check */
+uint64_t loop_checks_number(const struct loop_checks *loop_checks);
+/* Returns the sequence number of the tag's newest loop check; 0: it was recorded before the daemon started. */
 uint64_t loop_checks_number_of(const struct loop_checks *loop_checks, int tag);
 /* Appends CSV: a header line, then the newest check of every tag that has a source. */
 void loop_checks_print(const struct loop_checks *loop_checks, struct text *out);
-/* Returns true if the tag must be marked as unproven: other tags have been checked, and this one has not passed. Derived tags are never
+/* Returns true if pictures must mark the tag as unproven: some tag has been checked, and this one has not passed. Derived tags are never
    marked. Thread: any. */
 bool loop_checks_unproven(const struct loop_checks *loop_checks, int tag);
-/* Returns a hash of everything whose change makes a tag's loop check void: source, address, type, byte order, scaling, asset and
+/* Returns a hash of all settings whose change makes a tag's loop check void: source, address, type, byte order, scaling, asset and
    position. */
 uint64_t loop_check_fingerprint(const struct plant *plant, int tag);
 

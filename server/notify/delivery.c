@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sends messages by SMTP and HTTP through libcurl. */
+/* Sends alarm messages by SMTP and HTTP through libcurl. */
 #include "notify/delivery.h"
 
 #include <curl/curl.h>
@@ -14,13 +14,13 @@
 enum { CONNECT_S = 10 };
 
 struct transfer {
-    CURL *handle; /* NULL: idle */
+    CURL *handle; /* libcurl's handle of the message that is being sent; NULL: none is */
     struct curl_slist *list;
     char *body;
     size_t bytes, at;
     char why[CURL_ERROR_SIZE];
     struct log *log;
-    const char *name;  /* name of the recipient */
+    const char *name;  /* id of the recipient in the plant file, for the log */
     char mailbox[256]; /* mailbox in the last RCPT command of the SMTP dialogue; empty: the last command was another one */
 };
 
@@ -91,8 +91,8 @@ static size_t drop_answer(char *bytes, size_t size, size_t count, void *arg)
     return size * count;
 }
 
-/* Debug callback of libcurl that logs the refusal of a single mailbox: the mail counts as delivered if other mailboxes accept it, so
-   nothing else reports the refusal. */
+/* Debug callback of libcurl that logs when the mail server refuses a single mailbox: the mail counts as delivered if other mailboxes
+   accept it, so nothing else reports the refusal. */
 static int hear_refusals(CURL *handle, curl_infotype type, char *bytes, size_t count, void *arg)
 {
     static const char ask[] = "RCPT TO:";
@@ -120,7 +120,7 @@ static void set_common(struct delivery *delivery, struct transfer *transfer, con
     curl_easy_setopt(handle, CURLOPT_CONNECTTIMEOUT, (long)CONNECT_S);
     curl_easy_setopt(handle, CURLOPT_TIMEOUT_MS, (long)(delivery->notify->timeout_s * 1000));
     curl_easy_setopt(handle, CURLOPT_SSLVERSION, (long)CURL_SSLVERSION_TLSv1_2);
-    /* lets the daemon end without waiting for libcurl's thread, which may wait for a name server that does not answer */
+    /* lets the daemon end without waiting for libcurl's resolver thread, which may wait for a name server that does not answer */
     curl_easy_setopt(handle, CURLOPT_QUICK_EXIT, 1L);
     if (ca_file)
         curl_easy_setopt(handle, CURLOPT_CAINFO, ca_file);
@@ -146,7 +146,7 @@ static char *set_mail(struct delivery *delivery, struct transfer *transfer, cons
     for (size_t i = 0; i < recipient->addresses.count; i++)
         transfer->list = curl_slist_append(transfer->list, recipient->addresses.at[i]);
     curl_easy_setopt(handle, CURLOPT_MAIL_RCPT, transfer->list);
-    /* makes libcurl send the mail to the other mailboxes if the server refuses one */
+    /* makes libcurl send the mail to the other mailboxes if the mail server refuses one */
     curl_easy_setopt(handle, CURLOPT_MAIL_RCPT_ALLLOWFAILS, 1L);
     curl_easy_setopt(handle, CURLOPT_DEBUGFUNCTION, hear_refusals);
     curl_easy_setopt(handle, CURLOPT_DEBUGDATA, transfer);
@@ -207,8 +207,8 @@ char *delivery_start(struct delivery *delivery, int recipient, char *body, size_
 
 /* --- waiting for results ---------------------------------------------------------------------------------------------------- */
 
-/* Returns NULL if the recipient accepted the message of an ended transfer; else the reason, which the caller frees with mem_free(). A
-   redirection counts as failure, because it may lead to a login page. */
+/* Returns NULL if the server accepted the message; else the reason, which the caller frees with mem_free(). A redirection counts as
+   failure, because it may lead to a login page. */
 static char *why_not(const struct transfer *transfer, CURLcode code)
 {
     long status = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that sends alarm notifications. */
+/* The thread that sends alarms to recipients outside of Plantcast. */
 #include "notify/notifier.h"
 
 #include <errno.h>
@@ -30,14 +30,14 @@ struct notifier {
     _Atomic bool stopping;
     _Atomic uint64_t kept_number;
     pthread_mutex_t kept_lock;
-    char *kept; /* content of notify.json, protected by kept_lock; NULL: none yet */
+    char *kept; /* content of notify.json (pending messages), protected by kept_lock; NULL: none yet */
     struct delivery *delivery;
     /* --- below: used by the notifier's thread only */
     struct outbox *outbox;
     struct recipient_counters *counters; /* by index of the recipient */
     counter *lost, *spool_good;
-    bool *failing;   /* by index of the recipient: true: the last delivery to the recipient failed */
-    uint64_t number; /* change number of the newest change of an alarm that the notifier has processed */
+    bool *failing;   /* by index of the recipient: true if the last attempt to send to the recipient failed */
+    uint64_t number; /* change number of the last alarm change that the notifier has processed */
     bool looked, unsaved;
     /* value of outbox_counts.lost up to which lost notifications are in the metrics; not 0 at the start if a reload restored the outbox */
     int64_t lost_before;
@@ -61,7 +61,7 @@ static int put_file(const char *path, const char *text, bool durable)
     return error;
 }
 
-/* Makes `text`, the content of notify.json, available for a standby core, and takes its ownership. */
+/* Makes `text`, the content of notify.json, available for a standby core; takes its ownership. */
 static void publish(struct notifier *notifier, char *text)
 {
     pthread_mutex_lock(&notifier->kept_lock);
@@ -100,7 +100,7 @@ static void save(struct notifier *notifier)
     if (!notifier->unsaved)
         return;
     char *text = json_text(outbox_save(notifier->outbox), 0);
-    publish(notifier, mem_strdup(text)); /* passes the text to a standby core before writing it to disk, which may take long */
+    publish(notifier, mem_strdup(text)); /* passes the text to a standby core before writing notify.json, which may take long */
     int error = put_file(notifier->path, text, true);
     mem_free(text);
     if (error)
@@ -140,7 +140,7 @@ static void on_end(void *arg, int recipient, const char *why)
             log_err(log, "notify: %s cannot be reached: %s; messages are queued and sent later", id, why);
     } else {
         outbox_sent(notifier->outbox, recipient, now_us());
-        /* saved immediately, because a daemon that is killed before saving would send the message again after its restart */
+        /* saves the outbox at once: if the daemon were killed before, it would send the message again after its restart */
         save(notifier);
         counter_inc(notifier->counters[recipient].sent, 1);
         if (notifier->failing[recipient])
@@ -164,8 +164,8 @@ static char *compose(const struct notifier *notifier, int recipient, const struc
     return json ? json : mail.at;
 }
 
-/* Sends all messages that are due. Each message is saved before it is sent, so that a restarted daemon repeats the same message and does
-   not make another one. */
+/* Sends all messages that are due. The outbox is saved before a message is sent, so that a restarted daemon repeats the same message
+   instead of making another one. */
 static void send_due(struct notifier *notifier)
 {
     for (int i = 0; i < (int)notifier->params.plant->notify->recipient_count; i++) {

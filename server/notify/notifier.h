@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Notifies people and external programs of alarms, as the plant file's `notify` says. Its thread wakes when an alarm changes, stores
-   pending messages in notify.json in the folder of the history, and sends them; no other thread waits for it. Thread: one. */
+/* Sends alarms to users and external programs, as the plant file's `notify` says. Its thread wakes when an alarm changes, stores pending
+   messages in notify.json in the history folder, and sends them; no other thread waits for it. Thread: one. */
 #ifndef NOTIFY_NOTIFIER_H
 #define NOTIFY_NOTIFIER_H
 #include "alarm/alarm_service.h"
@@ -10,27 +10,27 @@
 struct notifier_params {
     struct log *log;
     struct counters *counters;
-    const struct plant *plant; /* must have a `notify` */
-    /* plant whose alarms are notified, and service that has these alarms; both must outlive the notifier */
+    const struct plant *plant; /* must have a `notify`; plant and alarm service must outlive the notifier */
+    /* the service whose alarms are sent */
     struct alarm_service *alarm_service;
     const char *folder;      /* folder of notify.json; the alarm journal creates it */
-    void (*kept)(void *arg); /* callback on the notifier's thread after the content of notify.json has changed; NULL: no callback */
+    void (*kept)(void *arg); /* called by the notifier's thread after the content of notify.json has changed; NULL: not wanted */
     void *kept_arg;
 };
 
 struct notifier;
 /* Returns a sequence number that increases with each change of the content of notify.json. Thread: any. */
 uint64_t notifier_number(struct notifier *notifier);
-/* Returns the content of notify.json; free with mem_free(). Thread: any. */
+/* Returns the content of notify.json (pending messages); free with mem_free(). Thread: any. */
 char *notifier_kept(struct notifier *notifier);
-/* Stores the content of another daemon's notify.json in this daemon's file, for the notifier that starts when this daemon takes the
-   lead. Returns 0 or -errno. */
+/* Stores the content of the leading daemon's notify.json in this daemon's file, for the notifier that starts when this daemon becomes
+   the leader. Returns 0 or -errno. */
 int notifier_put_kept(const char *folder, const char *text);
 /* Starts a notifier. Returns NULL if it cannot be started (logged). */
 struct notifier *notifier_start(const struct notifier_params *params);
 /* Aborts messages that are being sent, and waits until notify.json is written. The aborted messages are sent after the next start. */
 void notifier_halt(struct notifier *notifier);
-/* Halts and frees the notifier. &NULL is fine; sets *notifier to NULL. */
+/* Halts and frees the notifier. Accepts a pointer to NULL; sets *notifier to NULL. */
 void notifier_stop(struct notifier **notifier);
 
 #endif

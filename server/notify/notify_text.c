@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes alarms as text for people and as JSON for programs. */
+/* Writes alarm messages as e-mail text for users and as JSON for programs. */
 #include "notify/notify_text.h"
 
 #include <math.h>
@@ -12,8 +12,8 @@
 #include "base/text/json_text.h"
 #include "base/text/timestamp.h"
 
-/* BASE64_LINE: number of bytes that a base64 line of 76 characters encodes. WORD: number of bytes in an encoded word (RFC 2047) that
-   fits into a line of 77 characters behind the header's name. */
+/* BASE64_LINE: number of bytes that a base64 line of 76 characters encodes. WORD: number of bytes in an encoded word (RFC 2047), so that
+   the word fits into a line of 77 characters after the header's name. */
 enum { BASE64_LINE = 57, WORD = 42 };
 
 static const struct plant_tag *tag_of(const struct plant *plant, const struct outbox_item *item)
@@ -58,8 +58,8 @@ static bool is_plain(const char *text)
     return true;
 }
 
-/* Adds a mail header. A short ASCII value is written as it is; any other value as encoded words (RFC 2047), none of which ends within a
-   character. */
+/* Adds a header line of an e-mail. A short ASCII value is written unchanged; any other value as encoded words (RFC 2047), none of which
+   ends within a character. */
 static void add_header(struct text *out, const char *name, const char *value)
 {
     text_add(out, "%s:", name);
@@ -86,7 +86,7 @@ static void add_local_time(struct text *out, const char *format, int64_t utc_us)
     text_add(out, "%s", text);
 }
 
-/* Adds a date in English, whatever the locale. */
+/* Adds the Date header of an e-mail, in English whatever the locale. */
 static void add_date(struct text *out, int64_t utc_us)
 {
     static const char *const days[] = { "Sun", "Mon", "Tue", "Wed", "Thu", "Fri", "Sat" };
@@ -98,8 +98,8 @@ static void add_date(struct text *out, int64_t utc_us)
                  utc.tm_hour, utc.tm_min, utc.tm_sec);
 }
 
-/* Returns why an escalated alarm is sent again; "" if it is not escalated or has ended. Without operators' acknowledgements (alarms:
-   display), the daemon knows only that the alarm is still there. */
+/* Returns why an alarm is sent again in an escalation step; "" if it is not escalated or has ended. If the plant has no acknowledgements
+   (alarms: display), the daemon knows only that the alarm is still active. */
 static const char *escalated_for(const struct outbox_item *item)
 {
     bool waits = item->status == ALARM_UNACKNOWLEDGED || item->status == ALARM_RETURNED;

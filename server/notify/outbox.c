@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides which recipients are notified of which alarms, and when. */
+/* Decides which recipients are told of which alarms, and when. */
 #include "notify/outbox_impl.h"
 
 #include <math.h>
@@ -99,7 +99,7 @@ static void queue_item(struct outbox *outbox, int recipient, const struct episod
 {
     struct recipient_box *box = &outbox->boxes[recipient];
     int index = (int)(episode - outbox->episodes);
-    /* true: a repetition or an escalation, which is not queued if the alarm is in the queue already */
+    /* true: the alarm is sent again or escalated, so it is not queued if the queue already has it */
     bool may_wait = step > 0 || episode->told_us;
     for (size_t i = 0; may_wait && i < box->waiting.count; i++)
         if (box->waiting.at[i].episode == index)
@@ -139,11 +139,11 @@ static void tell(struct outbox *outbox, struct episode *episode, const struct no
     }
 }
 
-/* Queues the notifications of all escalation steps of an alarm that are due. */
+/* Queues the notifications of all escalation steps of an alarm that are due at now_us. */
 static void advance(struct outbox *outbox, struct episode *episode, int64_t now_us)
 {
     const struct plant_notify *notify = outbox->plant->notify;
-    if (episode->began_us > now_us + OUTBOX_REPEAT_US) /* the clock was set back */
+    if (episode->began_us > now_us + OUTBOX_REPEAT_US) /* the wall clock was set back, so the start of the episode would be in the future */
         episode->began_us = now_us;
     for (size_t i = 0; i < notify->rule_count; i++) {
         const struct notify_rule *rule = &notify->rules[i];
@@ -264,7 +264,7 @@ void outbox_tick(struct outbox *outbox, int64_t now_us)
     }
     for (size_t i = 0; i < outbox->plant->notify->recipient_count; i++) {
         struct recipient_box *box = &outbox->boxes[i];
-        /* messages to Alertmanager are never dropped for their age, because they always contain the present alarms */
+        /* messages to Alertmanager are never dropped for their age, because each contains all present alarms */
         bool keeps = outbox->plant->notify->recipients[i].kind == NOTIFY_ALERTMANAGER;
         if (!keeps && box->batch_count > 0 && box->attempts > 0 && now_us - box->batch_us > OUTBOX_KEEP_US)
             give_up(outbox, box);
@@ -292,7 +292,8 @@ static bool is_due(const struct outbox *outbox, const struct recipient_box *box,
     return box->waiting.count > 0 && gathered && (!paused || best < box->last_priority);
 }
 
-/* Makes a message of the queued alarms, with their present states. Skips alarms that were shelved or suppressed after they were queued. */
+/* Makes a message of a recipient's queued alarms, with their present states. Leaves out alarms that were shelved or suppressed after
+   they were queued. */
 static void make_batch(struct outbox *outbox, int recipient, int64_t now_us)
 {
     struct recipient_box *box = &outbox->boxes[recipient];
@@ -343,8 +344,8 @@ static bool goes_to(const struct plant_notify *notify, const struct episode *epi
     return false;
 }
 
-/* Makes an Alertmanager message of all active alarms, and of the alarms that have ended since the last message. Returns false if there are
-   no such alarms. */
+/* Makes a message for Alertmanager with all active alarms, and with the alarms that have ended since the last message. Returns false if
+   there are no such alarms, or if no message is due. */
 static bool make_alerts(struct outbox *outbox, int recipient, int64_t now_us)
 {
     struct recipient_box *box = &outbox->boxes[recipient];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides which recipients are notified of which alarms, and when: rules, gathering of several alarms in one message, pauses,
-   escalation, retries. Pure: time is an argument, UTC in microseconds. The caller passes alarms in their present states, so an alarm
-   that came and went between two calls is missed. Thread: one at a time. */
+/* Decides which recipients are told of which alarms, and when: rules, several alarms in one message, pauses, escalation, retries. No
+   input or output: time is an argument, UTC in microseconds. The caller passes alarms in their present states, so an alarm that came and
+   went between two calls is missed. Thread: one at a time. */
 #ifndef NOTIFY_OUTBOX_H
 #define NOTIFY_OUTBOX_H
 #include <jansson.h>
@@ -9,25 +9,26 @@
 #include "alarm/alarms.h"
 #include "plant/sections/notification.h"
 
-enum { OUTBOX_ITEMS = 5000 /* maximum number of queued alarms of all recipients together */, OUTBOX_ID_BYTES = 40 };
-#define OUTBOX_REPEAT_US (600 * INT64_C(1000000)) /* minimum time between two notifications of an alarm that cleared by itself */
+enum { OUTBOX_ITEMS = 5000 /* maximum number of queued alarms, of all recipients together */, OUTBOX_ID_BYTES = 40 };
+/* minimum time between two notifications of an alarm that comes and goes without anybody acknowledging it */
+#define OUTBOX_REPEAT_US (600 * INT64_C(1000000))
 #define OUTBOX_KEEP_US (86400 * INT64_C(1000000)) /* age after which a message that cannot be delivered is dropped */
 #define OUTBOX_REFRESH_US (60 * INT64_C(1000000)) /* interval at which all active alarms are sent to Alertmanager again */
-#define OUTBOX_ALERT_US (300 * INT64_C(1000000))  /* time after which Alertmanager drops an alarm that is not sent again */
+#define OUTBOX_ALERT_US (300 * INT64_C(1000000))  /* Alertmanager drops an alarm that is not sent again within this time */
 
 struct outbox_item { /* one alarm in a message */
     char *name;      /* name of the tag or device that has the alarm */
     int tag;         /* index of the tag; -1: the alarm is that of a device */
     enum alarm_kind kind;
-    int priority, step; /* index of the rule's escalation step to which the notification belongs; 0: the first notification */
+    int priority, step; /* step: index of the rule's escalation step that sends the alarm; 0: the first notification */
     enum alarm_status status;
-    double value, limit;         /* NaN: none */
-    int64_t raised_us, ended_us; /* UTC microseconds. ended_us: when the alarm returned to normal or was acknowledged; 0: the alarm is
-                                    still active */
+    double value, limit; /* value at which the alarm was raised, and its limit; NaN: none */
+    /* UTC microseconds. ended_us: when the alarm returned to normal or was acknowledged; 0: it still needs attention */
+    int64_t raised_us, ended_us;
 };
 
 struct outbox_message {
-    char id[OUTBOX_ID_BYTES];        /* id of the message, the same for each attempt to send it */
+    char id[OUTBOX_ID_BYTES];        /* id of the message, the same in each attempt to send it */
     const struct outbox_item *items; /* alarms, most urgent first */
     size_t count;
     int64_t left_out; /* number of further alarms, for which the message has no room */
@@ -35,37 +36,38 @@ struct outbox_message {
 };
 
 struct outbox;
-/* Creates an outbox; `plant`, which must have a `notify`, must outlive it. Never returns NULL. */
+/* Creates an outbox for the recipients of `plant`, which must have a `notify` and outlive the outbox. Never returns NULL. */
 struct outbox *outbox_create(const struct plant *plant);
-void outbox_destroy(struct outbox **outbox); /* Frees the outbox. &NULL is fine; sets it to NULL. */
+void outbox_destroy(struct outbox **outbox); /* Frees the outbox and sets *outbox to NULL; accepts a pointer to NULL. */
 
-/* Processes the present state of an alarm. restored: the state was read from the journal after a restart; an alarm that needs no action
-   is then not notified. */
+/* Processes the present state of an alarm. restored: the state was read from the journal after a restart; an alarm that needs no
+   attention is then not sent. */
 void outbox_put(struct outbox *outbox, const struct alarm *alarm, bool restored, int64_t now_us);
-/* Ends the restored alarms for which outbox_put() has not been called since the restart: they returned to normal, or lost their limits,
-   while the daemon did not run. Call it after outbox_put() was called for all alarms that are not normal. */
+/* Ends those alarms of the saved state for which outbox_put() has not been called since the restart: they returned to normal, or lost
+   their limits, while the daemon did not run. Call it after outbox_put() was called for all alarms that are not normal. */
 void outbox_end_unseen(struct outbox *outbox, int64_t now_us);
 /* Does what is due at now_us: escalates alarms and drops old messages. */
 void outbox_tick(struct outbox *outbox, int64_t now_us);
 
 /* Returns true if a message is due for a recipient; *out then receives it, valid until the next call for this outbox, with items that
-   are valid until outbox_sent(). Call outbox_sent() or outbox_failed() before the next call. */
+   are valid until outbox_sent(). Call outbox_sent() or outbox_failed() with the result before the next call. */
 bool outbox_next(struct outbox *outbox, int recipient, int64_t now_us, struct outbox_message *out);
 void outbox_sent(struct outbox *outbox, int recipient, int64_t now_us);
 void outbox_failed(struct outbox *outbox, int recipient, int64_t now_us);
 
 struct outbox_counts {
     int64_t waiting; /* queued alarms for one recipient */
-    int64_t lost;    /* number of notifications lost since the start, of all recipients: the queue was full, or they were dropped */
+    /* number of notifications lost since the start, of all recipients: the queue was full, or the message was dropped for its age */
+    int64_t lost;
 };
 struct outbox_counts outbox_counts(const struct outbox *outbox, int recipient);
-bool outbox_rests(const struct outbox *outbox); /* Returns true if no notification can become due before outbox_put() is called. */
-bool outbox_is_changed(struct outbox *outbox);  /* Returns true if the state to be saved has changed since the last call. */
+bool outbox_rests(const struct outbox *outbox); /* Returns true if no message can become due before outbox_put() is called. */
+bool outbox_is_changed(struct outbox *outbox);  /* Returns true if the state has changed since the last call, so that it must be saved. */
 
 /* --- outbox_json.c: saving the state across a restart --- */
 json_t *outbox_save(const struct outbox *outbox);
-/* Restores a saved state, in which alarms, rules and recipients have names; drops entries that the plant no longer has. Returns false if
-   `saved` is not from outbox_save(). */
+/* Restores a state that outbox_save() returned, in which alarms, rules and recipients have names; drops entries that the plant no longer
+   has. Returns false if `saved` has another form. */
 bool outbox_restore(struct outbox *outbox, const json_t *saved);
 
 #endif

@@ -4,7 +4,7 @@
 #define NOTIFY_OUTBOX_IMPL_H
 #include "notify/outbox.h"
 
-struct episode { /* episode of an alarm: begins when the alarm needs attention; removed some time after the alarm no longer needs it */
+struct episode { /* an episode: the time during which an alarm needs attention; removed some time after the alarm no longer needs it */
     char *name;
     int tag;
     enum alarm_kind kind;
@@ -14,12 +14,12 @@ struct episode { /* episode of an alarm: begins when the alarm needs attention; 
     int64_t raised_us; /* UTC microseconds at which the alarm was raised, as of the last call of outbox_put() */
     int64_t began_us;
     int64_t ended_us;            /* UTC microseconds at which the alarm no longer needed attention; 0: it still needs attention */
-    int64_t cleared_us;          /* UTC microseconds at which the alarm stopped being annunciated; 0: it is still annunciated */
+    int64_t cleared_us;          /* UTC microseconds at which the alarm was no longer shown to operators as active; 0: it still is */
     int64_t told_us;             /* UTC microseconds of the newest notification; 0: no notification since the alarm was last acknowledged */
-    uint32_t rules;              /* bit mask of the notification rules that applied when the episode began */
-    uint32_t told;               /* bit mask of the recipients that were notified */
+    uint32_t rules;              /* bit mask of the plant's notification rules that applied when the episode began */
+    uint32_t told;               /* bit mask of the recipients that were told of the alarm */
     uint8_t steps[NOTIFY_RULES]; /* by rule: number of escalation steps carried out */
-    bool aside;                  /* true: the alarm is shelved, suppressed or out of service, so nobody is notified */
+    bool aside;                  /* true: the alarm is shelved, suppressed or out of service, so nobody is told */
     bool seen;                   /* true: outbox_put() was called for the alarm since the daemon started; false: the episode was only
                                     restored */
 };
@@ -34,9 +34,9 @@ struct queue {
     size_t count, capacity;
 };
 
-struct recipient_box { /* messages queued for one recipient */
+struct recipient_box { /* messages and queued alarms for one recipient */
     struct queue waiting;
-    struct outbox_item *batch; /* alarms of the message that is being sent or sent again */
+    struct outbox_item *batch; /* alarms of the message that is being sent, or is sent again after a failure */
     size_t batch_count;
     char id[OUTBOX_ID_BYTES];
     int64_t batch_us;
@@ -45,7 +45,7 @@ struct recipient_box { /* messages queued for one recipient */
     int64_t retry_us;
     int last_priority; /* most urgent alarm priority in the last message to the recipient */
     int attempts;
-    int64_t left_out; /* number of alarms since the last message for which the queue was full */
+    int64_t left_out; /* number of alarms since the last message that were not queued, because the queue was full */
     bool changed;     /* only for Alertmanager: true: alarms have changed since the last message */
 };
 
@@ -53,9 +53,9 @@ struct outbox {
     const struct plant *plant;
     struct episode *episodes;
     size_t count, capacity;
-    int *by_alarm;               /* by tag and alarm kind: 1 + index of the alarm's episode; 0: the alarm has no episode */
+    int *by_alarm;               /* by tag and alarm kind: 1 + index of the alarm's episode in `episodes`; 0: the alarm has none */
     struct recipient_box *boxes; /* by index of the recipient */
-    size_t items;                /* queued alarms of all recipients */
+    size_t items;                /* number of queued alarms of all recipients */
     int64_t lost, made;
     bool dirty;
 };

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The outbox as JSON: episodes with their notified recipients, and queued messages. Recipients, rules and alarms are identified by name. */
+/* The outbox of alarm messages as JSON: episodes of alarms with the recipients that were told, and queued messages. Names identify
+   recipients, rules and alarms. */
 #include "notify/outbox_impl.h"
 
 #include <math.h>
@@ -16,7 +17,7 @@ static json_t *number_or_null(double value)
     return isfinite(value) ? json_real(value) : json_null();
 }
 
-/* Returns the unit of a tag's alarms; "": none, or the alarm is of a device. */
+/* Returns the unit of a tag's alarms; "": the tag has none, or the alarm is a device's. */
 static const char *unit_of(const struct outbox *outbox, int tag)
 {
     const char *unit = tag < 0 ? NULL : outbox->plant->tags[tag].unit;
@@ -80,7 +81,7 @@ static int64_t integer_of(const json_t *object, const char *key)
     return json_integer_value(json_object_get(object, key));
 }
 
-/* Returns a saved value or limit in the tag's present unit; NAN: none, or the unit is not known or cannot be converted. */
+/* Returns a saved value or limit of an alarm in the tag's present unit; NAN: none, or the unit is not known or cannot be converted. */
 static double value_of(const struct outbox *outbox, const json_t *object, const char *key, int tag)
 {
     const json_t *value = json_object_get(object, key);

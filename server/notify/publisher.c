@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that publishes changes. */
+/* The thread that publishes readings and alarms to an MQTT broker. */
 #include "notify/publisher.h"
 
 #include <errno.h>
@@ -25,10 +25,10 @@ static const int64_t CONNECT_NS = 10 * NS_PER_S;
 
 struct topic {
     char *name, *unit;       /* unit: text of a JSON object with the unit as its only member */
-    int64_t received_utc_ns; /* UTC time of the reading that was published last */
+    int64_t received_utc_ns; /* UTC time of the reading of this tag that was published last */
     double value;            /* value that was published last; a sample with the same time may replace it */
     uint32_t quality;
-    bool is_published; /* published on the current connection */
+    bool is_published; /* true: the tag's reading has been published on the present connection */
 };
 
 struct publisher {
@@ -41,7 +41,7 @@ struct publisher {
     /* --- below: used by the publisher's thread only */
     struct mqtt_client *client;
     struct snapshot *snapshot;
-    struct topic *topics; /* by tag index */
+    struct topic *topics; /* by index of the tag */
     uint64_t alarm_number;
     bool connected, alarms_published;
     char said[200]; /* text of the last problem that was logged; empty: no problem */
@@ -49,15 +49,15 @@ struct publisher {
 
 /* --- published messages ------------------------------------------------------------------------------------------------------- */
 
-/* Appends a name as one level of an MQTT topic: characters that separate levels, and wildcards, are percent-encoded. */
+/* Appends a tag's name as one level of an MQTT topic: separators of levels, wildcards and percent signs are percent-encoded. */
 static void add_level(struct text *text, const char *name)
 {
     for (const char *c = name; *c; c++)
         text_add(text, strchr("/+#%", *c) ? "%%%02X" : "%c", (unsigned char)*c);
 }
 
-/* Publishes a text to a topic. If the broker refuses the message, that is logged, and other messages are still sent. Returns false if
-   the connection has ended. */
+/* Publishes a text to a topic. If the broker refuses the message, logs this and continues with others. Returns false if the connection
+   has ended. */
 static bool publish(struct publisher *publisher, const char *topic, const char *text)
 {
     int status = mqtt_client_publish(publisher->client, topic, text);
@@ -122,7 +122,7 @@ static void add_alarm(void *arg, const struct alarm *alarm)
     json_array_append_new(arg, one);
 }
 
-/* Publishes all alarms that are not normal in one message. The broker retains only the last message, and so never an alarm that has
+/* Publishes all alarms that are not normal in one message. The broker retains only the last message, so it never shows an alarm that has
    ended. */
 static bool publish_alarms(struct publisher *publisher)
 {
@@ -159,12 +159,12 @@ static void on_connected(void *arg, bool session_present)
 
 static void on_message(void *arg, const struct mqtt_message *message)
 {
-    (void)arg; /* the publisher subscribes to nothing */
+    (void)arg; /* no messages arrive, because the publisher subscribes to nothing */
     (void)message;
 }
 
-/* Publishes over one connection until it ends. Returns -ECANCELED when the publisher must stop, else another negative code with the
-   reason in `why`. */
+/* Publishes over one connection to the broker until it ends. Returns -ECANCELED when the publisher must stop, else another negative code
+   with the reason in `why`. */
 static int run_session(struct publisher *publisher, char why[200])
 {
     const struct plant_publish *config = publisher->params.plant->publish;
@@ -227,8 +227,8 @@ static void make_topics(struct publisher *publisher)
     }
 }
 
-/* Returns the configured MQTT client id, or a random one if none is configured: a broker disconnects a client when another one connects
-   with the same id. */
+/* Returns the MQTT client id from the plant file, or a random one, because the broker disconnects a client if another one connects with
+   the same id. */
 static char *make_client_id(const struct plant_publish *config)
 {
     unsigned random = 0;

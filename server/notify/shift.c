@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shifts and areas. */
+/* Decides which shift is on duty, and which rules of `notify` apply to an alarm. */
 #include "notify/shift.h"
 
 #include <fnmatch.h>

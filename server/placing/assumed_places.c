@@ -28,8 +28,8 @@ static double *surface_distances(const struct scene *scene)
     return distance_m;
 }
 
-/* Returns an array by tag: confidence with which `plantcast match` assigned the tag to its equipment; NaN: unknown. The caller frees the
-   array. */
+/* Returns an array by tag: the confidence (0..1) with which `plantcast match` assigned the tag to its asset, from matches.csv; NaN:
+   unknown. The caller frees the array. */
 static double *confidences(const struct plant *plant)
 {
     double *confidence = mem_array(plant->tag_count + 1, sizeof(*confidence));

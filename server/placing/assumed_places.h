@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Selects, among the sensors with an assumed position (TAGS.md, "Assumed places"), those that an engineer accepts in one operation.
- * Thread: the loop. */
+/* Selects, among the sensors with an assumed place (one that `plantcast match` proposed), those whose places an engineer accepts in one
+   operation. TAGS.md, "Assumed places", describes them. Thread: the event loop. */
 #ifndef PLACING_ASSUMED_PLACES_H
 #define PLACING_ASSUMED_PLACES_H
 #include <stddef.h>
@@ -10,29 +10,29 @@
 #include "scene/scene.h"
 
 struct assumed_filter {
-    int asset, group;  /* indices in the plant of an asset and a group to which the selection is limited; -1: any */
-    char pattern[101]; /* glob for the tag's name; a text without * and ? is searched in the tag's name and description;
-                          case-insensitive; empty: any */
-    double within_m;   /* largest distance in metres of the position from the asset's surface; negative: any distance */
-    /* smallest confidence of the match between tag and equipment, 0..1, from matches.csv next to the tag list; negative: any */
+    int asset, group; /* indices in the plant of the asset and the group to which the selection is limited; -1: any */
+    /* glob for the tag's name; a text without * and ? is searched in the tag's name and description; case-insensitive; empty: any tag */
+    char pattern[101];
+    double within_m; /* largest distance in metres of the assumed place from the asset's surface; negative: any distance */
+    /* smallest confidence (0..1) of the match between tag and asset, from matches.csv next to the tag list; negative: any */
     double confidence;
 };
 
 enum assumed_outcome {
-    /* the filter does not select the tag: its position is not an assumed one, or its asset, group or name does not match the filter */
+    /* the filter does not select the tag: its place is not an assumed one, or its asset, group or name does not match the filter */
     ASSUMED_NOT_MEANT,
     ASSUMED_ACCEPTED,
     ASSUMED_NOWHERE, /* not accepted: the tag's row in the tag list has neither a node nor X, Y, Z */
-    ASSUMED_MISSING, /* its asset has no model */
-    ASSUMED_FAR,     /* too far from the surface */
-    ASSUMED_UNSURE,  /* confidence too low or unknown */
+    ASSUMED_MISSING, /* not accepted: the tag's asset has no model */
+    ASSUMED_FAR,     /* not accepted: the place is too far from the asset's surface */
+    ASSUMED_UNSURE,  /* not accepted: the confidence of the match is too low or unknown */
     ASSUMED_OUTCOMES
 };
 
-/* Writes for each tag of the plant whether its position is accepted (enum assumed_outcome). Returns the number of accepted tags. */
+/* Writes for each tag of the plant whether its assumed place is accepted (enum assumed_outcome). Returns the number of accepted tags. */
 size_t assumed_places_choose(const struct scene *scene, const struct assumed_filter *filter, uint8_t *outcome);
-/* Returns the tag list with the column `Place` cleared in the rows of the accepted tags and nothing else changed. NULL on failure, with
-   the reason in *why. The caller frees the result (mem_free). */
+/* Returns the text of the tag list with the column `Place` cleared in the rows of the accepted tags, and nothing else changed. `list`:
+   present text. NULL on failure, with the reason in *why. The caller frees the result (mem_free). */
 char *assumed_places_accept(const struct plant *plant, const char *list, const uint8_t *outcome, struct refusal *why);
 /* Describes the filter as text, for the audit trail. */
 void assumed_filter_text(const struct plant *plant, const struct assumed_filter *filter, char *out, size_t size);

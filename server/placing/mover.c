@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Creates the relocation object of an asset, which computes distances from moved sensors on the asset's stored surface. */
+/* Creates the relocation object of an asset, which computes geodesic distances from moved sensors on the asset's surface. */
 #include "placing/mover.h"
 
 #include <stdlib.h>
@@ -31,7 +31,8 @@ struct relocation *mover_create(struct log *log, struct workers *workers, const 
     const struct manifest_entry *entry = read ? manifest_find(&manifest, of->plant->id) : NULL;
     if (entry && entry->surface) {
         shape.surface_path = path = mem_printf("%s/%s", folder, entry->surface);
-        shape.surface_key = strtoull(entry->surface, NULL, 16); /* the name is KEY.surface */
+        /* the file of the prepared surface is named KEY.surface, with the key in hexadecimal digits */
+        shape.surface_key = strtoull(entry->surface, NULL, 16);
     }
     struct relocation *relocation = relocation_create(log, workers, &shape);
     mem_free(path);

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes distances from new sensor positions on an asset of a loaded plant, on the asset's stored surface or one built now. Thread:
-   any. */
+/* Computes geodesic distances from new sensor positions on an asset of a loaded plant, on the asset's prepared surface or one built now.
+   Thread: any. */
 #ifndef PLACING_MOVER_H
 #define PLACING_MOVER_H
 #include "scene/scene.h"
 #include "surface/relocation.h"
 
-/* Starts to build or load the surface of an asset (surface/relocation.h). folder: folder of the prepared files. The scene must outlive
-   the result. Never NULL; the caller destroys it. */
+/* Starts to load or build the surface of an asset, on which distances are computed (surface/relocation.h). folder: folder of the
+   prepared files. The scene must outlive the result. Never NULL; the caller destroys it. */
 struct relocation *mover_create(struct log *log, struct workers *workers, const struct scene *scene, const char *folder, int asset);
 
 #endif

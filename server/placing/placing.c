@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Manages the users' sets of moved sensors, the relocation objects (which compute distances on an asset), and results from workers. */
+/* Manages the sensors that users move on trial, the relocation objects (which compute geodesic distances on an asset), and results from
+   worker threads. */
 #include "placing/placing.h"
 
 #include <math.h>
@@ -15,12 +16,12 @@
 #include "surface/relocation.h"
 #include "value/quality.h"
 
-enum { MOVERS = 4 }; /* maximum number of relocation objects in memory; above it, those of assets without moved sensors are freed */
+enum { MOVERS = 4 }; /* maximum number of relocation objects in memory; beyond that, those of assets without moved sensors are freed */
 
 struct distance_ask { /* pending request for the geodesic distances of one moved sensor */
     struct placing *placing;
     uint64_t number;
-    float *along_m; /* by vertex: geodesic distance from the sensor; NULL: computing the distances failed */
+    float *along_m; /* by vertex: geodesic distance from the sensor in metres; NULL: the distances could not be computed */
     struct distance_ask *next;
 };
 
@@ -41,7 +42,7 @@ struct place_set {
 };
 
 struct warm {
-    struct relocation *relocation; /* NULL: none */
+    struct relocation *relocation; /* NULL: the asset has none in memory */
     uint64_t used;
 };
 
@@ -49,7 +50,7 @@ struct placing {
     struct placing_params params;
     char *folder;
     struct trials *trials;
-    struct warm *warm; /* by asset */
+    struct warm *warm; /* by index of the asset */
     struct place_set *sets;
     uint64_t uses, asked;
     pthread_mutex_t lock;
@@ -57,7 +58,7 @@ struct placing {
     /* --- below: under lock */
     struct distance_ask *done;
     struct sensor_coverage_answer *answers, **answers_last;
-    int jobs; /* pending coverage jobs */
+    int jobs; /* number of coverage requests that workers have not finished */
 };
 
 /* --- creating and destroying ------------------------------------------------------------------------------------------------ */
@@ -132,7 +133,7 @@ static bool is_moved_on(const struct placing *placing, int asset)
 }
 
 /* Frees the least recently used relocation object of an asset without moved sensors, if more than MOVERS are in memory. Does not free an
- * object whose surface is still being built, because the caller would have to wait. keep: index of an asset whose object is not freed. */
+   object whose surface is still being built, because that would block. keep: index of an asset whose object is not freed. */
 static void cool(struct placing *placing, int keep)
 {
     int count = 0, oldest = -1;
@@ -180,12 +181,12 @@ static void on_distances(void *arg, struct relocation_result *result)
 static void to_file(const struct scene_asset *asset, const double plant_m[3], double out[3])
 {
     double file_from_plant[16];
-    if (!transform_invert(asset->placement, file_from_plant)) /* plant_load() refuses such a placement */
+    if (!transform_invert(asset->placement, file_from_plant)) /* plant_load() refuses a plant with such a placement */
         memcpy(file_from_plant, transform_identity, sizeof(file_from_plant));
     transform_point(file_from_plant, plant_m, out);
 }
 
-/* Projects the moved sensor onto its asset's surface. Returns false if the position is too far from the asset. */
+/* Finds the nearest point of the asset's surface to a moved sensor. Returns false if the sensor is too far from the asset. */
 static bool find_place(struct placing *placing, const struct place_move *move, struct placing_entry *entry, struct placed *placed)
 {
     const struct scene_asset *asset = &placing->params.scene->assets[move->asset];
@@ -261,7 +262,7 @@ void place_set_destroy(struct place_set **pointer)
     *pointer = NULL;
 }
 
-/* Returns the index of the move in the set that has the same tag and position as `move`; -1: none. */
+/* Returns the index of the moved sensor in the set that has the same tag and position as `move`; -1: none. */
 static int find_same(const struct place_set *set, const struct place_move *move)
 {
     for (size_t i = 0; i < set->count; i++) {

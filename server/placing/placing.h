@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sensors that users place on the model. Each user has a set of moves. The set becomes a trial (a changed sensor layout, field/trials.h):
-   first with straight-line distances, and later a second trial with geodesic distances. Thread: the loop, except functions that workers
-   call. */
+/* Sensors that users move on the model, before the new places are saved. Each user has a set of moved sensors. The set becomes a trial
+   (a changed sensor layout, field/trials.h): first with straight-line distances, and later a second trial with geodesic distances.
+   Thread: the event loop, except functions that workers call. */
 #ifndef PLACING_PLACING_H
 #define PLACING_PLACING_H
 #include "base/log/log.h"
@@ -16,53 +16,56 @@ struct placing_params {
     struct workers *workers;
     const struct scene *scene;
     const char *folder;        /* folder of the prepared files; read only by placing_create() */
-    void (*notify)(void *arg); /* callback on any thread when placing_collect() has new results */
+    void (*notify)(void *arg); /* called by any thread when placing_collect() has new results */
     void *notify_arg;
 };
 struct placing;
-/* Creates the service. Everything that `params` points to, except `folder`, must outlive the result. Never NULL. The caller destroys it. */
+/* Creates the service for moved sensors. Everything that `params` points to, except `folder`, must outlive the result. Never NULL. The
+   caller destroys it. */
 struct placing *placing_create(const struct placing_params *params);
-/* Waits for pending work and frees everything. Destroy all sets before. &NULL is fine; sets it to NULL. */
+/* Waits for pending work and frees everything. Destroy all sets of moved sensors before. Accepts a pointer to NULL; sets *placing to
+   NULL. */
 void placing_destroy(struct placing **placing);
-/* Returns the registry in which views look up trials (sets of moved sensors). Owned by `placing`. */
+/* Returns the registry in which views find trials (sets of moved sensors). Owned by `placing`. */
 struct trials *placing_trials(struct placing *placing);
 
 enum { PLACING_MOVES = TRIAL_SENSORS };
 struct place_move {
     int tag, asset;       /* indices in the plant */
-    double position_m[3]; /* in the plant frame */
+    double position_m[3]; /* in plant coordinates, metres */
 };
 enum placed_state {
     PLACED_WAITING, /* geodesic distances are still being computed; straight-line distances are used meanwhile */
     PLACED_READY,
     PLACED_STRAIGHT /* geodesic distances cannot be computed (the reason is logged); straight-line distances are used */
 };
-/* A move and its result. */
+/* A moved sensor, with its place on the surface and the state of its distances. */
 struct placed {
     struct place_move move;
-    double surface_m[3];        /* nearest point on the asset's surface, in plant coordinates */
-    double distance_m, limit_m; /* metres from surface_m to the requested position; users should be warned if distance_m is above limit_m */
+    double surface_m[3]; /* nearest point on the asset's surface, in plant coordinates */
+    /* metres from surface_m to the requested position; if distance_m is above limit_m, the page warns the user */
+    double distance_m, limit_m;
     enum placed_state state;
 };
 
 struct place_set; /* the sensors that one user has moved on trial, with the new positions */
-/* Creates a place set without moves. The caller destroys it. */
+/* Creates a set without moved sensors. The caller destroys it. */
 struct place_set *place_set_create(struct placing *placing);
-/* Cancels the pending requests of the set and frees it. &NULL is fine; sets it to NULL. */
+/* Cancels the pending requests of the set and frees it. Accepts a pointer to NULL; sets *set to NULL. */
 void place_set_destroy(struct place_set **set);
-/* Replaces the set's moves: at most PLACING_MOVES, each tag once. Moves that did not change keep their distances. Returns false with
-   nothing changed if a tag cannot be placed: it has no group, or the position is farther from the asset than the asset's size; `why`
-   names the tag. */
+/* Replaces the moved sensors of the set: at most PLACING_MOVES, each tag once. Sensors that did not move keep their distances. Returns
+   false with nothing changed if a tag cannot be placed: it has no group, or the position is farther from the asset than the asset's
+   size; `why` names the tag. */
 bool place_set_moves(struct place_set *set, const struct place_move *moves, size_t count, struct refusal *why);
-/* Returns the id of the set's trial (field/trials.h): renderers draw the field of the moved sensors in views that have this id. Each change
-   of the set gives another id. 0: the set has no moves, so there is no trial. */
+/* Returns the id of the set's trial (field/trials.h). Views with this id show the field of the moved sensors. Each change of the set
+   gives another id. 0: the set has no moved sensors, so there is no trial. */
 uint32_t place_set_trial(const struct place_set *set);
-/* *out receives the set's moves with their results, valid until the set changes. Returns their number. */
+/* *out receives the moved sensors of the set with their results, valid until the set changes. Returns their number. */
 size_t place_set_get(const struct place_set *set, const struct placed **out);
-/* Returns true if geodesic distances arrived since the last call; the set then has another trial id. */
+/* Returns true if geodesic distances of the set's sensors arrived since the last call; the set then has another trial id. */
 bool place_set_changed(struct place_set *set);
 
-/* The answer to a coverage request. client and seq identify the request. */
+/* The answer to placing_request_coverage(). client and seq are those of the request. */
 struct sensor_coverage_answer {
     uint64_t client;
     uint32_t seq;
@@ -75,14 +78,15 @@ struct sensor_coverage_answer {
     } * assets; /* coverage of each asset that has sensors of the requested group */
     struct sensor_coverage_answer *next;
 };
-/* Computes on a worker the sensor coverage of a group on all its assets, with the moves of `set` (NULL: none). far_m: distance in metres
-   from which a point counts as far from its sensors; 0: chosen for the asset. placing_collect() returns the answer. */
+/* Computes on a worker thread how well the sensors of a group cover the surfaces of its assets, with the moved sensors of `set` (NULL:
+   none). far_m: distance in metres from which a point counts as far from its sensors; 0: chosen for each asset. placing_collect()
+   returns the answer. */
 void placing_request_coverage(struct placing *placing, const struct place_set *set, int group, double far_m,
                               const struct snapshot *snapshot, uint64_t client, uint32_t seq);
-/* Passes newly computed distances to the sets of moves that requested them. Returns a linked list of the coverage answers that are ready,
-   oldest first; the caller frees each with sensor_coverage_answer_free(). */
+/* Passes newly computed geodesic distances to the sets that requested them. Returns a linked list of the coverage answers that are
+   ready, oldest first; the caller frees each with sensor_coverage_answer_free(). */
 struct sensor_coverage_answer *placing_collect(struct placing *placing);
-/* Frees one answer. */
+/* Frees one coverage answer. */
 void sensor_coverage_answer_free(struct sensor_coverage_answer *answer);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes how well sensors cover a surface, from the distance of every vertex to its nearest sensor and the area that the vertex
-   represents. */
+/* Computes how well sensors cover an asset's surface, from the distance of every vertex to its nearest sensor and the area that the
+   vertex represents. */
 #include "placing/sensor_coverage.h"
 
 #include <math.h>
@@ -67,7 +67,8 @@ static void find_next(const struct field_layout *layout, enum distance_mode mode
     }
 }
 
-/* one block of surface vertices; by vertex: distance to its nearest sensor in metres, and whether that sensor's reading is usable */
+/* A block of surface vertices. By vertex: distance in metres to the vertex's nearest sensor, and whether that sensor's reading is
+   usable. */
 struct nearest_block {
     float m[KERNEL_BLOCK];
     bool good[KERNEL_BLOCK];

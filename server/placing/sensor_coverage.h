@@ -1,40 +1,40 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sensor coverage: how far the points of an asset's surface are from its sensors, and how much of the area no usable sensor covers.
-   Pure. Thread: any. */
+/* Sensor coverage: how far the points of an asset's surface are from its sensors, and how much of the area no usable sensor covers. No
+   input or output. Thread: any. */
 #ifndef PLACING_SENSOR_COVERAGE_H
 #define PLACING_SENSOR_COVERAGE_H
 #include "field/layout.h"
 
 struct sensor_coverage_query {
     const struct scene *scene;
-    const struct trial *trial; /* trial sensor positions; NULL: none */
+    const struct trial *trial; /* sensor positions that a user tries; NULL: none */
     int asset, group;
     enum distance_mode mode;
-    double reach_m; /* INFINITY: no limit */
-    /* metres; a point at least this far from all sensors counts as far. 0: half of the reach or, without a reach, a fifth of the asset's
+    double reach_m; /* distance in metres beyond which a sensor does not count; INFINITY: no limit */
+    /* metres; a point at least this far from all sensors counts as far. 0: half of reach_m or, without a limit, a fifth of the asset's
        size */
     double far_m;
-    const uint8_t *good; /* by tag: 1 if the sensor's reading is usable now */
+    const uint8_t *good; /* by index of the tag: 1 if the sensor's reading is usable now */
 };
 
 struct sensor_coverage {
     size_t sensors;
-    double far_m; /* the limit used */
+    double far_m; /* the distance that was used as query->far_m */
     /* metres from the surface point that is farthest from all sensors to its nearest sensor; points that no path along the surface connects
        to a sensor do not count */
     double farthest_m;
     double farthest_at_m[3]; /* position of the farthest surface point, in plant coordinates */
     double far_share;        /* fraction of the surface's area that counts as far (far_m), 0..1 */
-    double lost_share;       /* fraction of the area that no sensor reaches, or whose nearest sensor has no usable reading */
+    double lost_share;       /* fraction of the area that is out of reach of all sensors, or whose nearest sensor has no usable reading */
     double next_m;           /* largest distance in metres from a sensor to its nearest other sensor; 0: there is only one sensor */
     int next_tags[2];        /* indices of the tags of the two sensors that are next_m apart; -1: none */
 };
 
-/* Computes the coverage for a query into *out. Returns false if no sensor of the group is on the asset. */
+/* Computes the coverage of the asset by the group's sensors into *out. Returns false if the asset has no sensor of the group. */
 bool sensor_coverage_find(const struct sensor_coverage_query *order, struct sensor_coverage *out);
 
-/* Returns an array by vertex: the area in square metres that the vertex represents, which is a third of each adjacent triangle of the
-   finest level. The caller frees it (mem_free). */
+/* Returns an array by vertex: the area in square metres that the vertex represents, a third of each adjacent triangle of the finest
+   level of detail. The caller frees it (mem_free). */
 double *sensor_coverage_areas(const struct asset_view *view);
 
 #endif

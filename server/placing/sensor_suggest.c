@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Suggests positions for new sensors. Candidates are ranked by an upper bound of their gain. The bound uses straight-line distances,
-   which are never longer than geodesic ones, so that geodesic distances must be computed only for the candidates with the highest
+/* Suggests positions for new sensors. Candidate positions are sorted by an upper bound of their gain. The bound uses straight-line
+   distances, which are never longer than geodesic ones. So geodesic distances must be computed only for the candidates with the highest
    bounds. */
 #include "placing/sensor_suggest.h"
 
@@ -17,31 +17,31 @@
 #include "plant/influence.h"
 #include "plant/models/transform.h"
 
-/* maximum number of candidate positions per asset, spread evenly over the area where hot spots are hard to detect */
+/* maximum number of candidate positions per asset; they are spread evenly over the area where hot spots are hard to detect */
 #define MAX_CANDIDATES 1500
-/* maximum number of candidates per suggestion, those with the highest bounds, for which geodesic distances are computed */
+/* maximum number of candidates per suggestion for which geodesic distances are computed: those with the highest bounds */
 #define MAX_MEASURED 40
-#define MIN_GAIN 1e-6 /* smallest reduction of the measure (sensor_suggest.h) for which a sensor is suggested */
+#define MIN_GAIN 1e-6 /* a sensor is suggested only if it reduces the measure (sensor_suggest.h) by at least this */
 
-struct suggest_asset { /* an asset */
+struct suggest_asset { /* an asset on which sensors may be suggested */
     int asset;
     size_t count;
     const float (*at_m)[3];
     double *area_m2, whole_m2;
-    float *near_m;            /* by vertex: metres to the nearest sensor */
-    struct relocation *mover; /* NULL: not needed yet */
+    float *near_m;            /* by vertex: distance in metres to the nearest sensor, including suggested ones */
+    struct relocation *mover; /* computes geodesic distances on the asset; NULL: not needed yet */
 };
 
 struct candidate {
     size_t part;
     uint32_t vertex;
-    /* upper bound of what a sensor at the candidate gains: reduction of the measure (sensor_suggest.h) times the area in square metres */
+    /* upper bound of the gain of a sensor at this vertex: reduction of the measure (sensor_suggest.h) times the area in square metres */
     double bound;
 };
 
 struct suggesting {
     const struct suggest_query *query;
-    double seen_m; /* metres from a sensor within which a hot spot of the group's whole range is detectable */
+    double seen_m; /* within this distance in metres from a sensor, a hot spot as high as the group's whole range is detectable */
     struct suggest_asset *parts;
     size_t part_count;
     double whole_m2;
@@ -136,8 +136,8 @@ static int by_bound(const void *a, const void *b)
     return (first->bound < second->bound) - (first->bound > second->bound);
 }
 
-/* Lists candidate positions, spread evenly over the area where hot spots are hard to detect. Deterministic. *count receives their
-   number. The caller frees the list. */
+/* Lists candidate positions for a sensor, spread evenly over the area where hot spots are hard to detect, highest bound first. Always
+   gives the same list for the same input. *count receives the number of candidates. The caller frees the list. */
 static struct candidate *find_candidates(const struct suggesting *suggesting, size_t *count)
 {
     struct candidate *list = mem_array(suggesting->part_count * (MAX_CANDIDATES + 1), sizeof(*list));
@@ -182,7 +182,8 @@ static void on_distances(void *arg, struct relocation_result *result)
     pthread_mutex_unlock(&waiting->lock);
 }
 
-/* Computes the geodesic distance of every vertex from a vertex. The caller frees the result (mem_free). NULL on failure. */
+/* Computes the geodesic distances from one vertex of an asset to all others. Returns an array by vertex, which the caller frees
+   (mem_free); NULL on failure. */
 static float *distances_from(const struct suggesting *suggesting, struct suggest_asset *part, uint32_t vertex)
 {
     const struct suggest_query *query = suggesting->query;
@@ -203,7 +204,8 @@ static float *distances_from(const struct suggesting *suggesting, struct suggest
     return waiting.result.status == RELOCATION_DONE ? waiting.result.geodesic_m : NULL;
 }
 
-/* Finds the candidate with the largest gain and adds it as a sensor. Returns false if no candidate gains more than MIN_GAIN. */
+/* Finds the candidate position with the largest gain and counts it as a sensor from now on. Returns false if no candidate gains more
+   than MIN_GAIN. */
 static bool take_best(struct suggesting *suggesting, struct suggestion *out)
 {
     size_t count;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Saves a tag list, and keeps its earlier versions in the same folder. */
+/* Saves a plant's tag list, and keeps its earlier versions in the same folder. */
 #include "placing/tag_file.h"
 
 #include <errno.h>
@@ -52,7 +52,7 @@ static void cannot_write(struct refusal *why, const char *file, int error)
         refusal_set(why, REFUSAL_UNWRITTEN, "file=%s\nerror=%s", file, strerror(error));
 }
 
-/* Keeps the present tag list as an earlier version: gives it a second name by a hard link, which keeps owner and mode. Returns that
+/* Keeps the present tag list as an earlier version: gives it a second name by a hard link, which keeps its owner and mode. Returns that
    name. */
 char *tag_file_keep(const char *path, struct refusal *why)
 {
@@ -73,7 +73,7 @@ char *tag_file_keep(const char *path, struct refusal *why)
     return NULL;
 }
 
-/* Writes the new file with the mode of the present list. */
+/* Writes the new tag list with the mode of the present one. Returns 0 or -errno. */
 static int replace(const struct tag_save *save)
 {
     struct stat was;

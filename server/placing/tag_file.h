@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tag list on disk. A new version takes the list's name, and the previous one is kept as NAME.1, NAME.2, ... No version is ever
- * overwritten. Thread: any, one at a time per list. */
+   overwritten. Thread: any, one at a time per list. */
 #ifndef PLACING_TAG_FILE_H
 #define PLACING_TAG_FILE_H
 #include <stdbool.h>
@@ -21,15 +21,15 @@ void tag_save_free(struct tag_save *save);
 
 /* Returns the text of the tag list; free with mem_free(). Returns NULL on failure, with the reason in *why. */
 char *tag_file_read(const char *path, struct refusal *why);
-/* Writes a hash of the text as 16 hexadecimal digits, by which versions are told apart. */
+/* Writes a hash of the tag list's text as 16 hexadecimal digits, by which versions are told apart. */
 void tag_file_hash(const char *text, char out[17]);
-/* Keeps the present file under the first unused name of NAME.1, NAME.2, ..., by a second hard link. Returns that name (mem_free). NULL
-   with the reason in *why. */
+/* Keeps the present tag list under the first unused name of NAME.1, NAME.2, ..., by a second hard link. Returns that name (mem_free).
+   NULL with the reason in *why. */
 char *tag_file_keep(const char *path, struct refusal *why);
 /* Saves save->after under the list's name. *kept receives the path of the previous version (mem_free). Returns false with nothing
    changed on disk and the reason in *why. */
 bool tag_file_put(const struct tag_save *save, char **kept, struct refusal *why);
-/* Undoes tag_file_put(): renames the kept version back. Returns false with the reason in *why (mem_free). */
+/* Undoes tag_file_put(): gives the kept version the list's name again. Returns false with the reason in *why (mem_free). */
 bool tag_file_put_back(const struct tag_save *save, const char *kept, char **why);
 
 #endif

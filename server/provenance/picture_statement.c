@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hashes of data to which a signed statement about a picture refers. */
+/* Computes the hashes that the signed statement of a picture contains. */
 #include "provenance/picture_statement.h"
 
 #include <openssl/evp.h>

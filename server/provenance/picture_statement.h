@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared by the writer and the verifier of signed pictures. Private to provenance/. */
+/* Constants and hashes that the writer and the verifier of signed pictures share. Private to provenance/. */
 #ifndef PROVENANCE_PICTURE_STATEMENT_H
 #define PROVENANCE_PICTURE_STATEMENT_H
 #include <jansson.h>
@@ -10,17 +10,17 @@
 #define PICTURE_SIGNATURE_KEYWORD "Plantcast signature"
 #define PICTURE_JSON (JSON_COMPACT | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(17))
 enum {
-    /* current version of the statement. Version 1 lacks two members: `overlay`, which was then `full` (or `bare`), and `tier`, which was
-       then `refined` */
+    /* Current version of the signed statement. Version 1 lacks two members: `overlay`, which was then `full` (or `bare`), and `tier`,
+       which was then `refined`. */
     PICTURE_STATEMENT_VERSION = 2,
-    PICTURE_STATEMENT_MAX_BYTES = 64 << 20, /* maximum length of a statement in bytes; enough for three sets of readings of 100,000 tags */
+    PICTURE_STATEMENT_MAX_BYTES = 64 << 20, /* maximum length of a statement in bytes, enough for three sets of readings of 100,000 tags */
     PICTURE_SIGNATURE_BYTES = 128,
     PICTURE_HASH_BYTES = 65
 };
 
-/* Writes the SHA-256 of the bytes as hexadecimal digits; "" if the library fails. */
+/* Writes the SHA-256 of the bytes (of pixels or of a statement's parts) as hexadecimal digits; "" if OpenSSL fails. */
 void picture_hash(const void *bytes, size_t count, char out[PICTURE_HASH_BYTES]);
-/* Writes the SHA-256 of a JSON value as printed with PICTURE_JSON. */
+/* Writes the SHA-256 of the text of a JSON value in the format PICTURE_JSON, as hexadecimal digits. */
 void picture_hash_json(const json_t *value, char out[PICTURE_HASH_BYTES]);
 
 #endif

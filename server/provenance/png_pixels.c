@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* By libpng. */
+/* Decodes PNG files with libpng. */
 #include "provenance/png_pixels.h"
 
 #include <png.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* PNG chunks: length, type, data, CRC-32 of type and data; all numbers big-endian. */
+/* Writes and reads chunks of PNG files. A chunk has a length, a type, data, and the CRC-32 of type and data; all numbers are big-endian. */
 #include "provenance/png_text.h"
 
 #include <stdio.h>
@@ -22,7 +22,7 @@ static uint32_t get_u32(const uint8_t *at)
     return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
 }
 
-/* Writes a compressed text chunk. Returns the bytes written; 0: compression failed. */
+/* Writes a chunk with compressed text (zTXt). Returns the number of bytes written; 0: compression failed. */
 static size_t write_chunk(uint8_t *at, size_t room, const struct png_text *text)
 {
     size_t keyword = strlen(text->keyword), begin = 8 + keyword + 2;
@@ -66,7 +66,7 @@ uint8_t *png_text_add(const uint8_t *png, size_t count, const struct png_text *t
     return out;
 }
 
-/* Decompresses the text of a zTXt chunk, which follows the keyword and the compression method. */
+/* Decompresses the text of a zTXt chunk. `at`: the chunk's data after the keyword and the compression method. */
 static char *inflate_text(const uint8_t *at, size_t count, size_t max_bytes, size_t *out_length)
 {
     char *text = mem_try_array(max_bytes + 1, 1);
@@ -93,7 +93,7 @@ struct png_chunk {
     size_t length;
 };
 
-/* Moves *at to the next chunk. Returns false at the end of the file or if the chunk is damaged. */
+/* Reads the chunk at *at and moves *at to the next one. Returns false at the end of the file or if the chunk is damaged. */
 static bool next_chunk(const uint8_t *png, size_t count, size_t *at, struct png_chunk *out)
 {
     if (count - *at < AROUND)
@@ -105,7 +105,7 @@ static bool next_chunk(const uint8_t *png, size_t count, size_t *at, struct png_
     return true;
 }
 
-/* Kind of PNG chunk that our writer emits. `bytes`: exact content of the chunk; NULL: any content of at least one byte. */
+/* A kind of chunk that the writer of our PNG files emits. `bytes`: the chunk's exact data; NULL: any data of at least one byte. */
 struct plain_chunk {
     char type[5];
     bool required, repeats;
@@ -113,7 +113,7 @@ struct plain_chunk {
     size_t length;
 };
 
-/* sRGB with perceptual intent; gAMA and cHRM with the values that match it (PNG, third edition, 11.3.2.5). Of these three, our writer emits
+/* sRGB with perceptual intent; gAMA and cHRM with the values of sRGB (PNG, third edition, 11.3.2.5). Of these three, our writer emits
    only sRGB. */
 static const struct plain_chunk plain[] = {
     { "sRGB", true, false, "\0", 1 },
@@ -126,8 +126,8 @@ enum { PLAIN_CHUNKS = sizeof(plain) / sizeof(*plain) };
 
 #define FAIL(...) (snprintf(why, PNG_PLAIN_WHY_BYTES, __VA_ARGS__), false)
 
-/* Returns whether the header is 8-bit RGB, not interlaced: a viewer may show pixels of other formats with other values than those
-   stored. */
+/* Returns true if the header says 8-bit RGB, not interlaced: a viewer may show pixels of other formats with other values than the file
+   has. */
 static bool is_plain_header(const struct png_chunk *chunk, char why[PNG_PLAIN_WHY_BYTES])
 {
     static const uint8_t format[] = { 8, 2, 0, 0, 0 };
@@ -138,7 +138,7 @@ static bool is_plain_header(const struct png_chunk *chunk, char why[PNG_PLAIN_WH
            FAIL("chunk IHDR has another format than 8 bits of red, green and blue");
 }
 
-/* Returns the index of the chunk's type in `plain`, the table of allowed chunk types; PLAIN_CHUNKS: the type is not in the table. */
+/* Returns the index of the chunk's type in `plain`, the table of chunk types that we emit; PLAIN_CHUNKS: the type is not in the table. */
 static int plain_row(const struct png_chunk *chunk)
 {
     int row = 0;

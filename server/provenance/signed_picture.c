@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes the statement of a picture and signs its exact bytes, so that a verifier need not reproduce the formatting. */
+/* Writes the statement of a picture (the data that the picture was drawn from) and signs the statement's exact bytes, so that a verifier
+   need not reproduce the formatting. */
 #include "provenance/signed_picture.h"
 
 #include <inttypes.h>
@@ -88,7 +89,7 @@ static json_t *statement_of(const struct picture_origin *origin, const struct pa
     return statement;
 }
 
-/* Writes `ed25519 KEY-ID SIGNATURE`, with the signature in base64. */
+/* Signs a statement. Writes `ed25519 KEY-ID SIGNATURE` to `out`, with the signature in base64. Returns false if signing fails. */
 static bool sign(const struct signing_key *key, const char *statement, size_t length, char out[PICTURE_SIGNATURE_BYTES])
 {
     uint8_t signature[SIGNATURE_BYTES];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Signed pictures: PNG files with a statement of the data they were drawn from, signed with the server's key. SIGNED.md describes the
-   format. Pure. */
+/* Signed pictures: PNG files with a statement of the data from which they were drawn, signed with the server's key. SIGNED.md describes
+   the format. No input or output. */
 #ifndef PROVENANCE_SIGNED_PICTURE_H
 #define PROVENANCE_SIGNED_PICTURE_H
 #include <jansson.h>
@@ -12,42 +12,42 @@
 
 struct picture_origin { /* facts for a picture's signed statement that the picture itself does not contain */
     const struct scene *scene;
-    const char *const *args; /* arguments of the query that the picture answers, as name=value */
+    const char *const *args; /* arguments of the HTTP query that the picture answers, as name=value */
     size_t arg_count;
-    bool bare;           /* true: the viewer may not see readings, so the statement omits them */
-    const char *overlay; /* overlay drawn on the picture: `full`, `bare` (no sensors and alarms) or `none` */
+    bool bare;           /* true: the user may not see readings, so the statement omits them */
+    const char *overlay; /* overlay that is drawn over the model: `full`, `bare` (no sensors and alarms) or `none` */
     const char *version;
 };
 
-/* Returns the packet's PNG file with statement and signature, and its size in *out_count; the caller frees it (mem_free). The packet's
-   frame must have a record. Returns NULL if out of memory or if signing fails. */
+/* Returns the packet's PNG file with its statement and signature, and the file's size in *out_count; the caller frees it (mem_free). The
+   packet's frame must have a record of its data. Returns NULL if out of memory or if signing fails. */
 uint8_t *signed_picture_make(const struct signing_key *key, const struct picture_origin *origin, const struct packet *packet,
                              size_t *out_count);
 
 enum { PICTURE_CHECKSUM_BYTES = 17 };
-/* Writes the checksum from the header of the asset's file (protocol/ASSET.md), in the form used by statements; "": the asset has no
+/* Writes the checksum in the header of the asset's file (protocol/ASSET.md), in the form that statements have; "": the asset has no
    file. */
 void picture_asset_checksum(const struct scene_asset *asset, char out[PICTURE_CHECKSUM_BYTES]);
 
 enum { SIGNED_PICTURE_WHY_BYTES = 256 };
-/* Returns the statement of a PNG file if it is complete, of a known version and signed by that key, and matches the picture's pixels and
-   readings; the caller drops it (json_decref). Otherwise returns NULL with the reason in `why`. */
+/* Returns the statement of a signed PNG file if it is complete, of a known version and signed by that key, and matches the picture's
+   pixels and readings; the caller drops it (json_decref). Otherwise returns NULL with the reason in `why`. */
 json_t *signed_picture_verify(const struct signing_key *key, const uint8_t *png, size_t count, char why[SIGNED_PICTURE_WHY_BYTES]);
 
-/* Verifies a statement outside a picture, without checking pixels; result and `why` as for signed_picture_verify(). `signature`: in the
-   form used in pictures. */
+/* Verifies a statement that is not in a PNG file, without checking pixels; result and `why` as for signed_picture_verify(). `signature`:
+   in the form that signed pictures have. */
 json_t *signed_statement_verify(const struct signing_key *key, const char *text, size_t length, const char *signature,
                                 char why[SIGNED_PICTURE_WHY_BYTES]);
-/* Returns whether a verified statement belongs to these pixels: red, green, blue, rows from the top. If not, the reason is in `why`. */
+/* Returns true if a verified statement belongs to these pixels: red, green, blue, rows from the top. If not, the reason is in `why`. */
 bool signed_statement_has_pixels(const json_t *statement, const uint8_t *rgb, int width_px, int height_px,
                                  char why[SIGNED_PICTURE_WHY_BYTES]);
-/* Extracts statement and signature of a PNG file, each followed by a 0 byte, without verifying them; the caller frees both (mem_free).
-   Returns false if the file has none. */
+/* Extracts the statement and the signature of a PNG file, each followed by a 0 byte, without verifying them; the caller frees both
+   (mem_free). Returns false if the file has none. */
 bool signed_picture_take(const uint8_t *png, size_t count, char **statement, char **signature);
 
-/* Returns a record with the readings, baselines and marks in a verified statement, for a plant with the same tags. The baselines are
-   also stored in `baselines` under their names. Returns NULL with the reason in `why` if the statement has no readings or names tags
-   that the plant lacks. */
+/* Returns a frame record with the readings, baselines and unproven tags of a verified statement, for a plant with the same tags. Also
+   stores the baselines in `baselines` under their names. Returns NULL with the reason in `why` if the statement has no readings or names
+   tags that the plant lacks. */
 struct frame_record *signed_picture_record(const json_t *statement, const struct plant *plant, struct baselines *baselines,
                                            char why[SIGNED_PICTURE_WHY_BYTES]);
 

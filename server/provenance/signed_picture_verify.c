@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Verifies the signature first, and only then parses the statement. */
+/* Verifies signed pictures: the signature first, and only then the contents of the statement. */
 #include <openssl/evp.h>
 #include <stdio.h>
 #include <string.h>
@@ -119,8 +119,8 @@ json_t *signed_picture_verify(const struct signing_key *key, const uint8_t *png,
 
 /* --- contents of a statement --------------------------------------------------------------------------------------------------- */
 
-/* Reads the readings of all tags of the plant, each exactly once. unproven: receives a flag by tag; NULL: not wanted. Returns false with
-   the reason if they are not valid. */
+/* Reads a statement's readings of all tags of the plant, each exactly once. unproven: receives by tag whether the tag has no passed loop
+   check; NULL: not wanted. Returns false, with the reason in `why`, if the readings are not valid. */
 static bool read_readings(const json_t *told, const struct plant *plant, struct snapshot *out, bool *unproven,
                           char why[SIGNED_PICTURE_WHY_BYTES])
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Ed25519 by OpenSSL. */
+/* Ed25519 keys by OpenSSL: reading, signing and verifying. */
 #include "provenance/signing_key.h"
 
 #include <errno.h>
@@ -13,7 +13,7 @@
 #include "base/text/hex.h"
 
 struct signing_key {
-    EVP_PKEY *pair; /* OpenSSL key: a key pair, or the public key alone */
+    EVP_PKEY *pair; /* OpenSSL's key: private and public key, or the public key alone */
     char id[SIGNING_KEY_ID_BYTES];
 };
 
@@ -27,7 +27,7 @@ static bool find_id(struct signing_key *key)
     return true;
 }
 
-/* Passphrase callback: fails, because a daemon has nobody to type a passphrase. */
+/* Callback of OpenSSL that must supply the passphrase of an encrypted key. Fails, because nobody is present to type one. */
 static int no_passphrase(char *out, int bytes, int writes, void *arg)
 {
     (void)out, (void)bytes, (void)writes, (void)arg;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the legend strip by two finder patterns like those of a QR code, reads its cells, and matches colours to values. */
+/* Finds the legend strip in a picture by two finder patterns like those of a QR code, reads its cells, and matches colours to values. */
 #include "provenance/strip_reader.h"
 
 #include <math.h>
@@ -10,10 +10,11 @@
 #include "base/color/lab.h"
 
 enum { RUNS = 5, FINDER_CELLS = 7, GREY = 128 };
-/* tolerance for the lengths of a finder pattern's runs of dark and light pixels, as a fraction of a cell */
+/* a finder pattern's runs of dark and light pixels may be longer or shorter than expected by this fraction of a cell */
 static const double SLACK = 0.6;
-static const double STRANGE = 7; /* CIELAB distance beyond which a colour counts as not in the legend */
-/* CIELAB distance within which two colours count as equal; the picture's noise is added to it */
+/* a colour that is farther than this CIELAB distance from all legend colours counts as not in the legend */
+static const double STRANGE = 7;
+/* two colours count as equal within this CIELAB distance plus the picture's noise */
 static const double INDISTINCT = 1.2;
 static const double NOISES = 1.5;
 
@@ -33,7 +34,8 @@ struct finder {
     double middle_px, cell_px;
 };
 
-/* Returns whether five runs of dark, light, dark, light, dark have the lengths 1 : 1 : 3 : 1 : 1. */
+/* Returns true if five runs of dark, light, dark, light, dark pixels have the lengths 1 : 1 : 3 : 1 : 1, as in a finder pattern.
+   *cell_px receives the width of a cell. */
 static bool is_finder(const int runs[RUNS], double *cell_px)
 {
     static const int expected[RUNS] = { 1, 1, 3, 1, 1 };
@@ -47,7 +49,7 @@ static bool is_finder(const int runs[RUNS], double *cell_px)
     return good;
 }
 
-/* Finds all finder patterns of a row. Returns the number found, at most `most`. */
+/* Finds all finder patterns in a row of pixels. Returns their number, at most `most`. */
 static int find_in_row(const struct strip_picture *picture, int y, struct finder *out, int most)
 {
     int runs[RUNS] = { 0 }, count = 0, length = 0;
@@ -73,11 +75,11 @@ struct strip_row {
     double left_px, cell_px; /* left edge of the strip, and width of one of its cells; cell_px 0: the row contains no strip */
 };
 
-/* Finds two finder patterns whose distance agrees with their own cell sizes. */
+/* Finds the strip in a row of pixels: two finder patterns whose distance agrees with the sizes of their cells. */
 static struct strip_row strip_in_row(const struct strip_picture *picture, int y)
 {
     enum { MAX_FINDERS = 64 };
-    static const double APART = STRIP_COLUMNS - STRIP_FINDER; /* cells between their middles */
+    static const double APART = STRIP_COLUMNS - STRIP_FINDER; /* distance in cells between the middles of the two finder patterns */
     struct finder finders[MAX_FINDERS];
     int count = find_in_row(picture, y, finders, MAX_FINDERS);
     for (int i = 0; i < count; i++)
@@ -89,8 +91,8 @@ static struct strip_row strip_in_row(const struct strip_picture *picture, int y)
     return (struct strip_row){ 0, 0 };
 }
 
-/* Finds the longest run of rows that agree on the strip's position; up to two unreadable rows in between are tolerated. Returns false if
-   there is no such run, or its rows and cells do not fit each other in size. */
+/* Finds the longest run of pixel rows that agree on the strip's position; up to two unreadable rows in between are tolerated. Returns
+   false if there is no such run, or if its height does not fit the width of the cells. */
 static bool find_place(const struct strip_picture *picture, struct strip_found *found)
 {
     double best = 0, left_px = 0, cell_px = 0, first = 0, rows = 0;
@@ -125,7 +127,7 @@ struct color_patch {
     int count;
 };
 
-/* Returns the mean colour of the inner part of a rectangle, given in cells of the strip. */
+/* Returns the mean colour of the inner part of a rectangle, which is given in cells of the strip. */
 static struct color_patch patch_at(const struct strip_picture *picture, const struct strip_found *found, double column, double row,
                                    double rows)
 {
@@ -166,8 +168,8 @@ static bool read_code(const struct strip_picture *picture, struct strip_found *f
     return strip_decode(code, &found->strip, &found->mended);
 }
 
-/* Reads the legend's colours as they appear in this picture. `noise` is the RMS difference of single pixels from the mean of their
-   column. */
+/* Reads the legend's colours as they appear in this picture, in CIELAB. found->noise receives the RMS difference of single pixels from
+   the mean of their column. */
 static void read_ramp(const struct strip_picture *picture, struct strip_found *found)
 {
     double square = 0;
@@ -222,8 +224,8 @@ static double to_segment(const double p[3], const double a[3], const double b[3]
     return sqrt(square);
 }
 
-/* Returns the CIELAB distance of a colour from a column of the legend. A column shows its colour in three shades; the distance is measured
-   to the line through these, along which lighting moves a colour. */
+/* Returns the CIELAB distance of a colour from a column of the legend. A column shows its colour in three shades; the distance is
+   measured to the line through these, along which lighting moves a colour. */
 static double off_of(const struct strip_found *found, int column, const double lab[3])
 {
     return fmin(to_segment(lab, found->ramp[0][column], found->ramp[1][column]),
@@ -268,8 +270,8 @@ bool strip_read(const struct strip_picture *picture, const struct strip_found *f
     else if (best >= STRIP_BEYOND + STRIP_RAMP)
         out->state = STRIP_ABOVE;
     else {
-        /* A pixel's colour may match columns at both ends of the scale, if their colours are similar. The mean of their positions on the
-           scale would then be meaningless, so the position of the best match is used. */
+        /* A pixel's colour may match columns at both ends of the scale, if these have similar colours. The mean of their positions on
+           the scale would be meaningless, so the position of the best match is used. */
         double place = abs(high - low) > STRIP_RAMP / 4 ? best - STRIP_BEYOND + 0.5 : sum / total;
         out->value = value_of(&found->strip, place / STRIP_RAMP);
         out->low = value_of(&found->strip, (double)(low - STRIP_BEYOND - 1) / STRIP_RAMP);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads values from the pixels of a picture with a legend strip (protocol/strip_format.h), even after scaling, compression, or as part
-   of a screenshot. Uses only the strip and the pixels. Pure. */
+/* Reads values from the pixels of a picture that has a legend strip (protocol/strip_format.h), even after scaling or compression, or
+   from a screenshot that contains the picture. Uses only the strip and the pixels. No input or output. */
 #ifndef PROVENANCE_STRIP_READER_H
 #define PROVENANCE_STRIP_READER_H
 #include <stdbool.h>
@@ -9,32 +9,32 @@
 #include "protocol/strip_format.h"
 
 struct strip_picture {
-    const uint8_t *bgrx; /* rows from the top */
+    const uint8_t *bgrx; /* pixels of 4 bytes (blue, green, red, unused), rows from the top */
     int width_px, height_px, stride_bytes;
 };
 
 struct strip_found {
     struct strip strip;
-    double left_px, top_px, cell_px, row_px; /* position of the strip, and width and height of its cells */
-    int mended;                              /* number of wrong bytes in the strip's code that error correction repaired */
+    double left_px, top_px, cell_px, row_px; /* position of the strip in the picture, and width and height of its cells */
+    int mended;                              /* number of bytes of the strip's code that error correction repaired */
     /* CIELAB of the strip's colours as they appear in this picture: below range, MIN to MAX, above range */
     double ramp[STRIP_SHADES][STRIP_INNER][3];
-    double noise; /* CIELAB deviation of pixels that should have one colour, caused by compression */
+    double noise; /* CIELAB deviation of pixels that should have one colour, due to compression */
 };
 
 enum strip_state { STRIP_VALUE, STRIP_BELOW, STRIP_ABOVE, STRIP_NO_COLOR };
 struct strip_value {
-    /* kind of result. STRIP_NO_COLOR: the pixel's colour is not in the legend, as with background, a label, or no data */
+    /* STRIP_NO_COLOR: the pixel's colour is not in the legend, for example the background, a label, or no data */
     enum strip_state state;
-    /* only for STRIP_VALUE: value: the pixel's value; low, high: bounds of all values whose colours cannot be told from the pixel's
-       colour */
+    /* Only for STRIP_VALUE. value: the pixel's value; low, high: range of the values whose colours cannot be told from the pixel's
+       colour. */
     double value, low, high;
     double off; /* CIELAB distance of the pixel's colour from the nearest colour of the legend */
 };
 
-/* Finds the strip. Returns false, with the reason in *why (static text), if the picture has no readable strip. */
+/* Finds the legend strip in a picture. Returns false, with the reason in *why (static text), if the picture has no readable strip. */
 bool strip_find(const struct strip_picture *picture, struct strip_found *found, const char **why);
-/* Reads the value at a pixel. Returns false if the pixel is outside the picture, or on the strip. */
+/* Reads the value that the colour of a pixel shows. Returns false if the pixel is outside the picture, or on the strip. */
 bool strip_read(const struct strip_picture *picture, const struct strip_found *found, int x_px, int y_px, struct strip_value *out);
 
 #endif
