@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds the bytes of an asset file in memory from its sections. */
+/* Builds the bytes of an asset file in memory from the arrays of its sections (struct asset_parts). */
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
@@ -62,7 +62,7 @@ static void bounds_of(const struct asset_parts *parts, struct asset_header *h)
         }
 }
 
-/* Makes one cluster per primitive (a primitive is a range of triangles with one material). Returns NULL if out of memory. */
+/* Makes one cluster of each primitive, for assets that were not divided into clusters. Returns NULL if out of memory. */
 static struct asset_cluster *plain_clusters(const struct asset_parts *parts, uint32_t *count)
 {
     struct asset_cluster *clusters = calloc(parts->primitive_count + 1u, sizeof(*clusters));

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes bounding boxes and normal cones of an asset's clusters. */
+/* Computes bounding boxes and normal cones (ranges of the directions of triangles) of an asset's clusters. */
 #include <float.h>
 #include <math.h>
 
 #include "protocol/asset_format_impl.h"
 
-/* minimum cosine of the half angle of a normal cone. Wider cones hardly ever face away from the eye entirely, so they are stored as
- * "normals in all directions" */
+/* minimum cosine of the half angle of a normal cone. The triangles of wider cones hardly ever all face away from the eye, so such cones are
+   stored as "normals in all directions" */
 #define MIN_CONE_COSINE 0.1
 
 double asset_length(const float v[3])

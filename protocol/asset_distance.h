@@ -6,7 +6,7 @@
 #include "protocol/asset_format.h"
 #include "protocol/distance_code.h"
 
-/* Returns the codes of one sensor for a block of vertices. vertex: any vertex of the block. The view owns the codes. */
+/* Returns the coded distances from one sensor to a block of vertices. vertex: any vertex of the block. The view owns the codes. */
 static inline const uint16_t *asset_distance_codes(const struct asset_view *view, size_t sensor, size_t vertex)
 {
     size_t block = vertex / ASSET_DISTANCE_BLOCK;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks the bytes of an asset file and makes a view: pointers to the file's sections. */
+/* Checks the bytes of an asset file and makes a struct asset_view, which has pointers to the file's sections. */
 #include "protocol/asset_format.h"
 
 #include <math.h>
@@ -82,7 +82,7 @@ static bool counts_good(struct format_check *c)
     return true;
 }
 
-/* Returns the number of blocks of vertices; the distances of one block are stored together. */
+/* Returns the number of blocks of vertices into which the file divides the distances. */
 static size_t block_count(const struct asset_header *h)
 {
     return (h->vertex_count + ASSET_DISTANCE_BLOCK - 1) / ASSET_DISTANCE_BLOCK;
@@ -238,7 +238,7 @@ static bool levels_good(struct format_check *c)
     return true;
 }
 
-/* Checks a cluster's bounding box and normal cone. With a box or cone that is too small, culling would leave holes in frames. */
+/* Checks a cluster's bounding box and normal cone. If a box or cone were too small, a visible cluster might not be drawn. */
 static bool cluster_good(struct format_check *c, uint32_t number)
 {
     const struct asset_view *v = &c->view;
@@ -343,7 +343,7 @@ static bool materials_good(struct format_check *c)
     return true;
 }
 
-/* Checks the positions and indices of sensors. Their geodesic distances need no check, since every code is a valid distance. */
+/* Checks the positions and indices of sensors. Their geodesic distances need no check, since every 16-bit code is a valid distance. */
 static bool sensors_good(struct format_check *c)
 {
     const struct asset_view *v = &c->view;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The asset file: geometry, materials, sensors and distances of one prepared asset. Layout: ASSET.md.
-   Little-endian; every section starts at a multiple of 64 bytes. No I/O here. */
+/* The asset file: geometry, materials, sensors and distances of one prepared asset. Layout: ASSET.md. Little-endian; every section starts
+   at a multiple of 64 bytes. This header reads and writes no files. */
 #ifndef PROTOCOL_ASSET_FORMAT_H
 #define PROTOCOL_ASSET_FORMAT_H
 #include <stdbool.h>
@@ -14,7 +14,7 @@
 #define ASSET_SECOND_MASK 0x1eu /* mask of the bits that may be set in asset_material.second: bits 1 to 4, for textures 1 to 4 */
 
 enum asset_section {
-    ASSET_POSITIONS,        /* float[3] per vertex: position in metres, Z up, minus header.origin_m */
+    ASSET_POSITIONS,        /* section of float[3] per vertex: position in metres, Z up, minus header.origin_m */
     ASSET_NORMALS,          /* float[3] per vertex, unit length */
     ASSET_TEXCOORDS,        /* float[2] per vertex; empty section: the asset has no textures */
     ASSET_SECOND_TEXCOORDS, /* float[2] per vertex; empty section: no material uses the second texture coordinates */
@@ -22,7 +22,7 @@ enum asset_section {
     ASSET_INDICES,          /* uint32 per corner */
     ASSET_PRIMITIVES,       /* struct asset_primitive */
     ASSET_LEVELS,           /* struct asset_level, finest first */
-    ASSET_CLUSTERS,         /* struct asset_cluster, primitive by primitive */
+    ASSET_CLUSTERS,         /* section of struct asset_cluster, ordered by primitive */
     ASSET_MATERIALS,        /* struct asset_material */
     ASSET_TEXTURES,         /* struct asset_texture */
     ASSET_TEXELS,           /* RGBA8 texels of all textures, rows from the top, described by struct asset_texture */
@@ -33,7 +33,7 @@ enum asset_section {
 };
 
 struct asset_section_entry {
-    uint64_t offset, bytes; /* offset from the start of the file, and size, in bytes */
+    uint64_t offset, bytes; /* offset of the section from the start of the file, and its size, in bytes */
 };
 
 struct asset_header {
@@ -45,32 +45,33 @@ struct asset_header {
        plantcast-prep */
     uint64_t key;
     double origin_m[3];                     /* in the asset frame */
-    float bounds_min_m[3], bounds_max_m[3]; /* bounding box of all positions, relative to origin_m */
+    float bounds_min_m[3], bounds_max_m[3]; /* bounding box of all vertices, relative to origin_m */
     uint32_t vertex_count, index_count, primitive_count, level_count, material_count, texture_count, sensor_count, cluster_count;
     struct asset_section_entry sections[ASSET_SECTION_COUNT];
 };
 
 struct asset_primitive {               /* a range of triangles with one material, from one node of the model */
-    uint32_t first_index, index_count; /* range in ASSET_INDICES; index_count is a multiple of 3 */
+    uint32_t first_index, index_count; /* the primitive's range in section ASSET_INDICES; index_count is a multiple of 3 */
     uint32_t material;
-    uint32_t name; /* offset in ASSET_NAMES: the node's name */
+    uint32_t name; /* offset in section ASSET_NAMES of the name of the primitive's node */
 };
 
-struct asset_level { /* a level of detail: its primitives and its number of vertices, which are the first vertices of the file */
+/* a level of detail: its range of primitives, and its number of vertices, which are always the first ones of the file */
+struct asset_level {
     uint32_t first_primitive, primitive_count, vertex_count;
-    /* number of vertices that preparation added by subdivision; they are the last vertices of this level that the next coarser level does
-       not use */
+    /* number of vertices that subdividing triangles added; these are the last vertices of the level that the next coarser level does not
+       have */
     uint32_t added_count;
     float error_m; /* largest distance in metres of the level's surface from that of the finest level; 0 for the finest level */
 };
 
-/* Triangles of one primitive that are close together and have similar normals, so that they can be culled together. The clusters of a
-   primitive are contiguous and cover all its indices. Clusters are in the order of primitives. */
+/* Triangles of one primitive that are close together and have similar normals, so that they can be drawn or skipped together. The clusters
+   of a primitive are contiguous and cover all its indices. Clusters are in the order of primitives. */
 struct asset_cluster {
-    uint32_t first_index, index_count; /* range in ASSET_INDICES; index_count is a positive multiple of 3 */
+    uint32_t first_index, index_count; /* the cluster's range in section ASSET_INDICES; index_count is a positive multiple of 3 */
     float low_m[3], high_m[3];         /* bounding box of the cluster's vertices */
-    float cone_axis[3], cone_cutoff;   /* normal cone for asset_cluster_turned_away(): axis and cutoff; cutoff 1: normals in all
-                                          directions */
+    /* normal cone for asset_cluster_turned_away(): axis, and cutoff as in ASSET.md; cutoff 1: the triangles face in all directions */
+    float cone_axis[3], cone_cutoff;
 };
 
 enum asset_alpha { ASSET_ALPHA_OPAQUE, ASSET_ALPHA_MASK, ASSET_ALPHA_BLEND };
@@ -92,14 +93,14 @@ struct asset_texture {
 };
 
 struct asset_sensor {
-    float position_m[3];      /* position as configured, or that of the configured model node; relative to header.origin_m */
+    float position_m[3];      /* position of the sensor as configured (X, Y, Z, or that of a model node), relative to header.origin_m */
     float surface_m[3];       /* point of the surface nearest to position_m, relative to header.origin_m */
     float surface_distance_m; /* distance between position_m and surface_m */
     uint32_t nearest_vertex;
-    uint64_t node_hash; /* XXH3-64 of the name of the model node that gave the position; 0: the position was configured as X, Y, Z */
+    uint64_t node_hash; /* hash (XXH3-64) of the name of the model node that gave the position; 0: the position was configured as X, Y, Z */
 };
 
-/* A checked asset file in memory. Its pointers point into the bytes, which must outlive the view. */
+/* A checked asset file in memory. Its pointers point into the file's bytes, which must outlive the view. */
 struct asset_view {
     const struct asset_header *header;
     const float (*positions_m)[3];
@@ -115,8 +116,9 @@ struct asset_view {
     const struct asset_texture *textures;
     const uint8_t *texels;
     const struct asset_sensor *sensors;
-    const uint16_t *geodesic; /* codes (distance_code.h); NULL: none, or packed and not yet unpacked */
-    const uint64_t *packed;   /* section of packed codes (distance_pack.h), which begins with its table of blocks; NULL: codes are plain */
+    const uint16_t *geodesic; /* coded distances (distance_code.h); NULL: the file has none, or they are packed and not unpacked yet */
+    /* section of packed distance codes (distance_pack.h), which begins with the table of its blocks; NULL: the codes are not packed */
+    const uint64_t *packed;
     const char *names;
 };
 
@@ -126,12 +128,13 @@ bool asset_view_init(struct asset_view *view, const void *bytes, size_t size, ch
 /* Like asset_view_init(), but does not check the checksum: for bytes that asset_build() has just made. */
 bool asset_view_fresh(struct asset_view *view, const void *bytes, size_t size, char why[200]);
 /* Makes view->geodesic usable: unpacks packed distances into memory. *codes: receives this memory, which must outlive the view and which
- * the caller frees with free(); NULL if the distances are plain. Takes 3 ns for each vertex and sensor. Returns false if out of memory. */
+   the caller frees with free(); NULL if the distances are not packed. Takes 3 ns for each vertex and sensor. Returns false if out of
+   memory. */
 bool asset_view_unpack(struct asset_view *view, uint16_t **codes);
 
 /* Computes the bounding box and the normal cone of a cluster from its triangles. */
 void asset_cluster_measure(struct asset_cluster *cluster, const float (*positions_m)[3], const uint32_t *indices);
-/* Returns true if an eye at eye_m (relative to header.origin_m) sees only back faces of the cluster's triangles. */
+/* Returns true if an eye at eye_m (relative to header.origin_m) sees all triangles of the cluster only from behind. */
 bool asset_cluster_turned_away(const struct asset_cluster *cluster, const float eye_m[3]);
 
 /* Contents of an asset file that asset_build() shall make. The caller keeps ownership of all arrays. Zero-initialise. */
@@ -145,19 +148,20 @@ struct asset_parts {
     const uint8_t (*colors)[4];         /* NULL: none */
     const uint32_t *indices;
     const struct asset_primitive *primitives;
-    const struct asset_level *levels;     /* levels of detail; NULL: a single level with all primitives */
+    const struct asset_level *levels;     /* levels of detail; NULL: the asset has one level, with all primitives */
     const struct asset_cluster *clusters; /* NULL: one for each primitive */
     const struct asset_material *materials;
     const struct asset_texture *textures;
     const uint8_t *texels;
     const struct asset_sensor *sensors;
     const float *geodesic_m;                            /* [sensor * vertex_count + vertex] */
-    void (*write_geodesic)(void *arg, uint16_t *codes); /* instead of geodesic_m: callback that writes the codes of the distances
-                                                           directly into the file's section */
-    size_t packed_bytes;                                /* bytes that write_geodesic writes if it writes packed codes; else 0 */
+    /* callback that writes the distance codes directly into the file's section; used in place of geodesic_m */
+    void (*write_geodesic)(void *arg, uint16_t *codes);
+    /* number of bytes that write_geodesic writes if it writes packed codes; otherwise 0 */
+    size_t packed_bytes;
     void *write_arg;
-    void *(*make_room)(void *arg, size_t bytes); /* callback that allocates the file's bytes, aligned to ASSET_ALIGN. NULL:
-                                                    aligned_alloc() */
+    /* callback that allocates the file's bytes, aligned to ASSET_ALIGN. NULL: aligned_alloc() */
+    void *(*make_room)(void *arg, size_t bytes);
     void *room_arg;
     const char *names; /* NULL: one empty name */
     uint32_t vertex_count, index_count, primitive_count, level_count, material_count, texture_count, sensor_count, cluster_count;

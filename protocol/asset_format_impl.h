@@ -7,7 +7,7 @@
 uint64_t asset_checksum(const void *bytes, size_t size); /* computes the file's checksum as if its checksum field were 0 */
 /* Returns the size that a section must have; UINT64_MAX: any size. *optional receives whether the section may be empty instead. */
 uint64_t asset_section_bytes(const struct asset_header *h, int section, bool *optional);
-/* Returns the cosine of the largest angle between the axis and a normal of the cluster's triangles. */
+/* Returns the cosine of the largest angle between `axis` and the normal of a triangle of the cluster. */
 double asset_cluster_least_dot(const struct asset_cluster *cluster, const float (*positions_m)[3], const uint32_t *indices,
                                const float axis[3]);
 double asset_length(const float v[3]);

@@ -11,10 +11,10 @@
 
 #define ASSET_DISTANCE_BLOCK 256u       /* number of vertices per block; the last block is padded (ASSET.md) */
 #define ASSET_DISTANCE_NONE 0xffffu     /* infinity: not reachable */
-#define ASSET_DISTANCE_MOST_M 130000.0f /* metres; longer distances are stored as this distance */
+#define ASSET_DISTANCE_MOST_M 130000.0f /* largest distance in metres that a code can have; longer distances are stored as this one */
 
-/* Returns the distance in metres that a code encodes; INFINITY for ASSET_DISTANCE_NONE. Always inlined, so that a loop compiled for
- * several processors does not call it. */
+/* Returns the distance in metres that a code encodes; INFINITY for ASSET_DISTANCE_NONE. Always inlined, so that loops that are compiled for
+   several kinds of processors contain it. */
 static inline __attribute__((always_inline)) float asset_distance_of(uint16_t code)
 {
     uint32_t bits = (uint32_t)code << 12;
@@ -33,7 +33,7 @@ static inline uint16_t asset_distance_code(float distance_m)
     return distance_m <= 0x1p127f ? (uint16_t)(bits >> 12) : ASSET_DISTANCE_NONE;
 }
 
-/* Returns the number of codes that store the distances of all vertices from all sensors. */
+/* Returns the number of distance codes in an asset file: one per sensor and vertex, with padded blocks. */
 static inline size_t asset_distance_count(size_t sensor_count, size_t vertex_count)
 {
     return sensor_count * ((vertex_count + ASSET_DISTANCE_BLOCK - 1) / ASSET_DISTANCE_BLOCK) * ASSET_DISTANCE_BLOCK;

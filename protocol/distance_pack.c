@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Packs distance codes: predicts each code from the code eight vertices before and from the change of a similar sensor's distance, and
-   stores the differences with as few bits as the largest one of a group needs. */
+/* Packs distance codes. Each code is predicted from the code eight vertices before, and from how the distance from a similar sensor
+   changes. The differences are stored with as few bits as the largest one of a group needs. */
 #include "protocol/distance_pack.h"
 
 #include <math.h>
@@ -10,14 +10,15 @@
 #include "protocol/distance_code.h"
 
 #define BLOCK ASSET_DISTANCE_BLOCK
-#define LANES 8u /* number of vertices computed at a time: each code is predicted from the code LANES vertices before */
+/* number of vertices that are computed at a time, with vector instructions: each code is predicted from the code LANES vertices before */
+#define LANES 8u
 #define GROUP 128u
 #define GROUPS (BLOCK / GROUP)
-#define NO_PARENT 0xffffu /* value of `parent`: codes are predicted from distances of the same sensor only */
-#define PLAIN 0xfffeu     /* value of `parent`: codes are not predicted, because some vertices have no path to the sensor */
-#define SAMPLES 16u       /* number of vertices at which the distances of two sensors are compared */
+#define NO_PARENT 0xffffu /* value of `parent` in packed_row: codes are predicted from distances of the same sensor only */
+#define PLAIN 0xfffeu     /* value of `parent` in packed_row: codes are not predicted, because some vertices have no path to the sensor */
+#define SAMPLES 16u       /* number of vertices at which two sensors' distances are compared to find similar sensors */
 
-struct packed_row { /* how one sensor's codes of a block are packed; `parent`: the similar sensor used for predictions */
+struct packed_row { /* how the codes of one sensor in a block are packed; `parent`: the similar sensor from which they are predicted */
     uint16_t parent;
     uint8_t width[GROUPS]; /* bits per code */
 };
@@ -64,7 +65,7 @@ static bool all_reached(const uint16_t *codes)
     return reached;
 }
 
-/* Writes the change of a sensor's distance over LANES vertices, at SAMPLES vertices. */
+/* Writes, for SAMPLES vertices, how much the sensor's distance changes over LANES vertices. */
 static void sample_slopes(const uint16_t *codes, float slope_m[SAMPLES])
 {
     for (size_t i = 0; i < SAMPLES; i++) {
@@ -97,7 +98,7 @@ static uint16_t choose_parent(const float (*slopes_m)[SAMPLES], const struct pac
     return parent;
 }
 
-/* Writes the differences between codes and predictions, with the sign in the lowest bit. */
+/* Writes the differences between distance codes and their predictions, with the sign in the lowest bit. */
 static void take_differences(const uint16_t *codes, const uint16_t *parent, uint16_t *out)
 {
     float m[BLOCK], parent_m[BLOCK] = { 0 };
@@ -122,7 +123,8 @@ static uint8_t width_of(const uint16_t *group)
     return width;
 }
 
-/* Packs a group lane by lane: the codes of one lane follow one another in the lane's column of 16-bit words. */
+/* Packs a group of differences with `width` bits each. The values of one lane (every LANES-th) follow one another in that lane's column of
+   16-bit words. */
 static uint8_t *pack_group(const uint16_t *group, unsigned width, uint8_t *out)
 {
     uint16_t words[17 * LANES] = { 0 };
@@ -211,7 +213,7 @@ static const uint8_t *unpack_group(const uint8_t *from, unsigned width, uint16_t
     return from + width * GROUP / 8;
 }
 
-/* Turns differences between codes and predictions into codes, in place. The first LANES codes are known. */
+/* Turns differences between distance codes and their predictions into the codes, in place. The first LANES codes are known. */
 static void add_predictions(uint16_t *codes, const uint16_t *parent)
 {
     float m[BLOCK], parent_m[BLOCK] = { 0 };

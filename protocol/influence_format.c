@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks the bytes of an influence file and makes a view: pointers to the file's arrays. */
+/* Checks the bytes of an influence file and makes a struct influence_view. */
 #include "protocol/influence_format.h"
 
 #include <math.h>

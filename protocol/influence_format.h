@@ -12,30 +12,34 @@
 struct influence_header {
     uint32_t entry_count, vertex_count;
 };
-/* Value of influence_entry.interpolation for an entry that is no interpolation: its `shares` are distances by the heat method on a point
- * cloud, in metres, INFINITY where there is no path. Its precision matrix is 0. */
+/* Value of influence_entry.interpolation for an entry that has no weights: its `shares` are distances by the heat method on a point cloud,
+   in metres, INFINITY where there is no path. Its precision matrix is 0. */
 #define INFLUENCE_HEAT 1000
-/* Value of influence_entry.interpolation for an entry that is no interpolation: its `shares` are angles in radians of a tangent vector
- * transported from the sensor to each vertex, from the first to the second axis that vec_frame() gives for the vertex's normal; INFINITY
- * where there is no path. Its precision matrix is 0. Only differences between two vertices have a meaning. */
+/* Value of influence_entry.interpolation for an entry that has no weights: its `shares` are angles in radians of a direction that was
+   carried along the surface from the sensor to each vertex, from the first to the second axis that vec_frame() gives for the vertex's
+   normal; INFINITY where there is no path. Its precision matrix is 0. Only differences between two vertices have a meaning. */
 #define INFLUENCE_TRANSPORT 1001
 /* Entry for one group and one interpolation. Offsets of arrays are in bytes from the start of the file and multiples of 8. */
 struct influence_entry {
-    uint32_t group, interpolation; /* group: index in the plant file; interpolation: enum interpolation, INFLUENCE_HEAT or
-                                      INFLUENCE_TRANSPORT */
+    /* group: index in the plant file; interpolation: enum interpolation, INFLUENCE_HEAT or INFLUENCE_TRANSPORT */
+    uint32_t group, interpolation;
     /* number of the group's sensors with a known position; the arrays of this entry have them in the order of the asset file */
     uint32_t sensor_count;
     uint32_t zero;
-    uint64_t precision, shares; /* offsets of double[sensor][sensor] and float[sensor][vertex] */
-    uint64_t deviations;        /* for interpolation gp: offset of float[2][vertex], the field's standard deviations with all sensors and
-                                   without any; other interpolations: 0 */
+    /* offsets of the arrays double[sensor][sensor] (precision) and float[sensor][vertex] (shares: the weights) */
+    uint64_t precision, shares;
+    /* for interpolation gp: offset of float[2][vertex], the standard deviations of the interpolated values, with all sensors and without
+       any; other interpolations: 0 */
+    uint64_t deviations;
     /* offset of float[vertex]: largest interpolation error in the triangles at the vertex, as a fraction of the spread of readings;
        offset 0: unknown */
     uint64_t errors;
-    double disc_m, decay_m;           /* disc_m: radius in metres of the disc at a sensor to which the sensor's reading applies; decay_m:
-                                         decay length in metres for interpolation fin, other interpolations 0 */
-    double range_m, noise, deviation; /* parameters of interpolation gp (range, noise, standard deviation), stated in the plant file or
-                                         fitted; other interpolations: 0 */
+    /* disc_m: radius in metres of the disc on the surface that has the sensor's value; decay_m: decay length in metres for interpolation
+       fin, other interpolations 0 */
+    double disc_m, decay_m;
+    /* parameters of interpolation gp (range, noise, standard deviation), stated in the plant file or determined from readings; other
+       interpolations: 0 */
+    double range_m, noise, deviation;
 };
 
 /* A checked influence file in memory. The bytes must outlive the view. */
@@ -48,7 +52,7 @@ struct influence_view {
 bool influence_view_init(struct influence_view *view, const void *bytes, size_t size, uint32_t vertex_count, char why[200]);
 /* Returns the entry of a group and an interpolation, owned by the view. NULL: the file has none. */
 const struct influence_entry *influence_find(const struct influence_view *view, uint32_t group, uint32_t interpolation);
-/* Returns a pointer to an array of an entry, from the offset that the entry has. */
+/* Returns a pointer to an array of an entry; offset: the member of the entry that says where the array is. */
 const void *influence_array(const struct influence_view *view, uint64_t offset);
 
 #endif

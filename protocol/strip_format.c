@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encodes and decodes the legend strip's contents, with Reed-Solomon over GF(256) (polynomial 0x11d, first root alpha^0). */
+/* Encodes and decodes what the legend strip says about the colour scale, with Reed-Solomon over GF(256) (polynomial 0x11d, first root
+   alpha^0). */
 #include "protocol/strip_format.h"
 
 #include <math.h>
@@ -48,8 +49,8 @@ static uint8_t value_at(const uint8_t *polynomial, int count, uint8_t x)
 
 /* --- Reed-Solomon ------------------------------------------------------------------------------------------------------------- */
 
-/* Computes the parity bytes: the remainder when the contents, as a polynomial, are divided by the generator polynomial. code[0] is the
- * coefficient of the highest power. */
+/* Computes the Reed-Solomon parity bytes: the remainder when the contents, as a polynomial, are divided by the generator polynomial.
+   code[0] is the coefficient of the highest power. */
 static void add_parity(uint8_t code[STRIP_BYTES])
 {
     uint8_t generator[STRIP_PARITY + 1] = { 1 }, rest[STRIP_PARITY] = { 0 }; /* highest coefficient first */
@@ -110,7 +111,7 @@ static int find_locator(const uint8_t syndromes[STRIP_PARITY], uint8_t locator[S
     return degree;
 }
 
-/* Corrects wrong bytes in the code. Returns their number; -1: too many are wrong, and the code may have been changed. */
+/* Corrects wrongly read bytes of the strip's code. Returns their number; -1: too many are wrong, and the code may have been changed. */
 static int correct_errors(uint8_t code[STRIP_BYTES])
 {
     uint8_t syndromes[STRIP_PARITY], locator[STRIP_PARITY + 1], evaluator[STRIP_PARITY] = { 0 }, slope[STRIP_PARITY] = { 0 };
@@ -124,7 +125,7 @@ static int correct_errors(uint8_t code[STRIP_BYTES])
             evaluator[i] ^= times(syndromes[i - j], locator[j]);
     for (int i = 1; i <= degree; i += 2)
         slope[i - 1] = locator[i];
-    for (int i = 0; i < STRIP_BYTES; i++) { /* Chien search and Forney's formula */
+    for (int i = 0; i < STRIP_BYTES; i++) { /* Chien search for the wrong positions, and Forney's formula for the right values */
         int exponent = STRIP_BYTES - 1 - i;
         uint8_t x = power(exponent), back = power(FIELD - exponent);
         if (value_at(locator, degree + 1, back) != 0)

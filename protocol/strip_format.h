@@ -6,16 +6,17 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Sizes in cells. At the left and right end is a finder, a pattern of columns by which programs find the strip: dark, light, dark,
- * light, dark columns 1, 1, 3, 1, 1 cells wide, between light ones. Between the finders are three rows of colours, each two cells high
- * and in a different brightness, then the rows of the code. A light row is above all these rows and one is below. */
+/* Sizes in cells. At the left and right end is a finder, a pattern of columns by which programs find the strip: dark, light, dark, light,
+   dark columns 1, 1, 3, 1, 1 cells wide, between light ones. Between the finders are three rows of colours, each two cells high and in a
+   different brightness, then the rows of dark and light cells that contain the code. A light row is above all these rows and one is
+   below. */
 enum { STRIP_COLUMNS = 200, STRIP_FINDER = 9, STRIP_INNER = STRIP_COLUMNS - 2 * STRIP_FINDER };
 enum { STRIP_SHADES = 3, STRIP_SHADE_CELLS = 2, STRIP_CODE_ROWS = 3, STRIP_ROWS = 2 + STRIP_SHADES * STRIP_SHADE_CELLS + STRIP_CODE_ROWS };
-/* STRIP_BEYOND: number of columns that show the colour beyond each end of the range; STRIP_RAMP: number of columns within the range */
+/* STRIP_BEYOND: number of columns at each end with the colour of values beyond the range; STRIP_RAMP: number of columns within the range */
 enum { STRIP_BEYOND = 4, STRIP_RAMP = STRIP_INNER - 2 * STRIP_BEYOND };
 enum { STRIP_LEAST_PX = 3 }; /* smallest size of a cell */
-/* Sizes of the code in bytes: STRIP_DATA of contents, then STRIP_PARITY of Reed-Solomon parity, which can correct up to STRIP_PARITY / 2
-   wrong bytes. */
+/* Sizes of the strip's code in bytes: STRIP_DATA of contents, then STRIP_PARITY of Reed-Solomon parity, which can correct up to
+   STRIP_PARITY / 2 wrong bytes. */
 enum { STRIP_DATA = 44, STRIP_PARITY = 24, STRIP_BYTES = STRIP_DATA + STRIP_PARITY };
 enum { STRIP_GROUP = 22, STRIP_UNIT = 10 };
 
@@ -30,12 +31,12 @@ struct strip {
 bool strip_finder_dark(int column);
 /* Writes contents and parity. */
 void strip_encode(const struct strip *strip, uint8_t code[STRIP_BYTES]);
-/* Reads a code and corrects errors. *mended receives the number of corrected bytes. Returns false if there are too many errors, the version
- * differs, or the contents are invalid. */
+/* Decodes the strip's code and corrects errors in it. *mended receives the number of corrected bytes. Returns false if there are too many
+   errors, the version differs, or the contents are invalid. */
 bool strip_decode(const uint8_t code[STRIP_BYTES], struct strip *strip, int *mended);
-/* Returns true if a cell of the code is dark; row: 0..STRIP_CODE_ROWS - 1, column: 0..STRIP_INNER - 1. */
+/* Returns true if the cell of the strip's code at row 0..STRIP_CODE_ROWS - 1 and column 0..STRIP_INNER - 1 is dark. */
 bool strip_cell_dark(const uint8_t code[STRIP_BYTES], int row, int column);
-/* Sets the bit of the code that a cell shows. The code must be zeroed before the first call. */
+/* Sets the bit of the strip's code that belongs to a cell. The code must be zeroed before the first call. */
 void strip_set_cell(uint8_t code[STRIP_BYTES], int row, int column, bool dark);
 
 #endif

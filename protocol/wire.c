@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes the headers byte by byte. */
+/* Reads and writes the headers of binary messages byte by byte. */
 #include "protocol/wire.h"
 
 #include <math.h>

@@ -28,12 +28,13 @@ enum wire_flags {
 };
 enum wire_depth_flags { WIRE_DEPTH_ORTHOGRAPHIC = 1, WIRE_DEPTH_MORE = 2 };
 
-struct wire_frame { /* header of a frame; the members are in the order of the bytes on the wire */
+struct wire_frame { /* header of the binary message with a frame; the members are in the order of the bytes in the message */
     uint8_t type, codec;
     uint16_t flags;
     uint32_t payload_bytes;
     uint32_t seq;
-    uint32_t camera_seq, params_seq;     /* sequence numbers of the newest camera and parameters of the client that this frame shows */
+    /* sequence numbers of the client's newest `camera` and `params` messages whose content this frame shows */
+    uint32_t camera_seq, params_seq;
     uint32_t oldest_age_ms;              /* age of the oldest reading that the frame shows; WIRE_NO_AGE: it shows no reading */
     /* time of the readings, and time at which the frame was sent: microseconds since 1970, UTC, by the server's clock */
     uint64_t data_time_us, sent_time_us;
@@ -46,7 +47,7 @@ struct wire_frame { /* header of a frame; the members are in the order of the by
     float height_m;                     /* height of the visible area of an orthographic picture, metres; 0: perspective */
 };
 
-struct wire_depth { /* header of a depth grid; the members are in the order of the bytes on the wire, after type and encoding */
+struct wire_depth { /* header of a depth grid; the members are in the order of the bytes in the message, after type and encoding */
     uint16_t flags;
     uint32_t payload_bytes, seq;
     uint16_t x_px, y_px, width_px, height_px; /* rectangle of the picture that the grid covers */
@@ -54,7 +55,8 @@ struct wire_depth { /* header of a depth grid; the members are in the order of t
     uint16_t columns, rows; /* of cells */
     uint8_t cell_px, mask_side;
     uint16_t levels; /* largest code */
-    /* base: depth of the code 1; unit: difference between two successive codes; both in 1/m (perspective) or m (orthographic) */
+    /* base: depth that the code 1 means; unit: difference of depth between two successive codes; both in 1/m (perspective) or m
+       (orthographic) */
     float base, unit;
     uint32_t data_bytes; /* size of the inflated payload */
 };
@@ -65,7 +67,8 @@ void wire_put_frame(const struct wire_frame *frame, uint8_t out[WIRE_FRAME_HEADE
 /* Reads the header of a message. bytes: the whole message, header and payload. Checks length, ranges and finiteness; accepts unknown flags.
    Returns false if the message is no frame of this protocol; *frame is then undefined. */
 bool wire_get_frame(const uint8_t *bytes, size_t count, struct wire_frame *frame);
-/* Returns true if a message of `count` bytes is a frame that the server aborted: it is shorter than the header in its first bytes says. */
+/* Returns true if a message of `count` bytes is a frame that the server cut short: it is shorter than the header in its first bytes
+   says. */
 bool wire_is_given_up(const uint8_t bytes[WIRE_FRAME_HEADER_BYTES], size_t count);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* States of alarms from a core to its renderers, as JSON. Thread: any. */
+/* Messages with alarms' states from a core to its renderers and its standby, as JSON. Thread: any. */
 #ifndef CORELINK_CORE_ALARMS_H
 #define CORELINK_CORE_ALARMS_H
 #include <jansson.h>
@@ -12,8 +12,8 @@ json_t *core_alarms_message(struct alarm_service *service, uint64_t since, int64
 /* For the journal of a standby core: adds to the message the journal rows with a row number greater than *row. Sets *row to the number of
    the last row added. Call it after core_alarms_message(). */
 void core_alarms_add_rows(json_t *message, struct alarm_service *service, uint64_t *row);
-/* Applies the message of core_alarms_message() to an alarm service that mirrors a core. Returns NULL; or what is wrong with the message
-   (static), and then nothing changed. */
+/* Applies the message of core_alarms_message() to an alarm service that copies the alarms of a core. Returns NULL; or what is wrong with
+   the message (static), and then nothing changed. */
 const char *core_alarms_take(struct alarm_service *service, const json_t *message);
 
 #endif

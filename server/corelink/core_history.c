@@ -10,7 +10,8 @@
 #include "base/system/http_request.h"
 #include "corelink/core_instant.h"
 
-enum { MAX_ANSWER_BYTES = 64 << 20, CONNECT_S = 4, SLOW_S = 10 /* seconds without a received byte before a failure */, STATUS_GOOD = 200 };
+enum { MAX_ANSWER_BYTES = 64 << 20, CONNECT_S = 4, SLOW_S = 10 /* SLOW_S: seconds without a received byte after which a query
+                                                                  fails */, STATUS_GOOD = 200 };
 
 struct core_history {
     struct log *log;
@@ -64,7 +65,7 @@ static bool fail(struct core_history *history, const char *path, const char *why
     return false;
 }
 
-/* Logs a refused query, with the first line of the core's answer. */
+/* Logs a query that the core refused, with the first line of the core's answer. */
 static bool refused(struct core_history *history, const char *path, long status, const char *text)
 {
     char why[120];
@@ -84,7 +85,7 @@ bool core_history_get(struct core_history *history, const char *path, struct tex
     curl_easy_setopt(request->handle, CURLOPT_URL, url);
     if (peer.ca_path)
         curl_easy_setopt(request->handle, CURLOPT_CAINFO, peer.ca_path);
-    size_t begin = out->length; /* the HTTP answer is appended behind the present text of *out */
+    size_t begin = out->length; /* the HTTP answer is appended to the text that *out already has */
     request->answer = *out;
     request->most_bytes = begin + MAX_ANSWER_BYTES;
     request->error[0] = 0;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The first message between a core and a renderer, and the check that they belong together. Pure. Thread: any. */
+/* The first message between a core and a renderer, which states version, plant and configuration, and the check that these are equal. Pure.
+   Thread: any. */
 #ifndef CORELINK_CORE_IDENTITY_H
 #define CORELINK_CORE_IDENTITY_H
 #include <jansson.h>
@@ -9,7 +10,8 @@
 #define CORE_PATH "/core"
 
 struct core_identity {
-    const char *version, *plant, *configuration; /* version of the program; name of the plant; hash of the plant file and the tag list */
+    /* version: of the program; plant: name; configuration: hash of the plant file and the tag list */
+    const char *version, *plant, *configuration;
 };
 
 /* Returns the identity message as JSON; the caller owns it. type: "core" or "renderer". */
@@ -18,7 +20,8 @@ json_t *core_identity_message(const char *type, const struct core_identity *own)
    NULL: nothing differs. */
 char *core_identity_difference(const json_t *told, const char *peer, const struct core_identity *own);
 
-/* Returns whether the peer differs from `own` only in its configuration: it may follow once it has loaded the other's files. */
+/* Returns whether the peer differs from `own` only in its configuration: it can be accepted once both have loaded the same plant file and
+   tag list. */
 bool core_identity_is_other_configuration(const json_t *told, const struct core_identity *own);
 
 #endif

@@ -8,7 +8,7 @@
 #define CORE_INSTANT_PATH "/core/instant"
 enum { CORE_INSTANT_HEAD_BYTES = 16, CORE_INSTANT_READING_BYTES = 32 };
 
-/* Appends the message. first_us: start of the core's history, 0: none. snapshot NULL: the message has only first_us. */
+/* Appends the message with the readings. first_us: start of the core's history, 0: none. snapshot NULL: the message has only first_us. */
 void core_instant_write(struct text *out, int64_t first_us, const struct snapshot *snapshot);
 /* Reads a message into *snapshot, which has a reading for each tag; the snapshot's clocks stay unchanged. snapshot NULL: reads only
    *first_us. Returns NULL, or what is wrong with the message (static). */

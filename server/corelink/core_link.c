@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The renderer's thread: connects to a core, processes its messages, sends queued messages. */
+/* The thread of a renderer or standby that connects to a core, handles the core's messages and sends queued messages. */
 #include "corelink/core_link.h"
 
 #include <arpa/inet.h>
@@ -27,13 +27,14 @@
 
 enum { CORE_ACT_BYTES = 200 * 1024 /* maximum length in bytes of an act (a user's action that a renderer forwards to the core); below the
                                       core's own limit */ };
-/* MAX_MESSAGE_BYTES: limit of one message */
+/* MAX_MESSAGE_BYTES: largest message that is accepted from the core */
 enum { MAX_MESSAGE_BYTES = 64 << 20, TOKEN_BYTES = 256, WHY_BYTES = 300, LOOK_US = 200000, ADDRESSES = 8 };
 static const int64_t CONNECT_NS = 4 * NS_PER_S, CLOCKS_NS = 2 * NS_PER_S /* CLOCKS_NS: clock difference between core and renderer above
                                                                             which a warning is logged */;
-/* clock differences below this are not corrected, so that the clock that pages show does not jump */
+/* differences between this machine's clock and the core's below this are not corrected, so that the clock that pages show does not jump */
 static const int64_t STEP_NS = 500 * NS_PER_MS;
-static const int64_t QUICK_NS = 100 * NS_PER_MS; /* a message that was delayed by more than this is not used to compare clocks */
+/* messages that the network delayed by more than this are not used to compare the clocks */
+static const int64_t QUICK_NS = 100 * NS_PER_MS;
 
 struct pending_request {
     uint64_t id, client; /* id 0: free slot */
@@ -45,28 +46,29 @@ struct core_link {
     int stop_fd;
     counter *up[CORE_URLS], *connects, *refused, *behind;
     /* --- below: used only by the link's thread */
-    struct mirrored *readings; /* buffer for one reading of each tag */
+    struct mirrored *readings; /* memory for one reading of each tag, into which messages are read */
     struct text in;
     struct lws *wsi;
     struct host_turn turn;
     struct {
-        int count, index;                /* number of addresses of the host name, at most ADDRESSES; index of the address to try next */
-        char said[ADDRESSES][WHY_BYTES]; /* for each address: the reason logged last why there was no connection */
+        /* count: number of addresses of the core's host name, at most ADDRESSES; index: the address to try next */
+        int count, index;
+        char said[ADDRESSES][WHY_BYTES]; /* for each address: the last logged reason why there was no connection */
     } hosts[CORE_URLS];
     int address;                                       /* index of the address that is being tried */
-    /* heard_ns: time of the newest message. least_ns: smallest difference of the two machines' monotonic clocks on this connection.
+    /* heard_ns: time of the core's newest message. least_ns: smallest difference of the two machines' monotonic clocks on this connection.
        readings_ns: arrival time of the previous message with readings. core_readings_read() takes and updates both */
     int64_t heard_ns, begun_ns, least_ns, readings_ns;
-    /* votes: this node, a standby, uses the connection only to promise the leader not to take over, and gets no readings */
+    /* votes: this standby gets no readings over the connection, but answers the leader's questions whether it promises not to take over */
     bool ended, taken, votes, introduced, clock_said;
-    bool at_fault;       /* true: the connection failed because this node or the core is configured wrongly; false: the connection was
-                            lost */
+    /* true: the connection failed because this node or the core is configured wrongly; false: the connection was lost */
+    bool at_fault;
     char why[WHY_BYTES]; /* why this connection ended */
     struct thread thread;
     /* --- below: under thread.lock */
     struct lws_context *context; /* NULL: not connected */
     bool is_up;
-    uint64_t session; /* number of the connection that sends readings, unique among all links of this process */
+    uint64_t session; /* number of the connection over which readings arrive, unique among all links of this process */
     int up_index;     /* index in params.urls of the core that sends readings */
     struct text *out; /* messages that wait to be sent to the core */
     size_t out_count, out_capacity;
@@ -132,8 +134,8 @@ static void queue(struct core_link *link, char *text)
     mem_free(text);
 }
 
-/* Packs an act (a user's forwarded action) into a message. Returns NULL if the message would be too long, because the core would
-   then end the link. */
+/* Packs an act (a user's forwarded action) into a message. Returns NULL if the message would be too long, because the core would then close
+   the connection. */
 static char *pack_act(const struct core_act *act, uint64_t id)
 {
     json_t *message = json_loads(act->text, 0, NULL);
@@ -195,8 +197,8 @@ static void refuse(struct core_link *link, const char *why)
     end(link, why);
 }
 
-/* Keeps the connection for votes (lease promises) only. The leader's configuration differs from ours, so its readings cannot be used
-   here; but the leader needs our promises not to take the lead. */
+/* Uses the connection from now on only for promises not to take the lead, which the leader needs. The leader's configuration differs from
+   this daemon's, so its readings cannot be used here. */
 static void stay_to_vote(struct core_link *link, const char *why)
 {
     char *said = link->hosts[link->turn.index].said[link->address], text[WHY_BYTES];
@@ -285,7 +287,7 @@ static void on_answer(struct core_link *link, const json_t *message)
     }
 }
 
-/* Answers the leader's request for a lease promise. Sends nothing if this node cannot promise not to take the lead. */
+/* Answers the leader's request for a promise not to take the lead. Sends nothing if this core cannot promise that. */
 static void on_lease(struct core_link *link, const json_t *message)
 {
     const json_t *number = json_object_get(message, "number"), *sent = json_object_get(message, "sent_age_ms");
@@ -299,7 +301,8 @@ static void on_lease(struct core_link *link, const json_t *message)
     lws_callback_on_writable(link->wsi);
 }
 
-/* Stores which recipients were notified of which alarms, as the leader reports it, for the case that this node takes the lead. */
+/* Stores which recipients were notified of which alarms, as the leader reports it, so that alarms are not announced twice if this core
+   takes the lead. */
 static void on_told(struct core_link *link, const json_t *message)
 {
     const char *kept = json_string_value(json_object_get(message, "kept"));
@@ -393,7 +396,7 @@ static void on_bytes(struct core_link *link)
     }
     link->least_ns = readings.least_ns;
     link->readings_ns = readings.at_ns;
-    /* rejects readings that a slow network delayed or that arrived while this machine slept, because they are not current */
+    /* rejects readings that a slow network delayed, or that arrived while this machine slept: they are too old */
     if (readings.late_ns > CORE_SILENT_NS) {
         end(link, "readings arrive more than 2 s late");
         return;
@@ -519,7 +522,7 @@ struct link_wakeup {
     struct core_link *link;
 };
 
-/* Callback of a timer that does nothing: the timer only makes lws_service() return regularly. */
+/* Callback of a timer that does nothing: the timer makes lws_service() return regularly, so that the link's loop can do its work. */
 static void on_look(lws_sorted_usec_list_t *sul)
 {
     struct link_wakeup *look = lws_container_of(sul, struct link_wakeup, sul);
@@ -672,7 +675,7 @@ static void run_connection(struct core_link *link)
 
 /* --- the thread --------------------------------------------------------------------------------------------------------------- */
 
-/* Answers all clients that wait for the result of an act: the outcome is unknown. */
+/* Tells all clients that wait for the result of a forwarded action that the outcome is unknown. */
 static void answer_waiting(struct core_link *link)
 {
     for (size_t i = 0; i < CORE_ACTS; i++) {
@@ -708,8 +711,8 @@ static void lost(struct core_link *link)
     memcpy(said, link->why, WHY_BYTES);
 }
 
-/* Selects what to try next: the next address of this core's host name or, after the last one, the next core. Returns the monotonic time
-   at which to try it. */
+/* Selects the address to connect to next: the next address of this core's host name or, after the last one, the next core. Returns the
+   monotonic time at which to try it. */
 static int64_t take_turn(struct core_link *link)
 {
     int *index = &link->hosts[link->turn.index].index, count = link->hosts[link->turn.index].count;
@@ -776,8 +779,8 @@ struct core_link *core_link_start(const struct core_link_params *params)
                      "Connections to a core given up: the core differs in version, plant or configuration, or refuses this node.");
     link->behind = counters_add_seconds(c, "plantcast_core_clock_ahead_seconds", "gauge",
                                         "Seconds by which the core's clock is ahead of this machine's.");
-    lws_set_log_level(LLL_ERR | LLL_WARN, NULL); /* libwebsockets logs only errors and warnings, because the link's own loop logs its
-                                                    connections */
+    /* libwebsockets logs only errors and warnings, because the link's own loop logs its connections */
+    lws_set_log_level(LLL_ERR | LLL_WARN, NULL);
     /* this node has just loaded its plant, so an earlier refusal by the leader no longer prevents it from taking the lead */
     if (params->keeper)
         lease_keeper_set_refused(params->keeper, NULL);

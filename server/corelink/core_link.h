@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A renderer's link to its core, on a thread of its own. It passes readings, states of sources and alarms to the store and the alarm
-   service, and sends the actions of operators to the core. When the core is lost, or silent for CORE_SILENT_NS, all readings become Bad
-   immediately. The link reconnects forever. */
+/* A renderer's link to its core, on a thread of its own. It writes readings, connection states of sources, and alarms into the store and
+   the alarm service, and sends the actions of operators to the core. When the core is lost, or silent for CORE_SILENT_NS, all readings
+   become Bad immediately. The link tries to reconnect until it is stopped. */
 #ifndef CORELINK_CORE_LINK_H
 #define CORELINK_CORE_LINK_H
 #include "alarm/alarm_service.h"
@@ -19,19 +19,19 @@ struct core_link_params {
     struct counters *counters;
     const struct plant *plant;
     struct store *store;
-    struct plant_clock *clock;           /* set to the core's time */
-    struct alarm_service *alarm_service; /* alarm service in mirror mode (it takes states from the core); plant, store and alarm service
-                                            must outlive the link */
-    const char *urls[CORE_URLS];         /* ws://HOST:PORT or wss://HOST:PORT of each core that may be the leader; tried one after the
-                                            other */
+    struct plant_clock *clock;           /* clock that is set to the core's time */
+    /* alarm service that copies the core's alarms; plant, store and alarm service must outlive the link */
+    struct alarm_service *alarm_service;
+    /* URL ws://HOST:PORT or wss://HOST:PORT of each core that may be the leader; tried one after the other */
+    const char *urls[CORE_URLS];
     int url_count;
     const char *token_path, *ca_path; /* token_path: token file, NULL: none; ca_path: file of trusted certificates, NULL: the system's */
     const char *version, *node;       /* version of this program; name of this renderer for the core's log */
-    struct lease_keeper *keeper;      /* standby core only: makes the lease promises that the leader requests. NULL: this node is a
-                                         renderer */
-    struct historian *historian;      /* standby core only: records the leader's samples. NULL: nothing is recorded */
-    const char *folder;               /* standby core only: folder in which the state of the leader's notifier is stored. NULL: not
-                                         stored */
+    /* standby core only: promises not to take the lead when the leader asks. NULL: this node is a renderer */
+    struct lease_keeper *keeper;
+    struct historian *historian;      /* standby core only: records the samples that the leader sends. NULL: nothing is recorded */
+    /* standby core only: folder in which which alarms the leader has announced is stored. NULL: not stored */
+    const char *folder;
     void (*notify)(void *arg);        /* called by the link's thread when core_link_collect() has new messages */
     void *notify_arg;
 };
@@ -45,8 +45,9 @@ struct core_link *core_link_start(const struct core_link_params *params);
 /* Ends the thread. Acts (forwarded user actions) without an answer get the answer that the outcome is unknown; core_link_collect() still
    returns these answers. */
 void core_link_halt(struct core_link *link);
-void core_link_stop(struct core_link **link); /* Ends the thread like core_link_halt() and frees the link. &NULL is fine; leaves NULL. */
-bool core_link_is_up(struct core_link *link); /* Returns true while a core sends readings. Thread: any. */
+/* Ends the thread like core_link_halt() and frees the link. Sets *link to NULL; accepts a pointer to NULL. */
+void core_link_stop(struct core_link **link);
+bool core_link_is_up(struct core_link *link); /* Returns whether readings arrive from a core now. Thread: any. */
 
 /* Returns the number of the connection over which a core sends readings; 0: none does. Thread: any. */
 uint64_t core_link_session(struct core_link *link);
@@ -58,7 +59,7 @@ struct core_peer {
        are valid as long as the link */
     const char *authorization, *ca_path;
 };
-/* *out receives the core that sends readings now. Returns false if no core does. Thread: any. */
+/* Writes to *out which core sends readings now, for HTTP queries to it. Returns false if no core does. Thread: any. */
 bool core_link_peer(struct core_link *link, struct core_peer *out);
 
 struct core_act {
@@ -75,11 +76,10 @@ bool core_link_act(struct core_link *link, const struct core_act *act);
 /* Sends a JSON message that gets no answer. Returns false if there is no core now. Thread: any. */
 bool core_link_tell(struct core_link *link, const char *text);
 
-/* A message from the core for the event loop. */
+/* A message from the core that the event loop handles. */
 struct core_arrival {
     struct core_arrival *next;
-    uint64_t client; /* id of the client that gets this answer; 0: no answer, but the core's own message `core`, `lists`,
-                        `reloading` or `refused` */
+    uint64_t client; /* id of the client that gets this answer; 0: a message that is no answer: `core`, `lists`, `reloading` or `refused` */
     char *text;
 };
 /* Returns a list of the messages that arrived since the last call, in order; free each with core_arrival_free(). */

@@ -9,7 +9,7 @@
 
 enum { CORE_READINGS_HEAD_BYTES = 24, CORE_READING_BYTES = 32 };
 
-/* The newest readings sent to one renderer, by tag. */
+/* For each tag, the reading that one renderer was sent last. */
 struct core_sent {
     size_t count;
     struct core_sent_reading {
@@ -21,19 +21,20 @@ struct core_sent {
 
 void core_sent_init(struct core_sent *sent, size_t tag_count);
 void core_sent_finish(struct core_sent *sent);
-/* Appends a message with the readings that differ from the newest ones sent, and records them in *sent. If no reading differs, the
-   message only shows that the core is alive. */
+/* Appends a message with the readings that differ from those in *sent, and stores them there. If no reading differs, the message only shows
+   that the core is alive. */
 void core_readings_write(struct text *out, const struct snapshot *snapshot, struct core_sent *sent);
 
 struct core_readings {
     int64_t utc_ns; /* the core's UTC clock when it took the readings */
-    /* smallest difference between this machine's monotonic clock and the core's over all messages of this connection; the caller sets it
-       to INT64_MAX for a new connection */
+    /* smallest difference between this machine's monotonic clock and the core's clock in a message, over all messages of this connection;
+       the caller sets it to INT64_MAX for a new connection */
     int64_t least_ns;
     int64_t at_ns;   /* arrival time of this connection's previous message; the caller sets it to 0 for a new connection */
-    int64_t late_ns; /* delay of this message beyond that of the connection's fastest message; already added to the ages */
+    /* time by which this message was slower than the connection's fastest message; the ages of the readings already include it */
+    int64_t late_ns;
     size_t count;
-    struct mirrored *at; /* room for one reading of each tag */
+    struct mirrored *at; /* array for one reading of each tag, which the caller provides */
 };
 
 /* Reads a message that arrived at now_mono_ns into out->at, which has room for tag_count readings. Returns NULL, or what is wrong with

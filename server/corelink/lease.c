@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State machine of the lease: which promises bind which node, and until when. */
+/* The rule of the lease (lease.h) as a state machine: which core may lead until when, and which promise forbids which core to bid. */
 #include "corelink/lease.h"
 
 #include <stdio.h>
@@ -37,11 +37,13 @@ static void lead(struct lease *lease)
 void lease_saw(struct lease *lease, const struct lease_row *row, int64_t now_ns)
 {
     bool same = lease->known && is_same(row, &lease->row);
-    if (!same) /* an offer counts only in a row of the same epoch: a row of another epoch may be an old one, from a restored database */
+    /* the row's offer of the lease to this node counts only if the row has the epoch that this node saw before: a row of another epoch may
+       be an old one, from a restored database */
+    if (!same)
         lease->offered = lease->known && row->epoch == lease->row.epoch && !row->leader[0] && !strcmp(row->standby, lease->node);
     if (lease->leads && (!is_ours(lease, row) || row->epoch != lease->row.epoch))
         lease->lost = true;
-    /* the row names this node, so its bid succeeded, although the database's answer to the bid was lost */
+    /* the row names this node as leader, so its bid succeeded, although the database's answer was lost */
     else if (!lease->leads && lease->bids && is_ours(lease, row))
         lead(lease);
     else if (!same)
@@ -109,7 +111,7 @@ bool lease_promise(struct lease *lease, int64_t now_ns)
 
 void lease_renew(struct lease *lease, const char *standby)
 {
-    /* the renewal will name another standby in the row, so promises of the previous standby no longer count */
+    /* the renewal will write another standby into the row, so promises of the previous standby no longer count */
     if (strcmp(lease->counts, standby) != 0)
         lease->counts[0] = 0;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that reads and changes the lease's row in the database. Promises of the standby arrive on other threads. */
+/* The thread that reads and changes the lease's row in the database. The standby's promises arrive on other threads. */
 #include "corelink/lease_keeper.h"
 
 #include <errno.h>
@@ -18,10 +18,10 @@
 
 enum { ASKED = 32, NUMBER_BYTES = 24 };
 static const int64_t MAX_TIMEOUT_NS = NS_PER_S, MIN_TIMEOUT_NS = 50 * NS_PER_MS;
-/* time for which the lease's row still names a standby after its connection ended, because a reload only interrupts it */
+/* time for which the lease's row still names a standby after its connection ended, because during a reload the standby only reconnects */
 static const int64_t STANDBY_GRACE_NS = 10 * NS_PER_S;
-static const int64_t SHUTDOWN_NS = 300 * NS_PER_MS; /* time before the kernel ends the process in which it can log the reason and shut
-                                                       down in order */
+/* time before the kernel ends the process in which it can log the reason and shut down in order */
+static const int64_t SHUTDOWN_NS = 300 * NS_PER_MS;
 
 struct lease_keeper {
     struct lease_keeper_params params;
@@ -34,21 +34,21 @@ struct lease_keeper {
         counter *active, *here, *epoch, *age, *database, *standby, *differs, *maintenance;
     } counters;
     /* --- below: used by the keeper's thread only */
-    struct postgres_link *link; /* connection to the database; NULL: none */
+    struct postgres_link *link; /* connection to the database that has the lease's row; NULL: none */
     bool looks;                 /* true: the present row is unknown and must be read from the database */
     bool told_won, told_lost, told_alone, told_barred;
     char said[POSTGRES_WHY_BYTES], led_by[LEASE_NODE_BYTES];
-    /* `beat` of the row when it first named another core that has this node's name; -1: that core turned out to be alive, which was
-       logged; 0: the row has never named such a core */
+    /* version (`beat`) of the row when it first named another core with this core's name; -1: that core is alive, which was logged; 0: the
+       row has never named such a core */
     int64_t namesake_beat;
     struct thread thread;
     /* --- below: under thread.lock */
     struct lease lease;
     char standby[LEASE_NODE_BYTES]; /* name of the standby that is connected, or was connected until gone_ns */
     int64_t gone_ns;                /* time when the standby disconnected; 0: it is connected */
-    bool follows;                   /* true: the standby has our version and configuration */
+    bool follows;                   /* true: the standby has this core's version and configuration */
     char *refusal;                  /* why the leader refused this node; NULL: it did not */
-    bool gives;                     /* true: the row must still be changed, so that it gives the lease to `standby` */
+    bool gives;                     /* true: the row must still be changed, to give the lease to `standby` */
     uint64_t asked;
     struct {
         uint64_t number;
@@ -56,7 +56,7 @@ struct lease_keeper {
     } questions[ASKED];
 };
 
-/* Returns the time of the lease's clock, which continues while the machine sleeps and is never set. */
+/* Returns the time by the clock that the lease uses: it continues while the machine sleeps, and nobody sets it. */
 static int64_t now_of_lease(void)
 {
     struct timespec now;
@@ -64,8 +64,8 @@ static int64_t now_of_lease(void)
     return (int64_t)now.tv_sec * NS_PER_S + now.tv_nsec;
 }
 
-/* Sets the kernel timer to the time at which the lease ends. The kernel then ends the process even if it is stopped, swapped out or in
-   an endless loop. Call with the lock held. */
+/* Sets the kernel timer that ends this process to the time at which the lease ends. The kernel then ends the process even if it is stopped,
+   swapped out or in an endless loop. Call with the lock held. */
 static void set_timer(struct lease_keeper *keeper)
 {
     const struct lease *lease = &keeper->lease;
@@ -168,8 +168,8 @@ static bool read_row(struct lease_keeper *keeper, struct lease_row *row)
     return there && is_well(keeper);
 }
 
-/* Changes the row in the database if it still equals `seen`. Returns 1 if it was changed, 0 if the row differs, -1 if the outcome is
-   unknown. */
+/* Changes the lease's row in the database by the statement `sql`, if the row still equals `seen`. Returns 1 if it was changed, 0 if the row
+   differs, -1 if the outcome is unknown. */
 static int change_row(struct lease_keeper *keeper, const char *sql, const struct lease_row *seen, const char *name, int64_t instance)
 {
     char epoch[NUMBER_BYTES], beat[NUMBER_BYTES], own[NUMBER_BYTES];
@@ -247,7 +247,7 @@ static void look(struct lease_keeper *keeper)
     memcpy(keeper->led_by, row.leader, sizeof(keeper->led_by));
 }
 
-/* Logs once why this node does not take over although nobody leads. */
+/* Logs once that this node does not take over although nobody leads, because the leader had refused it as standby. */
 static void tell_barred(struct lease_keeper *keeper, bool barred, char *refusal)
 {
     if (barred && !keeper->told_barred)
@@ -350,7 +350,7 @@ static void give(struct lease_keeper *keeper)
         log_info(keeper->params.log, "lease: released");
 }
 
-/* Reports what one turn of the keeper's thread changed: metrics, log lines, and the callbacks won and lost. */
+/* Reports the changes of one turn of the keeper's thread: updates metrics, writes log lines, and calls won() and lost(). */
 static void tell(struct lease_keeper *keeper)
 {
     int64_t now_ns = now_of_lease();
@@ -406,7 +406,7 @@ static int64_t take_turn(struct lease_keeper *keeper)
         else if (keeper->link && !leads)
             bid(keeper);
     }
-    promise_itself(keeper); /* promises a second time in this turn, because connecting to the database may have taken a second */
+    promise_itself(keeper); /* extends the lease a second time in this turn, because connecting to the database may have taken a second */
     tell(keeper);
     pthread_mutex_lock(&keeper->thread.lock);
     int64_t next_ns = began_ns + (leads ? LEASE_RENEW_NS : LEASE_LOOK_NS), last_ns = keeper->lease.until_ns - SHUTDOWN_NS + 1;

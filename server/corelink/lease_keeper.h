@@ -8,9 +8,10 @@
 #include "corelink/lease.h"
 #include "plant/plant.h"
 
-/* help text of the metric plantcast_core_up, which a link and the keeper set */
+/* help text of the metric plantcast_core_up, which core_link and lease_keeper set */
 #define CORE_UP_HELP "1 while this core leads and sends readings to this daemon; core=\"this\": 1 while this daemon is the leading core."
-#define LEASE_MAINTENANCE_FILE "standby-maintenance" /* maintenance file in the folder of the history; `plantcast standby` creates it */
+#define LEASE_MAINTENANCE_FILE "standby-maintenance" /* file in the folder of the history that means that the standby is in maintenance;
+                                                        `plantcast standby` creates it */
 
 struct lease_keeper_params {
     struct log *log;
@@ -19,41 +20,41 @@ struct lease_keeper_params {
     const char *plant, *node;              /* plant: name of the plant; node: unique name of this node (lease_name()). Both are copied */
     /* while this file exists, the leader names itself as standby, so that no other core may bid (copied; NULL: never) */
     const char *maintenance_path;
-    void (*won)(void *arg);  /* called by the keeper's thread once: this node leads from now on */
-    void (*lost)(void *arg); /* called by the keeper's thread once: this node no longer leads and the process must end; the
-                                              kernel ends it soon */
+    void (*won)(void *arg);  /* called by the keeper's thread once: this core leads from now on */
+    /* called by the keeper's thread once: this core no longer leads, so the process must end; the kernel ends it soon */
+    void (*lost)(void *arg);
     void *arg;
 };
 
-/* Writes the node's name "NODE ID", which differs even from that of a core with the same NODE (corelink/node_id.h). Returns false if it is
-   too long. */
+/* Writes the core's unique name "NODE ID", which differs even from that of a core with the same NODE (corelink/node_id.h). Returns false if
+   it is too long. */
 bool lease_name(char out[LEASE_NODE_BYTES], const char *node, const char *id);
 
 struct lease_keeper;
 /* Creates a keeper. This node does not lead before lease_keeper_start(). Returns NULL if the kernel provides no timer (logged). */
 struct lease_keeper *lease_keeper_create(const struct lease_keeper_params *params);
 bool lease_keeper_start(struct lease_keeper *keeper); /* starts the thread. Returns false if it cannot be started (logged) */
-/* Gives the lease to any node if this node still leads, and frees the keeper. The caller must have ended everything that only a leader may
-   do. &NULL is fine; sets *keeper to NULL. */
+/* Gives the lease to any node if this node still leads, and frees the keeper. The caller must have stopped all work that only a leader may
+   do. Sets *keeper to NULL; accepts a pointer to NULL. */
 void lease_keeper_destroy(struct lease_keeper **keeper);
 bool lease_keeper_leads(struct lease_keeper *keeper); /* Returns whether this node leads. */
 
 bool lease_keeper_is_alone(struct lease_keeper *keeper); /* Returns whether this node leads and no other core may take over. */
 
 /* --- functions of a leader, about its connected standby --- */
-/* Sets the connected standby; "": its connection has ended. The standby's promises count once the row names it. The row names it for
-   another 10 s after its connection has ended: if the database is lost while a reload interrupts the connection, only the standby's
+/* Sets the name of the connected standby; "": its connection has ended. The standby's promises count once the row names it. The row names
+   it for another 10 s after its connection has ended: if the database is lost while a reload interrupts the connection, only the standby's
    promises can keep this node leading. follows: the standby has this core's version and configuration; otherwise it only makes promises,
    and the metrics do not count it as a standby. */
 void lease_keeper_set_standby(struct lease_keeper *keeper, const char *node, bool follows);
-/* Returns a new sequence number for a question to the standby, which the caller must send now; notes the time. */
+/* Returns a new sequence number for the question whether the standby promises not to bid; the caller must send the question now. */
 uint64_t lease_keeper_ask(struct lease_keeper *keeper);
-/* Returns how long ago this node was certainly the leader, in nanoseconds: the time since it sent the newest request that the database or
+/* Returns how long ago, in nanoseconds, this core was certainly the leader: the time since it sent the newest request that the database or
    the standby has confirmed. */
 int64_t lease_keeper_confirmed_age_ns(struct lease_keeper *keeper);
-/* Processes the standby's promise in answer to the question with that number. */
+/* Extends the lease, because the standby promised not to bid in answer to the question with that number. */
 void lease_keeper_promised(struct lease_keeper *keeper, const char *node, uint64_t number);
-/* Gives the lease to the node `standby`, which may lead at once; "": to any node, which waits LEASE_NS. Call it once everything has ended
+/* Gives the lease to the node `standby`, which may lead at once; "": to any node, which waits LEASE_NS. Call it once all work has ended
    that only a leader may do: the kernel no longer ends the process. Returns at once; the keeper's thread changes the row. */
 void lease_keeper_give(struct lease_keeper *keeper, const char *standby);
 /* Returns whether another node has taken the lease that this node gave. */
@@ -61,10 +62,10 @@ bool lease_keeper_is_taken(struct lease_keeper *keeper);
 
 /* --- for a follower --- */
 const char *lease_keeper_id(const struct lease_keeper *keeper); /* Returns the ID part of this node's name; valid as long as the keeper. */
-/* Sets why the leader refuses this node, which then does not take over; NULL: the leader does not refuse it, or this node has loaded its
-   plant since. Copies the text. */
+/* Sets why the leader refuses this core as its standby; a refused core does not take over; NULL: the leader does not refuse it, or this
+   node has loaded its plant since. Copies the text. */
 void lease_keeper_set_refused(struct lease_keeper *keeper, const char *why);
-/* Makes a promise to the leader, on its request, not to bid for LEASE_NS. Returns false if this node cannot promise that. */
+/* Promises the leader, because it asked, not to bid for the lease for LEASE_NS. Returns false if this node cannot promise that. */
 bool lease_keeper_promise(struct lease_keeper *keeper);
 
 #endif

@@ -9,7 +9,8 @@ struct node_id {
     char id[9];
 };
 
-/* Locks the identity of a folder, and creates it if it is missing. Returns NULL on success, or an error message (mem_free). */
+/* Locks the identity in the history folder for this process, and creates it if it is missing. Returns NULL on success, or an error message
+   (mem_free). */
 char *node_id_take(struct node_id *id, const char *folder);
 void node_id_release(struct node_id *id); /* Releases the identity; a zero-initialised struct is fine. */
 
