@@ -64,8 +64,8 @@ export const session = new Session({ connection, now: clock.now, wanted, codecs:
 session.wantsDepth = !query.has('wall') && 'WebGL2RenderingContext' in globalThis;
 session.token = stored('token');
 session.leader = Number(new URLSearchParams(location.hash.slice(1)).get('follow')) || null;
-// After a reload, followers find this session again by its secret. The secret is stored only from one page to the next, so that two tabs
-// never share it.
+// After a reload, followers find this session again, because it resumes with its secret. The secret is stored only from one page to the
+// next, so that two tabs never share it.
 session.resume = sessionStorage.getItem('resume');
 session.anew = session.resume !== null;
 sessionStorage.removeItem('resume');

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sensor coverage, independent of the readings: how far the field may be off (uncertainty), and which hot spots no sensor would show
-// (blind). Also has rarely needed titles of the legend. Loaded when one of these is shown, and with the panel of the picture.
+// Shows sensor coverage, which does not depend on readings: how large the field's error may be (uncertainty), and which hot spots no sensor
+// would show (blind spots). Also has rarely needed titles of the legend. Loaded when one of these is shown, and with the panel of picture
+// settings.
 import { shortNumberText, zoneClock } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { fillSegments, markSegment } from '../common/choices.js';
@@ -26,7 +27,7 @@ export class Coverage {
         session.emit('shown'); // makes the legends redraw
     }
 
-    // Returns the name of a saved baseline and the time when it was saved, in the plant's time zone; null if unknown.
+    // Returns the name of the saved baseline and when it was saved, in the plant's time zone; null if unknown.
     since({ baseline }) {
         if (!baseline?.time_us)
             return null;
@@ -36,7 +37,7 @@ export class Coverage {
         return say('coverage.since', { when: baseline.name ? `${baseline.name}, ${when}` : when });
     }
 
-    // Adds the controls to the panel when it is first used.
+    // Adds the controls to the panel of picture settings when a user first opens the panel.
     fill() {
         this.shown = [];
         byId('scale').before(this.element);

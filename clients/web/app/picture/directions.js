@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Choice of how the directions (vectors) of a group are drawn, with an explanation. Loaded with the panel of the picture.
+// A control that chooses how the directions (vectors) of a sensor group are drawn, with an explanation. Loaded with the panel of picture
+// settings.
 import { say } from '../../core/words.js';
 import { fillSegments, markSegment } from '../common/choices.js';
 import { make, setText } from '../common/dom.js';

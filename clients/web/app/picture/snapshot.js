@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Saves a picture as a file: redrawn by the server, with the active notes, or, if the server signs frames, the exact frame on the screen.
+// Saves a picture as a file. The server redraws it with the active notes; if the server signs frames, the file is the exact frame on the
+// screen.
 import { ask } from '../../core/history.js';
 import { inForce } from '../../core/notes.js';
 import { snapshotQuery } from '../../core/query.js';
@@ -16,7 +17,7 @@ export class Snapshot {
         Object.assign(this, { session, tell, pending: null });
         session.on('frame', (frame) => frame.flags & FLAG_SIGNED && this.pending?.frames.set(frame.seq, frame));
         session.on('hello', () => this.pending?.fail(new Error(say('reason.unreachable'))));
-        // only ends the pending request, because the page's error handler shows the reason
+        // only ends the pending request, because the page's error handler tells the user the reason
         session.on('error', ({ about, code }) => (about === 'sign' || code === 'not_signed') && this.pending?.fail(null));
     }
 
@@ -66,16 +67,16 @@ export class Snapshot {
         const { session } = this, { camera, size, time } = session;
         if (session.params.show === 'difference' && !session.params.baseline?.name)
             throw new Error(say('snapshot.unnamed'));
-        // all values are taken before the server answers, because the user may change the view or the instant meanwhile
+        // reads all values before the server answers, because the user may change the view or the instant meanwhile
         const query = { ...snapshotQuery({ carried: session.carried(), camera, size, time }), language }, now = session.clockUs();
-        // notes are not added to a signed file, because they would invalidate its signature
+        // no notes are added to a signed file, because they would invalidate its signature
         const us = time.atUs ?? now, notes = session.signs ? [] : inForce(session.notes, now, time.atUs);
         const place = { model: session.model, camera, half: halves(session.params, size.width)[0] };
         const blob = await (await ask('snapshot.png', query, session.token)).blob();
         return { blob: notes.length === 0 ? blob : await (await import('./snapshot_notes.js')).addNotes(blob, notes, place), us };
     }
 
-    // Requests that the next refined frame be signed; once it is on the screen, returns its PNG file.
+    // Requests that the server sign the next refined frame; once that frame is on the screen, returns its PNG file.
     async onScreen() {
         const { session } = this, frames = new Map();
         let timer;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shows the newest picture from the present camera until the server's picture of that camera arrives: draws the picture on a mesh
-// over its depth grid, once per animation frame in which the camera has moved. Places that the picture does not show become grey, as
+// Shows the newest picture from the present camera until the server's picture of that camera arrives. It draws the picture on a mesh over
+// the picture's depth grid, once per animation frame in which the camera has moved. Places that the picture does not show become grey, as
 // light as their surroundings, never coloured; a lattice is drawn over wide grey places. Loaded together with the camera controller.
 import { same } from '../../core/camera.js';
 import { hasGpu } from '../../core/gpu.js';
@@ -10,14 +10,14 @@ import { make } from '../common/dom.js';
 import { CpuPainter } from './painters/cpu_painter.js';
 import { GlPainter } from './painters/gl_painter.js';
 
-const KEPT = 8; // maximum number of newest depth grids that are kept: grids may be decoded before their pictures
+const KEPT = 8; // maximum number of depth grids that are kept, because a grid may be decoded before its picture
 // distance from the eye to the near clipping plane, as a fraction of the nearest depth that the picture's depth grid can express
 const NEAREST = 0.05;
-// If updates come later than SLOW_MS after each other, as without a GPU, the warped picture is drawn with fewer pixels.
+// If frames are drawn later than SLOW_MS after each other, as without a GPU, the warped picture is drawn with fewer pixels.
 const SLOW_MS = 26, SLOW_COUNT = 8, PAUSE_MS = 150, LEAST_PX = 250000;
 
-const FADE_MS = 80; // time in which the server's picture replaces the warped one
-const LATE_MS = 1000; // time without an answer of the worker after which pictures do not wait for it
+const FADE_MS = 80; // time in which the warped picture fades to the server's picture
+const LATE_MS = 1000; // if the worker does not answer for this time, pictures no longer wait for it
 
 const LATTICE_PX = 14;
 
@@ -30,11 +30,11 @@ const GL = { antialias: false, powerPreference: 'high-performance' };
 export class Warp {
     constructor({ session, viewport, modules }) {
         Object.assign(this, { session, viewport, modules, updates: 0, mostPx: Infinity, intervals: [], last: 0, count: 0 });
-        this.waitsFrom = null; // time at which pictures began to wait for the worker; null: it has answered
-        this.grids = [];    // newest depth grids: { id, depth, parts: [{ grid, mesh }] or null until decoded, fails }, newest last
+        this.waitsFrom = null; // time since when pictures wait for the worker; null: they do not wait
+        this.grids = [];    // newest depth grids, the newest last: { id, depth, parts: [{ grid, mesh }] or null until decoded, fails }
         this.held = null;   // newest frame, decoded but not drawn on the viewport's canvas: { frame, picture }
-        this.source = null; // picture to draw: { picture, camera, parts }
-        this.loaded = this.painted = null; // sources that the painter has, and that it has drawn
+        this.source = null; // picture that is drawn warped: { picture, camera, parts }
+        this.loaded = this.painted = null; // loaded: the source that the painter has; painted: the source that it has drawn
         this.canvas = make('canvas', { id: 'warp', 'aria-hidden': 'true' });
         this.canvas.style.display = 'none';
         if (!this.open())
@@ -52,23 +52,23 @@ export class Warp {
             this.prepare(session.picture);
     }
 
-    // Prepares drawing, by WebGL if there is a GPU. Returns false if WebGL fails; pictures are then shown unwarped.
+    // Prepares drawing, with WebGL if there is a GPU. Returns false if WebGL fails; pictures are then shown unwarped.
     open() {
         const { canvas } = this;
         try {
-            this.usesGl ??= hasGpu(make('canvas')); // without a GPU, CpuPainter is several times as fast
+            this.usesGl ??= hasGpu(make('canvas')); // without a GPU, CpuPainter is several times as fast as WebGL
             this.painter = this.usesGl ? new GlPainter(canvas.getContext('webgl2', GL)) : new CpuPainter(canvas);
         } catch (error) {
             console.warn(`pictures are not warped: ${error.message}`);
             return false;
         }
-        canvas.width = canvas.height = 1; // fit() sets the size of the drawing
+        canvas.width = canvas.height = 1; // a valid size until fit() sets the size of the drawing
         return true;
     }
 
-    // Shows pictures unwarped until the browser restores WebGL.
+    // After the loss of the WebGL context, shows pictures unwarped until the browser restores the context.
     lose(event) {
-        event.preventDefault(); // without this, the browser does not restore WebGL
+        event.preventDefault(); // without this call, the browser does not restore WebGL
         this.hide();
         this.viewport.warp = null;
         this.viewport.invalidate();
@@ -96,7 +96,7 @@ export class Warp {
         this.grids = [];
     }
 
-    // Has the depth grids of a frame decoded, while the browser decodes its picture.
+    // Sends the depth grids of a frame to the worker, which decodes them while the browser decodes the frame.
     prepare({ depth, camera, fullWidth, fullHeight }) {
         if (!depth || this.grids.some((one) => one.depth === depth))
             return;
@@ -126,9 +126,8 @@ export class Warp {
         return cameraNews || picture?.cameraSeq !== cameraSeq;
     }
 
-    // Returns true if decoded pictures must wait until the depth grid of the newest picture is decoded. Without this, if grids are decoded
-    // more slowly than pictures arrive, no grid would ever be that of the newest picture, and a move could not be drawn from a picture
-    // that has just arrived.
+    // Returns true if decoded pictures must wait until the depth grid of the newest picture is decoded. If grids are decoded more slowly
+    // than pictures arrive, the newest picture would otherwise never have its grid, so that no camera move could be drawn from it.
     waits(decoded) {
         const newest = decoded.findLast(({ frame }) => !frame.more)?.frame;
         const known = newest?.depth && this.grids.find(({ depth }) => depth === newest.depth);
@@ -140,15 +139,15 @@ export class Warp {
         return performance.now() - this.waitsFrom < LATE_MS;
     }
 
-    // Returns true if the picture is to be shown from the present camera, which is not its own.
+    // Returns true if the newest picture is to be drawn warped, because the present camera is not the picture's own.
     get isWanted() {
         const { session, source, modules } = this, { picture, camera } = session;
         return source !== null && this.isAhead && session.leader === null && !session.lent && !modules.there('cameraController')?.fly
             && hasViewportShape(picture) && isNear(source.camera, camera);
     }
 
-    // Draws the newest picture from the present camera, or shows the picture itself. Called once per animation frame, after new pictures
-    // were drawn. Returns true if what is seen has changed.
+    // Draws the newest picture from the present camera, or shows the unwarped picture. Called once per animation frame, after new pictures
+    // were drawn. Returns true if the screen changes.
     draw() {
         const { session } = this, { picture, camera } = session;
         if (!picture)
@@ -177,7 +176,8 @@ export class Warp {
         return true;
     }
 
-    // Keeps a decoded frame that will be shown warped, which saves drawing it on the viewport's canvas. Returns false if it must be drawn.
+    // Keeps a decoded frame that will be shown warped, so that it need not be drawn on the viewport's canvas. Returns false if it must be
+    // drawn there.
     hold(decoded) {
         if (isWhole(decoded.frame))
             this.held?.picture.close();
@@ -187,7 +187,7 @@ export class Warp {
         return this.held !== null;
     }
 
-    // Lets the warped picture give way to the server's picture of the same camera. Returns false if that is done, or not possible.
+    // Fades from the warped picture to the server's picture of the same camera. Returns false if the fade is complete, or not possible.
     fade() {
         const { session: { picture }, painted, isShown, viewport } = this, now = performance.now();
         if (!isShown || painted !== this.loaded || painted.picture === picture || this.isAhead)
@@ -222,14 +222,15 @@ export class Warp {
         return true;
     }
 
-    // Loads the picture while a pointer is pressed, so that its first move is drawn sooner. Returns false, because nothing seen changes.
+    // Loads the picture into the painter while a pointer is pressed, so that the pointer's first move is drawn sooner. Returns false,
+    // because the screen does not change.
     loadEarly() {
         if (this.source && this.modules.there('cameraController')?.gestures.active)
             this.load();
         return false;
     }
 
-    // Hands the picture and its mesh to the painter. Returns false if the picture is no longer on the canvas.
+    // Loads the picture and its mesh into the painter. Returns false if the canvas no longer has the picture.
     load() {
         const { source, session, viewport, held } = this;
         if (source === this.loaded)
@@ -241,7 +242,7 @@ export class Warp {
         return true;
     }
 
-    // Chooses the size of the drawing: that of the picture, or less if updates are slow.
+    // Chooses the size of the warped drawing: that of the picture, or less if frames are drawn slowly.
     fit({ fullWidth, fullHeight }) {
         const now = performance.now(), interval = now - this.last, { canvas } = this;
         this.last = now;
@@ -253,14 +254,15 @@ export class Warp {
             if (middle > SLOW_MS)
                 this.mostPx = Math.max(LEAST_PX, canvas.width * canvas.height / 2);
         }
-        canvas.style.aspectRatio = `${fullWidth} / ${fullHeight}`; // exact, because a reduced width and height are rounded
+        // sets the exact aspect ratio, because a reduced width and height are rounded
+        canvas.style.aspectRatio = `${fullWidth} / ${fullHeight}`;
         const scale = Math.min(1, Math.sqrt(this.mostPx / (fullWidth * fullHeight)));
         const [width, height] = [fullWidth, fullHeight].map((px) => Math.round(px * scale));
         if (canvas.width !== width || canvas.height !== height)
             this.painter.resize(width, height);
     }
 
-    // Draws the picture as the camera sees it. gone: part (0 to 1) of the pixels that are left out, at which the canvas below shows.
+    // Draws the picture as the present camera sees it. gone: fraction of the pixels that are left out, where the canvas below shows.
     paint(camera, source, gone) {
         const { canvas, painter, session } = this, { picture, parts } = source, { fullWidth, fullHeight } = picture;
         this.fit(picture);
@@ -278,7 +280,7 @@ export class Warp {
         canvas.style.display = '';
     }
 
-    // Returns where a pixel of the picture appears now, [x, y]; null: nowhere.
+    // Returns where a pixel of the picture appears on the warped picture, [x, y]; null: nowhere.
     moved(x, y) {
         const part = this.source?.parts.find(({ grid }) => x >= grid.x && x < grid.x + grid.width);
         const depth = part && depthAt(part.grid, x - part.grid.x, y - part.grid.y);

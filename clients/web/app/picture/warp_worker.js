@@ -3,8 +3,8 @@
 import { decodeGrid } from '../../core/depth_grid.js';
 import { meshOf } from '../../core/warp_mesh.js';
 
-// Messages: { id, messages (binary messages with depth grids), frame: { camera, fullWidth, fullHeight } } of their picture.
-// Answers: { id, parts: [{ grid, mesh }] } or { id, why }.
+// Messages from warp.js: { id, messages (binary messages with depth grids), frame: { camera, fullWidth, fullHeight } of their picture }.
+// Answers: { id, parts: [{ grid, mesh }] } or { id, why (it failed) }.
 onmessage = async ({ data: { id, messages, frame: { camera, fullWidth, fullHeight } } }) => {
     try {
         const grids = await Promise.all(messages.map((bytes) => decodeGrid(new Uint8Array(bytes))));

@@ -11,8 +11,8 @@ export class Arrival {
         this.page = page;
     }
 
-    // link: { camera, params, tag, short, expanded } of the link that opened the page; null after the first call. refused: `error`
-    // messages of the server that refuse parts of this page's view.
+    // link: { camera, params, tag, short, expanded } of the link that opened the page; null after the first call. refused: the server's
+    // `error` messages that refuse parts of this page's view.
     come(link, refused) {
         const { session, selection, selectTag, tell } = this.page, { model } = session;
         const why = refused.map(({ text, refusal }) => refusalText(text, refusal)), unknown = selection.tag && !model.tag(selection.tag);
@@ -28,7 +28,7 @@ export class Arrival {
             tell(put(link ? 'page.link' : 'page.refused', { why: why.join('; '), text: why.join('; ') }), NOTE_MS);
     }
 
-    // Marks a short link as used, or opens it if it could not be opened before the user signed in.
+    // Marks a short link as used. If the link could not be opened before the user signed in, opens it now.
     async open({ short, expanded }) {
         const { session, tell } = this.page;
         if (expanded && SHARERS.includes(session.role))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Follows the view of another session, the leader: shows it in the leader's aspect ratio, and tells whose view it is.
+// Follows the view of another session, the leader: shows the view in the leader's aspect ratio, and says whose view it is.
 import { leaderName } from '../../core/people.js';
 import { say } from '../../core/words.js';
 import { byId, setText, setVariable } from '../common/dom.js';
@@ -15,7 +15,7 @@ export class Following {
         this.show();
     }
 
-    // Asks again to follow a session that has ended, because it may return after a page reload or a server restart.
+    // Asks the server again to follow a session that has ended, because that session may return after a page reload or a server restart.
     ask() {
         const { leader, following } = this.session;
         if (leader !== null && !following)

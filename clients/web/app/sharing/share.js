@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The share dialog: links to the current view, with a QR code; the list of sessions that follow this view, and handing the lead to a
-// follower.
+// The share dialog: links to the current view, with a QR code; the list of sessions that follow this view, with buttons that make a
+// follower the leader.
 import { shareLinks, SHARERS, shortLink } from '../../core/links.js';
 import { followerNames, leaderName } from '../../core/people.js';
 import { giveLead } from '../../core/requests.js';
@@ -38,7 +38,7 @@ export class Share {
         document.body.append(this.dialog);
     }
 
-    // Shows the number of followers on the button of the dialog.
+    // Shows the number of followers on the button that opens the dialog.
     count() {
         const { count } = this.session.followers;
         byId('share-open').toggleAttribute('data-count', count > 0);
@@ -57,8 +57,8 @@ export class Share {
         this.showView(view);
     }
 
-    // Asks the server for a short link to the view, once each time the dialog is open. Until the answer comes, or without one, the long
-    // link is shown.
+    // Asks the server for a short link to the view, once each time the user opens the dialog. Until the answer arrives, or without one, the
+    // long link is shown.
     shorten() {
         if (this.asked !== null || !SHARERS.includes(this.session.role))
             return;

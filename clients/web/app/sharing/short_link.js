@@ -3,17 +3,17 @@
 import { ask } from '../../core/history.js';
 import { stored } from '../common/storage.js';
 
-const ANSWER_MS = 3000; // timeout in milliseconds; without an answer of the server, the page starts without the linked view
+const ANSWER_MS = 3000; // timeout in milliseconds: if the server does not answer, the page starts without the linked view
 
-// Replaces the short link in the page's address by the view that the server stored. Returns a promise of the view.
+// Asks the server for the view of a short link. Replaces the link in the page's address by that view, and returns a promise of the view.
 export async function expand(id, token, fetcher) {
     const { view } = await (await ask('api/v1/link', { id }, token, fetcher)).json();
     history.replaceState(null, '', `${location.pathname}${location.search}#${view}`);
     return view;
 }
 
-// Opens the short link of the page's address. Returns a promise of { short (its id), expanded (its view; null: it could not be opened) }.
-// arrival.js tries again when the user has signed in, and says why it fails.
+// Opens the short link in the page's address. Returns a promise of { short (the link's id), expanded (its view; null: it could not be
+// opened) }. arrival.js tries again when the user has signed in, and says why it fails.
 export async function openShort() {
     const short = location.hash.slice('#v='.length), signal = AbortSignal.timeout(ANSWER_MS);
     const fetcher = (path, init) => fetch(path, { ...init, signal });

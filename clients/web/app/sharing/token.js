@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Asks for a token if the server requires one, and stores it until the tab closes.
+// Asks the user for an access token if the server requires one, and stores it until the tab closes.
 import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
 import { around } from '../common/widgets.js';
@@ -38,9 +38,9 @@ export class TokenDialog {
         setText(byId('token-why'), say({ bad_token: 'token.bad', locked: 'token.locked' }[code] ?? 'token.needed'));
         field.value = '';
         const nothing = { sign_in: null, notice: null }, late = new Promise((done) => setTimeout(done, 3000, nothing));
-        // asks without the stored token, because the server would reject a wrong one
+        // asks the server without the stored token, because it would reject a wrong one
         const me = await Promise.race([whoAmI({ token: null }).catch(() => nothing), late]);
-        if (!document.body.classList.contains('denied')) // does not ask if access was granted in the meantime, from another tab
+        if (!document.body.classList.contains('denied')) // does not ask for a token if another tab has obtained access in the meantime
             return;
         this.showNotice(me.notice);
         if (!dialog.open)
@@ -49,14 +49,14 @@ export class TokenDialog {
         this.offerSignIn(me.sign_in);
     }
 
-    // Shows the site's notice, which all users see before they sign in.
+    // Shows the site's notice (a legal text, for example), which all users see before they sign in.
     showNotice(text) {
         byId('token').querySelector('.notice')?.remove();
         if (text)
             byId('token-title').after(make('p', { class: 'notice' }, text));
     }
 
-    // If the server has an identity provider, offers signing in there as the main way; a token is then the exception.
+    // If the server has an identity provider, offers signing in there as the main way; entering a token is then the exception.
     offerSignIn(label) {
         byId('token').querySelector('.sign-in')?.remove();
         if (!label)

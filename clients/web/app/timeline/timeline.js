@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The time bar: a slider over recorded history with gaps, lost sources and raised alarms, which can be clicked; playback, speed, a date
-// field, and the way back to the present.
+// The time bar: a slider over the recorded history, which marks gaps, lost sources and raised alarms (marks can be clicked); playback,
+// speed, a date field, and the way back to the present.
 import { ageText, zoneClock } from '../../core/format.js';
 import { arrowS, ask, clustered, density, lost, nextTo, raised, ticks, witnesses } from '../../core/history.js';
 import { fieldInstant, fieldText } from '../../core/instant.js';
@@ -14,11 +14,12 @@ const SPANS = [[900, 'min', 15], [3600, 'h', 1], [28800, 'h', 8], [86400, 'h', 2
 const SPEEDS = [1, 10, 60, 300, 600, 3600];
 // NOW_US: an instant less than this many microseconds ago counts as now
 const MARKS_MS = 15000, MARKS_MOST = 10000, MARK_PAGES = 5, HAND_MS = 400, NOW_US = 3.5e6;
-// LOST_POINTS: number of history points per tag with which periods of lost sources are found. BARS: position of the bars that show how many
-// alarms were raised; `full`: a bar of full height is at least this many alarms.
+// LOST_POINTS: number of history points per tag from which the periods of lost sources are found. BARS: position of the bars that show how
+// many alarms were raised; `full`: number of alarms for a bar of full height.
 const TRACK = { top: 15, height: 10 }, BARS = { bottom: 58, height: 14, full: 10 }, BAR_PX = 5, LOST_POINTS = 300;
-// MARK_PX: smallest distance between two alarm marks; SEARCH_MOST: journal rows per request; PAGES: maximum number of requests for a search
-const THUMB_PX = 9; // half the width of the slider's thumb, by which its ends are inside the track
+// MARK_PX: smallest distance between two alarm marks; SEARCH_MOST: journal rows per request; PAGES: maximum number of requests when
+// searching for the next alarm
+const THUMB_PX = 9; // half the width of the slider's thumb: the slider's values end this far inside its track
 const MARK_PX = 9, SEARCH_MOST = 10000, PAGES = 24, NAMED = 8;
 
 export class Timeline {
@@ -72,7 +73,7 @@ export class Timeline {
         if (open)
             this.turnTo(this.atUs);
         else
-            // removes the marks of alarms, which would accumulate while the bar is closed; they are drawn again when it opens
+            // removes the alarm marks, which would accumulate while the bar is closed; they are drawn again when it opens
             byId('time-track').replaceChildren();
         if (!open && this.atUs !== null)
             travel(this.session, null);
@@ -87,7 +88,7 @@ export class Timeline {
         this.show();
     }
 
-    // Sets the span that the slider covers: the time up to now, or around an instant before that span.
+    // Sets the time span that the slider covers: the time up to now, or around atUs if that is earlier.
     turnTo(atUs) {
         const now = this.session.clockUs() ?? Date.now() * 1000;
         const ends = atUs !== null && atUs < now - this.spanUs ? Math.min(now, atUs + this.spanUs / 2) : now;
@@ -107,7 +108,7 @@ export class Timeline {
         this.show();
     }
 
-    // Goes to the slider's instant at most once per animation frame, however often the pointer moves.
+    // Shows the slider's instant, at most once per animation frame, however often the pointer moves.
     drag() {
         const at = this.toUs - this.spanUs + Number(this.slider.value) * 1e6;
         if (this.wanted === null)
@@ -125,7 +126,7 @@ export class Timeline {
         travel(this.session, us > this.session.clockUs() - NOW_US ? null : us);
     }
 
-    // Handles keys: arrows move by a small step, Page keys by a fraction of the span.
+    // Handles keys on the slider: arrows move by a small step, Page keys by a fraction of the span.
     press(event) {
         const steps = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
         const pages = { PageDown: -1, PageUp: 1 }[event.key];
@@ -159,13 +160,13 @@ export class Timeline {
             this.tell(say(backwards ? 'time.first' : 'time.last'));
     }
 
-    // Goes to the instant at which an alarm was raised, flies to its tag, and names the alarm over the picture.
+    // Shows the plant at the instant at which an alarm was raised, flies to its tag, and names the alarm over the picture.
     showAlarm({ us, tag: name, kind, priority }) {
         const tag = this.session.model.tag(name) ?? { name, index: null };
         this.modules.use('moment', (moment) => moment.show({ us, tag, kind, priority }, 0), 'moment');
     }
 
-    // Returns the alarm raised next after an instant, or with `backwards` the one before it; null: none. The journal returns its newest
+    // Returns the alarm raised next after an instant, or with `backwards` the one before; null: none. The alarm journal returns its newest
     // rows first.
     async alarmFrom(us, backwards) {
         let before = null;
@@ -183,7 +184,7 @@ export class Timeline {
             const found = next === null || length < 2e6 ? nextTo(raised(rows), us, false) : null;
             if (found)
                 return found;
-            // with too many journal rows, searches a shorter span; otherwise searches the next, longer span
+            // with too many journal rows in the span, searches a shorter span; otherwise searches the next, longer span
             [from, length] = next === null ? [from + length, length * 4] : [from, length / 8];
         }
         return null;
@@ -210,12 +211,12 @@ export class Timeline {
             this.askRaised(span),
             ask('api/v1/history/gaps', span, token).then((answer) => answer.json()).then((said) => said.gaps),
             this.askLost(span),
-        ].map((one) => one.catch(() => []))); // marks of a kind whose request failed or was refused are not drawn
+        ].map((one) => one.catch(() => []))); // if the request for a kind of marks fails, these marks are not drawn
         Object.assign(this, { marks, gaps, lost: all });
         this.draw();
     }
 
-    // Returns a promise of the raised alarms of a span. If there are too many, `marks.sinceUs` is the oldest instant from which they are
+    // Returns a promise of the alarms raised in a time span. If there are too many, `marks.sinceUs` is the instant from which the list is
     // complete.
     async askRaised(span) {
         const all = [];
@@ -228,7 +229,7 @@ export class Timeline {
         return Object.assign(raised(all), { sinceUs: before === null ? null : all.at(-1)?.time_us ?? null });
     }
 
-    // Draws the number of raised alarms over time as bars; their heights are on a logarithmic scale, so that one alarm is still visible.
+    // Draws bars with the number of raised alarms over time. Their heights are on a logarithmic scale, so that one alarm is still visible.
     densityBars(from, width) {
         const inner = width - 2 * THUMB_PX, count = Math.max(1, Math.floor(inner / BAR_PX));
         const { bins, most } = density(this.marks, from, this.toUs, count), step = inner / count;
@@ -239,7 +240,7 @@ export class Timeline {
         });
     }
 
-    // Returns a promise of [{ source, spans }]: the periods in which sources delivered nothing.
+    // Returns a promise of [{ source, spans }]: the periods in which each source delivered nothing.
     async askLost(span) {
         const sources = witnesses(this.session.model?.tags ?? []), tags = sources.flatMap((one) => one.tags);
         if (tags.length === 0)
@@ -283,7 +284,7 @@ export class Timeline {
         return this.toUs - this.spanUs + ((left - THUMB_PX) * this.spanUs) / (width - 2 * THUMB_PX);
     }
 
-    // Draws a line at the instant at which the pointer points here or in a trend; null: none.
+    // Draws a line at the instant at which the pointer points, on the slider or in a trend; null: no line.
     cross(us) {
         const track = byId('time-track'), width = track.clientWidth, from = this.toUs - this.spanUs;
         track.querySelector('.cross')?.remove();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The toolbar: shows the parameters of the view, and requests changed ones.
+// The toolbar: shows the parameters of the view, and asks the server to change them.
 import { numberText, quantityText, title, unitText } from '../../core/format.js';
 import { multiples, rampChoices } from '../../core/legend.js';
 import { say } from '../../core/words.js';
@@ -12,7 +12,7 @@ export const LOOKS = choices('look', 'default', 'glossy', 'flat', 'materials');
 
 const decimalsOf = (step) => Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
 
-// Returns the boundaries of each set of colour bands that the group defines, by the set's name.
+// Returns the sets of colour bands that the sensor group defines: boundaries of the bands by the set's name.
 export function bandsOf({ group }) {
     const limits = Object.values(group?.limits ?? {}).filter((limit) => limit !== null).sort((a, b) => a - b);
     return { group: group?.breaks ?? [], limits };
@@ -54,7 +54,7 @@ export class Toolbar {
         fillSelect(byId('show'), SHOWS, params.show ?? 'value');
     }
 
-    // Returns the name of the group's set of bands in use; 'chosen' if the user chose other boundaries.
+    // Returns the name of the set of colour bands in use; 'chosen' if the user has chosen other boundaries.
     breaksName() {
         const { params } = this.session;
         const same = ([, breaks]) => JSON.stringify(params.breaks) === JSON.stringify(breaks);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Labels of the toolbar's tools; they also show whether the values are frozen at an instant.
+// Labels of the toolbar's tools. They also show whether values are frozen at a past instant.
 import { say } from '../../core/words.js';
 import { byId } from '../common/dom.js';
 

@@ -10,7 +10,8 @@ export const LOOKS = {
         lines: ['#84c1f2', '#ffb27a', '#66d6a6', '#e8a5d6', '#d9d977', '#d5dbe0', '#7fd8e8', '#d9b793'] },
 };
 
-// Draws a hatched rectangle, clipped to the canvas: a gap of days in a chart of seconds would be millions of pixels wide.
+// Draws a hatched rectangle for a period without values. The rectangle is clipped to the canvas, because a gap of days in a chart of
+// seconds would be millions of pixels wide.
 export function hatch(ctx, left, top, width, height, colour) {
     const step = 7 * devicePixelRatio, from = Math.max(left, 0) - height, to = Math.min(left + width, ctx.canvas.width);
     if (!(height <= ctx.canvas.height))
@@ -45,7 +46,7 @@ export function hatchAlong(ctx, [left, begin], [right, end], colour) {
     ctx.restore();
 }
 
-// Draws along the path of a chart's series between two positions, where the series has values.
+// Draws along the curve of a chart's series between two positions, where the series has values.
 export function strokeAlong(chart, index, left, right, { colour, width, dash = [], alpha = 1 }) {
     const { ctx, bbox } = chart, { stroke, clip } = chart.series[index]._paths ?? {};
     if (!stroke)

@@ -5,9 +5,9 @@ import { byId, make, setVariable } from '../common/dom.js';
 
 const REACH_PX = 8, STARTED_PX = 5;
 
-// trends: gets the tag by add(tag). handlers.click(x, y, kind): a press on a marker without a drag.
+// trends: gets the dragged tag by add(tag). handlers.click(x, y, kind): called after a press on a marker without a drag.
 export function listenToDrags({ trends, session, overlay, handlers }) {
-    let drag = null; // { tag, x, y (of the press), ghost, marker (position in the picture, or null) }
+    let drag = null; // { tag, x, y (of the press), ghost (label at the pointer), marker (position in the picture, or null) }
 
     function tagUnder({ target, clientX, clientY }) {
         const row = target.closest('.reading[data-row^="tag/"]');
@@ -58,7 +58,7 @@ export function listenToDrags({ trends, session, overlay, handlers }) {
         if (ghost)
             swallowClick();
     };
-    // Stops the click that follows a drag, which would select what is under the pointer.
+    // Stops the click event after a drag, which would select what is under the pointer.
     function swallowClick() {
         const stop = (click) => click.stopPropagation();
         document.addEventListener('click', stop, { capture: true, once: true });

@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One chart of a trend: the curves of at most two units over one time axis, with bands, gaps, uncertain stretches, limits and alarms.
+// One chart of a trend: the curves of tags with at most two units over one time axis, with bands between lowest and highest value, gaps,
+// uncertain stretches, limits and alarms.
 import { shortNumberText } from '../../core/format.js';
 import { BAD, gaps, limitLines, line, UNCERTAIN } from '../../core/history.js';
 import { bands, valueAt } from '../../core/trend_values.js';
 import { pointAtInstant } from '../common/crosshair.js';
 import { hatch, hatchAlong, strokeAlong, triangle } from './chart_style.js';
 
-const EXPAND = 2; // uPlot's mode in which gaps (nulls) extend to neighbouring instants
+const EXPAND = 2; // argument of uPlot.join(): a null of a series also breaks its line at neighbouring instants of other series
 const AXIS_PX = 58, UNIT_PX = 16, TIME_PX = 28, LINE_PX = 1.75, BOLD_PX = 3, LABEL_PX = 15, BADGE_PX = 13, DRAGGED_PX = 4;
-const PAD_PX = 17, LOW_PAD_PX = 8, LOW_PX = 130; // space above the curves, less in charts lower than LOW_PX
-const DAYS_S = 2 * 86400; // the ticks of the time axis are days if the range is longer than this
+const PAD_PX = 17, LOW_PAD_PX = 8, LOW_PX = 130; // space above the curves; charts lower than LOW_PX have less
+const DAYS_S = 2 * 86400; // the time axis has ticks for days if the range is longer than this
 const FONT = 'system-ui, sans-serif';
 
 export class Plot {
-    // view: the trends, with look, clock, zone, session, spanUs, colourOf(tag), unitOf(tag), decimalsOf(tag), focus, travel(us),
-    // zoomTo([from, to]) and priorities (colours). units: units of this chart, at most two. isWide true: some chart of the trend has two
-    // value axes, so this chart leaves room for a second one, too. isLast true: this chart, the lowest one, has the labels of the time
-    // axis.
+    // view: the trends (trends.js), with look, clock, zone, session, spanUs, colourOf(tag), unitOf(tag), decimalsOf(tag), focus,
+    // travel(us), zoomTo([from, to]) and priorities (colours). units: units of this chart, at most two. isWide true: some chart of the
+    // trend has two value axes, so this chart leaves room for a second one, too. isLast true: this chart, the lowest one, has the labels of
+    // the time axis.
     constructor({ view, units, isWide, isLast, element, width, height }) {
         Object.assign(this, { view, units, isWide, isLast, rows: [], marks: [] });
         this.shape = { width, height };
@@ -24,13 +25,13 @@ export class Plot {
     }
 
     // Draws the curves. rows: [{ tag, series, alarms }] of the tags with this chart's units; empty until the server has answered. span:
-    // first and last instant of the values, in microseconds.
+    // first and last instant for which values were requested, in microseconds.
     show(uPlot, rows, span, window) {
         const names = JSON.stringify(rows.map(({ tag }) => [tag.name, this.view.colourOf(tag)]));
         Object.assign(this, { rows, span });
         const tables = rows.map(({ series }) => line(series, ...span))
             .map((table) => (table[0].length > 0 ? table : [[span[0] / 1e6], [null]]));
-        // a gap in one series must extend over the instants of the others
+        // EXPAND, because a gap in one series must also break its line at instants that only other series have
         const data = tables.length > 0 ? uPlot.join(tables, tables.map(() => [EXPAND, EXPAND])) : [[span[0] / 1e6]];
         this.bands = rows.map(({ series }) => bands(series));
         if (this.chart && this.names === names) {
@@ -54,7 +55,7 @@ export class Plot {
 
     // --- pointer
 
-    // Shows the instant that another chart or the time slider points at; null: none.
+    // Marks the instant at which another chart or the time slider points; null: none.
     follow(us) {
         if (!this.chart)
             return;
@@ -125,7 +126,8 @@ export class Plot {
         return spanS < 300 ? time : time.slice(0, 5);
     }
 
-    // Returns the range of an axis. It includes bands, and limits that are near the values; distant limits would only flatten the curve.
+    // Returns the range of a value axis. It includes the bands, and those limits that are near the values; distant limits would only
+    // flatten the curve.
     range(unit, low, high) {
         let [min, max] = [low ?? Infinity, high ?? -Infinity];
         this.rows.forEach(({ tag }, i) => (this.view.unitOf(tag) || '–') === unit && this.bands[i].flat().forEach(([, , least, most]) => {
@@ -141,8 +143,7 @@ export class Plot {
         return [min - margin, max + margin];
     }
 
-    // Draws periods without a value hatched, as in the plant's picture: with one tag over the whole height, with several where the curve
-    // would be.
+    // Hatches periods without a value, as in the plant's picture: for one tag over the whole height, for several where the curve would be.
     drawGaps({ ctx, bbox, valToPos }) {
         ctx.save();
         ctx.beginPath();
@@ -184,7 +185,7 @@ export class Plot {
         ctx.restore();
     }
 
-    // Draws a curve broken where its values are uncertain, and thicker if its row of the table has the focus.
+    // Draws a curve broken where its values are uncertain, and thicker if its row of the trend's table has the focus.
     drawQuality(chart, index) {
         const { tag, series } = this.rows[index - 1] ?? {};
         if (!tag)
@@ -197,7 +198,7 @@ export class Plot {
             strokeAlong(chart, index, x(from), x(to), { colour: this.view.look.ground, width: width + 1, dash: [4, 5] });
     }
 
-    // Draws the time of each alarm as a broad line below the curve, and a triangle where the alarm was raised.
+    // Draws the duration of each alarm as a broad line below the curve, and a triangle where the alarm was raised.
     drawAlarms(chart) {
         const { ctx, bbox, valToPos, posToVal } = chart, found = [];
         this.rows.forEach(({ tag, alarms = [] }, i) => {
@@ -224,7 +225,7 @@ export class Plot {
         return this.marks.filter((mark) => Math.abs(mark.us - us) <= near).map(({ alarm }) => alarm);
     }
 
-    // Returns the limits to draw: those of the tag with the focus, and those that all tags of an axis share.
+    // Returns the alarm limits to draw: those of the tag with the focus, and those that all tags of an axis share.
     limits() {
         const { view } = this, scaleOf = (tag) => view.unitOf(tag) || '–', tags = this.rows.map(({ tag }) => tag);
         const isShared = ({ scale, name, value }) => {
@@ -261,8 +262,8 @@ export class Plot {
         ctx.restore();
     }
 
-    // Writes the name of each limit at its line, over everything else. If lines are close together, a name goes next to the previous one,
-    // or is left out if there is no room.
+    // Writes the name of each alarm limit at its line, over everything else. If lines are close together, a name goes next to the previous
+    // one, or is left out if there is no room.
     nameLimits(chart) {
         const { ctx, bbox } = chart, px = devicePixelRatio, height = LABEL_PX * px, placed = [];
         ctx.save();
@@ -285,13 +286,13 @@ export class Plot {
         ctx.restore();
     }
 
-    // Draws the number of each curve at its end, as in the table, so that curves are told apart without their colours.
+    // Draws the number of each curve at its end. The table has the same numbers, so that curves are told apart without their colours.
     drawBadges(chart) {
         const { ctx, bbox, valToPos, data } = chart, px = devicePixelRatio, size = BADGE_PX * px, { min, max } = chart.scales.x;
         if (this.view.tags.length < 2)
             return;
         const ends = this.rows.map(({ tag }, i) => {
-            // a chart that is about to be replaced may have fewer columns than there are rows: then no number is drawn for the row
+            // a chart that is about to be replaced may have fewer columns than there are tags: then the tag's number is not drawn
             const k = data[i + 1]?.findLastIndex((value, n) => Number.isFinite(value) && data[0][n] <= max && data[0][n] >= min) ?? -1;
             return k < 0 ? null : { tag, x: Math.min(valToPos(data[0][k], 'x', true), bbox.left + bbox.width - size / 2),
                 y: valToPos(data[i + 1][k], this.view.unitOf(tag) || '–', true) };

@@ -4,9 +4,9 @@ import { pointAtInstant } from '../common/crosshair.js';
 
 const WHEEL = 0.0016, LINE_PX = 16, PAN_PX = 0.0025, KEY_ZOOM = 1.5, KEY_PAN = 0.25, STEPS = 120, BIG = 10;
 
-// view: the trends. range: [from, to] in us; zoomBy(factor, at): multiplies the range by factor around the instant `at`; pan(part): moves
-// by this part of the range; live(): back to now; travel(us): shows the plant at this instant; crosshairUs: instant of the crosshair.
-// element: holds the charts.
+// view: the trends (trends.js). range: [from, to] in us; zoomBy(factor, at): multiplies the range by factor around the instant `at`;
+// pan(part): moves by this fraction of the range; live(): back to now; travel(us): shows the plant at this instant; crosshairUs: instant of
+// the crosshair. element: holds the charts.
 export function listenToGestures(view, element) {
     const fingers = new Map(); // pointer id -> x
     let dragged = null; // pointer's x at the last event of a mouse drag that pans; null: no such drag

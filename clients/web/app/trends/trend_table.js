@@ -9,7 +9,7 @@ import { byId, make, setText, setVariable } from '../common/dom.js';
 const COLUMNS = ['at', 'now', 'min', 'mean', 'max'], FULL = 0.995;
 
 export class TrendTable {
-    // view: the trends, with the members that Plot uses (plot.js), and remove(tag) and setFocus(tag).
+    // view: the trends (trends.js), with the members that Plot uses (plot.js), and remove(tag) and setFocus(tag).
     constructor(view) {
         this.view = view;
         this.rows = new Map(); // rows of the table: tag -> { cells by column }
@@ -43,7 +43,7 @@ export class TrendTable {
                 onclick: () => view.remove(tag) }, '×')));
     }
 
-    // Computes the statistics of the shown period. series: a Map from names of tags.
+    // Computes the statistics of the shown period. series: Map from a tag's name to its series.
     count(series, [from, to]) {
         this.stats = new Map(this.view.tags.map((tag) => [tag, series.has(tag.name) ? statistics(series.get(tag.name), from, to) : null]));
         this.fill();
@@ -58,7 +58,7 @@ export class TrendTable {
         byId('trend-tags').classList.toggle('lacks', lacks);
         for (const [tag, cells] of this.rows) {
             const decimals = view.decimalsOf(tag), { value, quality } = session.model.readings[tag.index];
-            // includes the present reading, because the recorded series ends some seconds ago
+            // includes the present reading, because the recorded series ends some seconds before it
             if (!isPast && view.isLive && quality !== 'bad' && value !== null)
                 this.stats.set(tag, withNewest(this.stats.get(tag), value));
             const stats = this.stats.get(tag), text = (number) => numberText(number ?? null, decimals);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trends of up to eight tags: recorded values over a relative or absolute range, which users zoom and pan. Plot draws the curves, two units
-// to a chart; TrendTable shows numbers.
+// Trends of up to eight tags: recorded values over a relative or absolute time range, which users zoom and pan. Plot draws the curves, two
+// units to a chart; TrendTable shows numbers.
 import { decimalsFor, unitText, zoneClock, zoneOf } from '../../core/format.js';
 import { ask, BAD, gaps } from '../../core/history.js';
 import { fieldText } from '../../core/instant.js';
@@ -23,14 +23,14 @@ const MOVES = ['earlier', 'later', 'in', 'out', 'back'];
 const MOST = LOOKS.light.lines.length, UNITS_PER_PLOT = 2, FRESH_MS = 5000, NOW_MS = 1000, SETTLED_MS = 250, PAN = 0.5, ZOOM = 2;
 const ALARM_ROWS = 2000, MATCHES = 30, MOST_BACK = 50, ALMOST_US = 2e6;
 const HEAD_PX = 24, ROW_PX = 22; // heights in the table
-// true: charts fill what the table leaves of a wall's pane or of a phone's sheet
+// true: charts fill the room that the table leaves in a wall's pane or in a phone's sheet
 const fills = () => document.body.classList.contains('pane-trend') || phone.matches;
 
-// Returns the height of each of `count` charts next to a table of `rows` rows.
+// Returns the height in pixels of each of `count` charts next to a table of `rows` rows.
 function heightOf(count, rows) {
     if (fills())
         return Math.max(80, byId('trend-chart').clientHeight / count);
-    const least = Math.max(120, Math.min(210, 0.2 * innerHeight)); // must equal the height of #trend-chart in the style sheet
+    const least = Math.max(120, Math.min(210, 0.2 * innerHeight)); // the same value as the height of #trend-chart in trends.css
     const one = Math.max(least, Math.min(0.26 * innerHeight, HEAD_PX + ROW_PX * rows)); // as high as the table
     return Math.round(count === 1 ? one : Math.max(96, one * 0.7));
 }
@@ -56,8 +56,8 @@ function load() {
 export class Trends {
     constructor({ session, overlay, handlers }) {
         Object.assign(this, { session, tags: [], spanS: 3600, fixed: null, before: [], plots: [], focus: null, isAsking: false });
-        this.series = new Map(); // name of a shown tag -> its series, once the server has answered
-        this.alarms = new Map(); // name of a tag -> its alarms of the range
+        this.series = new Map(); // tag name -> its series, once the server has answered
+        this.alarms = new Map(); // tag name -> its alarms in the time range
         this.element = byId('trends');
         this.addControls();
         this.table = new TrendTable(this);
@@ -87,7 +87,8 @@ export class Trends {
         byId('trend-csv').addEventListener('click', () => this.save());
         byId('trend-ranges').append(...EXAMPLES.map((name) => make('option', { value: say(`trends.example.${name}`) })));
         const range = byId('trend-range'), add = byId('trend-add');
-        // the list of examples is filtered by the field's text, so the text becomes the placeholder while the field has the focus
+        // the browser filters the list of example ranges by the field's text, so the text becomes the placeholder while the field has the
+        // focus
         range.addEventListener('focus', () => Object.assign(range, { placeholder: range.value, value: '' }));
         range.addEventListener('blur', () => { range.value ||= range.placeholder; });
         add.addEventListener('input', () => this.offer(add.value));
@@ -154,7 +155,7 @@ export class Trends {
         this.draw(globalThis.uPlot);
     }
 
-    // Makes the rows of the tags and requests their values; closes the trend if there are no tags.
+    // Makes the table's rows for the tags and requests their values; closes the trend if there are no tags.
     showTags() {
         if (this.tags.length === 0)
             return this.close();
@@ -194,7 +195,7 @@ export class Trends {
         return this.showTags();
     }
 
-    // Fills the list of tags that match a typed text.
+    // Fills the list of tags with those that match a typed text.
     offer(text) {
         const wanted = text.trim().toLowerCase(), { tags } = this.session.model;
         this.matches = wanted ? tags.filter((tag) => !this.tags.includes(tag) &&
@@ -221,7 +222,7 @@ export class Trends {
         return this.session.clockUs() ?? Date.now() * 1000;
     }
 
-    // Time range of the charts: a fixed one, or up to now, or around the shown instant of the past.
+    // Time range of the charts: a fixed one; otherwise the span up to now, or around the past instant that is shown.
     get range() {
         if (this.fixed)
             return this.fixed;
@@ -239,7 +240,7 @@ export class Trends {
         return !this.fixed || this.fixed[1] > this.nowUs - FRESH_MS * 1000;
     }
 
-    // Shows a range of time, in the form in which readRange() returns one.
+    // Shows a time range, in the form in which readRange() returns one.
     goTo({ spanS, fromUs, toUs }, isUndone = false) {
         if (!isUndone)
             this.before = [...this.before.slice(1 - MOST_BACK), { spanS: this.spanS, fixed: this.fixed }];
@@ -258,13 +259,13 @@ export class Trends {
         this.adjust(zoomed(this.range, factor, at, this.nowUs));
     }
 
-    // Moves by a part of the range; positive: later.
+    // Moves the charts by a fraction of their time range; positive: later.
     pan(part) {
         this.adjust(panned(this.range, part, this.nowUs));
     }
 
-    // Shows a time range that a gesture (wheel, pinch, drag, key) reaches in many small steps. Steps that follow each other quickly are
-    // undone together.
+    // Shows a time range that a gesture (wheel, pinch, drag, key) reaches in many small steps. Steps that follow each other quickly become
+    // a single undo step.
     adjust([fromUs, toUs]) {
         if (!Number.isFinite(fromUs + toUs))
             return;
@@ -299,7 +300,7 @@ export class Trends {
         field.blur();
     }
 
-    // Returns the range as a text that readRange() reads.
+    // Returns the time range as a text that readRange() understands.
     rangeText() {
         if (!this.fixed) {
             const [unit, n] = this.spanS % 86400 === 0 ? ['d', this.spanS / 86400] : this.spanS % 3600 === 0 ? ['h', this.spanS / 3600]
@@ -397,7 +398,7 @@ export class Trends {
         return lacking.length > 0 ? say('trends.gaps', { tags: lacking.join(', ') }) : '';
     }
 
-    // Requests the alarms of the tags: those of the range, and earlier ones, which may last into the range.
+    // Requests the alarms of the tags in the time range, and earlier ones, which may last into the range.
     async askAlarms() {
         const { tags, span } = this, { token } = this.session;
         const all = await Promise.all(tags.map(async ({ name, unit, group }) => {

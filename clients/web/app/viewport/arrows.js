@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Arrows of a group whose sensors have directions: the length of an arrow is the field's value, a cross marks an unknown direction.
-// Alternatively streaks along which dashes run, on a canvas of their own.
+// Arrows for a sensor group with directions: the length of an arrow is the field's value, a cross marks an unknown direction. Alternatively
+// streaks along which dashes move, on a canvas of their own.
 import { decimalsFor, shortNumberText, unitText } from '../../core/format.js';
 import { halves } from '../../core/split_view.js';
 import { say } from '../../core/words.js';
 import { make } from '../common/dom.js';
 import { INK } from './overlay.js';
 
-// length in pixels of the longest arrow in a picture of that width; slightly less than the server's minimum distance between arrows
+// length in pixels of the longest arrow in a picture of that width: slightly less than the server's minimum distance between arrows
 const LONGEST_PX = (width) => 0.95 * Math.max(48, width / 24);
 const HEAD = 7, CROSS = 'M-3 -3L3 3M-3 3L3 -3', DOT = 'M-.6 0A.6 .6 0 1 0 .6 0A.6 .6 0 1 0 -.6 0';
 const UNCERTAIN = [3, 2.5], UNCERTAIN_PX = 24; // dash pattern of an uncertain arrow, and length of such an arrow in a legend
-const DASH = [5, 11], FASTEST_PX = 60; // FASTEST_PX: speed of the dashes in pixels per second at the upper end of the range
+// DASH: dash pattern of streaks; FASTEST_PX: speed of the dashes in pixels per second at the upper end of the range
+const DASH = [5, 11], FASTEST_PX = 60;
 const isUnknown = (dx, dy) => dx === 0 && dy === 0;
 
 // Returns the path of an arrow along x, centred at 0.
@@ -142,7 +143,7 @@ export class Arrows {
         c.setLineDash([]);
     }
 
-    // Adds to each legend the longest arrow at its true length, and the meaning of dashes and crosses if there are any.
+    // Adds to each legend the longest arrow at its true length, and what dashes and crosses mean if the picture has any.
     explain() {
         const { shown, picture } = this.session;
         const rows = this.session.markersOf(picture.seq)?.arrows ?? [];
@@ -153,7 +154,7 @@ export class Arrows {
             if (!legend || legend.hidden || !wanted)
                 return key?.remove();
             const value = this.longestIn(params), length = LONGEST_PX(width) * this.scale[0];
-            const strokes = shown.arrows === 'strokes'; // streaks have equal lengths, so only arrows need their length in the legend
+            const strokes = shown.arrows === 'strokes'; // streaks all have the same length, so only arrows need their length in the legend
             const text = strokes ? '' : `${shortNumberText(value, decimalsFor(value))}\u202f${unitText(params.unit ?? group.unit)}`;
             const own = rows.filter(([, , , , , , of]) => of === half), unknown = own.some(([, , dx, dy]) => isUnknown(dx, dy));
             const dashed = own.some(([, , , , , uncertain]) => uncertain), says = `${text}/${length}/${unknown}/${dashed}`;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The legend: the server's colours with units, limits, and the patterns for missing data.
+// The legend of the picture: the server's colours with units, limits, and the patterns for missing data.
 import { decimalsFor, quantityText, shortNumberText, unitText } from '../../core/format.js';
 import { colourOf, edges, LIMIT_BANDS, placeOf, scaleTicks, spread, valueAt } from '../../core/legend.js';
 import { hatchAt, patternPeriodPx, ruleAt, stippleAt } from '../../core/patterns.js';
@@ -62,7 +62,7 @@ function at(element, place) {
 }
 
 // Functions that return the texts [title, suffix, note] of the legend, by the value of the parameter `show`. Arguments: the quantity's name
-// and the view's parameters. Functions for rarely used values are in coverage.js.
+// and the view's parameters. coverage.js has those for rarely used values of `show`.
 export const TITLES = { distance: (name, { sensor }) => [say('legend.distance', { tag: sensor ?? '–' })] };
 // For the values of `show` that do not depend on readings, and thus are never uncertain: lowest value as a fraction of the range (blind: 5
 // %, plus rounding).
@@ -90,7 +90,7 @@ export class Legend {
         window.matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`).addEventListener('change', () => this.show(true));
     }
 
-    // Draws the legend again for another length of the bar, because labels keep their distance in pixels.
+    // Draws the legend again if its bar has another length, because the labels keep their distance in pixels.
     fit() {
         const bar = this.element.querySelector('.bar'), long = this.lying.matches ? bar?.clientWidth : bar?.clientHeight;
         if (!long || long === this.long)
@@ -104,7 +104,7 @@ export class Legend {
         return spread(places, Math.min(gap, 1 / Math.max(1, places.length - 1)));
     }
 
-    // Returns a key of everything on which the legend's look depends, so that it is redrawn only if the key changes.
+    // Returns a key of everything on which the legend's look depends. The legend is redrawn only if the key changes.
     contents(params) {
         const { group, show, colormap, ramp_interval, scale, breaks, isolines, look, unit } = params;
         return JSON.stringify([group, show, this.title(params), colormap, ramp_interval, this.session.rangeOf(params), scale,
@@ -141,7 +141,7 @@ export class Legend {
     notes(params, map, isOperator) {
         const { look, scale } = params, off = this.session.drawnError;
         return [
-            // largest possible error of the field at places that the picture marks as uncertain, in the unit of the title
+            // largest possible error of the field at places that the picture marks as uncertain, in the unit of the legend's title
             off && say('legend.drawn', { off }),
             this.title(params)[2],
             isOperator && say('legend.operator'),
@@ -157,7 +157,7 @@ export class Legend {
             since && make('span', { class: 'since' }, ` ${since}`));
     }
 
-    // Makes the scale of values. below: true if values below the range are possible.
+    // Makes the scale of values. below true: values below the range are possible.
     scale(rule, lines, limits, below) {
         const { map, min, max } = rule;
         const decimals = (value) => decimalsFor(rule.log ? value : max - min);
@@ -180,7 +180,7 @@ export class Legend {
             this.bar({ min: -3, max: 3 }, Object.values(LIMIT_PLACES), (p) => band(p).colour), this.ticksAt(places, places, names));
     }
 
-    // Draws the bar with more pixels than the screen has, and a line at the value of each isoline.
+    // Draws the legend's bar with more pixels than the screen has, and a line at the value of each isoline.
     bar(rule, lines, colourAt) {
         const canvas = make('canvas', { class: 'bar', role: 'img', 'aria-label': say('legend.colours', { min: rule.min, max: rule.max }) });
         const lying = this.lying.matches;
@@ -204,7 +204,7 @@ export class Legend {
         return this.ticksAt(places, this.apart(places, 15, 32), values.map(text));
     }
 
-    // Writes numbers next to the bar. Numbers that had to move apart are connected to their positions by lines.
+    // Writes numbers next to the bar. A line connects a number that had to move to its position on the bar.
     ticksAt(from, to, texts) {
         const lying = this.lying.matches, line = (a, b) => (lying ? { x1: 100 * a, y1: 0, x2: 100 * b, y2: 1 }
             : { x1: 0, y1: 100 - 100 * a, x2: 1, y2: 100 - 100 * b });

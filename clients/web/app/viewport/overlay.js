@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Draws markers and labels sharply over the picture, with the camera of that picture.
+// Draws sensor markers and labels sharply over the picture, with the camera of that picture.
 import { ALARM_COLOURS, isGone } from '../../core/alarms.js';
 import { projector } from '../../core/camera.js';
 import { thinOut } from '../../core/declutter.js';
@@ -24,7 +24,7 @@ function polygon(c, points) {
     c.closePath();
 }
 
-// Returns the radius of markers: smaller if they are dense, so that the plant stays visible.
+// Returns the radius of markers, which is smaller where markers are dense, so that the plant stays visible.
 function markerRadius(markers) {
     const xs = markers.map((marker) => marker.x), ys = markers.map((marker) => marker.y);
     const area = (Math.max(...xs) - Math.min(...xs)) * (Math.max(...ys) - Math.min(...ys));
@@ -76,8 +76,8 @@ export class Overlay {
     projectHalf({ params, left, width }, number, known) {
         const { model, picture } = this.session;
         const scale = [this.wide / picture.shownWidth, this.high / picture.fullHeight];
-        // margin in pixels beyond the picture's edge within which markers are still drawn; 0 in a split view, where they would appear in
-        // the other half
+        // margin in pixels beyond the picture's edge within which markers are still drawn; 0 in a split view, where such markers would
+        // appear in the other half
         const rim = params.split ? 0 : 20;
         const project = projector(picture.camera, width, picture.fullHeight);
         const markers = [];
@@ -90,7 +90,7 @@ export class Overlay {
             if (!place || place[0] < -rim || place[1] < -rim || place[0] > width + rim || place[1] > picture.fullHeight + rim)
                 continue;
             const newest = model.readings[tag.index];
-            // value and quality come from the picture, if it has them, and not from newer readings
+            // uses the value and quality with which the picture was drawn, if the server sent them, instead of a newer reading
             const pictured = said.quality ? { ...newest, value: said.value, quality: said.quality } : newest;
             const difference = params.show === 'difference' && shown, away = params.show === 'distance' && shown;
             markers.push({
@@ -111,10 +111,10 @@ export class Overlay {
         return this.all.find((marker) => marker.tag === tag) ?? null;
     }
 
-    // Thins out the markers of each half where they are dense. Returns those to draw, farthest first.
+    // Thins out the markers of each half of the view where they are dense. Returns those to draw, farthest first.
     thinned() {
         const id = ({ tag, half }) => tag.index * 2 + half, { selected } = this.session.params;
-        // tags whose markers passed the thinning in the previous picture, without those that were exempt from it
+        // tags whose markers passed the thinning in the previous picture, without those that are always drawn
         const before = new Set(this.markers.filter(({ kept, held }) => held || !kept).map(id));
         for (const marker of this.all) {
             const { tag, alarm, origin, reading } = marker;
@@ -158,7 +158,8 @@ export class Overlay {
         this.isolines?.draw([...this.blocked(), ...boxes, ...marks]);
     }
 
-    // Returns the boxes, in units, of the HTML elements over the picture that stay where they are, and of those that `more` selects.
+    // Returns the boxes, in units, of the HTML elements over the picture that do not move with it, and of those that the selector `more`
+    // adds.
     boxesOver(more, unit) {
         const { element } = this.viewport, origin = element.getBoundingClientRect();
         return [...element.querySelectorAll(`.legend, .banner, .simulated-note, .chip, #plant-notes, .moment, .split-bar${more}`)]
@@ -171,7 +172,7 @@ export class Overlay {
     // Returns the boxes of everything that labels must not cover.
     blocked() {
         const own = this.boxesOver(', .card, .note-pin', this.unit);
-        const middle = this.wide / 2; // also blocks the line between the halves, so that no label crosses it
+        const middle = this.wide / 2; // also blocks the line between the halves of a split view, so that no label crosses it
         return this.session.shown.split ? [...own, { left: middle - 1, right: middle + 1, top: 0, bottom: this.high }] : own;
     }
 
@@ -193,7 +194,7 @@ export class Overlay {
         return all;
     }
 
-    // Returns labels for all visible markers and all alarm rings, in the order of tags; the selected tag has a card instead.
+    // Returns labels for all visible markers and all alarm rings, in the order of tags. The selected tag has a card instead of a label.
     labels() {
         const marks = this.markers.filter((marker) => !marker.occluded || marker.alarm);
         const inSight = marks.filter(({ occluded }) => !occluded);
@@ -288,7 +289,7 @@ export class Overlay {
         c.strokeStyle = INK;
         c.stroke();
         c.setLineDash([]);
-        if (tag.place === 'equipment') { // a second ring shows that the position is assumed
+        if (tag.place === 'equipment') { // draws a second ring, which shows that the position is assumed
             c.beginPath();
             c.arc(0, 0, radius + 3, 0, 2 * Math.PI);
             c.lineWidth = 1;
@@ -381,7 +382,7 @@ export class Overlay {
         }
     }
 
-    // Returns the width of a label with this text.
+    // Returns the width in units of a label with these parts.
     lineWidth(parts) {
         return Math.ceil(parts.reduce((sum, part) => sum + this.width(part), 0) + 2 * PADDING + (parts.length - 1) * 5);
     }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The picture on the screen: requests pictures of the right size, decodes them, draws them in step with the display, and acknowledges those
-// drawn.
+// it has drawn.
 import { DecodeQueue } from '../../core/decode_queue.js';
 import { isWhole, pictureSize } from '../../core/wire.js';
 
 const RESIZE_WAIT_MS = 100;
-// Converts a length in CSS pixels to device pixels. `exact`: the browser's own measurement, used unless it differs by more than 2 pixels,
-// as on emulated screens, where it ignores page zoom.
+// Converts a length in CSS pixels to device pixels. `exact`: the browser's own measurement. It is used unless it differs by more than 2
+// pixels, as on emulated screens, where it ignores page zoom.
 function devicePixels(cssPx, exact) {
     const px = Math.round(cssPx * window.devicePixelRatio);
     return exact !== undefined && Math.abs(exact - px) <= 2 ? exact : px;
@@ -16,11 +16,11 @@ const sizeOf = (width, height) => ({ ...pictureSize(width, height), pixel_ratio:
 
 export class Viewport {
     // onTick(now) is called once per animation frame, before drawing; onDrawn(isNew, isWarped) after drawing. isNew: a new picture was
-    // drawn; isWarped: what is seen has changed without one (../picture/warp.js).
+    // drawn; isWarped: the screen has changed without a new picture (../picture/warp.js).
     constructor({ element, canvas, session, decoding }) {
         Object.assign(this, { element, canvas, session });
         this.context = canvas.getContext('2d', { alpha: false });
-        this.decoded = []; // decoded frames that are not drawn yet: whole pictures, and rectangles of an incomplete one
+        this.decoded = []; // decoded frames that are not drawn yet: whole pictures, and rectangles of an incomplete picture
         this.scheduled = false;
         this.warp = null; // draws the newest picture from the present camera: a Warp (../picture/warp.js); null: not loaded yet
         this.onTick = this.onDrawn = () => {};
@@ -48,7 +48,7 @@ export class Viewport {
         return this.element.clientHeight;
     }
 
-    // Converts CSS pixels to pixels of the requested picture.
+    // Converts CSS pixels of the viewport to pixels of the requested picture.
     pixelOf(x, y) {
         const size = this.session.following ?? this.session.size;
         return [(x * size.width) / this.width, (y * size.height) / this.height];
@@ -116,8 +116,8 @@ export class Viewport {
         picture.close();
     }
 
-    // Draws the pictures that are complete; rectangles wait for the rest of their picture. A picture of another shape is scaled to the
-    // viewport's height, undistorted. picture.shownWidth: the viewport's width in pixels of the picture.
+    // Draws the pictures that are complete; rectangles wait for the rest of their picture. A picture of another aspect ratio is scaled to
+    // the viewport's height, undistorted. picture.shownWidth: the viewport's width in pixels of the picture.
     draw() {
         const complete = this.decoded.findLastIndex(({ frame }) => !frame.more) + 1;
         const drawn = this.warp?.waits(this.decoded) ? [] : this.decoded.splice(0, complete);

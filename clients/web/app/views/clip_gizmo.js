@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The clip gizmo: arrow handles on the clip plane, or on the sides and the centre of the clip box, for mouse, touch, pen and keys. They
-// move with the picture in each half of the view. Loaded when something is first clipped.
+// The clip gizmo: handles with arrows on the clip plane, or on the sides and at the centre of the clip box, for mouse, touch, pen and keys.
+// The handles move with the picture in each half of the view. Loaded when the user first clips the plant.
 import { projector } from '../../core/camera.js';
 import { numberText } from '../../core/format.js';
 import { alongSight, beforeEye, facing, gripsOf, moveBox, moveGrip, spotsOf, wholeOf } from '../../core/clip_gizmo.js';
@@ -13,7 +13,7 @@ import { byId, make, makeSvg, setText } from '../common/dom.js';
 const RIM_PX = 34; // smallest distance in pixels of a handle from the picture's edge
 const APART_PX = 46; // minimum distance between handles
 const STEPS = { ArrowRight: 0.01, ArrowUp: 0.01, ArrowLeft: -0.01, ArrowDown: -0.01, PageUp: 0.1, PageDown: -0.1, Home: -2, End: 2 };
-// Axis of the plant (0: x, 1: y, 2: z) and direction in which each key moves a box.
+// Axis of the plant (0: x, 1: y, 2: z) and direction in which each key moves a clip box.
 const WAYS = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowUp: [1, 1], ArrowDown: [1, -1], PageUp: [2, 1], PageDown: [2, -1] };
 const STEP = 0.01; // movement per key press, as a fraction of the plant's length along that axis
 const ARROW = 'M-13 0h26M-13 0l6-5.5M-13 0l6 5.5M13 0l-6-5.5M13 0l-6 5.5';
@@ -29,8 +29,8 @@ export class ClipGizmo {
         viewport.element.append(this.label);
     }
 
-    // Handles within the plant's bounds; none while another session is followed. The centre handle of a box comes first, so that no other
-    // handle takes its position.
+    // Handles within the plant's bounds; an empty list while this page follows another session. The centre handle of a box comes first, so
+    // that no other handle takes its position.
     get grips() {
         const { model, params, following } = this.session;
         return model && !following ? [wholeOf(params.clip), ...gripsOf(params.clip, model.plant.bounds)].filter(Boolean) : [];
@@ -53,7 +53,7 @@ export class ClipGizmo {
         const grips = this.session.picture ? this.grips : [], views = grips.length > 0 ? this.views : [];
         for (const [key, button] of this.buttons)
             if (button.half >= views.length || !grips.some(({ id }) => id === button.dataset.id)) {
-                this.buttons.delete(key); // the handle is removed from the map first, because removing a focused button calls show() again
+                this.buttons.delete(key); // removes the handle from the map first, because removing a focused button calls show() again
                 button.remove();
             }
         this.lines.replaceChildren();
@@ -87,7 +87,7 @@ export class ClipGizmo {
         }
     }
 
-    // Points a handle's arrow along its direction, and tells screen readers its value.
+    // Points a handle's arrow along its direction, and gives screen readers the handle's value.
     aim(button, view, at) {
         const { grip, place: [x, y] } = button;
         const end = view.project(along(at, grip.direction, 1e-3 * Math.max(1, grip.high - grip.low))) ?? [x, y];
@@ -100,14 +100,14 @@ export class ClipGizmo {
                 button.setAttribute(`aria-${name}`, value);
     }
 
-    // Returns the boxes of the HTML elements that lie over the picture.
+    // Returns the boxes of the HTML elements that cover parts of the picture.
     covers() {
         const { left, top } = this.viewport.element.getBoundingClientRect();
         return [...document.querySelectorAll('.panel.open, .legend, .card, .assets, .engineer, .alarms')]
             .map((e) => e.getBoundingClientRect()).map((box) => [box.left - left, box.top - top, box.right - left, box.bottom - top]);
     }
 
-    // Returns the first candidate position that is well inside the picture, not covered, and apart from other handles; null if there is
+    // Returns the first position for a handle that is well inside the picture, not covered, and apart from other handles; null if there is
     // none.
     spotOf(grip, { project, left, width, height }, taken, covers) {
         const inside = ([x, y]) => x > left + RIM_PX && y > RIM_PX && x < left + width - RIM_PX && y < height - RIM_PX;
@@ -117,7 +117,8 @@ export class ClipGizmo {
         return number < 0 ? null : { number };
     }
 
-    // Makes a handle. Those in the right half are for pointers only; for keys and screen readers they would be duplicates.
+    // Makes a handle. Handles in the right half of a split view are for pointers only, because keys and screen readers use those of the
+    // left half.
     make(id, half) {
         const drop = (event) => this.drop(event), show = () => this.show(), icon = id === 'whole' ? CROSS : ARROW;
         const button = make('button', { type: 'button', class: 'grip', ...(id === 'whole' ? {} : { role: 'slider' }), 'data-id': id,
@@ -133,7 +134,7 @@ export class ClipGizmo {
         return button;
     }
 
-    // Labels the handle that is dragged, hovered or focused with its position.
+    // Writes its position next to the handle that is dragged, hovered or focused.
     tell(grips) {
         const one = [...this.buttons.values()].find((button) => !button.hidden && grips.includes(button.grip)
             && (this.dragging ? button === this.dragging.button : button.matches(':hover, :focus-visible')));
@@ -165,7 +166,7 @@ export class ClipGizmo {
         this.show();
     }
 
-    // Moves the handle at most once per animation frame.
+    // Moves the dragged handle at most once per animation frame.
     drag(event) {
         const { dragging } = this;
         if (event.pointerId !== dragging?.pointer)
@@ -183,15 +184,15 @@ export class ClipGizmo {
         });
     }
 
-    // Returns the point of the handle's line that is under the pointer: metres along the line, or a position for a whole box; null if
-    // undefined.
+    // Returns the point of the handle's line that is under the pointer, in metres along the line; for a whole box a position. Returns null
+    // if the point is undefined.
     under({ grip, point, button }, [x, y]) {
         const { camera, left, width, height } = this.views[button.half] ?? this.views[0], line = sight(camera, x - left, y, width, height);
         return grip.id === 'whole' ? facing(camera, point, line) : alongSight(point, grip.direction, line);
     }
 
-    // Returns by how many metres the handle was dragged along its line. If the line points at the camera, the pointer's vertical movement
-    // counts instead.
+    // Returns by how many metres the user has dragged the handle along its line. If the line points at the camera, the pointer's vertical
+    // movement counts instead.
     taken(dragging) {
         const { at, from, grip, y: began } = dragging;
         if (from === null)
@@ -248,7 +249,7 @@ const middleText = ([middle]) => `${middle.map((m) => numberText(m, 2)).join(' �
 const textOf = ({ id, corners, axis, turned, at }) => (id === 'whole' ? middleText(corners) : say('views.stays', {
     axis: axis ? axis.toUpperCase() : say('cut.oblique'), sign: turned ? '≤' : '≥', at: numberText(at, 2) }));
 
-// Returns the outline of the section, or the edges of the box, as an SVG path with each edge once.
+// Returns the outline of the section, or the edges of the clip box, as an SVG path that contains each edge once.
 function outline(grips, { camera, project }) {
     const faces = grips.map(({ corners }) => corners).filter((corners) => corners.length > 1);
     const edges = faces.flatMap((corners) => corners.map((p, i) => [p, corners[(i + 1) % corners.length]]));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compares two times side by side: the right half of the stage embeds the page without its controls, at another instant. Both halves have
-// one camera and the same parameters.
+// Compares the plant at two times side by side: the right half of the window embeds this page without its controls, at another instant.
+// Both halves have the same camera and parameters.
 import { addressOf } from '../../core/address.js';
 import { same } from '../../core/camera.js';
 import { fieldInstant, fieldText } from '../../core/instant.js';
@@ -34,7 +34,7 @@ export class Compare {
         return this.session.model.plant.time_zone;
     }
 
-    // The session in the right half; null until its first picture.
+    // The session of the page in the right half; null until its first picture.
     get other() {
         const page = this.frame?.contentWindow?.plantcast;
         return page?.session.welcomed && page.session.picture ? page.session : null;
@@ -81,8 +81,8 @@ export class Compare {
         inner.head.append(inner.importNode(make('link', { rel: 'stylesheet', href: new URL('compared.css', import.meta.url).href })));
     }
 
-    // Connects the embedded page once it shows a picture. Camera moves in the embedded page move the camera of this page, too; its keyboard
-    // commands are carried out by this page.
+    // Connects the embedded page once it shows a picture. Camera moves in the embedded page also move this page's camera; this page carries
+    // out keyboard commands of the embedded page.
     connect(page) {
         this.connected = page;
         page.session.on('camera', () => this.frame && this.session.setCamera(page.session.camera));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Paired wall displays, for engineers: pairing a display by its code, and revoking a pairing.
+// Lists paired wall displays, for engineers: pairing a display by the code that it shows, and revoking a pairing.
 import { zoneClock } from '../../core/format.js';
 import { ask } from '../../core/history.js';
 import { refusalText } from '../../core/refusals.js';
@@ -21,7 +21,7 @@ export class Devices {
         this.learn();
     }
 
-    // Loads the list of devices. It stays empty if displays need no token, or the user is not an engineer.
+    // Loads the list of displays. It stays empty if displays need no token, or the user is not an engineer.
     async learn() {
         const { session } = this, turn = this.turn = (this.turn ?? 0) + 1;
         const { list } = session.role === 'engineer' ? await ask('api/v1/devices', {}, session.token).then((answer) => answer.json(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of saved views: opening a view; with the right role also saving, reordering, and restoring earlier versions.
+// The list of saved views: opening a view, and for users with the right role saving, reordering, and restoring earlier versions.
 import { ask } from '../../core/history.js';
 import { engineersOf, idFor, isEngineers, regained, textOf, viewOf } from '../../core/named_views.js';
 import { zoneClock } from '../../core/format.js';
@@ -22,11 +22,11 @@ export class NamedViews {
         session.on('views', () => {
             this.show();
             if (this.isNew && session.named && this.own && this.own !== engineersOf(session))
-                this.regain(session.named); // the server has forgotten this session
+                this.regain(session.named); // the server has forgotten this session and its parameters
             this.isNew = false;
         });
         session.on('welcome', () => {
-            this.isNew = true; // until the server has sent the views
+            this.isNew = true; // true until the server has sent the list of views
             this.show();
         });
         session.on('params', () => this.watch());
@@ -54,7 +54,8 @@ export class NamedViews {
         this.mark();
     }
 
-    // Takes the parameters that only engineers may send from a saved view, after a reload or a reconnect: the session cannot send them.
+    // Sets the parameters that only engineers may send from a saved view, after a reload or a reconnect: this session may not send them
+    // itself.
     regain(id) {
         const { session } = this;
         if (!session.views.some((view) => view.id === id)) {
@@ -69,10 +70,10 @@ export class NamedViews {
     // id: saved view whose parameters for engineers the session shows; null: none.
     remember(id) {
         this.session.named = id;
-        this.own = null; // the parameters as text, once the server has taken them from the view
+        this.own = null; // the parameters for engineers as text, once the server has taken them from the saved view
     }
 
-    // Forgets the saved view when its parameters for engineers change, for example because the user shows another group.
+    // Forgets which saved view is shown when its parameters for engineers change, for example because the user shows another sensor group.
     watch() {
         const { session } = this;
         if (!session.named || this.isNew || session.params !== session.confirmed)
@@ -95,8 +96,8 @@ export class NamedViews {
             if (fly)
                 modules.use('cameraController', (controller) => controller.flyTo(camera));
             else if (modules.awaited.has('cameraController'))
-                // an earlier flight may still wait for these modules: land() ends it. No camera is set here, because the user may have
-                // moved it since
+                // an earlier flight may still wait for these modules; land() ends it. No camera is set here, because the user may have
+                // moved the camera since
                 modules.use('cameraController', (controller) => controller.land());
         });
     }
@@ -203,7 +204,7 @@ export class NamedViews {
                 if (image)
                     image.src = url;
             } catch {
-                break; // stops requesting thumbnails after a failure; a view without one is still listed by its title
+                break; // stops requesting thumbnails after a failure; a view without a thumbnail is still listed by its title
             }
         }
         this.drawing = false;

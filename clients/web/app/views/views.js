@@ -47,7 +47,7 @@ export class Views {
         this.modules.use('namedViews', (named) => named.open(id, fly), 'open');
     }
 
-    // Takes the parameters that only engineers may send from a saved view.
+    // Sets the parameters that only engineers may send from a saved view.
     regain(id) {
         this.modules.use('namedViews', (named) => named.regain(id), 'open');
     }
@@ -88,7 +88,7 @@ export class Views {
         return [min[index], max[index]];
     }
 
-    // Bounds in which a new clip box is made: those of the selected equipment, else of the plant.
+    // Bounds around which a new clip box is made: those of the selected equipment, else of the plant.
     get boxed() {
         const { model, params } = this.session;
         return (model.asset(params.selected) ?? model.plant).bounds;
@@ -100,7 +100,7 @@ export class Views {
             return;
         }
         const [min, max] = this.range(axis);
-        // a horizontal section keeps the lower part, so that one looks in from above
+        // a horizontal section keeps the lower part, so that users look into it from above
         this.session.setParams({ clip: cut(axis, (min + max) / 2, axis === 'z') });
     }
 
@@ -110,7 +110,7 @@ export class Views {
             this.session.setParams({ clip: cut(now.axis, now.at, !now.turned) });
     }
 
-    // Moves the section at most once per animation frame, because sliders fire more often.
+    // Moves the section plane at most once per animation frame, because sliders fire more often.
     move() {
         if (this.moving)
             return;

@@ -6,12 +6,13 @@ import { legendsLie, readWall, SPREAD_MS, wallFit } from '../../core/wall.js';
 import { keepScreenOn } from '../common/clock.js';
 import { byId, make, setVariable, styled } from '../common/dom.js';
 
-const FAR_MS = 60000; // for this many milliseconds, the page shows the installer from which distance its text is readable
-const LEAST_PICTURE = 0.3; // smallest height of the picture as a fraction of the window's; below this, the whole page shrinks
+const FAR_MS = 60000; // time in milliseconds for which the page tells the installer from which distance its text is readable
+// smallest height of the picture as a fraction of the window's height; the whole page shrinks rather than the picture
+const LEAST_PICTURE = 0.3;
 const TIGHT = 620; // width of the display, in units of page.unit, below which the date has no room next to the time
 
 // Sets page.unit (size of a unit of the page) and calls page.onUnit() when it changes. Sets page.lying, which has a media query's
-// interface: whether legends lie horizontally. Legends and the note on simulated values have their own space, so that they cover no
+// interface: whether legends lie horizontally. Legends and the note on simulated values have space of their own, so that they cover no
 // reading.
 export async function hangOnWall(search, page) {
     const pane = new URLSearchParams(search).get('pane'), wall = readWall(search);
@@ -28,7 +29,7 @@ export async function hangOnWall(search, page) {
         if (turned)
             hear.forEach((f) => f());
     };
-    // Scales the page to the window. Returns the distance from which the text is readable.
+    // Scales the page to the window. Returns the largest distance from which the text is readable.
     const fit = () => {
         const { innerWidth: width, innerHeight: height } = window, { scale, metres } = wallFit(wall, window.screen, { width, height });
         hang(scale);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Boards of the headset: canvases with the legend and the age of the data, warnings, the panel at the wrist, cards and markers.
+// Boards: canvases that the headset shows in the room, with the legend and the age of the data, warnings, the panel at the wrist, cards and
+// markers.
 import { ALARM_COLOURS, isGone } from '../../core/alarms.js';
 import { RADIANS } from '../../core/camera.js';
 import { ageText, decimalsFor, numberText, quantityText, shortNumberText, unitText, zoneClock } from '../../core/format.js';
@@ -13,13 +14,13 @@ import { make } from '../common/dom.js';
 import { BEHIND_MS } from '../toolbar/status.js';
 import { titleOf } from '../viewport/legend.js';
 
-const PX_PER_DEGREE = 24; // resolution of boards that keep their size in the view
+const PX_PER_DEGREE = 24; // resolution, in pixels per degree of view, of boards whose size in the view is fixed
 const LETTER_PX = 52; // font size; a capital letter is 0.72 of this, which is 1.56 degrees at PX_PER_DEGREE
 const PATTERN_PX = 18, LINE = 1.24, FAMILY = 'system-ui, sans-serif', INK = '#1d252d', PAPER = 'rgb(250 250 250 / 94%)', ALERT = '#7a0019';
 const WRIST_PX = 4600; // pixels per metre of the panel at the wrist
 const css = ([r, g, b]) => `rgb(${r} ${g} ${b})`;
 
-// A canvas and its texture, drawn again only if `key` changes.
+// A canvas and its WebGL texture. The canvas is drawn again only if `key` changes.
 export class Board {
     constructor(painter, width, height) {
         this.painter = painter;
@@ -152,7 +153,7 @@ export function showLegend(board, session, state, warning, now) {
     });
 }
 
-// Shows a warning in the middle of the view. grave: white on dark red.
+// Shows a warning in the middle of the view. grave true: white on dark red.
 export function showBanner(board, words, detail, grave) {
     return board.show(`${grave} ${words} ${detail}`, (c, width) => {
         c.font = `400 ${LETTER_PX}px ${FAMILY}`;
@@ -164,7 +165,7 @@ export function showBanner(board, words, detail, grave) {
     });
 }
 
-// Returns the buttons of the panel at the wrist: [{ text, isOn, act }] by rows.
+// Returns the buttons of the panel at the wrist in rows: [[{ text, isOn, act }, ...], ...].
 function wristRows(session, leave) {
     const { model, params, time, recorded } = session, groups = model.groups.slice(0, 8);
     const now = time.atUs ?? session.clockUs(), live = time.atUs === null;
@@ -176,7 +177,7 @@ function wristRows(session, leave) {
         [{ text: say('xr.leave'), act: leave }]];
 }
 
-// Shows the panel at the wrist. Returns its buttons with their rectangles in shares of the board.
+// Shows the panel at the wrist. Returns its buttons with their rectangles as fractions of the board.
 export function showWrist(board, session, pointed, leave) {
     const rows = wristRows(session, leave), { width, height } = board.canvas, tall = height / rows.length;
     const buttons = rows.flatMap((row, j) => row.map((button, i) => ({ ...button, x: i / row.length, y: j / rows.length,
@@ -197,7 +198,7 @@ export function showWrist(board, session, pointed, leave) {
     return { over: buttons[over] ?? null };
 }
 
-// Returns the lines [[text, size, weight], ...] of a card about what was picked.
+// Returns the lines [[text, size, weight], ...] of a card about the sensor or point that the user picked.
 export function cardLines(session, picked, now) {
     const { model } = session, tag = picked.sensor ? model.tag(picked.sensor) : null, asset = model.asset(tag?.asset ?? picked.asset);
     const named = asset ? [asset.tag || asset.id, asset.description].filter(Boolean).join(', ') : '';
@@ -268,13 +269,13 @@ export function showMarker(board, quality, alarm) {
     });
 }
 
-// Shows one colour: a ray, or a veil over the view.
+// Fills a board with one colour: a ray, or a veil over the view.
 export const showColour = (board, colour) => board.show(colour, (c, width, height) => {
     c.fillStyle = colour;
     c.fillRect(0, 0, width, height);
 });
 
-// Shows the ring of the place where a user will stand.
+// Shows the ring on the floor where the user will stand.
 export const showRing = (board) => board.show('once', (c, width) => {
     for (const [line, colour] of [[0.12, '#fff'], [0.06, INK]]) {
         c.beginPath();

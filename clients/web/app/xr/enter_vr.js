@@ -13,12 +13,12 @@ export class EnterVr {
         this.button = make('button', { class: 'icon', id: 'enter-vr', title: name, 'aria-label': name, onclick: () => this.enter() },
             makeSvg('svg', { 'aria-hidden': 'true' }, makeSvg('path', { d: GOGGLES })), make('span', { class: 'words' }, name));
         byId('help-open').before(this.button);
-        this.headset = null; // drives the headset while it shows the plant; null: no headset shows it
+        this.headset = null; // controls the headset while it shows the plant; null: no headset shows it
         // hides the button if the server sends no depth grids, without which the eyes' views cannot be drawn
         page.session.greeted(() => { this.button.hidden = !page.session.reprojects; });
     }
 
-    // Requests the headset's session first, because browsers grant it only right after the user's click.
+    // Requests the WebXR session before anything else, because browsers grant it only right after the user's click.
     async enter() {
         const { page } = this;
         this.button.disabled = true;

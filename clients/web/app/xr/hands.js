@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hands on a headset: pull the trigger at the panel at the wrist, a sensor, equipment or the floor that the hand points at; grab to move.
+// A user's hands (controllers) with a headset: the trigger acts on the panel at the wrist, a sensor, equipment or the floor at which the
+// hand points; grabbing moves the room.
 import { RADIANS } from '../../core/camera.js';
 import { directionOf, floorHit, hitOf, panelHit, pointOf, poseOf, standAt } from '../../core/headset_views.js';
 import { askPick } from '../../core/requests.js';
@@ -8,9 +9,10 @@ import { add, along, cross, dot, length, scale, subtract, unit } from '../../cor
 import { Board, cardLines, showCard, showColour, showRing, showWrist } from './boards.js';
 
 const REACH = Math.cos(2 * RADIANS); // cosine of the largest angle between a ray and a marker at which the ray points at the marker
-const LEVEL = Math.cos(35 * RADIANS); // cosine of the steepest slope on which a user can stand
+const LEVEL = Math.cos(35 * RADIANS); // cosine of the steepest floor on which a user can stand
 const RAY_M = 4, RAY_WIDE_M = 0.004, RING_M = 0.5;
-const AGAIN_MS = 1000, UNANSWERED_MS = 3000; // a request without an answer is given up after UNANSWERED_MS
+// AGAIN_MS: interval of requests for a card's value; a request without an answer is abandoned after UNANSWERED_MS
+const AGAIN_MS = 1000, UNANSWERED_MS = 3000;
 const WRIST_UP_M = 0.16; // height in metres of the panel at the wrist above the hand
 
 export class Hands {
@@ -70,7 +72,7 @@ export class Hands {
         return along(along(at, x, (u - 0.5) * width), y, (0.5 - v) * height);
     }
 
-    // Returns what a ray points at: { kind: wrist, sensor, surface or floor, point, ... }; null: nothing.
+    // Returns the thing at which a ray points: { kind: wrist, sensor, surface or floor, point, ... }; null: none.
     targetOf(source, { at, along: direction }) {
         const { headset } = this, panel = this.panel();
         const place = panel && source !== this.wristAt.source ? panelHit(panel, at, direction) : null;
@@ -89,7 +91,7 @@ export class Hands {
         return floor ? { kind: 'floor', point: floor } : null;
     }
 
-    // Acts on what a hand points at, when its trigger is pulled.
+    // Acts on the thing at which a hand points, when the user pulls the hand's trigger.
     pull(source) {
         const target = this.rays.get(source)?.target;
         this.card = null;
@@ -106,7 +108,7 @@ export class Hands {
         headset.rig = standAt(headset.rig, [...headset.head.slice(12, 15)], along(point, this.up, headset.floorM));
     }
 
-    // Asks the server what is at a point; hear() gets the answer.
+    // Asks the server what is at a point of the plant; hear() gets the answer.
     pick({ point }, purpose = 'headset') {
         const { session, shown } = this.headset, { width, height } = session.size;
         Object.assign(this, { asked: purpose, askedAt: performance.now() });
@@ -116,7 +118,7 @@ export class Hands {
 
     hear(picked) {
         const { asked } = this;
-        // this answer ends the hands' own request, too: if another module's request is answered, the server has dropped the hands' request
+        // an answer to another module also ends the hands' own request, because the server has then dropped it
         this.asked = null;
         if (picked.purpose !== asked || (asked === 'headset again' && !this.card))
             return;
@@ -129,7 +131,7 @@ export class Hands {
             this.card = { picked, at: position };
     }
 
-    // Asks for the value at a place again when readings change.
+    // Requests the value at the card's point again when readings change.
     ask() {
         const waitMs = this.asked ? UNANSWERED_MS : AGAIN_MS;
         if (!this.card || this.card.picked.sensor || performance.now() - this.askedAt < waitMs || !this.headset.shown)
@@ -142,7 +144,7 @@ export class Hands {
         this.card = this.asked = null;
     }
 
-    // Returns the boards of the hands: { wrist, others }. isStale: values are from before the connection was lost.
+    // Returns the boards of the hands: { wrist, others }. isStale true: values are from before the connection was lost.
     boards(now, isStale) {
         const { headset } = this, { session, xr } = headset, head = poseOf(headset.rig, headset.head).at, list = [];
         for (const { at, along: direction, target } of this.rays.values()) {

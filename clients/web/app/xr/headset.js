@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shows the plant on a headset: asks the server for a wide picture with depth from the head's place, and draws both eyes from it at the
-// headset's own rate and pose.
+// Shows the plant on a headset: asks the server for a wide picture with depth from the head's position, and draws both eyes' views from it
+// at the headset's own frame rate and pose.
 import { isParallel } from '../../core/camera.js';
 import { toPerspective } from '../../core/camera_moves.js';
 import { eyeOf, headCamera, isApart, poseOf, rigFor, STAND_M, wideView } from '../../core/headset_views.js';
@@ -13,14 +13,14 @@ import { Board, showBanner, showColour, showLegend, showMarker } from './boards.
 import { Hands } from './hands.js';
 import { Painter } from './painter.js';
 
-const FARTHEST_M = 2.5; // distance of the head from the picture's camera beyond which the picture is not shown
-const TEXT_MS = 250; // interval at which boards are checked for changes
-const LATE_MS = 1000; // time after which a missing picture is reported
+const FARTHEST_M = 2.5; // distance in metres of the head from the picture's camera beyond which the picture is not shown
+const TEXT_MS = 250; // interval in milliseconds at which boards are checked for changes
+const LATE_MS = 1000; // time in milliseconds after which a missing picture is reported
 const LEGEND = { metres: 1.3, pitchDeg: 28 }, BANNER_M = 1.3, MARKER_PX = 32, MOST_MARKERS = 150;
 const STALE = ['lost', 'silent'], GRAVE = [...STALE, 'nodata'];
 
-// current: the Headset in use; isListening: the session's events are handled. They are handled only once, because a session cannot remove
-// listeners.
+// current: the Headset in use; isListening: the events of the page's session are handled. Handlers are added only once, because a session
+// cannot remove them.
 let current = null, isListening = false;
 function listenTo(session) {
     if (isListening)
@@ -69,7 +69,7 @@ export class Headset {
         xr.requestAnimationFrame(this.next);
     }
 
-    // Takes the page's session over. The page draws nothing until leave().
+    // Takes over the page's session with the server. The page draws nothing until leave().
     borrow() {
         const { session, viewport } = this, { camera, model, params } = session;
         const seen = isParallel(camera) ? toPerspective(camera) : camera;
@@ -91,7 +91,7 @@ export class Headset {
         current = this;
     }
 
-    // Gives the session back: the page shows what it showed before.
+    // Gives the session back: the page shows what it showed before the headset.
     leave() {
         if (this.ended)
             return;
@@ -104,7 +104,7 @@ export class Headset {
         delete session.resize;
         Object.assign(viewport, { onDrawn: before.onDrawn, warp: viewport.warp && before.warp });
         session.setVisible(!document.hidden);
-        this.painter.gl.getExtension('WEBGL_lose_context')?.loseContext(); // frees the memory of the GPU at once
+        this.painter.gl.getExtension('WEBGL_lose_context')?.loseContext(); // frees the GPU memory at once
         session.resize(before.size);
         if (before.split)
             session.setParams({ split: before.split });
@@ -120,7 +120,7 @@ export class Headset {
             this.xr.end().catch(() => {});
     }
 
-    // Draws one frame of the headset.
+    // Draws one frame for the headset.
     draw(frame) {
         const { xr, session, viewport, painter } = this;
         if (this.ended)
@@ -151,7 +151,7 @@ export class Headset {
         this.frames++;
     }
 
-    // Requests the picture for the head's pose, unless the newest requested picture is good enough.
+    // Requests a picture for the head's pose, unless the picture requested last is good enough.
     aim({ transform: { matrix }, views }) {
         const { session } = this, { height } = this.xr.renderState.baseLayer.getViewport(views[0]);
         const shape = views.map(({ projectionMatrix }) => [...projectionMatrix]).join() + height;
@@ -164,7 +164,8 @@ export class Headset {
         if (!this.sent || session.camera !== this.sent || isApart(this.sent, camera)) {
             session.setCamera(camera);
             this.sent = session.camera;
-            session.connection.activeAt = Date.now(); // counts as user activity, so that a user who only moves the head is not signed out
+            // counts as user activity, so that the server does not sign out a user who only moves the head
+            session.connection.activeAt = Date.now();
         }
     }
 
@@ -173,8 +174,8 @@ export class Headset {
         return depth ? this.before.warp?.grids.find((one) => one.depth === depth) : undefined;
     }
 
-    // Returns true if the new pictures may be drawn: their meshes are built, or have been missing for LATE_MS. While it returns false, the
-    // pictures are neither drawn nor acknowledged, so the server waits.
+    // Returns true if the new pictures may be drawn, because their meshes are built, or have been missing for LATE_MS. While it returns
+    // false, the pictures are neither drawn nor acknowledged, so the server waits.
     isDecoded(now) {
         const isBuilt = this.viewport.decoded.every(({ frame }) => {
             const grids = this.gridsOf(frame);
@@ -185,14 +186,14 @@ export class Headset {
         return isBuilt || now - this.builtAt > LATE_MS;
     }
 
-    // Returns true if the headset still shows an older picture than the newest one LATE_MS after the last change, because the newest has no
-    // usable depth grid.
+    // Returns true if the headset still shows an older picture LATE_MS after the last change, because the newest picture has no usable
+    // depth grid.
     isFlat(now) {
         const { session: { picture }, shown, before } = this;
         return picture && picture !== shown && picture !== before.picture && now - this.shownAt > LATE_MS;
     }
 
-    // Hands a new picture with its depth to the painter.
+    // Loads a new picture with its depth grid into the painter.
     take(now) {
         const { session: { picture }, painter, viewport } = this, [part, other] = (picture && this.gridsOf(picture)?.parts) || [];
         if (!part || other || picture.camera.fov === 0 || picture === this.shown)
@@ -202,7 +203,7 @@ export class Headset {
         this.find();
     }
 
-    // Finds the markers of the picture, the nearest first.
+    // Finds the sensor markers of the picture, the nearest first.
     find() {
         const { session, shown } = this, { model } = session, marks = session.markersOf(shown.seq);
         this.markers = model.tags.filter(({ position, index }) => position && marks?.has(`${index}/0`) && !marks.get(`${index}/0`).occluded)
@@ -219,14 +220,14 @@ export class Headset {
         return this.marks.get(key);
     }
 
-    // Returns the axes of a board at a place that faces the head.
+    // Returns the axes of a board at a position, so that the board faces the head.
     facing(at) {
         const { at: eye, axes: [, up] } = poseOf(this.rig, this.head), z = unit(subtract(eye, at));
         const x = unit(cross(up, z));
         return [x, cross(z, x), z];
     }
 
-    // Returns a place that moves with the head, `pitchDeg` below the middle of the view.
+    // Returns a position that moves with the head, `pitchDeg` below the middle of the view.
     beforeHead(metres, pitchDeg) {
         const { at, axes: [, up, back] } = poseOf(this.rig, this.head), angle = pitchDeg * Math.PI / 180;
         return along(along(at, back, -metres * Math.cos(angle)), up, -metres * Math.sin(angle));

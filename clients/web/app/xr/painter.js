@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Draws an eye of a headset by WebGL 2: the server's picture on the mesh over its depth grid, and boards (rectangles with a canvas).
+// Draws an eye's view for a headset with WebGL 2: the server's picture on the mesh over its depth grid, and boards (rectangles with a
+// canvas).
 import { clipOf, eyeMatrix } from '../../core/headset_views.js';
 import { subtract, add, scale } from '../../core/vector.js';
 import { FLOATS } from '../../core/warp_mesh.js';
 import { MESH, PICTURE, programOf } from '../picture/painters/gl_painter.js';
 
-const NEAREST_M = 0.05; // nothing nearer is drawn
-// grey of directions that no picture shows; its lattice tells it from equipment without a sensor, which is also grey
+const NEAREST_M = 0.05; // metres from the eye; nothing nearer is drawn
+// grey of directions that no picture shows; a lattice on it distinguishes it from equipment without a sensor, which is also grey
 const UNDRAWN = { light: 0.55, dark: 0.3 };
 const BOARD = `#version 300 es
 uniform vec4 corners[4];
@@ -24,7 +25,7 @@ void main() {
     colour = texture(picture, at);
 }`;
 
-// A lattice on the faces of an endless cube around the plant: both eyes see it in the same directions.
+// Draws a lattice on the faces of an infinitely large cube around the plant, which both eyes see in the same directions.
 const RAYS = `#version 300 es
 uniform vec3 rays[4];
 out vec3 ray;
@@ -45,7 +46,7 @@ void main() {
 }`;
 
 export class Painter {
-    // backdrop: `light` or `dark`, as in the pictures.
+    // backdrop: `light` or `dark`, like the background of the pictures.
     constructor(gl, backdrop) {
         Object.assign(this, { gl, buffers: null, source: null });
         this.mesh = programOf(gl, MESH, PICTURE);
@@ -69,7 +70,7 @@ export class Painter {
         return texture;
     }
 
-    // Takes a picture to draw from now on. canvas: its pixels; part: { grid, mesh } of its depth; camera: the picture's camera.
+    // Sets the picture that is drawn from now on. canvas: its pixels; part: its { grid, mesh } of depth; camera: the picture's camera.
     take(canvas, part, camera) {
         const { gl } = this, { grid, mesh } = part;
         gl.bindTexture(gl.TEXTURE_2D, this.picture);
@@ -94,7 +95,7 @@ export class Painter {
         gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     }
 
-    // Covers the view of an eye with the lattice; the picture is drawn over it.
+    // Fills an eye's view with the lattice. The picture is drawn over it.
     drawUndrawn({ axes: [right, up, back], projection: p }) {
         const { gl, undrawn } = this;
         gl.disable(gl.DEPTH_TEST);
@@ -107,7 +108,7 @@ export class Painter {
         gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
     }
 
-    // Draws the picture as an eye sees it.
+    // Draws the picture as an eye at another position sees it.
     drawPicture(eye) {
         const { gl, mesh, source: { part: { grid, mesh: { indices } }, camera, size } } = this;
         gl.enable(gl.DEPTH_TEST);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Draws warped pictures by WebGL 2, for warp.js.
+// Draws warped pictures with WebGL 2, for warp.js.
 import { FLOATS } from '../../../core/warp_mesh.js';
 
 export const MESH = `#version 300 es
@@ -12,7 +12,7 @@ void main() {
     kind = vertex.w;
     gl_Position = warp * vec4(vertex.xyz, 1.0);
 }`;
-// Pixels behind a step in depth that contain a part of the colour before the step become grey.
+// Draws the picture on its mesh. Pixels behind a step in depth that contain a part of the colour before the step become grey.
 export const PICTURE = `#version 300 es
 precision highp float;
 in vec2 at;
@@ -35,8 +35,8 @@ const BEHIND = `#version 300 es
 void main() {
     gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 1.0, 1.0);
 }`;
-// Computes from a reduced picture the greys around places that are not drawn, and how wide these places are. A reduced picture keeps this
-// cheap on machines without a GPU.
+// Computes from a reduced picture the grey around undrawn places, and how wide these places are. A reduced picture keeps this fast on
+// machines without a GPU.
 const AROUND = `#version 300 es
 precision highp float;
 uniform sampler2D drawn;
@@ -62,8 +62,8 @@ void main() {
     float mark = min(line.x, line.y) < 0.1 * period ? 0.08 * near.a : 0.0;
     colour = vec4(vec3(near.r > 0.4 ? near.r - mark : near.r + mark), 1.0);
 }`;
-// Fades out the warped picture by discarding its pixels one after the other, in a dither pattern, so that the server's picture below shows.
-// A mixture of both colours would be read as the value between them.
+// Fades out the warped picture by discarding more and more pixels, in a dither pattern, so that the server's picture below shows. Users
+// would read a mixture of both colours as the value between them.
 const GONE = `#version 300 es
 precision highp float;
 uniform float gone;
@@ -75,7 +75,7 @@ void main() {
         discard;
     colour = vec4(0.0);
 }`;
-// REDUCED: REDUCED x REDUCED pixels become one pixel of the reduced picture, from which the greys are computed
+// each block of REDUCED x REDUCED pixels becomes one pixel of the reduced picture, from which the greys are computed
 const REDUCED = 4;
 
 // Returns { program, at(name) }; at() returns the location of a uniform.
@@ -95,11 +95,11 @@ export function programOf(gl, ...sources) {
 }
 
 export class GlPainter {
-    // Throws if a program does not compile.
+    // Throws if a shader program does not compile.
     constructor(gl) {
         this.gl = gl;
-        this.loaded = null; // parts whose meshes and masks are uploaded
-        this.uploaded = []; // { buffers, masks } for each loaded part
+        this.loaded = null; // halves of the picture whose meshes and masks WebGL has
+        this.uploaded = []; // { buffers, masks } for each half in `loaded`
         this.mesh = programOf(gl, MESH, PICTURE);
         this.around = programOf(gl, BEHIND, AROUND);
         this.undrawn = programOf(gl, BEHIND, UNDRAWN);
@@ -129,7 +129,7 @@ export class GlPainter {
         return texture;
     }
 
-    // Sets the size of the drawing.
+    // Sets the size of the canvas in pixels.
     resize(width, height) {
         const { gl, reduced } = this;
         Object.assign(gl.canvas, { width, height });
@@ -143,15 +143,15 @@ export class GlPainter {
         gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
     }
 
-    // Hands a picture and the meshes of its parts to WebGL.
+    // Gives a picture and the meshes of its halves to WebGL.
     load(pixels, parts) {
         const { gl } = this;
         gl.bindTexture(gl.TEXTURE_2D, this.texture);
         gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-        // uses the visible size, because the coded picture may be a pixel wider and higher than the frame
+        // uses the visible size, because a video frame's coded size may be a pixel wider and higher
         this.size = [pixels.displayWidth ?? pixels.width, pixels.displayHeight ?? pixels.height];
         if (parts === this.loaded)
-            return; // an earlier picture that shares the depth grids has uploaded them
+            return; // an earlier picture with the same depth grids has already uploaded their meshes
         for (const { buffers, masks } of this.uploaded) {
             buffers.forEach((buffer) => gl.deleteBuffer(buffer));
             gl.deleteTexture(masks);
@@ -172,8 +172,9 @@ export class GlPainter {
         return { buffers, masks: texture };
     }
 
-    // Draws the loaded picture. matrices, boxes: for each part, from warpMatrix(), and { left, top, width, height } in drawn pixels.
-    // period: of the lattice, in drawn pixels. gone: part (0 to 1) of the pixels that are left out, at which the canvas below shows.
+    // Draws the loaded picture. matrices, boxes: for each half, the result of warpMatrix(), and { left, top, width, height } in drawn
+    // pixels. period: of the lattice over undrawn places, in drawn pixels. gone: fraction of the pixels that are left out, where the canvas
+    // below shows.
     paint(matrices, boxes, period, gone) {
         const { gl, mesh } = this;
         gl.viewport(0, 0, gl.canvas.width, gl.canvas.height);
