@@ -130,7 +130,8 @@ static void forget_state(struct field *field, struct field_state *state)
     field_cache_remove_state(field, link);
 }
 
-/* Grows the state to `count` vertices. Returns false when out of memory; the state is then freed. */
+/* Allocates memory for `count` vertices in the state (computed field); makes room in the cache for it. Returns false when out of memory;
+   the state is then freed. */
 static bool grow_state(struct field *field, struct field_state *state, size_t count)
 {
     size_t more = state_more_bytes(state, count);

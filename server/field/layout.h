@@ -56,7 +56,7 @@ void layout_destroy(struct field_layout **layout);
 const float *layout_along(const struct layout_sensor *sensor, enum distance_mode mode);
 /* Returns true if renderers evaluate the sum over the sensors at each pixel instead of interpolating between vertices (plant/exact.h). */
 bool layout_is_exact(const struct field_layout *layout, enum interpolation interpolation, enum distance_mode mode);
-/* Returns whether the sensor's distances by this mode are in its column of the asset file. */
+/* Returns whether the asset file stores the sensor's distances of this kind. */
 bool layout_is_in_file(const struct layout_sensor *sensor, enum distance_mode mode);
 /* Returns the distances of `count` vertices from one sensor, beginning with vertex `begin`: a pointer to them, or to `scratch`, which
    receives them. The vertices must be in one block of KERNEL_BLOCK vertices (kernels.h). If layout->points is set, it returns the

@@ -31,7 +31,7 @@ static const struct influence_entry *entry_of(const struct field_layout *layout)
     return NULL;
 }
 
-/* Looks up the distances between all sensors once. The caller frees the array (mem_free). */
+/* Returns the geodesic distances between all pairs of sensors, by [to][from]. The caller frees the array (mem_free). */
 static float *distances_between(const struct field_layout *layout)
 {
     const size_t n = layout->sensor_count;

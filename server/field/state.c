@@ -160,7 +160,8 @@ static double severity_of(const struct plant_group *group, const struct plant_ta
     return isfinite(place) ? fabs(place) : fmin(fabs(reading - middle) / (group->max - middle), 0.999);
 }
 
-/* Among sensors with an assumed position, selects the one nearest to trouble to give the asset's value; of equally near ones the first. */
+/* If the positions of all sensors are assumed, selects the sensor whose reading is nearest to trouble (severity_of) to give the asset's
+   value; of equally near ones the first. */
 static void choose_one(struct field_state *state, const struct snapshot *snapshot)
 {
     const struct field_layout *layout = state->layout;

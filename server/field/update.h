@@ -11,7 +11,8 @@ void update_begin(struct field_state *state, size_t count);
 /* Does about `work` nanoseconds (of one core) of the update, and at least one block. Returns true once it is done; state->update is NULL
    then. */
 bool update_go_on(struct field_state *state, struct workers *workers, double work, uint64_t *versions);
-/* Returns true if the update is short and only reads its weights, so that update_run() may run in parallel with other updates. */
+/* Returns true if the state's update is short and does not change its weights, so that update_run() may run in parallel with other
+   updates. */
 bool update_is_light(const struct field_state *state);
 /* Does the whole update on the calling thread, after update_begin(), if update_is_light() returned true. update_end() must follow. Thread:
    any, in parallel with updates of other states. */
@@ -23,7 +24,7 @@ bool update_is_in_range(const struct field_state *state);
 /* Abandons the state's update in progress, if there is one. */
 void update_forget(struct field_state *state);
 
-/* *rule receives the rule that turns sums into values. inputs: by sensor of the layout. */
+/* Writes to *rule how sums over sensors are converted to field values. inputs: by sensor of the layout. */
 void update_rule(const struct field_state *state, const struct state_input *inputs, struct kernel_value *rule);
 /* Sets all members of *at except its value, for a prepared vertex of `weights`, which must be for the state's parameters and sensors.
    total: sum of the vertex's weights; marked: sum of the weights of Uncertain sensors, 0 if there are none. */

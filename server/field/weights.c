@@ -477,7 +477,7 @@ void weights_prepare(struct weights *weights, size_t begin, size_t count)
     }
 }
 
-/* Scratch memory for the columns (sensors' weights) computed in one step of a sum. */
+/* Working memory for up to KERNEL_COLUMNS columns (a column: one sensor's weights at a block), computed in one step of a sum. */
 struct workroom {
     float near_log2[KERNEL_BLOCK], distance_m[KERNEL_BLOCK], weights[KERNEL_COLUMNS][KERNEL_BLOCK], terms[KERNEL_COLUMNS][KERNEL_BLOCK];
 };

@@ -62,7 +62,8 @@ struct weights {
     uint8_t *known; /* for each block: which of its arrays near_m, place, top and total are filled (bits of enum weights_known) */
     const float *prepared;       /* [member][vertex]: prepared weights from the asset's influence file; NULL: weights are computed from
                                     distances */
-    struct influence_fill *fill; /* factor that gives lost sensors a value, for prepared interpolations; NULL: no sensor is lost */
+    /* for prepared interpolations: factorised matrix from which lost sensors get values (influence_fill.h); NULL: no sensor is lost */
+    struct influence_fill *fill;
     /* for prepared interpolations with lost sensors, by sensor: the value that the sensor gets if all used sensors read 1; else NULL */
     double *ones;
     float decay_m; /* metres; for interpolation fin: the decay length; for gp: 1/k, with k as in preprocess/influence/gaussian.h */

@@ -124,7 +124,7 @@ SOFT_INLINE void carry_context(const struct soft_mesh *mesh, const uint32_t *ver
     corners->all_flags = 0;
 }
 
-/* Lists the indices of all vertices of the part, padded to a multiple of LANES. Returns the length of the list. */
+/* Fills `numbers` with the indices of all vertices of the part, padded to a multiple of LANES. Returns the padded length. */
 static int list_all(const struct soft_part *part, uint8_t numbers[PART_VERTICES + LANES])
 {
     for (int i = 0; i < PART_VERTICES + LANES; i++)

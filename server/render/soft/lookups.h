@@ -37,7 +37,8 @@ SOFT_INLINE lanes byte_of(lanes_int packed, int number)
 struct sun_aim {
     /* u_part, v_part: position between the four nearest texels, 0..1; place: depth of the point, in the integer unit of the shadow map */
     lanes u_part, v_part, place;
-    lanes_int tile, at;          /* tile: index of the tile of the map; at: index of the upper left of the four texels */
+    /* tile: index of the shadow map tile; at: index, in soft_light.sun_map, of the upper left of the four texels */
+    lanes_int tile, at;
     lanes_int open; /* mask of lanes whose texels must still be read; for the others `lit` is final: the visible part of the sun, 0..1 */
     lanes lit;
 };
@@ -142,7 +143,7 @@ static float height_at(const struct raster *raster, float x, float y)
     return up / sqrtf(square) * 1023.5f + 1024.0f;
 }
 
-/* Returns the elevations over the horizon of the stretch (stretch_px pixels of a row) that begins at this pixel. */
+/* Returns the elevations over the horizon of the view rays of a stretch (stretch_px pixels of a row) that begins at this pixel. */
 static inline struct heights heights_from(const struct raster *raster, int column, int row)
 {
     float y = (float)row + 0.5f, x = (float)column + 0.5f, first = height_at(raster, x, y);

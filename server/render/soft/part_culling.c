@@ -162,7 +162,7 @@ static void add_pixels(struct raster *raster, struct soft_mesh *mesh, const stru
         to->place_from_pixel[c / 4][c % 4] = (float)from_pixel[c];
 }
 
-/* Fills in the mesh of an asset and adds the number of its vertices to raster->vertex_count. */
+/* Fills *mesh with the data that drawing this asset in the frame needs, and adds the number of its vertices to raster->vertex_count. */
 static void fill_mesh(struct raster *raster, struct soft_mesh *mesh, int index, const struct model_level *level)
 {
     const struct frame_context *context = raster->context;
@@ -267,7 +267,7 @@ bool raster_find_ghosts(struct raster *raster)
     return true;
 }
 
-/* Returns the index of the mesh that contains the triangle with this id. likely: mesh to try first. */
+/* Returns the index, in raster->meshes, of the mesh that contains the triangle with this id. likely: index of the mesh to try first. */
 static size_t mesh_of(const struct raster *raster, uint32_t id, size_t likely)
 {
     const struct soft_found *found = raster->found;

@@ -224,8 +224,8 @@ SOFT_INLINE float least_of(lanes x)
     return least;
 }
 
-/* Adds the quadratic approximations of the chosen sensors, among eight, to the polynomial `to`. away: unit vectors from the sensors to the
-   box's centre. */
+/* Adds the quadratic approximations of the weights of the chosen sensors (of eight) to the polynomial `to`. away: unit vectors from the
+   sensors to the box's centre. */
 SOFT_INLINE void add_terms(lanes to[PIXEL_TERMS], const struct jet *jet, lanes_int chosen, lanes times, lanes distance, const lanes away[3])
 {
     const lanes zero = { 0 }, first = lanes_choose(chosen, times * jet->first, zero);

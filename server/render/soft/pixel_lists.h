@@ -56,7 +56,7 @@ float pixel_lists_step(const float *scale);
 void pixel_lists_add(struct pixel_lists *lists, const struct pixel_field *field, float step, const struct pixel_cell *cells, size_t count);
 /* Sets the pointer `sensors` of all lists. Call it after the last pixel_lists_add(), which may move the array. */
 void pixel_lists_settle(struct pixel_lists *lists);
-/* Frees the memory of the lists. Accepts a zeroed struct; the struct can be used again. */
+/* Frees the lists. *lists may be zeroed, and can be used again afterwards. */
 void pixel_lists_finish(struct pixel_lists *lists);
 
 /* Returns whether a sensor's weight is its strength / distance^2. */

@@ -24,7 +24,7 @@ struct preview_triangle { /* a triangle projected into the frame; cached while t
 
 void soft_weights(const struct soft_mesh *mesh, const uint32_t vertices[3], double weights[3][3])
 {
-    double at[3][3]; /* by corner: its position as (x w, y w, w), with x and y in pixels */
+    double at[3][3]; /* by corner of the triangle: its projected position as (x w, y w, w), with x and y in pixels */
     static const int rows[3] = { 0, 1, 3 };
     for (int i = 0; i < 3; i++) {
         const float *p = mesh->file->positions_m[vertices[i]];

@@ -20,7 +20,7 @@ SOFT_INLINE void keep_id(const struct soft_tile *tile, const struct soft_sample 
 /* --- any face --------------------------------------------------------------------------------------------------------------- */
 
 struct setup {
-    float x, y; /* position of the first corner in pixels, from which all linear functions below count x and y */
+    float x, y; /* position of the face's first corner in pixels; the linear functions below (struct plane) are relative to it */
     struct raster_edge edges[3];
     struct plane depth, a, b, inverse_w;
     /* share of each pattern at a pixel, 0..1, as linear functions of the position; set only if the face has flags */

@@ -123,7 +123,7 @@ static bool take_up(struct refined *refined, const struct frame_context *context
     return true;
 }
 
-/* Computes data of each mesh that only refined frames need, such as the matrix for its normals. */
+/* Computes for each mesh the matrix that rotates its normals, and adds the meshes with a field to the visibility buffer. */
 static void note_meshes(struct refined *refined)
 {
     const struct raster *raster = &refined->raster;
@@ -256,7 +256,8 @@ static bool advance(struct refined *refined, size_t all, size_t some, size_t *be
     return *end == all;
 }
 
-/* Draws the rim of the selected asset into the visibility buffer's ink (lines drawn over pixels). Returns false when out of memory. */
+/* Draws the outline of the selected asset into the visibility buffer's `ink` (lines drawn over pixels). Returns false when out of
+   memory. */
 static bool mark(struct refined *refined, const struct frame *frame)
 {
     struct raster *raster = &refined->raster;

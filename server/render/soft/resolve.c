@@ -202,7 +202,8 @@ SOFT_INLINE void transpose(const quad rows[4], quad columns[3])
    values) */
 struct eight_shown {
     lanes w1, w2, carried;
-    lanes_int known;            /* -1: the fast path may colour the pixel; 0: the pixel, or a corner of its triangle, has a flag */
+    /* -1: field_colors() may colour the pixel; 0: the pixel, or a corner of its triangle, has a flag, so flagged_color() must */
+    lanes_int known;
     struct eight_places places; /* surface points of the eight pixels, at which fields are evaluated from their sensors */
 };
 

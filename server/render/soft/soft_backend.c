@@ -55,7 +55,8 @@ static void abandon(struct renderer *renderer, struct render_job *job)
     job->of.soft = NULL;
 }
 
-/* Prepares to continue a job after other frames were drawn. Returns false on failure, logged. */
+/* Sets the job's light set and colour map, and binds its environment, before its next step: other frames may have been drawn in between.
+   Returns false on failure, logged. */
 static bool take_up(struct renderer *renderer, struct render_job *job)
 {
     if (!renderer_light_job(renderer, job))

@@ -82,7 +82,8 @@ struct soft_item { /* a part (group of neighbouring triangles, parts.h) that may
     bool beyond; /* true: section planes remove the whole part; it is listed because it may bound a body that is cut open */
 };
 
-struct soft_found { /* list of the parts of one mesh that may be visible; its memory is reused from frame to frame */
+/* list of those parts (groups of triangles) of one mesh that may be visible; its memory is reused from frame to frame */
+struct soft_found {
     const struct soft_parts *parts;
     uint32_t material; /* index, among the materials of all models, of the mesh's first material */
     bool both_sides;
@@ -132,7 +133,7 @@ static inline size_t soft_sun_map_bytes(const struct soft_light *light)
 }
 enum { SOFT_LIGHTS = 2, SOFT_SHAPES = 16 };
 
-struct raster { /* source and target of one frame's rasterization; its memory is reused for the next frame */
+struct raster { /* all data of one frame's rasterization, input and pixels; its memory is reused for the next frame */
     struct soft *soft;
     const struct frame_context *context;
     const struct soft_light *light;
@@ -215,7 +216,7 @@ struct soft { /* shared by all frames */
 /* Returns the copy of a light set, read from the GPU if needed. NULL: out of memory, logged. */
 const struct soft_light *soft_get_light(struct soft *soft, const struct light_set *set);
 void soft_free_light(const struct soft *soft, struct soft_light *light);
-/* Returns the table of colours for this colour map; valid as long as the colour map. */
+/* Returns the table from which pixels that show a field get their colours: colormap->texels or, if `glossy` is true, soft->glossy. */
 const uint32_t *soft_colormap(struct soft *soft, const struct shaded_colormap *colormap, bool glossy);
 void raster_finish(struct raster *raster); /* frees the raster's memory; the raster can be used again */
 size_t raster_bytes(const struct raster *raster);
@@ -227,7 +228,7 @@ void raster_aim(struct raster *raster, const struct light *light); /* computes t
 void raster_aim_depth(struct raster *raster, const struct light *light);
 /* Computes the depth grid's cells in a rectangle of the frame, whose top left corner must be the corner of a cell. Runs on a worker. */
 void raster_find_cells(const struct raster *raster, const struct soft_rect *rect);
-/* Returns the depth grid made from the cells found; the caller owns it. NULL: the frame gets no grid, or memory ran out. */
+/* Makes the frame's depth grid from raster->cells; the caller owns it. NULL: the frame gets no grid, or memory ran out. */
 struct depth_grid *raster_depth_grid(const struct raster *raster);
 /* computes the section planes in pixel coordinates (raster->cuts); must be called before the other steps */
 void raster_aim_cuts(struct raster *raster);

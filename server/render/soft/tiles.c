@@ -54,7 +54,7 @@ static void fill_list(const struct soft_tile *tile, struct tile_list *list)
         qsort(list->entries, list->count, sizeof(*list->entries), by_order);
 }
 
-/* Returns the range of the tile's blocks (8 x 8 pixels) that a rectangle touches. */
+/* Returns the columns and rows of the tile's depth blocks (8 x 8 pixels) that a rectangle touches. */
 static struct soft_rect blocks_of(const struct soft_tile *tile, const struct soft_rect *rect)
 {
     const struct soft_rect *all = &tile->rect;

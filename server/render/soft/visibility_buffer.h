@@ -80,7 +80,7 @@ struct visibility_mesh { /* an asset with a field */
     /* range of the mesh's vertices: at first indices among all vertices of the frame; after visibility_buffer_settle() among the visible
        ones */
     uint32_t first_vertex, vertex_count;
-    bool read;                 /* true: the array `carried` of the buffer holds values of the field version `content` */
+    bool read;                 /* true: buffer->carried holds this mesh's field values of the version `content` */
     uint64_t content;          /* hash from struct fields_entry */
     struct pixel_field pixels; /* copy from struct fields_entry, owned */
     struct pixel_list every;   /* all sensors of `pixels` */
@@ -91,7 +91,8 @@ struct visibility_buffer {
     uint32_t *surfaces;             /* per pixel, as described above */
     uint32_t *weights;              /* by pixel: weights of two corners of its triangle, 16 bits each: second corner | third corner << 16 */
     uint8_t *rows;                  /* by pixel: row of the shaded colour map, that is, the brightness of the surface */
-    struct visibility_gloss *gloss; /* by pixel: light on it in the glossy look; NULL: another look, in which `rows` holds the brightness */
+    /* by pixel: light that the pixel reflects in the glossy look; NULL: another look, in which `rows` holds the brightness */
+    struct visibility_gloss *gloss;
     const struct soft_tones *tones; /* set with gloss; not owned */
     /* ink of each pixel (VISIBILITY_INK: lines drawn over its colour). visibility_buffer_settle() draws ink and veil (coverage by ghost
        lines) over colours that no reading changes, and sets both to 0 there */
@@ -139,7 +140,7 @@ void visibility_buffer_add_mesh(struct visibility_buffer *buffer, const struct v
    others. Returns false when out of memory. */
 bool visibility_buffer_settle(struct visibility_buffer *buffer, struct workers *workers);
 
-/* Reads the fields of the frame into the members carried, plain and flags of the kept (visible) vertices. */
+/* Copies the field values of the frame's assets into buffer->carried, plain and flags, for the vertices that some pixel shows. */
 void resolve_read(struct visibility_buffer *buffer, const struct frame_context *context, struct workers *workers);
 /* Stores the slopes of the triangle that visibility_add_triangle() added last. weights: from soft_weights(). Runs on a worker. */
 void visibility_add_slopes(struct visibility_band *band, const double weights[3][3]);

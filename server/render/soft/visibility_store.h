@@ -18,8 +18,7 @@ struct visibility_slot {
 };
 struct visibility_store { /* zero-initialise, then set bound_bytes */
     size_t bound_bytes, bytes;
-    /* true: the newest buffer is kept, as the only one, even if it alone exceeds the memory limit; until visibility_store_bound() is
-       called */
+    /* true: if the newest buffer alone exceeds the memory limit, it is kept as the only one, until visibility_store_bound() is called */
     bool keeps_newest;
     struct visibility_slot buffers[VISIBILITY_SLOTS];
     uint64_t uses;

@@ -21,7 +21,8 @@ void intrinsic_finish(struct intrinsic *in)
     *in = (struct intrinsic){ 0 };
 }
 
-/* Gives all triangles of a patch (connected by edges with two faces) the same orientation. */
+/* Gives all triangles of each patch (connected by edges with two faces) the same orientation. facing[triangle]: receives -1 if it was
+   reversed, else 1. */
 static void orient(struct intrinsic *in, const struct tri_edges *edges, signed char *facing)
 {
     tri_edges_orient_all(edges, facing);

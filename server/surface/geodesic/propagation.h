@@ -25,7 +25,7 @@ struct propagation {
     size_t fan_count, fan_capacity;
     char *hidden;      /* by point: 1 if the point belongs to no visible triangle */
     float steps_per_m; /* number of buckets of the priority queue per metre of distance */
-    double near_m;     /* radius around the source within which points are tested for a straight line of sight to the source */
+    double near_m;     /* distance from the source up to which points get exact distances, along straight lines on the unfolded surface */
     uint32_t bucket_count;
 };
 /* Builds the fans (neighbours and triangles around each point). Visible triangles (the first visible_count) are used in their intrinsic

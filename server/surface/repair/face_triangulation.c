@@ -65,7 +65,7 @@ static size_t locate(const struct face_triangulation *face, uint32_t point, doub
     return best;
 }
 
-/* Splits every triangle of the face's triangulation with the side u-v at the point. */
+/* Splits every triangle of the face's triangulation that has the side u-v in two, at `point`. */
 static void split_side(struct face_triangulation *face, uint32_t u, uint32_t v, uint32_t point)
 {
     size_t count = face->tri_count;
@@ -146,7 +146,7 @@ static uint32_t follow_line(const struct face_triangulation *face, uint32_t u, u
                 left = b;
             }
         }
-    /* the number of steps is limited: rounding in flat triangles might otherwise lead around in circles */
+    /* the number of steps is limited, because rounding errors in flat triangles might lead to an endless loop */
     while (right != left && crossed->count < face->tri_count) {
         add_crossed(crossed, right, left);
         if (find_side(face, left, right, &apex) == face->tri_count)

@@ -10,7 +10,7 @@
 #include "surface/mesh/bvh.h"
 
 #define RAYS 5
-#define RAYS_INSIDE 4 /* minimum number of rays, out of RAYS, by which a point must be inside a part to count as inside */
+#define RAYS_INSIDE 4 /* a point counts as inside a part if at least this many of its RAYS test rays say so */
 /* A region is a set of points that are connected without passing another part. Only one in VOTE_EVERY triangles of a region is tested for
    being inside; if the results agree, they hold for the whole region. */
 #define VOTE_EVERY 16
@@ -20,7 +20,7 @@
 /* distance of test points from a triangle that may be inside its own part, to both sides; in multiples of the reach (distance up to which a
    part counts as touching, parts.h) */
 #define BARELY 0.05
-#define FLUSH 0.9 /* minimum cosine between the normals of two faces for them to count as lying on each other */
+#define FLUSH 0.9 /* two touching faces count as lying on each other if the cosine between their normals is at least this */
 /* minimum height of a triangle for its normal to count as reliable, in multiples of the reach (distance up to which a part counts as
    touching, parts.h) */
 #define SLIVER 2.0

@@ -14,7 +14,7 @@
 #include "surface/mesh/point_cloud.h"
 #include "surface/repair/repair_impl.h"
 
-#define GAP_OF_EDGE 0.45 /* maximum distance of two points that are merged, as a fraction of the shortest edge at either point */
+#define GAP_OF_EDGE 0.45 /* two points are merged only if their distance is at most this fraction of the shortest edge at either point */
 #define EXACT_OF_TOLERANCE 0.01
 /* a border counts as straight if it deviates from a line by at most this, in multiples of the tolerance; welding may cause such deviations,
    and different points of a border are farther apart */
