@@ -55,7 +55,7 @@ bool access_host_name(const char *host, char *out, size_t size)
         out[i] = (char)tolower(c);
     }
     out[n] = 0;
-    if (n > 1 && out[n - 1] == '.') /* drops the dot of the DNS root, with which a host name may end */
+    if (n > 1 && out[n - 1] == '.') /* drops the dot at the end of a fully qualified host name, such as "host.example." */
         out[n - 1] = 0;
     return true;
 }

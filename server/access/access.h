@@ -37,10 +37,10 @@ struct access_params {
    false, *why (static text) names the broken rule. */
 bool access_allowed_at(const struct access_params *params, bool loopback, const char **why);
 
-/* Writes the host name of a Host header ("name", "name:80", "[::1]:80") to out, in lower case and without brackets. Returns false if it
-   is not a host name. */
+/* Writes the host name in a request's Host header ("name", "name:80", "[::1]:80") to `out`, in lower case and without port and brackets.
+   Returns false if the header has no valid host name. */
 bool access_host_name(const char *host, char *out, size_t size);
-/* Returns whether the name is localhost, 127.x or ::1. */
+/* Returns true if the host name is localhost, 127.x.x.x or ::1, which mean this machine. */
 bool access_name_is_local(const char *name);
 /* Returns whether the name is a numeric IP address. */
 bool access_name_is_address(const char *name);

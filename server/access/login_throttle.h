@@ -23,7 +23,7 @@ enum login {
 
 struct login_throttle;
 struct login_throttle *login_throttle_create(void);
-/* frees the throttle and sets *throttle to NULL; accepts a pointer to NULL */
+/* Frees the throttle and sets *throttle to NULL; accepts a pointer to NULL. */
 void login_throttle_destroy(struct login_throttle **throttle);
 /* Judges and counts a token that a client sent: wrong, valid, or not to be checked because the address is slowed. address: the client's,
    as in struct address_usage; hash: hash of the token if it is valid; NULL: the token is wrong. */

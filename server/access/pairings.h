@@ -14,7 +14,7 @@
 
 enum {
     PAIRING_DIGITS = 6,
-    PAIRING_S = 300,      /* seconds for which a device's digits are valid */
+    PAIRING_S = 300,      /* seconds for which the six digits that a waiting device shows are valid */
     PAIRING_QUIET_S = 60, /* seconds without a request of a waiting device after which its digits expire early */
     PAIRINGS = 64,        /* maximum number of devices that wait for approval, of all addresses */
     PAIRINGS_FROM = 8,    /* maximum number of devices that wait for approval, of one address */
@@ -26,7 +26,7 @@ enum {
 enum pairing { PAIRING_WAITS, PAIRING_DONE, PAIRING_FULL, PAIRING_OTHER };
 
 struct pairing_request {
-    const char *secret;      /* secret of the device; must pass pairings_secret_valid() */
+    const char *secret;      /* secret that the device made; must pass pairings_secret_valid() */
     struct wall_place place; /* wall and display that the device shows; the member `area` is ignored */
     const uint8_t *address;  /* address of the device: 16 bytes, IPv4 as ::ffff:a.b.c.d */
     const char *from;        /* address of the device as text */
@@ -60,7 +60,7 @@ char *pairings_text(const struct pairings *pairings);
 
 /* --- for a renderer, whose core approves devices --------------------------------------------------------------------------------- */
 
-/* Returns a sequence number that increases with each change of the lists of paired and waiting devices. */
+/* Returns a number that increases with each change of the lists of paired and waiting devices, so that renderers get new lists. */
 uint64_t pairings_number(const struct pairings *pairings);
 /* Returns the paired and the waiting devices as JSON for renderers and a standby: { devices, waiting }, with the hashes of their
    secrets; the caller owns it. */

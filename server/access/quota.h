@@ -42,7 +42,7 @@ struct quotas {
 
 /* Returns the default limits. */
 struct quotas quotas_default(void);
-/* Sets one limit from "NAME=N". Returns false if there is no such limit, or N is out of range. */
+/* Sets one limit from the text "NAME=N" of --limit. Returns false if there is no such limit, or N is out of range. */
 bool quotas_parse(struct quotas *quotas, const char *text);
 /* Prints name, default and description of each limit, for --help. */
 void quotas_print(FILE *out);

@@ -30,7 +30,7 @@ struct tokens {
     struct token_holder *holders;
     size_t count, capacity;
     struct file_watch watch;
-    tokens_find_device *find_device; /* callback that finds paired devices; NULL: there are none */
+    tokens_find_device *find_device; /* finds paired devices of walls by their secrets; NULL: there are none */
     const void *pairings;
 };
 

@@ -46,8 +46,8 @@ bool tokens_has_name(const struct tokens *tokens, const char *name);
 /* Finds the holder of a token, in the file or among paired devices, and writes it to *out. Returns false if there is none (then
    out->role is ROLE_NOBODY), or if the token has expired. */
 bool tokens_find(const struct tokens *tokens, const char *token, int64_t now_utc_ns, struct token_holder *out);
-/* Returns the role that a token's holder has now; ROLE_NOBODY: the token was revoked, has expired, or is now restricted to other views
-   or another display. */
+/* Returns the role that a token's holder has now; ROLE_NOBODY: the token was revoked, has expired, or the file now restricts it to other
+   views or another display. */
 enum role tokens_role(const struct tokens *tokens, const struct token_holder *holder, int64_t now_utc_ns);
 
 /* --- for `plantcast token` --- */

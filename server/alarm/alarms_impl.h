@@ -27,7 +27,7 @@ struct alarms {
     size_t count, capacity;
     struct feed *feeds; /* sorted by tag */
     size_t feed_count, feed_capacity;
-    int *by_tag; /* indices of alarms, sorted by tag */
+    int *by_tag; /* indices in `list` of all alarms, sorted by tag */
     /* by index of the tag, with one extra element at the end: position of the tag's first entry in `feeds`, and in by_tag */
     int *first_feed, *first_alarm;
     struct last_sample *seen;

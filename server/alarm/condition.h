@@ -11,8 +11,9 @@
 
 struct condition { /* zero-initialised: an inactive condition without a running delay */
     bool active;
-    enum { CONDITION_RESTS, CONDITION_COMES, CONDITION_GOES } pending; /* running delay: none, on delay, off delay */
-    int64_t since_ns;                                                  /* monotonic: when the delay began */
+    /* which delay is running: none, the on delay (before the condition becomes active), the off delay */
+    enum { CONDITION_RESTS, CONDITION_COMES, CONDITION_GOES } pending;
+    int64_t since_ns; /* monotonic: when the delay began */
 };
 
 struct condition_delays {

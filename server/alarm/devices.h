@@ -13,8 +13,8 @@ struct alarm_device {
     int source, unit;
     int usable, gone; /* number of the device's tags with status DEVICE_USABLE, and with DEVICE_GONE */
     int64_t back_ns;  /* monotonic time since which a tag of the device has been usable; 0: none is */
-    int alarm;        /* index of the device's LINK alarm; -1: none */
-    bool changed;     /* true: the device changed since alarms.c last evaluated it */
+    int alarm;        /* index of the device's LINK alarm, which is raised when the device does not answer; -1: none */
+    bool changed;     /* true: the status of one of its tags changed since alarms.c last evaluated the device */
 };
 
 struct devices {

@@ -53,7 +53,7 @@ enum {
     SQL_STATES, SQL_ROWS, SQL_ROWS_OF, SQL_AT, SQL_STATES_1, SQL_ROWS_1, SQL_ROWS_OF_1, SQL_AT_1, SQL_COUNT
 };
 static const char *const sql[SQL_COUNT] = {
-    /* skips a row that the file already has, because a leader sends rows again whenever a standby connects */
+    /* skips a row that the journal already has, because a leader sends rows again whenever a standby connects */
     [SQL_EVENT] = "INSERT INTO event(t, tag, kind, event, before, after, priority, lim, value, who, reason, unit)"
                   " SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12 WHERE NOT EXISTS (SELECT 1 FROM event WHERE tag = ?2"
                   " AND kind = ?3 AND t = ?1 AND event = ?4 AND before = ?5 AND after = ?6 AND value IS ?9)",

@@ -24,7 +24,7 @@ struct journal_row {
     const char *tag, *kind, *event, *before, *after, *who, *reason; /* valid until the next row */
     int priority;
     double limit, value; /* NaN: none */
-    const char *unit;    /* unit of limit and value at that time; NULL: not known, because an earlier version wrote the row */
+    const char *unit;    /* unit of limit and value when the row was written; NULL: not known, because version 1 wrote the row */
 };
 struct journal_query {
     int64_t from_us, to_us;

@@ -29,7 +29,7 @@ struct audit_report {
     uint64_t first_seq;
     struct audit_chain end;
     bool good;
-    char *text; /* description of the first fault, with file and line; NULL: no fault. Free it with mem_free */
+    char *text; /* description of the first fault of the audit trail, with file and line; NULL: no fault. Free with mem_free */
 };
 /* Verifies the audit trail: the full files PATH.NUMBER, PATH, and PATH.head. known: sequence number and hash of a line that somebody
    noted elsewhere (seq 0: none). A trail that ends before that line, or has another line with that number, is a fault. */

@@ -36,7 +36,7 @@ static bool sync_file(struct log *log, const char *path)
 
 /* --- checking and setting the owners of files -------------------------------------------------------------------------------- */
 
-/* Returns the folder of a file; free with mem_free(). */
+/* Returns the path of the folder that contains a file; free with mem_free(). */
 static char *folder_of(const char *path)
 {
     const char *slash = strrchr(path, '/');

@@ -67,7 +67,7 @@ struct historian {
     struct historian_queue taken;
     bool recovered, failing, stands_by, fills;
     int64_t fill_us;     /* if `fills` is true: UTC time from which this machine lacks points, which must be read from PostgreSQL */
-    int64_t mirrored_us; /* UTC time of the newest sample mirrored from the leading daemon; 0: none */
+    int64_t mirrored_us; /* UTC time in microseconds of the newest sample received from the leading daemon; 0: none */
     int64_t retry_ns, retry_after_ns, tidied_ns, kept_ns, utc_ahead_ns;
     struct thread thread;
     /* --- below: under thread.lock */

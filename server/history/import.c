@@ -37,7 +37,7 @@ struct import_series {
     bool seen;      /* true: the first pass found samples of this tag */
     int64_t first_us, last_us;
     struct spacing spacing;
-    int64_t longest_us; /* longest time between two samples of this tag that is not a gap in the data */
+    int64_t longest_us; /* a longer time in microseconds between two samples of this tag is a gap, which interrupts the recorded line */
     /* true: `pending` holds the tag's newest sample that the second pass has read. It is recorded once a later sample was read, because
        another row with the same time would replace it */
     bool has_pending;
@@ -67,7 +67,7 @@ static int find_time(struct history_import *import)
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
         if (csv_find(&import->csv, names[i]) >= 0)
             return csv_find(&import->csv, names[i]);
-    /* no column has a known name: the first column is taken as the time, unless its name is that of a tag */
+    /* if no column has such a name, the first column has the times, unless its name is that of a tag */
     return plant_find_tag(import->params->plant, import->csv.header.cells[0].text) < 0 ? 0 : -1;
 }
 
@@ -179,7 +179,8 @@ static bool take_unit(struct history_import *import, int tag, double *value)
     return true;
 }
 
-/* Reads one cell: a number, or a state word (value/state_word.h) that means that there is no value. Passes the sample to `take`. */
+/* Reads one cell of a CSV row: a number, or a state word (value/state_word.h), which means that there is no value. Passes the sample to
+   `take`. */
 static bool take_cell(struct history_import *import, take_sample *take, void *arg, int tag, int column, int64_t t_us, uint32_t quality)
 {
     const char *text = csv_text(&import->csv, column);

@@ -15,7 +15,7 @@ struct import_params {
     /* UTC time in microseconds at which the numbers in the time column are 0; INT64_MIN: the column has timestamps instead */
     int64_t start_us;
     int64_t unit_us;        /* microseconds per unit of the numbers in the time column */
-    int64_t longest_gap_us; /* longest time between two samples of a tag that is not a gap; 0: derived from each series */
+    int64_t longest_gap_us; /* longest time in microseconds between two samples of a tag that is not a gap; 0: computed for each tag */
 };
 
 struct import_counts {

@@ -29,7 +29,7 @@ struct month_file {
     int month;
     bool has_outbox; /* true: recorded points are copied to the outbox (points to send to PostgreSQL) */
     bool has_blocks; /* true: the file is known to have blocks of compressed points (format version 3 or later) */
-    bool writes;     /* true: this handle has written the newest points at least once (month_seconds.h) */
+    bool writes;     /* true: this handle has written to the table `second`, which holds the newest points (month_seconds.h) */
     ino_t inode;
     const struct plant *shown_by; /* plant that states the units to which values are converted; NULL: not converted */
     const struct history_tag *tags;
@@ -40,7 +40,7 @@ struct month_file {
     struct month_seconds *seconds; /* newest points, which are not in blocks yet, as this handle has read them from the table `second` */
     /* number and stamp (increases with each write) of the row in the table `second` that was written last */
     int64_t slot, stamp;
-    int64_t slot_before, stamp_before; /* values of slot and stamp when the transaction began, which a rollback restores */
+    int64_t slot_before, stamp_before; /* values of `slot` and `stamp` when the transaction began, which end() restores after a rollback */
 };
 
 /* Returns the prepared SQL statement `which`, ready to bind and step (base/files/database.h). */

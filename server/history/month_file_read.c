@@ -54,7 +54,8 @@ int64_t month_find_tag(struct month_file *file, const char *name, const char *wa
     return id;
 }
 
-/* Runs SQL_BEFORE or SQL_AFTER and reads its one row; out->t_us is INT64_MIN if there is none. */
+/* Finds a tag's last point at or before t_us (SQL_BEFORE) or first point after t_us (SQL_AFTER) in the table `sample`; out->t_us is
+   INT64_MIN if there is none. */
 static int one_point(struct month_file *file, enum month_statement which, int64_t id, int64_t t_us, struct history_point *out)
 {
     sqlite3_stmt *statement = month_sql(file, which);

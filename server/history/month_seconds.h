@@ -19,7 +19,7 @@ struct month_seconds {
        the newest row that was read */
     int64_t mark, stamp, slot;
     struct month_row *rows; /* recorded points */
-    struct month_row *held; /* newest sample of each tag, by the tag's id in the file; id 0: no sample */
+    struct month_row *held; /* held samples: the newest sample of each tag, by the tag's id in the file; id 0: no sample */
     size_t count, capacity, held_count, held_capacity;
 };
 

@@ -58,8 +58,8 @@ struct recorder *recorder_create(const struct plant *plant)
         const struct history_tag *tag = &recorder->tags[i];
         recorder->lanes[i].quality = QUALITY_BAD_WAITING;
         recorder->lanes[i].params = (struct swinging_door_params){
-            /* the recorded line may deviate from samples by at most `within`: swinging_door.h bounds the deviation by 2 deadband +
-               deviation, here 2 within/4 + within/2 */
+            /* the recorded line may deviate from samples by at most `within`. swinging_door.h bounds the deviation by 2 deadband +
+               deviation, which is 2 within/4 + within/2 here */
             .deadband = tag->step ? 0 : tag->within / 4,
             .deviation = tag->step ? 0 : tag->within / 2,
             .override_us = (int64_t)(plant->history.override_s * US_PER_S),

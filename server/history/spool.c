@@ -149,8 +149,8 @@ int spool_write(const char *path, const struct plant *plant, const struct spool_
 }
 
 struct spool_unit { /* units of one tag: in the spool file and now */
-    bool misfits;              /* the spool's unit cannot be converted to the tag's present unit */
-    struct unit_change change; /* conversion from the spool's unit to the tag's present unit */
+    bool misfits;              /* true: the unit in the spool file cannot be converted to the tag's present unit */
+    struct unit_change change; /* conversion from the unit in the spool file to the tag's present unit */
 };
 
 static void take_unit(const char *text, size_t bytes, const struct plant *plant, struct spool_unit *units)

@@ -32,7 +32,7 @@ struct loop_checks;
 /* Reads the loop checks of a plant. A file that cannot be read counts as empty (logged). writer: the thread that writes checks to disk;
    NULL: they are written at once. Never returns NULL. plant and writer must outlive the result. */
 struct loop_checks *loop_checks_open(struct log *log, const struct plant *plant, const char *folder, struct file_writer *writer);
-/* destroys the loop checks and sets *loop_checks to NULL; accepts a pointer to NULL */
+/* Frees the loop checks and sets *loop_checks to NULL; accepts a pointer to NULL. */
 void loop_checks_close(struct loop_checks **loop_checks);
 /* Queues a loop check to be written to disk; once it is, file_writer_collect() makes it the tag's newest check. Returns REFUSAL_NONE, or
    why it could not be queued. */

@@ -20,8 +20,8 @@ struct episode { /* an episode: the time during which an alarm needs attention; 
     uint32_t told;               /* bit mask of the recipients that were told of the alarm */
     uint8_t steps[NOTIFY_RULES]; /* by rule: number of escalation steps carried out */
     bool aside;                  /* true: the alarm is shelved, suppressed or out of service, so nobody is told */
-    bool seen;                   /* true: outbox_put() was called for the alarm since the daemon started; false: the episode was only
-                                    restored */
+    /* true: outbox_put() was called for the alarm since the daemon started; false: only the saved state has the episode */
+    bool seen;
 };
 
 struct queued_item {

@@ -24,7 +24,7 @@
 static const int64_t CONNECT_NS = 10 * NS_PER_S;
 
 struct topic {
-    char *name, *unit;       /* unit: text of a JSON object with the unit as its only member */
+    char *name, *unit;       /* name: MQTT topic of the tag; unit: text of a JSON object with the tag's unit as its only member */
     int64_t received_utc_ns; /* UTC time of the reading of this tag that was published last */
     double value;            /* value that was published last; a sample with the same time may replace it */
     uint32_t quality;

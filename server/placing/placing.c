@@ -25,7 +25,7 @@ struct distance_ask { /* pending request for the geodesic distances of one moved
     struct distance_ask *next;
 };
 
-struct placing_entry { /* private data of a moved sensor; set->placed has the data that callers see */
+struct placing_entry { /* data of a moved sensor that only this file uses; set->placed has the data that callers see */
     uint64_t asked;    /* sequence number of the sensor's pending distance request; 0: none is pending */
     uint64_t ticket;
     struct trial_sensor sensor;

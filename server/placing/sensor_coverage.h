@@ -20,8 +20,8 @@ struct sensor_coverage_query {
 struct sensor_coverage {
     size_t sensors;
     double far_m; /* the distance that was used as query->far_m */
-    /* metres from the surface point that is farthest from all sensors to its nearest sensor; points that no path along the surface connects
-       to a sensor do not count */
+    /* distance in metres of the surface point that is farthest from all sensors to its nearest sensor; points from which no path along
+       the surface leads to a sensor do not count */
     double farthest_m;
     double farthest_at_m[3]; /* position of the farthest surface point, in plant coordinates */
     double far_share;        /* fraction of the surface's area that counts as far (far_m), 0..1 */

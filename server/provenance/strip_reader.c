@@ -72,7 +72,8 @@ static int find_in_row(const struct strip_picture *picture, int y, struct finder
 }
 
 struct strip_row {
-    double left_px, cell_px; /* left edge of the strip, and width of one of its cells; cell_px 0: the row contains no strip */
+    /* left edge of the legend strip in this row of pixels, and width of one of its cells; cell_px 0: the row contains no strip */
+    double left_px, cell_px;
 };
 
 /* Finds the strip in a row of pixels: two finder patterns whose distance agrees with the sizes of their cells. */

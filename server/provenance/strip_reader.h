@@ -17,7 +17,7 @@ struct strip_found {
     struct strip strip;
     double left_px, top_px, cell_px, row_px; /* position of the strip in the picture, and width and height of its cells */
     int mended;                              /* number of bytes of the strip's code that error correction repaired */
-    /* CIELAB of the strip's colours as they appear in this picture: below range, MIN to MAX, above range */
+    /* CIELAB values of the legend's colours as they appear in this picture: below range, MIN to MAX, above range */
     double ramp[STRIP_SHADES][STRIP_INNER][3];
     double noise; /* CIELAB deviation of pixels that should have one colour, due to compression */
 };

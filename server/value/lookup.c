@@ -17,7 +17,7 @@
 
 struct lookup {
     char *host, port[12];
-    int done_fd; /* descriptor that becomes readable once the lookup has finished */
+    int done_fd; /* eventfd that becomes readable once the host name is resolved or cannot be */
     struct addrinfo *found;
     _Atomic int failed; /* result code of getaddrinfo(); written before done_fd becomes readable */
     _Atomic int users;

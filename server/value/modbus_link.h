@@ -19,7 +19,7 @@ void modbus_link_destroy(struct modbus_link **link); /* Closes the connection, f
 bool modbus_link_is_open(const struct modbus_link *link);
 /* Returns the address of the host in use, such as "10.0.0.1:502" or "/dev/ttyS0", valid until the next call. */
 const char *modbus_link_name(const struct modbus_link *link);
-/* Returns the index of the host in use among the source's hosts. */
+/* Returns the index in source->hosts of the host in use. */
 int modbus_link_host(const struct modbus_link *link);
 /* Connects within the source's timeout_ms. Returns 0 or -errno; -ECANCELED: stop_fd became readable. */
 int modbus_link_open(struct modbus_link *link);

@@ -28,7 +28,7 @@ struct read_plan_block {
 };
 
 struct read_plan { /* zero-initialise */
-    int *tags;     /* indices in plant->tags, sorted by register address; a block has a range of these indices */
+    int *tags;     /* indices in plant->tags of the source's tags, sorted by register address; each block has a range of these indices */
     size_t tag_count;
     struct read_plan_block *blocks;
     size_t block_count, block_capacity;

@@ -15,9 +15,9 @@ struct held {
     uint32_t quality;                          /* quality that the tag's last sample states */
     bool has_value, lost;                      /* has_value: `value` is set; lost: the tag could not be read since its last sample */
     bool dead;                                 /* true: the tag is lost, and its last value must not be used any more */
-    int64_t sampled_mono_ns;                   /* time of the tag's last sample, whether Good or Bad */
+    int64_t sampled_mono_ns;                   /* monotonic time of the tag's last sample, whether Good or Bad */
     int64_t received_mono_ns, received_utc_ns; /* arrival time of the tag's last usable value */
-    int64_t changed_mono_ns;                   /* time at which the last usable value differed from the one before */
+    int64_t changed_mono_ns;                   /* monotonic time at which a usable value last differed from the one before */
     int64_t stale_ns, flatline_ns;
     /* A quality tag decides the quality of other tags, which form a list. first_vouched: index of the first tag whose quality this tag
        decides; next_vouched: index of the next tag in the list to which this tag belongs; -1: none. */

@@ -13,7 +13,7 @@
 
 struct store;
 
-/* value of a tag, in the form in which a source writes it */
+/* a tag's value and quality, as a source writes them to the store */
 struct sample {
     int tag;      /* index in plant->tags */
     double value; /* value in engineering units; ignored while the quality is Bad; NaN and infinity make the quality Bad_SensorFailure */

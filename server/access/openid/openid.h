@@ -14,7 +14,7 @@ struct openid_params {
     struct counters *counters;
     struct audit *audit;     /* audit trail; NULL: nothing is recorded */
     const char *path;        /* path of the configuration file */
-    int64_t lock_ns;         /* monotonic duration without activity after which a user is signed out; 0: never */
+    int64_t lock_ns;         /* duration in nanoseconds without activity after which a user is signed out; 0: never */
     void (*wake)(void *arg); /* called by any thread when openid_collect() has an answer, or a user's rights changed */
     void *wake_arg;
 };

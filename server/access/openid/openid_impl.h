@@ -85,7 +85,8 @@ bool openid_knows(struct openid *openid);
 bool openid_discover(struct openid *openid);
 /* Reports in the log and the metrics whether the provider answers. why: the error; NULL: the provider answers. */
 void openid_say(struct openid *openid, const char *why);
-/* Returns the provider's URL for an endpoint from its metadata (mem_free); NULL: the provider has no such endpoint. */
+/* Returns the URL of one of the provider's endpoints, from its metadata; name: metadata key, such as "token_endpoint". Free with
+   mem_free(). NULL: the provider has no such endpoint. */
 char *openid_endpoint(struct openid *openid, const char *name);
 /* Verifies an ID token; fetches the provider's keys if the token's key is unknown. Returns the token's claims (free with json_decref());
    NULL with *why (static text). *unsure true: the token may be good, but its key is unknown and the keys could not be fetched. */

@@ -11,7 +11,7 @@
 #include "value/lookup.h"
 #include "value/mqtt/mqtt_impl.h"
 
-/* time limit for the broker to answer all subscriptions, from the start of the connection */
+/* time limit, from the start of connecting, for the broker to acknowledge the subscription to all topics */
 static const int64_t CONNECT_NS = 10 * NS_PER_S;
 static const int64_t LINE_NS = 60 * NS_PER_S; /* minimum time between two log lines about refused messages */
 

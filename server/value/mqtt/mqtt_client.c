@@ -32,7 +32,7 @@ struct mqtt_client {
     char *host; /* copies of the host's name and settings for the connecting thread, because that thread may outlive the source */
     int port, keepalive_s;
     mosquitto_property *properties;
-    int done_fd; /* descriptor that becomes readable once the connection attempt has ended */
+    int done_fd; /* eventfd that becomes readable once the attempt to connect has succeeded or failed */
     _Atomic int users;
     _Atomic int status; /* status: result code of the attempt to connect; errno_then: errno at that time */
     int errno_then;

@@ -27,7 +27,7 @@ struct mqtt_source {
     bool subscribed;          /* true: all topics are subscribed, so a message without the retained flag has a new value */
     struct log_pace refusals; /* rate limit of the log line about refused messages */
     char last_refused[300];   /* topic and reason of the last refused message, for the next log line */
-    /* rate limit of the log line "value missing", about tags whose value no message has contained yet */
+    /* rate limit of the log line about a tag whose value no message has contained yet */
     struct log_pace absences;
     bool *matched; /* by index in plant->tags: true once a JSON message has contained this tag's value */
     /* monotonic times of the last log lines about wrong clocks of publishers: [0] a clock behind ours, [1] a clock ahead of ours */

@@ -16,7 +16,7 @@
 static const int64_t CONNECT_NS = 15 * NS_PER_S, SUBSCRIBE_NS = 60 * NS_PER_S;
 /* RETRY_NS: interval at which nodes that the server refused are requested again */
 static const int64_t SERVE_NS = NS_PER_S, RETRY_NS = 30 * NS_PER_S;
-/* shortest interval between readings of all nodes after notifications were lost */
+/* minimum time between two reads of all nodes after notifications of the server were lost */
 static const int64_t READ_NS = 10 * NS_PER_S;
 static const int64_t SKEW_NS = 5 * NS_PER_S, SKEW_SAID_NS = 60 * NS_PER_S;
 enum { REFUSALS_SAID = 8 }; /* maximum number of log lines per session about refused nodes, and of those about refused deadbands */
@@ -32,7 +32,7 @@ struct opcua_source {
     int refusals_said, deadbands_said;
     bool *wrong; /* by node: true once the log says that the node's value is not a number, until it is one again */
     int64_t skew_said_ns;
-    struct log_pace missed_pace; /* rate limit of the log line about missing notifications */
+    struct log_pace missed_pace; /* rate limit of the log line about lost notifications */
 };
 
 /* --- values ----------------------------------------------------------------------------------------------------------------- */

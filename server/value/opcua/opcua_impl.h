@@ -28,7 +28,7 @@ struct opcua_client {
     double publishing_ms; /* the server's publishing interval in milliseconds if it is longer than the requested one; 0: it is not */
     char **namespaces;    /* namespace URIs of the server, by namespace index */
     size_t namespace_count;
-    UA_UInt16 *numbers; /* by node: index of its namespace on the server; NO_NAMESPACE: the server has no such namespace */
+    UA_UInt16 *numbers; /* by node: index that the node's namespace has on the server; NO_NAMESPACE: the server has no such namespace */
     /* By node. refused: the server has not accepted the node yet; no_filter: the node is subscribed without a deadband. */
     bool *refused, *no_filter;
     size_t refused_count;
