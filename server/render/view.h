@@ -100,7 +100,8 @@ void view_set_instant(struct view *view, int64_t at_us, int slot);
 /* Sets the trial whose sensor positions the view uses (field/trials.h), in both halves; 0: the plant's positions. Call this again after
    replacing the field parameters. */
 void view_set_trial(struct view *view, uint32_t trial);
-int view_left_px(const struct view *view); /* width of the left half, which is the x of the right half; pixels */
+/* returns the width of the left half in pixels, which is the x coordinate at which the right half begins */
+int view_left_px(const struct view *view);
 /* Splits the view into two halves. right: a view that is not split, for example one from view_half(); the right half shows its content. */
 void view_split(struct view *view, const struct view *right);
 /* Returns whether both views show the same picture; ignores sequence numbers and input time. A new member that changes the picture must be

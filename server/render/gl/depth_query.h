@@ -8,7 +8,7 @@
 struct depth_query {
     GLuint program; /* program of shaders/depth_cells.comp, owned by the caller; zero-initialise all other members */
     GLuint buffer;
-    const struct depth_cell *cells; /* cells that the GPU computes, in GPU memory that is mapped into this process */
+    const struct depth_cell *cells; /* cells of the depth grid, which the GPU writes to memory that is mapped into this process */
     size_t capacity;
     struct depth_lens lens;
     int width_px, height_px; /* size in pixels of the frame whose cells are computed; 0: the frame gets no depth grid */

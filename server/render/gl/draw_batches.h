@@ -24,7 +24,8 @@ struct draw_batch_state {
     const struct pool_page *light, *field;
     int front;    /* as scene_asset.front */
     int material; /* index of the material in the model; -1: the shader program reads no material */
-    int alone;    /* index of an asset that must not share its batch; -1: may be shared */
+    /* index of the asset if it must not share its batch with others (one_by_one in surface_pass.h); -1: the batch may be shared */
+    int alone;
     bool two_sided, mirrored, cut, blend;
 };
 

@@ -16,8 +16,9 @@ enum { BIND_COMMANDS = 1, BIND_PLACES = 2, STRIP_VERTICES = 14 };
 enum { FIRST_ROUND_DIVISOR = 8 };
 /* minimum number of triangles of an asset whose bounding box is tested: drawing fewer triangles costs no more than the test */
 static const int MIN_TESTED_TRIANGLES = 200;
-static const double MARGIN_PART = 1e-3; /* margin around an asset's box, as a part of its size, because positions are 32-bit floats */
-/* additional margin around an asset's box in pixels, at the distance of the box's farthest corner: GPUs round sample coverage */
+/* margin around an asset's bounding box, as a fraction of the box's size, because positions are 32-bit floats */
+static const double MARGIN_PART = 1e-3;
+/* additional margin around an asset's bounding box in pixels, at the distance of the box's farthest corner: GPUs round sample coverage */
 static const double MARGIN_PX = 1;
 
 bool occlusion_init(struct occlusion *occlusion, struct log *log)

@@ -11,7 +11,7 @@ enum { BAKE_FACE_SAMPLES = 6 }; /* number of light samples per large triangle; m
 struct bake_faces {
     size_t count;
     GLuint corners; /* GL buffer with the vertex indices of the large triangles, three each */
-    GLuint sums;    /* GL buffer with three sums per vertex: weight, openness and sun, in units of 1/256 */
+    GLuint sums;    /* GL buffer with three sums per vertex over the light samples: weight, openness and visible sun, in units of 1/256 */
 };
 
 /* Finds the triangles of an asset's finest level of detail that have an edge of at least least_m metres. Returns false when the GPU is out

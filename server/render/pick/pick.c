@@ -61,7 +61,7 @@ static void ray_through(const struct view *view, double x_px, double y_px, struc
     ray_init(ray, &view->camera, (double)view->width_px / view->height_px, 2 * x_px / view->width_px - 1, 1 - 2 * y_px / view->height_px);
 }
 
-/* Returns whether a ray towards the marker hits nothing in front of the marker. */
+/* Returns whether a ray from the eye to the marker hits no surface before it reaches the marker. */
 static bool in_sight(const struct pick_spot *spot, const struct marker_place *place, double x_px, double y_px)
 {
     struct ray ray;

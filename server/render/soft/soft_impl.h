@@ -232,7 +232,7 @@ void raster_find_cells(const struct raster *raster, const struct soft_rect *rect
 struct depth_grid *raster_depth_grid(const struct raster *raster);
 /* computes the section planes in pixel coordinates (raster->cuts); must be called before the other steps */
 void raster_aim_cuts(struct raster *raster);
-/* returns whether one of the first `planes` section planes cuts a point off; at: (x w, y w, z, w), with x and y in pixels */
+/* returns whether one of the first `planes` section planes cuts off the point `at`; at: (x w, y w, z, w), with x and y in pixels */
 bool raster_is_cut_off(const struct raster *raster, const float at[4], int planes);
 /* Tests a box in the mesh's coordinates against one section plane. Returns true if the box is cut away entirely; sets *cut to true if the
    plane cuts through the box. */
