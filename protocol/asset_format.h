@@ -28,7 +28,7 @@ enum asset_section {
     ASSET_TEXELS,           /* RGBA8 texels of all textures, rows from the top, described by struct asset_texture */
     ASSET_SENSORS,          /* struct asset_sensor for each sensor, in the order of the asset's rows in the tag list */
     ASSET_GEODESIC,         /* uint16[block][sensor][vertex of the block]: geodesic distances as codes (asset_distance.h) */
-    ASSET_NAMES,            /* strings, each ended by a 0 byte */
+    ASSET_NAMES,            /* section of strings, each ended by a 0 byte */
     ASSET_SECTION_COUNT
 };
 

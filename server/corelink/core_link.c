@@ -55,7 +55,7 @@ struct core_link {
         int count, index;
         char said[ADDRESSES][WHY_BYTES]; /* for each address: the last logged reason why there was no connection */
     } hosts[CORE_URLS];
-    int address;                                       /* index of the address that is being tried */
+    int address;                                       /* index of the core's address that the link tries now */
     /* heard_ns: time of the core's newest message. least_ns: smallest difference of the two machines' monotonic clocks on this connection.
        readings_ns: arrival time of the previous message with readings. core_readings_read() takes and updates both */
     int64_t heard_ns, begun_ns, least_ns, readings_ns;

@@ -63,7 +63,7 @@ struct core_peer {
 bool core_link_peer(struct core_link *link, struct core_peer *out);
 
 struct core_act {
-    uint64_t client;      /* id of the client that gets the answer */
+    uint64_t client;      /* id of this daemon's client that gets the core's answer */
     const char *from;     /* IP address of the user */
     const char *token;    /* token that the user presented to this renderer; the core verifies it. NULL: none */
     const char *id_token; /* ID token of a user who signed in at this renderer; the core verifies it. NULL: none */

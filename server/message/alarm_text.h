@@ -8,7 +8,7 @@
 #include "message/message.h"
 
 /* Cache of the newest message `alarms`, so that its JSON text is built once for all sessions that need the same one. Zero-initialise; end
-   with alarm_text_cache_finish(). Thread: the loop. */
+   with alarm_text_cache_finish(). Thread: the event loop. */
 struct alarm_text_cache {
     char *text;
     uint64_t since, number;

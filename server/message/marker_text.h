@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The message `markers` that precedes a frame: positions and values of the frame's markers and labels. The first message to a client has
-   all markers and labels, later ones only changes. Pure. Thread: the loop. */
+   all markers and labels, later ones only changes. Pure. Thread: the event loop. */
 #ifndef MESSAGE_MARKER_TEXT_H
 #define MESSAGE_MARKER_TEXT_H
 #include "render/frame.h"

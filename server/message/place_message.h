@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Messages with which engineers move sensors on trial, accept assumed places, and save the tag list. Thread: the loop. */
+/* Messages with which engineers move sensors on trial, accept assumed places, and save the tag list. Thread: the event loop. */
 #ifndef MESSAGE_PLACE_MESSAGE_H
 #define MESSAGE_PLACE_MESSAGE_H
 #include "message/message.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Messages of control-room displays, of desks that send views to displays, and of engineers who pair displays. Thread: the loop. */
+/* Messages of control-room displays, of desks that send views to displays, and of engineers who pair displays. Thread: the event loop. */
 #ifndef MESSAGE_WALL_MESSAGE_H
 #define MESSAGE_WALL_MESSAGE_H
 #include "message/message.h"

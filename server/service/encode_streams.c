@@ -229,7 +229,7 @@ static struct encode_stream *choose(struct encode_streams *streams, const struct
     if (stream && !shows(stream, frame, tickets))
         other = showing(streams, frame, tickets, true);
     if (other)
-        /* the newest packet of the stream `other` is a key frame of this content, so the clients join that stream at no extra cost */
+        /* the newest packet of the stream `other` is a key frame of the same picture, so the clients join that stream at no extra cost */
         return other;
     if (!stream)
         stream = showing(streams, frame, tickets, false);

@@ -8,7 +8,7 @@
    answered instead, or because the requested instant is no longer loaded. The client may then show any older picture. */
 enum frame_absence {
     FRAME_SKIPPED,
-    FRAME_UNCHANGED, /* no packet, because the client already shows this content */
+    FRAME_UNCHANGED, /* no packet, because the client already shows this picture */
     FRAME_FAILED     /* no packet, because drawing or encoding the frame failed */
 };
 

@@ -69,8 +69,8 @@ void render_service_set_loop_checks(struct render_service *service, const struct
 void render_service_set_readings(struct render_service *service, const struct snapshot *readings);
 /* Returns false while a lost GL context is being rebuilt; frame requests wait meanwhile. */
 bool render_service_ready(struct render_service *service);
-/* Returns whether the render thread is stuck: it has given no sign of life for 12 s, or for 2 minutes while a lost GL context is rebuilt.
-   Each call requests the next sign of life, so call it every few seconds. */
+/* Returns whether the render thread is stuck: for 12 s, or for 2 minutes while a lost GL context is rebuilt, it has not answered a check.
+   Each call starts the next check, so call it every few seconds. */
 bool render_service_is_stuck(struct render_service *service, int64_t now_ns);
 /* Destroys the GL context in the middle of the next frame, like a GPU reset. For tests. */
 void render_service_lose_context(struct render_service *service);

@@ -40,7 +40,7 @@ struct render_service {
     struct snapshot *readings;             /* copy of the event loop's newest snapshot of readings */
     const struct loop_checks *loop_checks; /* loop check records; NULL: no tag is marked as unchecked */
     bool lost;                             /* true: the GL context is lost and being rebuilt */
-    int64_t asked_ns; /* monotonic time when a sign of life was requested from the render thread; 0: none is outstanding */
+    int64_t asked_ns; /* monotonic time since when a check waits for the render thread's answer; 0: none waits */
     bool lose;        /* true: a test wants the GL context to be destroyed in the middle of the next frame */
     struct render_client **clients;        /* sorted by id, ascending */
     size_t client_count, client_capacity;

@@ -116,7 +116,7 @@ void session_gave_up(struct session *session);
 void session_begin(struct session *session, size_t bytes, int64_t took_ns);
 /* Returns the pacer, with the frame in pacer->acked, if the client acknowledged a frame since the last call; otherwise NULL. */
 const struct pacer *session_take_shown(struct session *session);
-/* Records a measured round-trip time. */
+/* Records a measured round-trip time between server and client. */
 void session_on_pong(struct session *session, int64_t rtt_ns, int64_t now_ns);
 
 /* Returns the address of the view `id` if that user may see it: a view of the plant file, or a view that a user saved. The address is

@@ -14,8 +14,8 @@
 
 struct kept_answer {
     char *text;
-    char *what;        /* description of the action, for the audit trail */
-    const char *event; /* kind of the action, for the audit trail */
+    char *what;        /* description of the user's action, for the audit trail */
+    const char *event; /* kind of the user's action, for the audit trail */
     /* alarm service that carried out the action and writes its journal; NULL: journal_error has the result, or the action concerns no
        alarm */
     const struct alarm_service *alarms;

@@ -80,7 +80,7 @@ bool yaml_map_has(const struct yaml_map *map, const char *name); /* Returns whet
 /* Returns the position of a key's value; the position of the mapping if the key is absent. */
 struct text_position yaml_map_place(const struct yaml_map *map, const char *name);
 
-/* Returns the number of items of a list; -1 if the node is no list (reported). */
+/* Returns the number of items of a YAML list; -1 if the node is no list (reported). */
 int yaml_list_count(struct yaml_reader *reader, const yaml_node_t *node, const char *name);
 yaml_node_t *yaml_list_item(struct yaml_reader *reader, const yaml_node_t *node, int index);
 

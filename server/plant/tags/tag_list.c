@@ -16,7 +16,7 @@
 struct tag_list {
     struct plant *plant;
     struct tag_columns columns;
-    struct plant_tag *tag;           /* tag that the current row of the file describes */
+    struct plant_tag *tag;           /* tag that the current row of the tag list describes */
     const struct plant_group *group; /* group that the current row's tag belongs to; NULL: none */
     struct tag_links links, derived;
     size_t capacity; /* of plant->tags */

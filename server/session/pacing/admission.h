@@ -36,7 +36,7 @@ struct admission {
     /* content id of the last frame counted. Clients that share a frame report it one after the other; with this id it counts once */
     uint64_t last_content;
     int64_t pixels;               /* number of pixels of all views of all addresses */
-    struct address_share *shares; /* linked list of the addresses that have sessions */
+    struct address_share *shares; /* linked list of the client addresses that have sessions */
 };
 
 /* admission_join() counts a session as one of the client address `share`, admission_leave() removes it. The share must outlive its
