@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs commands of helper programs that are in this program's folder. */
+/* Runs subcommands in helper programs, which are in the same folder as this program. */
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
@@ -10,7 +10,7 @@
 #include "clients/link/daemon.h"
 #include "commands.h"
 
-/* Without /proc, the helper is started by its bare name, which execvp() searches in PATH. */
+/* Without /proc, this program does not know its own folder: execvp() then searches the helper's name in PATH. */
 void run_beside(const char *ending, const char *package, char **argv)
 {
     char path[PATH_MAX] = "plantcast";

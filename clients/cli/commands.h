@@ -34,9 +34,9 @@ int cmd_backup(int argc, char **argv);
 int cmd_restore(int argc, char **argv);
 /* Watches the servers of many plants, and serves a page that lists them. */
 int cmd_fleet(int argc, char **argv);
-/* Verifies the audit trail of a daemon. */
+/* Verifies that the audit trail of a daemon is complete. */
 int cmd_audit(int argc, char **argv);
-/* Proposes locations for more sensors, lists drifting sensors, accepts assumed locations. */
+/* Proposes locations for more sensors, lists drifting sensors, and accepts assumed positions. */
 int cmd_sensors(int argc, char **argv);
 int cmd_sensors_accept(int argc, char **argv);
 int cmd_sensors_drift(int argc, char **argv);
@@ -50,7 +50,7 @@ int cmd_token(int argc, char **argv);
    with the reason printed. package: Debian package that has the helper. */
 void run_beside(const char *ending, const char *package, char **argv);
 /* Replaces this process by plantcast-film and passes on the options that all commands share; access NULL: there are none. Returns only if
-   that cannot be run, with the reason printed. */
+   plantcast-film cannot be run, with the reason printed. */
 void run_film(const struct daemon_access *access, int argc, char **argv);
 
 /* Fetches `path` (with its query, such as "/snapshot.png?width=640&group=temperature") from the daemon at url (http://HOST:PORT/).

@@ -35,7 +35,7 @@ static int cmd_clip(const struct daemon_access *access, int argc, char **argv)
 
 static const struct cli_command {
     const char *name, *help;
-    int (*run)(int argc, char **argv); /* NULL: the command connects to a daemon */
+    int (*run)(int argc, char **argv); /* function of a command that needs no daemon; NULL: the command connects to a daemon */
     int (*connect)(const struct daemon_access *access, int argc, char **argv);
 } commands[] = {
     { "snapshot", "draw one picture of a plant as PNG, from a plant file or through a running daemon", NULL, cmd_snapshot },

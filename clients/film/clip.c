@@ -24,9 +24,10 @@ struct film {
     struct view view;
     struct daemon_url url;
     struct text query;
-    const char *said;                   /* text to draw into the pictures of the present stop of the tour; empty: none */
+    const char *said;                   /* text to draw into the pictures of the tour's present stop; empty: none */
     long count;                         /* pictures made so far */
-    struct film_statements *statements; /* signed statements of the pictures of a signed film; NULL: the film is not signed */
+    struct film_statements *statements; /* the server's signed statements about the pictures of a signed film; NULL: the film is not
+                                           signed */
 };
 
 /* Appends a picture. The first call creates the file, because the first picture gives the film its size. Returns false on failure. */
@@ -93,7 +94,7 @@ static bool download(struct film *film, int64_t at_us)
 
 typedef bool picture_fn(struct film *film, int64_t at_us);
 
-/* Makes the next `count` pictures, each by a call of `picture`. all: number of pictures of the whole film, for the progress. */
+/* Makes the next `count` pictures, each by a call of `picture`. all: number of pictures of the whole film, for reporting progress. */
 static bool shoot(struct film *film, picture_fn *picture, long count, double all)
 {
     const struct snapshot_options *options = film->options;
@@ -118,8 +119,8 @@ static bool turn(struct film *film, const json_t *stop)
            (offline ? offline_renderer_take_view(&film->offline, options, &film->view) : snapshot_query(options, &film->query));
     while (options->arg_count > own)
         mem_free(options->args[--options->arg_count]);
-    film->said = options->is_signed ? "" : tour_text(stop); /* a signed film gets no text, because drawing a text would invalidate the
-                                                               signature */
+    film->said = options->is_signed ? "" : tour_text(stop); /* a signed film gets no text in its pictures, because that would invalidate
+                                                               their signatures */
     return good;
 }
 
@@ -128,7 +129,7 @@ static long pictures_of(const struct film *film, const json_t *stop)
     return lround(fmax(1, tour_dwell_s(stop) * film->options->fps));
 }
 
-/* Writes the texts of the stops as subtitles of a signed film, in a file next to it. */
+/* Writes the texts of the tour's stops as subtitles of a signed film, in a file next to the film. */
 static bool write_texts(const struct film *film, const json_t *stops)
 {
     double *from_s = mem_array(json_array_size(stops) + 1, sizeof(*from_s));
@@ -166,7 +167,7 @@ static bool make(struct film *film, picture_fn *picture, const json_t *stops)
     return good;
 }
 
-/* Makes a film from a daemon's answer with its tours as JSON; takes ownership of `answer`. */
+/* Makes a film from a daemon's response that contains its tours as JSON; takes ownership of `answer`. */
 static bool make_of(struct film *film, picture_fn *picture, char *answer)
 {
     const struct snapshot_options *options = film->options;
@@ -189,7 +190,7 @@ static int from_plant(struct film *film)
     return code;
 }
 
-/* Returns the daemon's walls and tours as JSON, or NULL with the reason printed. */
+/* Requests the daemon's walls and tours. Returns them as JSON, or NULL with the reason printed. */
 static char *ask_tours(struct film *film)
 {
     struct text body = { 0 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks films. An MP4 box is its length, its type and its content, with big-endian numbers. A table lists the allowed boxes and their
-   content. */
+/* Checks the file of a film. MP4 files consist of boxes: length, type and content, with big-endian numbers. A table lists the allowed boxes
+   and their content. */
 #include "film_boxes.h"
 
 #include <ctype.h>
@@ -14,8 +14,8 @@
 enum { HEAD = 8 };
 static const size_t MAX_MOOV_BYTES = (size_t)256 << 20;
 
-/* One allowed box. Its content is given in hexadecimal digits; '?': any digit; 'W', 'H': the four digits of width and height in pixels;
-   '*' at the end: any further bytes. `children`: offset of the child boxes in the content; 0: the box has none. */
+/* One allowed box. Its content is given in hexadecimal digits; '?': any digit; 'W', 'H': the four digits of width and height in pixels; '*'
+   at the end: any further bytes. `children`: offset of the child boxes in the content; 0: the box has no children. */
 struct box_rule {
     const char *type, *parent, *content;
     size_t children;
@@ -47,8 +47,8 @@ static const struct box_rule rules[] = {
     { "vmhd", "minf", "00000001" ZEROS_8, 0, true },
     { "hdlr", "minf", "00000000" "????????" "75726c20" "*", 0, false },
     { "dinf", "minf", "*", HEAD, true },
-    { "dref", "dinf", "00000000" "00000001" "0000000c" "75726c20" "00000001", 0, true }, /* a data reference that says that the samples are
-                                                                                            in this file */
+    { "dref", "dinf", "00000000" "00000001" "0000000c" "75726c20" "00000001", 0, true }, /* a data reference that says that the film's
+                                                                                            samples are in this file */
     { "stbl", "minf", "*", HEAD, true },
     { "stsd", "stbl", "00000000" "00000001" "*", HEAD + 8, true },
     { "avc1", "stsd", "000000000000" "0001" "????????" ANY_8 "????????" "WWWWHHHH" "00480000" "00480000" "00000000" "0001" ANY_32
@@ -125,8 +125,8 @@ static int find_rule(const char *parent, const uint8_t *type)
     return i;
 }
 
-/* Returns true if a decoder configuration (ISO/IEC 14496-15, 5.3.3.1) has one sequence and one picture parameter set, and no extension
-   of the sequence parameter set. */
+/* Returns true if an H.264 decoder configuration (ISO/IEC 14496-15, 5.3.3.1) has one sequence and one picture parameter set, and no
+   extension of the sequence parameter set. */
 static bool has_two_sets(const uint8_t *at, size_t count)
 {
     enum { SETS = 6, FORMATS = 4 };
@@ -156,7 +156,7 @@ static bool take_box(struct box_walk *walk, int rule, const uint8_t *type, const
            FAIL("box %s differs from that of Plantcast's films", name);
 }
 
-/* Reads the picture's size from the box avc1, the innermost one; all other boxes must agree with that size. */
+/* Reads the picture's size from the innermost box, avc1. All other boxes must agree with that size. */
 static void learn_size(struct box_walk *walk, const uint8_t *moov, size_t count)
 {
     for (size_t i = 4; i + 32 <= count; i++)
@@ -255,8 +255,8 @@ bool film_boxes_plain(const char *path, struct film_size *size, char why[FILM_BO
 
 enum { UNIT_SLICE = 1, UNIT_SLICE_OF_KEY = 5, UNIT_MESSAGE = 6, MESSAGE_TEXT = 5, MESSAGE_RECOVERY = 6 };
 
-/* Returns true if a NAL unit has only SEI messages that do not change the picture. A message has a type and a length, each as bytes of
-   255 and a last byte, then its content; encoders write one message per unit. */
+/* Returns true if a NAL unit has only SEI messages that do not change the picture. A message is its type, its length and its content. Type
+   and length are each encoded as bytes of 255 and a last byte, whose sum is the number. Encoders write one message per unit. */
 static bool is_plain_message(const uint8_t *unit, size_t count, char why[FILM_BOXES_WHY_BYTES])
 {
     unsigned type = 0;
@@ -268,7 +268,7 @@ static bool is_plain_message(const uint8_t *unit, size_t count, char why[FILM_BO
     while (i < count && unit[i] == 255)
         length += unit[i++];
     length += i < count ? unit[i++] : 0;
-    for (; i < count; i++) { /* a byte 3 after two zero bytes is emulation prevention and not content */
+    for (; i < count; i++) { /* after two zero bytes, a byte 3 is H.264's emulation prevention and not content */
         bool is_filler = zeros >= 2 && unit[i] == 3;
         zeros = unit[i] == 0 ? zeros + 1 : 0;
         content += !is_filler;

@@ -9,7 +9,7 @@
 
 enum { FILM_BOXES_WHY_BYTES = 160 };
 
-struct film_size { /* display size of a film, from its sample entry */
+struct film_size { /* display size of a film in pixels, from the MP4 sample entry */
     int width_px, height_px;
 };
 
@@ -17,7 +17,8 @@ struct film_size { /* display size of a film, from its sample entry */
    list, and one sequence and one picture parameter set. *size receives the display size. If false, `why` receives the reason with the
    name of the box. */
 bool film_boxes_plain(const char *path, struct film_size *size, char why[FILM_BOXES_WHY_BYTES]);
-/* Returns true if a sample has only picture slices and messages that do not change the picture. If false, `why` receives the reason. */
+/* Returns true if an H.264 sample has only picture slices and messages that do not change the picture. If false, `why` receives the
+   reason. */
 bool film_units_plain(const uint8_t *sample, size_t count, char why[FILM_BOXES_WHY_BYTES]);
 
 #endif

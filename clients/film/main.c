@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast-film`: makes and verifies films with libavformat. Started by `plantcast clip` and, for films, by `plantcast verify`;
-   argv[0] is the command. */
+/* `plantcast-film`: makes and verifies films with libavformat. `plantcast clip` and, for films, `plantcast verify` start it; argv[0] is the
+   command. */
 #include <string.h>
 
 #include "clients/link/daemon.h"

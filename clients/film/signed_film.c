@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes the signed statements of all pictures of a film as one metadata text: JSON, compressed, in base64. */
+/* Reads and writes the server's signed statements about all pictures of a film as one metadata text of the film: JSON, compressed, in
+   base64. */
 #include "signed_film.h"
 
 #include <inttypes.h>
@@ -16,7 +17,7 @@
 #include "film_boxes.h"
 
 #define FILM_KEY "plantcast_statements"
-/* largest size in bytes of the statements' text: compressed, and uncompressed */
+/* largest size in bytes of the text with all statements: MAX_BYTES compressed, MAX_TEXT_BYTES uncompressed */
 static const size_t MAX_BYTES = (size_t)64 << 20, MAX_TEXT_BYTES = (size_t)1 << 30;
 
 /* --- writing ------------------------------------------------------------------------------------------------------------------- */
@@ -86,13 +87,13 @@ struct film_reader {
     AVFrame *frame;
     bool ended;
     struct film_size size; /* display size */
-    json_t *statements;    /* JSON array of [statement, signature] pairs */
+    json_t *statements;    /* JSON array of [statement, signature] pairs, one per picture */
     char why[SIGNED_PICTURE_WHY_BYTES];
 };
 
 #define FAIL(...) (snprintf(reader->why, sizeof(reader->why), __VA_ARGS__), false)
 
-/* Decodes the statements from base64 and decompresses them. Returns false with the reason in reader->why. */
+/* Decodes the signed statements from base64 and decompresses them. Returns false with the reason in reader->why. */
 static bool read_statements(struct film_reader *reader)
 {
     const AVDictionaryEntry *entry = av_dict_get(reader->format->metadata, FILM_KEY, NULL, AV_DICT_MATCH_CASE);
@@ -119,8 +120,8 @@ static bool read_statements(struct film_reader *reader)
     return json_is_array(reader->statements) || FAIL("the film's signed statements cannot be read");
 }
 
-/* Opens a film and checks that it has one stream that every player shows unchanged. The decoder takes the description of colours from
-   the stream alone, because film_boxes_plain() has checked the container's. Returns false with the reason in reader->why. */
+/* Opens a film and checks that it has one stream that every player shows unchanged. The decoder takes the description of colours from the
+   stream alone, because film_boxes_plain() has already checked that of the container. Returns false with the reason in reader->why. */
 static bool open_film(struct film_reader *reader, const char *path)
 {
     av_log_set_level(AV_LOG_QUIET);
@@ -197,7 +198,8 @@ static bool is_plain_picture(struct film_reader *reader)
            FAIL("the size in box avc1 differs from the pictures' size");
 }
 
-/* Returns the picture's pixels as red, green, blue (mem_free), or NULL if players may show the picture differently. */
+/* Returns the picture's pixels as red, green, blue (mem_free), or NULL if its colours or shape are not described as film/video.c writes
+   them. */
 static uint8_t *pixels_of(struct film_reader *reader)
 {
     const AVFrame *frame = reader->frame;
@@ -221,14 +223,16 @@ struct film_check {
     struct film_reader reader;
     bool tour;              /* whether the view may change */
     json_t *first;          /* statement of the first picture */
-    json_t *views;          /* JSON array of the views in order, each with its query and start time */
-    int64_t at_us, step_us; /* at_us: instant of the previous picture; step_us: time between pictures, 0: not known yet */
-    int64_t pts, pts_step;  /* pts: presentation time of the previous picture; pts_step: its step, 0: not known yet */
+    json_t *views;          /* JSON array of the film's views in order, each with its query and start time */
+    int64_t at_us, step_us; /* at_us: instant of the previous picture; step_us: time between the instants of two pictures, 0: not known
+                               yet */
+    int64_t pts, pts_step;  /* pts: presentation time of the previous picture; pts_step: difference between two presentation times, 0: not
+                               known yet */
     size_t count;           /* number of verified pictures */
     int code;
 };
 
-/* Returns true if two queries are equal except for the instant. */
+/* Returns true if two snapshot queries are equal except for the instant. */
 static bool same_view(const json_t *query, const json_t *other)
 {
     bool same = json_array_size(query) == json_array_size(other);
@@ -253,8 +257,8 @@ static bool takes_view(struct film_check *check, const json_t *statement)
     return true;
 }
 
-/* Checks that a picture has the plant, size and server of the first one, and that its instant and presentation time follow those of the
-   previous picture by constant steps. Returns false if not. */
+/* Checks that a picture has the same plant, size and server as the film's first one, and that its instant and presentation time follow
+   those of the previous picture by constant steps. Returns false if not. */
 static bool follows(struct film_check *check, const json_t *statement)
 {
     static const char *const same[] = { "server", "plant", "configuration", "assets", "width", "height", "bare" };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Signed films: contain the server's statement and signature of each picture, and the pictures losslessly encoded, so that the pixels
-   are the signed ones (SIGNED.md). Thread: one. */
+/* Signed films contain the server's signed statement about each picture, and the pictures losslessly encoded, so that their pixels are
+   those that the server signed (SIGNED.md). Thread: one. */
 #ifndef FILM_SIGNED_FILM_H
 #define FILM_SIGNED_FILM_H
 #include "clients/cli/picture/redraw.h"
@@ -9,9 +9,9 @@
 struct film_statements;
 struct film_statements *film_statements_create(void);              /* never NULL */
 void film_statements_destroy(struct film_statements **statements); /* &NULL is fine; leaves NULL */
-/* Takes statement and signature of the next picture from its PNG file. Returns false if the PNG file has none. */
+/* Takes the signed statement of the next picture from the picture's PNG file. Returns false if the file has none. */
 bool film_statements_add(struct film_statements *statements, const uint8_t *png, size_t count);
-/* Writes the collected statements into the film's metadata. Returns false if they are too long, printed. */
+/* Writes the collected statements into the film's metadata. Returns false, with the reason printed, if they are too long. */
 bool film_statements_put(const struct film_statements *statements, struct video *video);
 
 /* Verifies each picture of the film with the server's public key, and that no picture between the first and the last is missing or

@@ -8,15 +8,15 @@
 
 #include "clients/cli/picture/snapshot.h"
 
-/* Finds a tour by its id in a response of /api/v1/walls. Returns its stops as JSON, which the caller releases (json_decref), or NULL
-   with the reason printed. from: name of the server, for messages. */
+/* Finds a tour by its id in a daemon's response of /api/v1/walls. Returns its stops as JSON, which the caller releases (json_decref), or
+   NULL with the reason printed. from: name of the server, for error messages. */
 json_t *tour_stops(const char *answer, const char *from, const char *id);
-/* Returns for how many seconds a stop is shown. */
+/* Returns for how many seconds a film shows this stop. */
 double tour_dwell_s(const json_t *stop);
 /* Returns the text of a stop, which belongs to the stop; "" if it has none. */
 const char *tour_text(const json_t *stop);
-/* Adds a stop's view to the options' arguments. offline: its parameters; otherwise its id, from which a daemon finds the parameters.
-   Returns false with the reason printed. */
+/* Adds a stop's view to options->args. offline true: adds the view's parameters; false: adds its id, from which a daemon finds the
+   parameters. Returns false with the reason printed. */
 bool tour_add_view(const json_t *stop, bool offline, struct snapshot_options *options);
 /* Writes the texts of the stops as subtitles (WebVTT) to a file with the film's name and the extension .vtt. from_s: start time of each
    stop in seconds, and after the last one the end of the film. Returns false with the reason printed. */

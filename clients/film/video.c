@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes one H.264 stream to one file. */
+/* Writes one H.264 stream to one video file. */
 #include "video.h"
 
 #include <libavcodec/avcodec.h>
@@ -45,7 +45,7 @@ static void describe(struct video *video, int width_px, int height_px, double fp
     codec->colorspace = video->lossless ? AVCOL_SPC_RGB : AVCOL_SPC_SMPTE170M;
     codec->color_primaries = AVCOL_PRI_BT709;
     codec->color_trc = AVCOL_TRC_IEC61966_2_1;
-    codec->gop_size = (int)fmax(fps, 1); /* one key frame per second, for seeking */
+    codec->gop_size = (int)fmax(fps, 1); /* one key frame per second, so that players can seek */
     if (video->format->oformat->flags & AVFMT_GLOBALHEADER)
         codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     av_opt_set(codec->priv_data, "preset", "fast", 0);

@@ -33,7 +33,7 @@ function counts(alarms) {
     return alarms.map((count, i) => count > 0 && chip(count, i)).filter(Boolean);
 }
 
-// Returns the facts to show on a plant's card, each as [name, value, true if it is a problem].
+// Returns the lines of a plant's card, each as [name, value, true if it is a problem].
 function facts(plant, nowS) {
     const left = plant.certificate_s - nowS;
     return [

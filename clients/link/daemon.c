@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* HTTP requests to a daemon, by libwebsockets. */
+/* HTTP requests to a daemon, with libwebsockets. */
 #include "daemon.h"
 
 #include <errno.h>
@@ -11,7 +11,7 @@
 
 enum { MAX_BODY_BYTES = 256 * 1024 * 1024, RECEIVE_BYTES = 16 * 1024 };
 
-/* Reads the token from the first line of the file of --token-file. Returns false with the reason printed. */
+/* Reads the access token from the first line of the file given by --token-file. Returns false with the reason printed. */
 static bool read_token(struct daemon_access *access)
 {
     size_t count;
@@ -27,7 +27,7 @@ static bool read_token(struct daemon_access *access)
     return good;
 }
 
-/* Returns the value of the option --NAME VALUE or --NAME=VALUE at argv[*i], and advances *i; NULL: it is another option, or has no
+/* Returns the value of the option --NAME VALUE or --NAME=VALUE at argv[*i], and advances *i; NULL: argv[*i] is another option, or has no
    value. */
 static const char *value_of(const char *name, int argc, char **argv, int *i)
 {
@@ -78,8 +78,8 @@ char **daemon_command_line(const struct daemon_access *access, int argc, char **
     return all;
 }
 
-/* Stores the path prefix under which a proxy serves the daemon. path: without the leading slash. Returns false if it is too long or has
-   a query. */
+/* Stores the path prefix under which a proxy serves the daemon. path: the prefix without its leading slash. Returns false if it is too long
+   or contains a query. */
 static bool take_base(struct daemon_url *url, const char *path)
 {
     size_t length = strlen(path);
@@ -155,7 +155,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
         exchange->done = true;
         break;
     case LWS_CALLBACK_ESTABLISHED_CLIENT_HTTP: exchange->status = (int)lws_http_client_http_response(wsi); break;
-    /* lws_http_client_read() fills `buffer` with a part of the body, and calls this function again with
+    /* lws_http_client_read() fills `buffer` with a part of the response's body, and calls this function again with
        LWS_CALLBACK_RECEIVE_CLIENT_HTTP_READ */
     case LWS_CALLBACK_RECEIVE_CLIENT_HTTP:
         return lws_http_client_read(wsi, &at, &room) < 0 ? -1 : 0;

@@ -39,8 +39,8 @@ int daemon_get(const struct daemon_url *url, const char *path, struct text *body
 void daemon_prepare_context(const struct daemon_url *url, struct lws_context_creation_info *info);
 /* Sets host, port and TLS of the URL in the parameters of a libwebsockets connection. */
 void daemon_prepare_connection(const struct daemon_url *url, struct lws_client_connect_info *info);
-/* Adds the HTTP header with the token; call it on LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER. Returns 0, or -1 if the header does not
-   fit. */
+/* Adds the HTTP header with the access token; call it on LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER. Returns 0, or -1 if the header does
+   not fit. */
 int daemon_add_token(const struct daemon_access *access, struct lws *wsi, void *in, size_t len);
 
 #endif

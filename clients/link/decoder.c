@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes frames: JPEG by TurboJPEG, PNG by libpng, H.264 by h264_decoder.h. Converts colours by libyuv. */
+/* Decodes frames: JPEG with TurboJPEG, PNG with libpng, H.264 with h264_decoder.h. Converts colours with libyuv. */
 #include "decoder.h"
 
 #include <png.h>
@@ -18,7 +18,7 @@ struct decoder {
     uint8_t *pixels;
     size_t pixel_bytes;
 #ifdef PLANTCAST_H264
-    /* functions of the H.264 module; NULL: not loaded yet, and the H.264 members below are not valid */
+    /* functions of the loadable H.264 module; NULL: not loaded yet, and the H.264 members below are not valid */
     const struct h264_decoder_functions *functions;
     struct h264_decoder *h264;
 #endif

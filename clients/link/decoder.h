@@ -16,7 +16,7 @@ struct decoder *decoder_create(void);
 void decoder_destroy(struct decoder **decoder);
 /* Decodes one frame. Returns false if its bytes are not valid, or its codec is not in this build. */
 bool decoder_decode(struct decoder *decoder, const struct wire_frame *frame, const uint8_t *payload);
-/* Returns true if this build decodes the codec on this machine; if not, `why` receives the reason. */
+/* Returns true if this build can decode the codec on this machine; if not, `why` receives the reason. */
 bool decoder_has(enum wire_codec codec, char why[DECODER_WHY_BYTES]);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes H.264 by libavcodec, on the processor or by VA-API. */
+/* Decodes H.264 with libavcodec, on the processor or with VA-API. */
 #include "h264_decoder.h"
 
 #include <libavcodec/avcodec.h>
@@ -9,7 +9,7 @@
 
 #include "base/mem.h"
 
-/* on machines with many cores, slices are decoded in parallel, as browsers do */
+/* on machines with at least MANY_CORES cores, the slices of a frame are decoded in parallel, as browsers do */
 enum { MANY_CORES = 8, SLICE_THREADS = 8 };
 
 struct h264_decoder {

@@ -6,8 +6,8 @@
 
 #include <cairo.h>
 
-/* Decodes a complete PNG file. The caller destroys the surface (cairo_surface_destroy). Returns NULL if the bytes are not a PNG or memory
-   is short. */
+/* Decodes a complete PNG file. The caller destroys the surface (cairo_surface_destroy). Returns NULL if the bytes are not a PNG file or
+   memory is short. */
 cairo_surface_t *png_read(const void *bytes, size_t count);
 
 #endif

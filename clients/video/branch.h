@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An output of the video with a GStreamer pipeline of its own: if the pipeline fails, other outputs continue, and it is restarted.
-   Thread: that of the default main context. */
+/* An output of the video (SRT, for example) with a GStreamer pipeline of its own. If the pipeline fails, other outputs continue, and the
+   pipeline is restarted. Thread: that of the default main context. */
 #ifndef VIDEO_BRANCH_H
 #define VIDEO_BRANCH_H
 #include "options.h"
@@ -23,7 +23,7 @@ bool branch_begin(struct video_branch *branch);
 void branch_look(struct video_branch *branch);
 void branch_end(struct video_branch *branch);
 
-/* Sets up the output that listens for SRT callers. */
+/* Sets up the output that listens for SRT clients. */
 void srt_init(struct video_branch *srt, const struct video_options *options, struct outputs *outputs);
 
 #endif

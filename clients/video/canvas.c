@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws the frames of the video. */
+/* Draws the frames of the video: a picture or a text card, and a strip below. */
 #include "canvas.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@
 #include "video_words.h"
 
 static const double CARD_RGB[3] = { 0.10, 0.11, 0.13 }, ALARM_RGB[3] = { 0.66, 0.12, 0.10 }, STRIP_RGB[3] = { 0.13, 0.15, 0.18 };
-static const double ASCENT = 1.07, HIGH = 1.36; /* ascent and height of a line, as multiples of the font size */
+static const double ASCENT = 1.07, HIGH = 1.36; /* ascent and height of a line of text, as multiples of the font size */
 
 static int strip_px(int height_px)
 {
@@ -76,7 +76,7 @@ static char *age_text(const struct shown *look)
     return video_say(look->words, age_s < 120 ? VIDEO_AGE_S : VIDEO_AGE_MIN, number, NULL);
 }
 
-/* Draws the strip below the picture: clock and age at the right, which always fit, and the title in the room that is left. */
+/* Draws the strip below the picture: clock and age at the right, which always fit, and the title in the remaining room. */
 static void draw_strip(cairo_t *cairo, const struct canvas *canvas, const struct shown *look, gint64 utc_us, double y)
 {
     double height = canvas->height_px - y, px = 0.55 * height, pad = 0.5 * height;

@@ -24,7 +24,7 @@ struct canvas {
     bool time_code;
 };
 
-/* Returns the height in pixels of the picture in a video of height height_px; the rest of the height is the strip's. */
+/* Returns the height in pixels of the plant's picture in a video of height height_px; the strip below has the rest. */
 int canvas_picture_px(int height_px);
 /* Draws the frame for the instant utc_us into the pixels (BGRX). If canvas->time_code is set, the bottom row of the frame is a
    machine-readable time code of CANVAS_CODE_BITS blocks, white for 1. From left to right they are: 1, 0, the tenths of seconds since 1970

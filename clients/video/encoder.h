@@ -6,12 +6,13 @@
 #include "outputs.h"
 
 struct video_encoder;
-/* Starts a stream that goes to `outputs`, which must outlive the encoder. Returns NULL with the reason printed. The caller destroys it. */
+/* Starts an H.264 stream that goes to `outputs`, which must outlive the encoder. Returns NULL with the reason printed. The caller destroys
+   the encoder. */
 struct video_encoder *encoder_create(const struct video_options *options, struct outputs *outputs);
 void encoder_destroy(struct video_encoder **encoder); /* &NULL is fine; leaves NULL */
 /* Returns true if the encoder accepts another frame now; false if it has not finished earlier ones. */
 bool encoder_is_ready(const struct video_encoder *encoder);
-/* Encodes the frame with index `index` in a stream of fixed frame rate. Takes ownership of the pixels (BGRX). */
+/* Encodes the frame number `index` of a stream with a fixed frame rate. Takes ownership of the pixels (BGRX). */
 void encoder_add(struct video_encoder *encoder, GstBuffer *pixels, guint64 index);
 /* Returns true while the encoder works; false, with the reason printed, once it has failed. */
 bool encoder_is_good(struct video_encoder *encoder);

@@ -29,7 +29,7 @@ struct video_program {
     GSource *ticks;
     gint64 begin_us, alive_us;
     guint64 next; /* number of the next frame */
-    guint64 late; /* number of frames skipped because a tick came late */
+    guint64 late; /* number of frames skipped because the frame timer fired late */
     int code;
 };
 
@@ -88,7 +88,7 @@ static gint64 time_of(const struct video_program *program, guint64 index)
     return program->begin_us + (gint64)(index * G_USEC_PER_SEC / (guint64)program->options.fps);
 }
 
-/* Draws the frame that is due by the clock; frames that a late tick missed are skipped. */
+/* Draws the frame that is due by the clock. Frames that a late timer missed are skipped. */
 static gboolean on_tick(gpointer data)
 {
     struct video_program *program = data;
@@ -123,8 +123,8 @@ static gboolean dispatch(GSource *source, GSourceFunc callback, gpointer data)
 static void begin_ticks(struct video_program *program)
 {
     static GSourceFuncs funcs = { .dispatch = dispatch };
-    gint64 rest_us = g_get_real_time() % G_USEC_PER_SEC; /* aligns ticks to UTC seconds, so that programs that show the same picture draw
-                                                            at the same instants */
+    gint64 rest_us = g_get_real_time() % G_USEC_PER_SEC; /* aligns the timer to UTC seconds, so that several of these programs draw at the
+                                                            same instants */
     program->begin_us = g_get_monotonic_time() + G_USEC_PER_SEC - rest_us;
     program->ticks = g_source_new(&funcs, sizeof(GSource));
     g_source_set_callback(program->ticks, on_tick, program, NULL);

@@ -8,7 +8,7 @@ static const GstClockTimeDiff SLACK = 500 * GST_MSECOND;
 struct output {
     GstAppSrc *src;
     bool begun, timed;
-    GstClockTimeDiff offset; /* running time of this output's pipeline minus that of the encoder's */
+    GstClockTimeDiff offset; /* running time of this output's pipeline minus that of the encoder's pipeline */
 };
 
 struct outputs {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Passes encoded units to all outputs. Outputs do not block each other: if an output cannot take a unit, this and further units up to
-   the next key frame are dropped for it. Thread: any. */
+/* Passes encoded units (frames) to all outputs. Outputs do not block each other: if an output cannot take a unit, it misses all units up to
+   the next key frame. Thread: any. */
 #ifndef VIDEO_OUTPUTS_H
 #define VIDEO_OUTPUTS_H
 #include <gst/app/gstappsrc.h>
@@ -15,8 +15,8 @@ struct outputs;
 struct outputs *outputs_create(void);
 /* Frees the outputs and sets *outputs to NULL; accepts a pointer to NULL. All threads that push units must have ended before. */
 void outputs_destroy(struct outputs **outputs);
-/* Adds an output; takes a reference on src, the source of its pipeline. From the next key frame on, src receives encoded units, timed by
-   the running time of its own pipeline. */
+/* Adds an output; takes a reference on src, the source element of its pipeline. From the next key frame on, src receives encoded units,
+   timed by the running time of its own pipeline. */
 void outputs_add(struct outputs *outputs, GstAppSrc *src);
 void outputs_remove(struct outputs *outputs, GstAppSrc *src);
 void outputs_push(struct outputs *outputs, GstBuffer *unit);

@@ -54,8 +54,8 @@ static GstRTSPMediaFactory *factory_create(struct rtsp *rtsp, bool closed)
     return factory;
 }
 
-/* Lets only readers with the configured login read, by digest authentication, so that the password does not cross the network in clear
-   text. */
+/* Allows only clients with the configured login to read the stream, by digest authentication, so that the password does not cross the
+   network in clear text. */
 static void set_reader(GstRTSPServer *server, const struct video_options *options)
 {
     GstRTSPAuth *auth = gst_rtsp_auth_new();

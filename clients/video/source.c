@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Requests from the daemon, one at a time, its time zone, the saved views, and pictures. */
+/* Requests data from the daemon, one request at a time: its time zone, the saved views, and pictures. */
 #include "source.h"
 
 #include <errno.h>
@@ -34,22 +34,22 @@ struct video_source {
     gint64 asked_us, asked_utc_us, due_us[ASK_COUNT], wait_until_us; /* monotonic, except asked_utc_us */
 
     GTimeZone *zone;
-    char *view, *view_query, *view_title; /* the saved view to show: as stored, as a query, and its title; NULL: not known yet, or no
-                                             saved view is requested */
+    char *view, *view_query, *view_title; /* the saved view to show: view as stored, view_query as a query, and its title; NULL: not known
+                                             yet, or the video shows no saved view */
     cairo_surface_t *picture;
     gint64 picture_us, age_ms;
-    bool valued; /* true: the picture should have values; false: it shows no values, so no age is shown */
+    bool valued; /* true: the picture shows values, so their age is shown; false: it shows none */
     char headline[120], detail[240], said[240];
     gint64 since_us;    /* UTC time since which the text card is shown; 0: a picture is shown */
-    gint64 seen_utc_us; /* UTC instant of the newest picture */
-    bool barred;        /* true: access or the view was withdrawn, so the picture must be hidden immediately */
-    bool limited;       /* true: the token may not list views but may show this one, which is then requested by its id */
+    gint64 seen_utc_us; /* UTC instant of the plant that the newest picture shows */
+    bool barred;        /* true: access or the saved view was withdrawn, so the picture must be hidden immediately */
+    bool limited;       /* true: the token may not list the saved views but may show this view, which is then requested by its id */
     guint64 pictures;
 };
 
 /* --- errors ------------------------------------------------------------------------------------------------- */
 
-/* Stores the first line of `said` as valid UTF-8 in `out`, cut to `size` bytes. Frees `said`. */
+/* Stores the first line of the text `said` as valid UTF-8 in `out`, cut to `size` bytes. Frees `said`. */
 static void keep(char *said, char *out, gsize size)
 {
     said[strcspn(said, "\n")] = 0;
@@ -88,8 +88,8 @@ static void refuse(struct video_source *source, long status)
     if (status == 401 || status == 403) {
         fail(source, VIDEO_NOT_LET_IN, VIDEO_TOKEN, words, NULL);
         bar(source);
-        source->wait_until_us = source->asked_us + DENIED_US; /* waits before the next request: an address that sends wrong tokens too
-                                                                 often is slowed by the daemon */
+        source->wait_until_us = source->asked_us + DENIED_US; /* waits before the next request, because the daemon slows down clients that
+                                                                 send wrong tokens too often */
     } else if (status == 429) {
         fail(source, VIDEO_NOT_LET_IN, VIDEO_TOKENS, NULL, NULL);
         source->wait_until_us = source->asked_us + DENIED_US;

@@ -39,7 +39,7 @@ struct backup_job {
     struct log *log;
     const char *folder;  /* backup folder */
     const char *history; /* value of --history */
-    json_t *files;       /* manifest entries: {"name":...,"bytes":...,"xxh128":...}; "service":true marks a file of --add */
+    json_t *files;       /* array of the manifest's entries: {"name":...,"bytes":...,"xxh128":...}; "service":true marks a file of --add */
     json_t *added;       /* paths of --add */
 };
 
@@ -104,7 +104,7 @@ static const char *as_written(const struct plant *plant, const char *path)
     return !strncmp(path, plant->files.folder, n) && path[n] == '/' ? path + n + 1 : path;
 }
 
-/* Names of the files in the history folder whose content users made. */
+/* Files in the history folder that users fill from the page, such as saved views and notes. */
 static const char *const lists[] = { NAMED_VIEWS_FILE, SHORT_LINKS_FILE, NOTES_FILE, WALL_REMOTE_FILE, PAIRINGS_FILE };
 enum { LISTS = sizeof(lists) / sizeof(lists[0]) };
 
@@ -137,7 +137,7 @@ static bool add_to_copy(struct backup_job *job, copier *copy, const char *from, 
     return good;
 }
 
-/* Copies the history files of all months, the newest last, so that readings recorded during the backup are included. */
+/* Copies the history files of all months. The newest is copied last, so that the backup has readings recorded while it runs. */
 static bool add_history(struct backup_job *job, const char *folder)
 {
     size_t count;
@@ -166,8 +166,8 @@ static bool add_history(struct backup_job *job, const char *folder)
     return good;
 }
 
-/* Copies the files of --add into the backup and marks them "service":true in the manifest. plantcast-restore, the script that restores a
-   service, unpacks them; `plantcast restore` ignores them. */
+/* Copies the files of the option --add into the backup and marks them "service":true in the manifest. plantcast-restore, the script that
+   restores a service, unpacks them; `plantcast restore` ignores them. */
 static bool add_service(struct backup_job *job)
 {
     size_t i;
@@ -217,7 +217,8 @@ static void remove_folder(const char *folder)
     rmdir(folder);
 }
 
-/* Writes the time of this backup into the history folder; the daemon reports it in /metrics. No-op if the user may only read the folder. */
+/* Writes the time of this backup into the history folder; the daemon reports that time in /metrics. No-op if the user may only read the
+   folder. */
 static void leave_stamp(const char *history)
 {
     char *path = mem_printf("%s/" HISTORY_BACKUP_STAMP, history), now[TIMESTAMP_BYTES + 1];
@@ -228,7 +229,8 @@ static void leave_stamp(const char *history)
     mem_free(path);
 }
 
-/* Writes the backup into OUT.part and renames that once it is complete, so that a folder named OUT is always a complete backup. */
+/* Writes the backup into the folder OUT.part and renames that once it is complete, so that a folder named OUT is always a complete
+   backup. */
 static bool back_up(struct backup_job *job, const struct plant *plant, const char *out)
 {
     const char *tags = text_base_name(plant->files.tags_path);
@@ -260,7 +262,7 @@ static bool back_up(struct backup_job *job, const struct plant *plant, const cha
 
 /* --- restore -------------------------------------------------------------------------------------------------------------------- */
 
-/* Returns false if a newer Plantcast made the backup: its databases may have a form that this program does not know. */
+/* Returns false if a newer version of Plantcast made the backup: its databases may have a format that this program does not know. */
 static bool is_known_version(const char *path, const char *version)
 {
     if (!version || strverscmp(version, PLANTCAST_VERSION) <= 0)
@@ -411,7 +413,7 @@ static bool is_database(const char *name)
     return length > 7 && !strcmp(name + length - 7, ".sqlite");
 }
 
-/* Compares the hash of each restored file with the hash in the backup. Also copies each database to a temporary file: SQLite reads every
+/* Compares the hash of each restored file with the hash in the manifest. Also copies each database to a temporary file: SQLite reads every
    page for that, and reports damage that was already in the backup. */
 static bool each_restored(struct backup_job *job, const char *plant_path, const char *history)
 {
@@ -524,7 +526,8 @@ static int back_up_plant(struct backup_job *job, const char *plant_path, const c
 static int run_command(int argc, char **argv, int (*command)(int argc, char **argv, struct backup_job *job))
 {
     struct backup_job job = { .log = log_create(LOG_WARN), .files = json_array(), .added = json_array() };
-    /* kept, to be released at the end: restore and verify replace job.files by a list that belongs to the manifest they read */
+    /* pointer to the list that is freed at the end: restore and verify replace job.files by a list that belongs to the manifest they
+       read */
     json_t *files = job.files;
     int code = command(argc, argv, &job);
     json_decref(files);
@@ -560,7 +563,8 @@ static int run_restore(int argc, char **argv, struct backup_job *job)
     return (arguments.check ? check(job) : restore(job, argv[optind + 1])) ? 0 : 1;
 }
 
-/* Returns whether an argument is the name of a service's instance, as `plantcast init` accepts it, and not the path of a plant file. */
+/* Returns whether an argument is the name of an instance of the system service, as `plantcast init` accepts it, and not the path of a plant
+   file. */
 static bool is_instance(const char *argument)
 {
     return argument && *argument != '-' && !strpbrk(argument, "./");

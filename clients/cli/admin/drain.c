@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast drain`: makes a daemon on this machine send its sessions to other daemons. */
+/* `plantcast drain`: makes a daemon on this machine close its sessions, so that they connect to other daemons. */
 #include <errno.h>
 #include <getopt.h>
 #include <limits.h>
@@ -12,8 +12,8 @@
 #include "base/clock.h"
 #include "clients/cli/commands.h"
 
-/* WAIT_S: seconds to wait for the daemon: 2 until a load balancer notices, 10 for closing the sessions, 1 in reserve; LOOK_US: interval
-   of checks */
+/* WAIT_S: seconds to wait for the daemon: 2 until a load balancer notices, 10 for closing the sessions, 1 in reserve; LOOK_US: interval in
+   microseconds of checks whether the daemon is done */
 enum { WAIT_S = 13, LOOK_US = 50000 };
 
 static void print_usage(FILE *out)
@@ -28,8 +28,8 @@ static void print_usage(FILE *out)
           out);
 }
 
-/* Returns true if the process is a plantcastd, by its name. Checked before SIGUSR1 is sent, because the signal would end any other
-   program. */
+/* Returns true if the process is a plantcastd, by its name. This must be checked before SIGUSR1 is sent, because the signal would end most
+   other programs. */
 static bool is_daemon(pid_t pid)
 {
     char path[64], name[32] = "";

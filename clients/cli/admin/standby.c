@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast standby`: tells a leading core that its standby is in maintenance, by a file in the folder of the core's history. */
+/* `plantcast standby`: tells a leading core that its standby core is under maintenance, by a file in the history folder of the leading
+   core. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

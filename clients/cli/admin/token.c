@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast token`: creates, lists and revokes access tokens. The daemon notices by itself that the file has changed. */
+/* `plantcast token`: creates, lists and revokes access tokens in the token file. The daemon notices by itself that the file has changed. */
 #include <errno.h>
 #include <fcntl.h>
 #include <getopt.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast fleet`: serves one page and one /metrics for the servers of many plants. */
+/* `plantcast fleet`: serves one page and one /metrics that show the servers of many plants. */
 #include <getopt.h>
 #include <libwebsockets.h>
 #include <signal.h>
@@ -21,7 +21,7 @@ enum { PORT = 8090, HEADER_BYTES = 2048, CHUNK = 16384, NAME_BYTES = 256 };
 struct fleet_site {
     struct fleet_poll *poll;
     const struct fleet_file *file;
-    const char *host; /* host name that a request's Host header may have besides local names; NULL: none */
+    const char *host; /* name that a request's Host header may contain in addition to local names; NULL: none */
 };
 
 struct fleet_answer { /* response of one connection */
@@ -29,7 +29,7 @@ struct fleet_answer { /* response of one connection */
     size_t bytes, sent;
 };
 
-/* global, because a signal handler gets no argument */
+/* libwebsockets context, global because a signal handler gets no argument */
 static struct lws_context *_Atomic serving;
 static atomic_bool ending;
 
@@ -67,7 +67,7 @@ static const struct page_file {
     { "/fleet.css", "clients/fleet/fleet.css", "text/css; charset=utf-8" },
 };
 
-/* Returns the body of the answer to a request for a path (mem_free), and sets its type. NULL: there is no such path. */
+/* Returns the body of the response to a request for `path` (mem_free), and sets *type to its content type. NULL: there is no such path. */
 static char *answer_to(const struct fleet_site *site, const char *path, size_t *bytes, const char **type)
 {
     static const char pictures[] = "/picture/";

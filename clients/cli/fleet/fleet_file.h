@@ -13,14 +13,14 @@ struct fleet_plant {
     char *name;                 /* name of the plant to display; equals the id if the file gives none */
     char *url;                  /* ends with a slash */
     char *token_file, *ca_file; /* NULL: none */
-    double poll_s, picture_s;   /* smallest intervals in seconds between two requests to this server, for metrics and for pictures;
-                                   picture_s 0: no pictures are requested */
+    double poll_s, picture_s;   /* smallest intervals in seconds between two requests to this server: poll_s for metrics, picture_s for
+                                   pictures; picture_s 0: no pictures are requested */
     int line;
 };
 
 struct fleet_file {
     char *path, *folder, *name;
-    double poll_s, picture_s; /* default intervals in seconds, for plants without own values (as in struct fleet_plant) */
+    double poll_s, picture_s; /* default intervals in seconds, for plants whose entry gives none (struct fleet_plant) */
     struct fleet_plant *plants;
     size_t count;
 };

@@ -76,7 +76,7 @@ static bool make_request(const struct fleet_plant *plant, struct fleet_request *
     return true;
 }
 
-/* Stores a complete response: the state of the plant's server, or its picture. Returns NULL if the response is good, else what is wrong
+/* Stores a complete response: the state of the plant's server, or its picture. Returns NULL if the response is valid, else what is wrong
    with it. */
 static const char *note_answer(struct fleet_poll *poll, struct fleet_request *request)
 {
@@ -106,7 +106,7 @@ static void note_failure(struct fleet_poll *poll, const struct fleet_request *re
 {
     struct fleet_plant_state *known = &poll->states[request->plant];
     struct picture *picture = &poll->pictures[request->plant];
-    if (request->kind == PICTURE) { /* a failed request removes the picture, because viewers would take an old one for the present state */
+    if (request->kind == PICTURE) { /* a failed request removes the old picture, because viewers would take it for the present state */
         mem_free(picture->at);
         picture->at = NULL;
         known->picture = 0;
@@ -118,7 +118,7 @@ static void note_failure(struct fleet_poll *poll, const struct fleet_request *re
     snprintf(known->why, sizeof(known->why), "%s", why);
 }
 
-/* Returns the time to wait until the next request of this kind. A busy server extends it with Retry-After. */
+/* Returns the time in nanoseconds until the next request of this kind. A busy server lengthens it by a Retry-After header. */
 static int64_t pause_ns(const struct fleet_poll *poll, const struct fleet_request *request)
 {
     const struct fleet_plant *plant = &poll->file->plants[request->plant];
@@ -208,7 +208,7 @@ struct fleet_poll *fleet_poll_start(const struct fleet_file *file)
         struct fleet_request *request = &poll->requests[i];
         request->plant = (int)(i / KINDS);
         request->kind = (enum fleet_question)(i % KINDS);
-        /* spreads the first requests over 5 s; without this, all requests would always be sent at the same time */
+        /* spreads the first requests over 5 s; otherwise the requests to all servers would always be sent at the same time */
         request->due_ns = now_ns + (int64_t)(i / KINDS) * 5 * NS_PER_S / (int64_t)file->count;
     }
     curl_global_init(CURL_GLOBAL_DEFAULT);

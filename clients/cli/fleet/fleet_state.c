@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parses and prints the state of plants' servers. */
+/* Parses the state of plants' servers from their /metrics, and prints it as JSON and metrics. */
 #include "fleet_state.h"
 
 #include <jansson.h>
@@ -11,7 +11,7 @@
 
 /* --- one plant -------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the rest of `line` after the prefix `name`, or NULL if the line has another prefix. */
+/* Returns the rest of `line` after `name`, or NULL if the line does not begin with `name`. */
 static const char *after(const char *line, const char *name)
 {
     size_t length = strlen(name);
@@ -133,7 +133,7 @@ static int64_t asked_of(const struct fleet_plant_state *of)
 }
 
 /* Defines a function that returns a member of a server's state, or INT64_MIN (no sample) while the server does not answer, so that old
-   values do not pass for present ones. */
+   values are not published as present ones. */
 #define WHILE_IT_ANSWERS(member) \
     static int64_t member##_of(const struct fleet_plant_state *of) \
     { \

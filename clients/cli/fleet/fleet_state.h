@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* State of a plant's server, read from the server's /metrics, and the state of a whole fleet as JSON and as metrics. Pure. Thread: any. */
+/* State of a plant's server, read from the server's /metrics, and the state of a whole fleet as JSON and as metrics. No side effects.
+   Thread: any. */
 #ifndef CLI_FLEET_FLEET_STATE_H
 #define CLI_FLEET_FLEET_STATE_H
 #include <stdbool.h>
@@ -26,8 +27,8 @@ struct fleet_plant_state {
     struct fleet_state state; /* from the last answer */
     bool answers;
     int64_t answered_us; /* time of the server's last answer, microseconds since 1970; 0: never */
-    int64_t silent_us;   /* time of the first failed request since the last answer, microseconds since 1970; 0: it answers */
-    uint64_t picture;    /* id of the server's newest picture; 0: none, or the last request for one failed */
+    int64_t silent_us;   /* time of the first failed request since the last answer, microseconds since 1970; 0: the server answers */
+    uint64_t picture;    /* id of the server's newest picture; 0: none, or the last request for a picture failed */
     char why[256];       /* reason why the server does not answer */
     int64_t asked;       /* number of requests so far */
 };

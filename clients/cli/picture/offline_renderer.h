@@ -7,13 +7,13 @@
 #include "render/split_view.h"
 #include "snapshot.h"
 
-struct offline_renderer { /* the members are freed in reverse order of their declaration */
+struct offline_renderer { /* offline_renderer_close() frees the members in reverse order of their declaration */
     struct log *log;
     struct plant *plant;
     struct scene *scene;
     struct snapshot *snapshot; /* readings to draw */
     struct baselines *baselines;
-    uint32_t turn; /* sequence number of the readings in `snapshot`; increases with each set of readings */
+    uint32_t turn; /* sequence number of the readings in `snapshot`; increases whenever other readings are set */
     struct workers *workers;
     struct field *field;
     struct gl *gl;
@@ -24,7 +24,7 @@ struct offline_renderer { /* the members are freed in reverse order of their dec
     int64_t first_us, last_us; /* first and last recorded instant */
 };
 
-/* Opens the plant, its files, values and baseline, and sets *view from options->args. Returns 0, or the exit code with the reason
+/* Opens the plant, its prepared files, values and baseline, and sets *view from options->args. Returns 0, or the exit code with the reason
    printed. Call offline_renderer_close() in both cases. */
 int offline_renderer_open(struct offline_renderer *offline, struct snapshot_options *options, struct view *view);
 /* Like offline_renderer_open(), but without a view. Returns false with the reason printed. */
@@ -35,7 +35,7 @@ bool offline_renderer_take_view(const struct offline_renderer *offline, const st
 int offline_renderer_reopen(struct offline_renderer *offline, struct snapshot_options *options, struct view *view);
 /* Creates the GL context and the renderer. Returns false on failure, logged. */
 bool offline_renderer_open_gl(struct offline_renderer *offline, const struct snapshot_options *options);
-/* Opens the plant's recorded history. Returns false, with the reason printed, if there is none. */
+/* Opens the plant's recorded history. Returns false, with the reason printed, if the plant has none. */
 bool offline_renderer_open_history(struct offline_renderer *offline, const struct snapshot_options *options);
 /* Sets the readings and the view to an instant of recorded history. Returns false if the history cannot be read (logged) or has no readings
    before that instant (printed). */
@@ -44,7 +44,7 @@ bool offline_renderer_seek(struct offline_renderer *offline, int64_t at_us, stru
 struct frame *offline_renderer_draw(struct offline_renderer *offline, const struct snapshot_options *options, struct view *view);
 /* Writes the frame as a PNG file. Returns false on failure, logged. */
 bool offline_renderer_save(struct offline_renderer *offline, struct frame *frame, const char *path);
-/* Frees all members. A renderer that was opened only in part is allowed. */
+/* Frees all members. The renderer may have been opened only in part. */
 void offline_renderer_close(struct offline_renderer *offline);
 
 #endif

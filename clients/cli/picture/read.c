@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast read`: reads the value at a pixel of a picture that has a legend strip, from the picture's pixels alone. */
+/* `plantcast read`: reads the field's value at a pixel of a picture with a legend strip, from the picture's pixels alone. */
 #include <cairo.h>
 #include <getopt.h>
 #include <stdio.h>

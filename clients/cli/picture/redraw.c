@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Redraws a signed picture and compares the result with it. The picture's statement is the signed JSON text inside its file: plant, time,
-   view and all readings. The offline renderer draws from it. */
+/* Redraws a signed picture and compares the result with the picture. A signed picture's file contains a statement, a signed JSON text:
+   plant, time, view and all readings. The offline renderer draws from that. */
 #include "redraw.h"
 
 #include <stdio.h>
@@ -92,7 +92,7 @@ static bool same_as_recorded(struct offline_renderer *offline, const struct redr
     return same == count;
 }
 
-/* Returns the number of pixels whose colour channels each differ by at most 1 of 255. */
+/* Returns the number of pixels of which no colour channel differs by more than 1 of 255. */
 static size_t count_agreeing(const struct frame *frame, const uint8_t *rgb)
 {
     size_t agreeing = 0;

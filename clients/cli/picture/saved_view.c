@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds a named view by id or title in the list of a daemon or of a plant, and adds its parameters to those of the command line. */
+/* Finds a named view by id or title in the list of a daemon or of a plant, and adds the view's parameters to those of the command line. */
 #include "saved_view.h"
 
 #include <stdio.h>
@@ -16,7 +16,7 @@ const char *saved_view_text(const json_t *view, const char *name)
     return text ? text : "";
 }
 
-/* Returns true if the command line, the first `count` arguments, replaces this argument of a view. */
+/* Returns true if one of the first `count` arguments, which come from the command line, replaces this argument of a view. */
 static bool is_replaced(const struct snapshot_options *options, size_t count, const char *arg)
 {
     bool replaced = options->baseline && view_address_replaces("baseline", arg);
@@ -46,7 +46,7 @@ bool saved_view_add_address(struct snapshot_options *options, const char *id, co
     return good;
 }
 
-/* Returns the view with this id, else the only one with this title, borrowed from the list; NULL: none. */
+/* Returns the view with this id, else the only view with this title; NULL: none. The list owns the view. */
 static const json_t *find(const json_t *list, const char *name)
 {
     const json_t *view, *titled = NULL;
@@ -71,8 +71,8 @@ static void print_unknown(const json_t *list, const char *from, const char *name
     json_array_foreach(list, i, view) fprintf(stderr, "  %-24s %s\n", saved_view_text(view, "id"), saved_view_text(view, "title"));
 }
 
-/* Finds the view that the command line names. list: JSON array of the views; NULL: none. Returns NULL, with the reason printed, if there is
-   none. */
+/* Finds in `list` the view that the command line names. list: JSON array of the views; NULL: no views. Returns NULL, with the reason
+   printed, if the view is missing. */
 static const json_t *find_or_print(const struct snapshot_options *options, const json_t *list)
 {
     const json_t *view = find(list, options->view);
@@ -89,14 +89,14 @@ bool saved_view_add_from_daemon(struct snapshot_options *options, bool present)
     const char *answer = body.at ? body.at : "";
     bool good = status == 200;
     if (good) {
-        /* the daemon adds the view's parameters, because the user's role may not permit them in a query */
+        /* sends only the view's id: the daemon adds the parameters, because the user's role may not permit them in a query */
         json_t *message = json_loads(answer, 0, NULL);
         const json_t *view = find_or_print(options, json_object_get(message, "list"));
         good = view && snapshot_add_arg(options, "view", saved_view_text(view, "id")) &&
                (!present || snapshot_add_arg(options, "at", "now"));
         json_decref(message);
     } else if (status == 403) {
-        /* a token that permits only pictures of some views: the daemon decides which, by their ids */
+        /* the token permits only pictures of some views, not the list of views: the daemon decides by the view's id */
         good = snapshot_add_arg(options, "view", options->view);
     } else if (status) {
         fprintf(stderr, "plantcast: %s: the daemon answers %d: %s\n", options->from, status, answer);

@@ -9,12 +9,12 @@
 
 /* Returns a text member of a view or tour in a daemon's JSON, "" if the member is missing; owned by the JSON. */
 const char *saved_view_text(const json_t *view, const char *name);
-/* Adds the parameters of an address (part of the page's URL after `#`) to options->args, except those that the command line gave, and the
-   instant. All of options->args must come from the command line. id: name of the view in messages. Returns false with the reason
-   printed. */
+/* Adds the parameters of an address (part of the page's URL after `#`) to options->args, except those that the command line gave, and
+   except the instant. All of options->args must come from the command line. id: name of the view in error messages. Returns false with the
+   reason printed. */
 bool saved_view_add_address(struct snapshot_options *options, const char *id, const char *address);
-/* Finds the view options->view in the list of the daemon options->from, and adds its id to options->args. present: also asks for the
-   present, if the view shows the past. Returns false with the reason printed. */
+/* Finds the view options->view in the list of the daemon options->from, and adds its id to options->args. present true: if the view shows a
+   past instant, also adds an argument that asks for the present. Returns false with the reason printed. */
 bool saved_view_add_from_daemon(struct snapshot_options *options, bool present);
 /* Finds the view options->view among those of the plant file and those in the history folder, and adds its parameters to options->args, as
    saved_view_add_address() does. Returns false with the reason printed. */

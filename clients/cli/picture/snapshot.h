@@ -20,31 +20,32 @@ struct snapshot_options {
     const char *values[SNAPSHOT_MAX]; /* CSV files */
     size_t value_count;
     const char *view; /* id or title of a named view whose parameters the picture has (saved_view.h); NULL: none */
-    bool pick; /* true: also prints the equipment and the value at the pixel place_px */
+    bool pick; /* true: also prints the equipment and the field's value at the pixel place_px */
     double place_px[2];
-    const char *baseline; /* CSV file of values or, for a daemon, name of a saved baseline; NULL: none */
+    const char *baseline; /* CSV file of baseline values or, with a daemon, name of a saved baseline; NULL: none */
     const char *prepared; /* folder of the prepared files; NULL: next to the plant file */
     enum gl_kind gl;
     struct gl_device gl_device;
     bool has_gl_device;
     const char *at;                  /* instant as written on the command line; NULL: now */
     int64_t at_us;                   /* `at` in microseconds since 1970 */
-    const char *history;             /* history folder; NULL: the plant file's */
+    const char *history;             /* history folder; NULL: the one in the plant file */
     const char *from_text, *to_text; /* first and last instant of a clip, as on the command line; from_us, to_us: in microseconds since
                                         1970 */
     int64_t from_us, to_us;
     const char *tour; /* id of the tour (a sequence of views) that a clip shows; NULL: the clip shows a single view */
     double speed, fps;
     bool is_signed;                                      /* true: the clip contains the server's signature of each picture */
-    bool per_fragment, moving, no_overlay, offline_only; /* offline_only: true: an option was given that a daemon does not offer */
+    bool per_fragment, moving, no_overlay, offline_only; /* offline_only: true: the command line has an option that only the offline
+                                                            renderer offers */
 };
 
 /* Parses the command line into *options. Returns -1 to continue, or an exit code. Call snapshot_options_finish() in both cases. */
 int snapshot_parse(int argc, char **argv, bool clip, struct snapshot_options *options);
 /* Frees what the options own. */
 void snapshot_options_finish(struct snapshot_options *options);
-/* Appends the options as `&name=value...`, URL-encoded, for a request to a daemon. Returns false, with the reason printed, if a daemon
-   does not offer one of the options. */
+/* Appends the options as `&name=value...`, URL-encoded, to the query of a request to a daemon. Returns false, with the reason printed, if a
+   daemon does not offer one of the options. */
 bool snapshot_query(struct snapshot_options *options, struct text *query);
 /* Adds an argument NAME=VALUE to options->args. Returns false if there are too many. */
 bool snapshot_add_arg(struct snapshot_options *options, const char *name, const char *value);

@@ -122,7 +122,7 @@ static const char offline_usage[] =
     "                          osmesa (draws on the CPU) (default: auto)\n"
     "  --gl-device N           number of the GPU that draws (see `plantcastd --list-gl-devices`)\n";
 
-/* Options that are also parameters of /snapshot.png, by the parameter's name. */
+/* Options that are also parameters of /snapshot.png: option and name of the parameter. */
 static const struct {
     const char *option, *name;
 } shared[] = {
@@ -328,7 +328,7 @@ static bool only_size(const struct snapshot_options *options)
     return only;
 }
 
-/* Checks that the options fit together. left: number of arguments that are not options. Returns -1 to continue, or the exit code. */
+/* Checks that the options may be combined. left: number of arguments that are not options. Returns -1 to continue, or the exit code. */
 static int judge(const struct snapshot_options *options, bool clip, int left)
 {
     if (left != 1)

@@ -35,8 +35,8 @@ static void print_statement(const char *path, const json_t *statement)
     puts(json_array_size(args) ? "" : " the plant's own");
 }
 
-/* Redraws a picture from its statement and compares both. statement: already verified, so the picture's size and pixels can be trusted.
-   Returns the exit code. */
+/* Redraws a picture from its signed statement and compares both. The statement's signature was already verified, so the picture's size and
+   pixels can be trusted. Returns the exit code. */
 static int redraw(const struct redraw_options *options, const json_t *statement, const char *png, size_t count)
 {
     char why[PNG_WHY_BYTES];

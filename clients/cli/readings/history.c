@@ -94,7 +94,7 @@ static bool parse_span(const char *text, int64_t *span_us)
     return true;
 }
 
-/* Prints a duration in the largest unit in which its number is at least 1. */
+/* Prints a duration in s, min, h or days, by its length. INT64_MAX: any time. */
 static void print_span(int64_t span_us, char out[32])
 {
     double s = (double)span_us / US_PER_S;

@@ -49,7 +49,7 @@ static void print_usage(FILE *out)
           out);
 }
 
-/* Saves the tag list `after` in place of `before`; takes ownership of both texts. If one is NULL, saves nothing and prints the reason in
+/* Saves the tag list `after` in place of `before`; takes ownership of both texts. If one is NULL, saves nothing and prints the reason
    `failed`. Returns the exit code. */
 static int save(const char *path, char *before, char *after, const struct refusal *failed)
 {
@@ -169,7 +169,7 @@ static bool number_of(const char *name, const char *text, double most, double *o
     return false;
 }
 
-/* Reads the filter of positions to accept from the options. Returns false with the reason printed. */
+/* Reads from the options which assumed positions to accept. Returns false with the reason printed. */
 static bool read_filter(const struct accept_options *options, const struct plant *plant, struct assumed_filter *filter)
 {
     *filter = (struct assumed_filter){ .asset = options->asset ? plant_find_asset(plant, options->asset) : -1,
@@ -214,7 +214,7 @@ static int run_locked(const struct accept_options *options)
     if (!plant)
         return 1;
     struct log *log = log_create(LOG_WARN);
-    char real[PATH_MAX]; /* if the list is a symlink, earlier versions are next to its target */
+    char real[PATH_MAX]; /* if the tag list is a symlink, its earlier versions are next to the symlink's target */
     const char *path = realpath(plant->files.tags_path, real) ? real : plant->files.tags_path;
     int code = options->undo ? undo(options, plant, path) : accept_in(options, plant, log, path);
     log_destroy(&log);
@@ -222,7 +222,7 @@ static int run_locked(const struct accept_options *options)
     return code;
 }
 
-/* Locks the plant's folder, since a daemon or an import may be replacing the list. */
+/* Accepts the positions. Locks the plant's folder, since a daemon or an import may be replacing the tag list. */
 static int accept_positions(const struct accept_options *options)
 {
     if (options->dry_run)

@@ -58,8 +58,8 @@ static int print_report(const struct plant *plant, const struct drift_report *re
     return found;
 }
 
-/* Searches the sensors of the plant, or of group `only`, for drift and prints the result. Returns the number of drifting sensors, or -1
-   if the history cannot be read. */
+/* Searches the sensors of the plant, or of the sensor group with index `only`, for drift and prints the result. Returns the number of
+   drifting sensors, or -1 if the history cannot be read. */
 static int look_at(const struct scene *scene, struct history_reader *reader, int only, int64_t to_us)
 {
     int found = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads readings from a CSV file. */
+/* Reads tag values with their quality from a CSV file. */
 #include "values.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@ struct columns {
     int tag, value, quality, unit;
 };
 
-/* Finds the columns by the header. Without a header the first row is data. */
+/* Finds the columns by the header row. Without a header, the first row is data and the columns have their default order. */
 static bool find_columns(const struct csv *csv, struct columns *columns)
 {
     columns->tag = csv_find(csv, "tag");
@@ -50,7 +50,8 @@ static const char *cell(const struct csv_row *row, int column)
     return column >= 0 && (size_t)column < row->count ? row->cells[column].text : "";
 }
 
-/* Converts the value to the unit in which the plant shows the tag: from the row's unit if it has one, else from the tag's own unit. */
+/* Converts a value to the unit in which the plant shows the tag: from the unit in the CSV row if the row has one, else from the tag's own
+   unit. */
 static bool take_unit(const struct csv *csv, const struct csv_row *row, const struct columns *columns, const struct plant_tag *tag,
                       double *value)
 {

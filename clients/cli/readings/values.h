@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads readings from a CSV file with rows `tag,value[,quality]`. The header line is optional; with a header there may be a column
-   `unit`. Quality is good (default), uncertain or bad; an empty value is bad. Values are in the unit of the tag's row in the tag list
-   (own_unit) unless `unit` names another. */
+/* Reads tag values with their quality from a CSV file with rows `tag,value[,quality]`. The header line is optional; with a header there may
+   be a column `unit`. Quality is good (default), uncertain or bad; an empty value is bad. Values are in the unit of the tag's row in the
+   tag list (own_unit) unless the column `unit` names another. */
 #ifndef CLI_READINGS_VALUES_H
 #define CLI_READINGS_VALUES_H
 #include <stdbool.h>
@@ -10,7 +10,7 @@
 #include "plant/plant.h"
 #include "value/snapshot.h"
 
-/* Sets the readings of the tags that the file names in the snapshot. Returns false if there are errors, which all go to diag. */
+/* Sets the readings of those tags in the snapshot that the file names. Returns false if there are errors, which are all added to diag. */
 bool values_read(const struct plant *plant, const char *path, struct snapshot *snapshot, struct diag *diag);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs all viewers that do not decode frames in one epoll loop. */
+/* Runs all viewers that do not decode frames, in one epoll loop. */
 #include "load_generator.h"
 
 #include <errno.h>
@@ -15,8 +15,8 @@
 
 enum { EVENTS = 256 };
 static const int64_t CONNECT_TIMEOUT_NS = 20 * NS_PER_S; /* time limit for connecting */
-/* interval between polls; packets that arrive in between are handled together. Waking for each packet would take processor time from the
-   daemon, because the kernel wakes this process inside the daemon's send() */
+/* Interval between polls; packets that arrive in between are handled together. Waking for each packet would take processor time from the
+   daemon under test, because the kernel wakes this process inside the daemon's send(). */
 static const int64_t POLL_INTERVAL_NS = 2 * NS_PER_MS;
 
 struct load_generator {
@@ -90,7 +90,7 @@ static void on_event(const struct load_generator *load, const struct epoll_event
         leave(viewer);
 }
 
-/* Handles the timers of all viewers. Returns true if any viewer is still running. */
+/* Handles the due timers of all viewers. Returns true if any viewer is still running. */
 static bool on_time(struct load_generator *load, int64_t now_ns)
 {
     bool any = false;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast probe`: runs many viewers at the same time and prints a table of their measurements. */
+/* `plantcast probe`: runs many viewers of a daemon at the same time and prints a table of their measurements. */
 #include "probe.h"
 
 #include <getopt.h>
@@ -101,7 +101,7 @@ static bool parse_motion(const char *text, enum motion *motion)
     return false;
 }
 
-/* Returns true if this build can decode the codec, or the viewers do not decode. */
+/* Returns true if this build can decode the chosen codec, or if the viewers do not decode. */
 static bool decodes(const struct probe *probe)
 {
     char why[DECODER_WHY_BYTES];

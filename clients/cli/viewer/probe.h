@@ -8,7 +8,7 @@ struct probe {
     struct daemon_url url;
     const char *url_text, *codec, *signs, *folder;
     int sessions, stalled, width_px, height_px;
-    int watching; /* number of viewers that keep reading; they come first in `viewers`, and the viewers after them stall */
+    int watching; /* number of viewers that read without pause; they come first in `viewers`, and the viewers after them stall */
     double seconds, hz;
     enum motion motion;
     bool as_json, blind, follow, spread;
@@ -18,7 +18,7 @@ struct probe {
 
 extern const char *const probe_motions[MOTION_COUNT];
 
-/* Prints the results of finished viewers, as a table or JSON. Returns false if a viewer failed or no frame arrived, with the reason
+/* Prints the measurements of finished viewers, as a table or JSON. Returns false if a viewer failed or no frame arrived, with the reason
    printed. */
 bool probe_report(const struct probe *probe);
 

@@ -22,7 +22,7 @@ static void append(struct latency_samples *all, const struct latency_samples *so
     all->count += some->count;
 }
 
-/* Returns the p-th percentile of the samples in `of`, which must be sorted; NaN if there are none. */
+/* Returns the p-th percentile of the samples in `of`, which must be sorted; NaN if there are no samples. */
 static double percentile(const struct latency_samples *of, double p)
 {
     if (!of->count)

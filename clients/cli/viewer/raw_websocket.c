@@ -14,7 +14,7 @@
 #include "base/mem.h"
 #include "protocol/wire.h"
 
-/* key and accept value that RFC 6455 gives as its example */
+/* fixed handshake key and its accept value, from the example in RFC 6455 */
 static const char KEY[] = "dGhlIHNhbXBsZSBub25jZQ==", ACCEPT[] = "s3pPLMBiTxaQ9kYGzzhZRbK+xOo=";
 enum { OP_TEXT = 1, OP_BINARY = 2, OP_CLOSE = 8, OP_PING = 9, OP_PONG = 10, MAX_HEAD_BYTES = 4096, MAX_TEXT_BYTES = 16 << 20 };
 
@@ -23,7 +23,7 @@ struct raw_websocket {
     enum { ASKING, ASKED, OPEN } state;
     char request[1024];
     struct text head;     /* status line and headers of the server's HTTP response */
-    unsigned char in[10]; /* header of the current frame, of which in_count bytes have arrived */
+    unsigned char in[10]; /* header of the current WebSocket frame, of which in_count bytes have arrived */
     size_t in_count;
     bool in_payload, final;
     int opcode;         /* opcode of the current frame */
@@ -78,7 +78,7 @@ struct raw_websocket *raw_websocket_connect(const struct daemon_url *url, const 
     return raw;
 }
 
-/* Sends all bytes. Returns false if the send buffer has no room for all: messages are short enough to fit. */
+/* Sends all bytes. Returns false if the socket's send buffer has no room for all; messages are short enough that it normally has. */
 static bool send_all(const struct raw_websocket *raw, const void *bytes, size_t count)
 {
     return send(raw->fd, bytes, count, MSG_NOSIGNAL) == (ssize_t)count;
@@ -96,7 +96,7 @@ static bool send_frame(const struct raw_websocket *raw, int opcode, const char *
         out[2] = (unsigned char)(count >> 8);
         out[3] = (unsigned char)count;
     }
-    /* RFC 6455 requires clients to mask payloads, to protect HTTP caches; a mask of zeros satisfies this rule and leaves the data
+    /* RFC 6455 requires clients to mask payloads by XOR, to protect HTTP caches; a mask of zeros satisfies this rule and leaves the data
        unchanged */
     memset(out + head - 4, 0, 4);
     memcpy(out + head, bytes, count);
@@ -110,7 +110,7 @@ bool raw_websocket_send(struct raw_websocket *raw, const char *text, size_t coun
 
 /* --- receiving ------------------------------------------------------------------------------------------------------------------- */
 
-/* Like recv(), but returns 0 if nothing is available and -1 with *why if the connection has ended. bytes NULL: reads and drops the data. */
+/* Like recv(), but returns 0 if no data is available and -1 with *why if the connection has ended. bytes NULL: reads and drops the data. */
 static ssize_t take(const struct raw_websocket *raw, void *bytes, size_t count, const char **why)
 {
     ssize_t got = recv(raw->fd, bytes, count, bytes ? 0 : MSG_TRUNC);
@@ -122,8 +122,8 @@ static ssize_t take(const struct raw_websocket *raw, void *bytes, size_t count, 
     return -1;
 }
 
-/* Reads the HTTP response byte by byte, because the bytes after its end belong to frames. Returns 0, with raw->state OPEN once the
-   response is complete; or a negative number with *why. */
+/* Reads the HTTP response byte by byte, because the bytes after its end belong to WebSocket frames. Returns 0, with raw->state OPEN once
+   the response is complete; or a negative number with *why. */
 static int read_head(struct raw_websocket *raw, const char **why)
 {
     char byte;
@@ -170,8 +170,8 @@ static void begin_payload(struct raw_websocket *raw)
     raw->message.length = raw->count = 0;
 }
 
-/* Reads the header of a frame. Returns > 0 once the header is complete, 0 if no more data is available now, or -1 with *why if the
-   connection has ended. */
+/* Reads the header of a WebSocket frame. Returns > 0 once the header is complete, 0 if no more data is available now, or -1 with *why if
+   the connection has ended. */
 static ssize_t read_frame_header(struct raw_websocket *raw, const char **why)
 {
     while (raw->in_count < header_bytes(raw)) {
@@ -184,8 +184,8 @@ static ssize_t read_frame_header(struct raw_websocket *raw, const char **why)
     return 1;
 }
 
-/* Reads a part of a frame's payload. Returns the number of bytes read, 0 if no data is available now, or -1 with *why if the connection has
-   ended or the message is too long. */
+/* Reads a part of a WebSocket frame's payload. Returns the number of bytes read, 0 if no data is available now, or -1 with *why if the
+   connection has ended or the message is too long. */
 static ssize_t read_payload(struct raw_websocket *raw, const char **why)
 {
     char bytes[64 * 1024];
@@ -211,7 +211,7 @@ static ssize_t read_payload(struct raw_websocket *raw, const char **why)
     return got;
 }
 
-/* Handles a control frame. Returns false if it closes the connection. */
+/* Handles a control frame (close, ping, pong). Returns false if it closes the connection. */
 static bool on_control(struct raw_websocket *raw, const char **why)
 {
     const char *bytes = raw->control.at ? raw->control.at : "";

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tells a proxy that blocks WebSockets from a daemon that cannot be reached. */
+/* Distinguishes a proxy that blocks WebSockets from a daemon that cannot be reached. */
 #include "stream_reach.h"
 
 #include <stdio.h>
@@ -10,7 +10,8 @@
 
 enum { OPEN_S = 5 };
 
-/* Requests the stream over HTTP. Returns the HTTP status; *reached is true if the daemon itself answered why it refused a WebSocket. */
+/* Requests the path /stream over HTTP. Returns the HTTP status; *reached is true if the daemon itself answered why it refused a
+   WebSocket. */
 static int ask_why(const struct daemon_url *url, struct text *body, bool *reached)
 {
     int status = daemon_get(url, "/stream?why", body);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A viewer's receiving half: handles messages and records measurements. */
+/* Receiving half of a viewer: handles the daemon's messages and records measurements. */
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
@@ -53,7 +53,7 @@ static void on_pong(struct viewer *viewer, int64_t server_us)
     viewer->offset_us = server_us - (clock_utc_ns() - rtt_ns / 2) / 1000;
 }
 
-/* Returns true for a message of a type that the measurement does not need, so that it need not be parsed. */
+/* Returns true for a text message of a type that the measurement does not need, so that it is not parsed. */
 static bool is_passed_over(const struct text *text)
 {
     static const char *const types[] = { "tags", "markers" };
@@ -91,7 +91,7 @@ static void on_text(struct viewer *viewer)
     json_decref(o);
 }
 
-/* Records a latency sample for every camera that was sent up to camera_seq. The server skips a camera that a newer one replaces before the
+/* Records the latency of every camera that was sent up to camera_seq. The server skips a camera that a newer one replaces before the
    picture is drawn; such a camera counts as shown by this frame. */
 static void record_input(struct viewer *viewer, uint32_t camera_seq, int64_t now_ns)
 {
@@ -102,7 +102,7 @@ static void record_input(struct viewer *viewer, uint32_t camera_seq, int64_t now
             add_sample(&viewer->result.input, (double)(now_ns - viewer->sent_ns[(viewer->shown_camera_seq + 1) % SENT_RING]) / 1e6);
 }
 
-/* Records how much later than its leader this follower shows the camera of the frame. */
+/* Records how long after its leader sent the frame's camera this follower shows the frame. */
 static void record_behind(struct viewer *viewer, const struct wire_frame *frame, int64_t now_ns)
 {
     struct leader *lead = viewer->params.lead;
@@ -151,7 +151,7 @@ static void record(struct viewer *viewer, const struct wire_frame *frame, int64_
     record_behind(viewer, frame, now_ns);
 }
 
-/* Writes a signed frame to FOLDER/SESSION-FRAME.png. Not possible in the load generator, which does not keep whole messages. */
+/* Writes a signed frame to the file FOLDER/SESSION-FRAME.png. Not possible in the load generator, which does not keep whole messages. */
 static void save_signed(struct viewer *viewer, const struct wire_frame *frame, const uint8_t *png)
 {
     char *path = mem_printf("%s/%03d-%06u.png", viewer->params.folder, viewer->params.number, frame->seq);

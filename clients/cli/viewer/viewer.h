@@ -32,11 +32,11 @@ struct viewer_params {
     const char *codec; /* "jpeg", "h264" */
     enum motion motion;
     double seconds, hz;  /* hz: camera updates per second */
-    double start_deg;    /* start angle of the orbit in degrees; in a still view, rotation from the plant's initial camera (0: that
+    double start_deg;    /* start angle of the camera's orbit in degrees; in a still view, rotation from the plant's initial camera (0: that
                             camera) */
     unsigned seed;       /* seed of random motion */
     bool blind;          /* whether to acknowledge without decoding */
-    const char *signs;   /* which frames to request signed: `refined`, `all`; NULL: none */
+    const char *signs;   /* which frames the daemon is asked to sign: `refined`, `all`; NULL: none */
     const char *folder;  /* folder to save signed frames in; NULL: they are not saved */
     int number;          /* index of this viewer, used in names of saved files */
     bool stalls;         /* true: the viewer stops reading from its socket after the first frame, like a client that hangs */
@@ -54,9 +54,10 @@ enum viewer_stage { STAGE_WAIT, STAGE_FIELD, STAGE_RENDER, STAGE_ENCODE, STAGE_N
 struct viewer_result {
     int frames, still_frames, errors, signed_frames;
     int given_up;                     /* frames that the server aborted */
-    int64_t text_bytes, steady_bytes; /* text_bytes: received in text messages; steady_bytes: received in all messages but pongs, from
-                                         VIEWER_SETTLES_S after the first frame on */
-    int64_t bytes, first_ns, last_ns; /* bytes: received in frames; first_ns, last_ns: monotonic times of the first and the last frame */
+    int64_t text_bytes, steady_bytes; /* text_bytes: bytes received in text messages; steady_bytes: bytes received in all messages but
+                                         pongs, from VIEWER_SETTLES_S after the first frame on */
+    int64_t bytes, first_ns, last_ns; /* bytes: those received in frames; first_ns, last_ns: monotonic times of the first and the last
+                                         frame */
     struct latency_samples input;     /* latencies from sending a camera until a frame with that camera is decoded */
     struct latency_samples sensor;    /* latencies from a change of a reading in the server until a frame with it is decoded */
     struct latency_samples behind;    /* follower only: latencies from the leader sending a camera until a frame with it is decoded by
@@ -82,7 +83,7 @@ const struct viewer_result *viewer_result(const struct viewer *viewer);
 void viewer_destroy(struct viewer **viewer);
 
 extern const struct lws_protocols viewer_protocols[];
-/* Sets in the creation info of a libwebsockets context what this viewer's connection needs. */
+/* Sets the options that this viewer's connection needs in the creation info of a libwebsockets context. */
 void viewer_prepare_context(const struct viewer *viewer, struct lws_context_creation_info *info);
 
 #endif

@@ -17,8 +17,8 @@ struct viewer {
     struct raw_websocket *raw;
     lws_sorted_usec_list_t timer;
     struct decoder *decoder;
-    int64_t decode_ns; /* time spent so far on decoding the current picture, which arrives in several rectangles */
-    struct text in;    /* the message that is being received; over a raw WebSocket only the beginning of a binary message */
+    int64_t decode_ns; /* time spent so far on decoding the current picture, which may arrive in several frames */
+    struct text in;    /* the message that is being received; of a binary message over a raw_websocket only the beginning */
     size_t in_count;   /* length of the incoming message */
     bool greeted, welcomed, camera_due, ping_due, follow_due, followed, done;
     double eye[3], target[3], fov_deg;
@@ -42,7 +42,7 @@ void viewer_fail(struct viewer *viewer, const char *why);
 int viewer_send(struct viewer *viewer);
 /* Returns true if a message is due to be sent. */
 bool viewer_has_output(const struct viewer *viewer);
-/* Marks the messages whose time has come by now_ns as due. */
+/* Marks the messages that are to be sent by now_ns as due. */
 void viewer_schedule(struct viewer *viewer, int64_t now_ns);
 /* Handles the complete message in viewer->in. */
 void viewer_on_message(struct viewer *viewer, bool binary);

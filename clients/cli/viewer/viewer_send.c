@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sends a viewer's messages: hello, cameras, acknowledgements. */
+/* Sending half of a viewer: hello, cameras, acknowledgements. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,7 +36,7 @@ static double uniform(struct viewer *viewer, double low, double high)
     return low + (high - low) * rand_r(&viewer->params.seed) / RAND_MAX;
 }
 
-/* Begins the next leg of random motion: drags of up to 2 s alternate with pauses of up to 2 s. */
+/* Begins the next leg of random camera motion: drags of up to 2 s alternate with pauses of up to 2 s. */
 static void next_leg(struct viewer *viewer, int64_t now_ns)
 {
     viewer->angle_deg += viewer->speed_deg * seconds_of(viewer->leg_end_ns - viewer->leg_ns);

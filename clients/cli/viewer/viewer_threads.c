@@ -13,7 +13,8 @@ enum { MAX_THREADS = 64, MAX_FILES = 8192, MAX_WAITING = 64 };
 struct viewer_thread {
     pthread_t thread;
     struct lws_context *context;
-    struct viewer **viewers; /* the array of all viewers, from this thread's first one on; every stride-th viewer is this thread's */
+    struct viewer **viewers; /* the array of all viewers, beginning with this thread's first one; every stride-th viewer belongs to this
+                                thread */
     int count, stride;
 };
 
@@ -25,8 +26,8 @@ static bool all_done(const struct viewer_thread *worker)
     return true;
 }
 
-/* Waits in poll() until the next timer of a viewer. libwebsockets waits in whole milliseconds and would spin for the rest, which takes
-   processor time from a daemon on the same machine. */
+/* Waits in poll() until the next timer of a viewer is due. libwebsockets waits in whole milliseconds and would spin for the rest, which
+   takes processor time from a daemon on the same machine. */
 static void wait_for_timer(const struct viewer_thread *worker)
 {
     struct pollfd sockets[MAX_WAITING];
@@ -58,8 +59,8 @@ static void *worker_main(void *arg)
     return NULL;
 }
 
-/* Creates the thread's libwebsockets context. All contexts must exist before the first thread connects: libwebsockets has one global
-   index from TLS connections to contexts, and each new context changes it. */
+/* Creates the thread's libwebsockets context. All contexts must exist before the first thread connects: libwebsockets has one global index
+   from TLS connections to contexts, and each new context changes the index. */
 static bool worker_prepare(struct viewer_thread *worker)
 {
     struct lws_context_creation_info info = {

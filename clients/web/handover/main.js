@@ -16,7 +16,7 @@ const HOURS = [8, 12, 24], MOST = 200; // maximum rows of a table
 const query = new URLSearchParams(location.search), token = stored('token');
 document.documentElement.lang = language;
 await learnWords();
-new BroadcastChannel('plantcast').onmessage = ({ data }) => { // clears this page when the page that opened it was locked
+new BroadcastChannel('plantcast').onmessage = ({ data }) => { // clears this page when the page that opened it was locked for inactivity
     if (data === 'locked') {
         store('token', '');
         location.reload();
@@ -29,20 +29,20 @@ const timeOf = (us) => {
     const { date, time } = clock(us / 1000);
     return `${date} ${time.slice(0, 5)}`;
 };
-const dayTimeOf = (us) => { // the year is left out, because the page's head has it
+const dayTimeOf = (us) => { // without the year, which the head of the page shows
     const { day, time } = clock(us / 1000);
     return `${day} ${time.slice(0, 5)}`;
 };
 const alarmOf = (tag, kinds) => `${tag} · ${kinds.map((kind) => say(`kind.${kind}`)).join(', ')}`;
 const kindsOf = ({ kind, others = [] }) => [kind, ...others.map((other) => other.kind)];
 
-// Returns the equipment and the description of a tag as text.
+// Returns the equipment of a tag and the tag's description as text.
 function aboutOf(model, tag) {
     const area = tag ? areaOf(model, tag) : '', about = tag?.description ?? '';
     return about.startsWith(area) ? about : [area, about].filter(Boolean).join(', ');
 }
 
-// Returns a value and the limit that it exceeded, in the unit of a row of the journal (null: not known), else in the tag's.
+// Returns a value and the limit that it exceeded as text, in the unit of the journal's row (null: not known), else in the tag's unit.
 function valueOf(model, tag, { value, limit, unit: was }) {
     const group = tag && model.group(tag.group), decimals = group ? decimalsFor(group.max - group.min) : 2;
     const unit = unitText(was === undefined ? tag?.unit || group?.unit : was ?? ''), texts = [numberText(value, decimals),
@@ -109,13 +109,13 @@ function pageOf(model, notes, journal, [fromUs, toUs], missing) {
     ];
 }
 
-// Shows the handover page to operators and engineers only, because the page names users.
+// Shows the handover page, but only to operators and engineers, because the page names users.
 async function show() {
     const { role } = await get('me');
     if (!['operator', 'engineer'].includes(role))
         throw new Error(say('handover.denied'));
     const span = { from: query.get('from') ?? '-8h', to: query.get('to') ?? 'now' };
-    const missing = []; // names of the data that could not be loaded, which the page lists
+    const missing = []; // names of the data that could not be loaded; the page lists them
     const orElse = (empty) => (error) => {
         missing.push(error.message);
         return empty;

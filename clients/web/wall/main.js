@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page of one display of a wall: panes in a grid, a session for texts and alarms, and a warning when the server is silent.
+// The page of one display of a wall: panes in a grid, one session with the server for texts and alarms, and a warning when the server is
+// silent.
 import { AlarmCall } from '../core/alarm_call.js';
 import { Connection } from '../core/connection.js';
 import { zoneClock } from '../core/format.js';
@@ -35,7 +36,7 @@ const pairing = new Pairing({ element: byId('denied'), place: { wall: query.get(
 } });
 const token = pairing.kept ?? stored('token');
 if (token)
-    store('token', token); // stores the token for the panes, which are separate pages
+    store('token', token); // stores the token for the panes, which are separate pages in iframes
 const streamUrl = new URL('stream', location.href.replace(/^http/, 'ws').replace(/[?#].*$/, '')).href;
 const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock });
 connection.onUnopened = () => import('../core/blocked.js').then(({ explain }) => explain(connection), () => {});
@@ -61,7 +62,7 @@ function sayWrong(text) {
     byId('grid').replaceChildren(make('p', { class: 'wrong' }, text));
 }
 
-// Sets the size of a unit, on which all font sizes depend.
+// Sets the size of a unit of the page, on which all font sizes depend.
 function fit() {
     if (!wall)
         return;
@@ -111,7 +112,7 @@ async function look() {
 
 // --- periodic work
 
-// OPENED: time at which the page was opened, by the display's own clock
+// OPENED: time of day at which the page was opened, by the display's own clock
 const lostWords = make('p'), lostSelf = make('p', { class: 'self' }), OPENED = new Date().toLocaleTimeString('en-GB');
 byId('lost').replaceChildren(lostWords, lostSelf);
 
@@ -172,5 +173,5 @@ keepScreenOn();
 serveInstalled();
 watchMainThread({ scale: () => scale, reloads: parent === window }).catch(console.warn);
 connection.start();
-// global object with the wall's parts, for the browser's console and for tests
+// global object with the page's parts, for the browser's console and for tests
 globalThis.wall = { session, call, get panes() { return panes; } };

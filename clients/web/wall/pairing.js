@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pairing of a display: shows a code, which an engineer enters elsewhere, or takes a token. The secret is generated here and stored for
-// this wall and display.
+// Pairs a display with the server: shows a code, which an engineer enters on another machine, or takes a token that a user types here. The
+// display's secret is generated here and stored for this wall and display.
 import { make, setText } from '../app/common/dom.js';
 import { say } from '../core/words.js';
 
 const ASK_MS = 2000, SECRET_BYTES = 32;
-const WHY = { 200: 'walls.asks', 400: 'walls.nowhere', 503: 'walls.crowded' }; // HTTP status -> text that is shown instead of the code
+// HTTP status of the pairing request -> text that is shown instead of the code
+const WHY = { 200: 'walls.asks', 400: 'walls.nowhere', 503: 'walls.crowded' };
 
 export class Pairing {
-    // place: { wall, display }. enter(secret) tries to connect with the secret, or with a token that a user typed.
+    // place: { wall, display }. enter(secret) tries to connect with the display's secret, or with a token that a user typed.
     constructor({ element, place, enter }) {
         Object.assign(this, { element, place, enter, key: `plantcast.wall.${place.wall}.${place.display}`, asking: 0 });
         this.digits = make('p', { class: 'digits' });
@@ -25,7 +26,7 @@ export class Pairing {
         });
     }
 
-    // The stored secret: the token that a user typed for the whole machine, else the secret of this display; null: none.
+    // The stored secret to connect with: the token that a user typed for the whole machine, else this display's own secret; null: neither.
     get kept() {
         return localStorage.getItem('plantcast.wall') ?? localStorage.getItem(this.key);
     }
@@ -36,8 +37,8 @@ export class Pairing {
         this.enter(token);
     }
 
-    // Shows the code and asks the server until the display is paired. A typed token was refused, so it is deleted; the display's own secret
-    // stays, because it may be paired again.
+    // Shows the code and asks the server until an engineer has paired the display. A typed token was refused, so it is deleted; the
+    // display's own secret stays, because the display may be paired again.
     show() {
         if (!this.element.hidden)
             return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The panes of a wall, by kind. Each is { element, tick(now) }. Panes with views and trends contain the normal page in an iframe.
+// The panes of a wall's display, by kind. Each is { element, tick(now) }. Panes with views and trends contain the normal page in an iframe.
 import { byEquipment } from '../core/alarm_call.js';
 import { isGone, isWaiting } from '../core/alarms.js';
 import { ageText, decimalsFor, numberText, qualityText, quantityText, unitText, zoneClock } from '../core/format.js';
@@ -11,11 +11,12 @@ import { make, setText, setVariable } from '../app/common/dom.js';
 import { badge, limitText } from '../app/alarms/alarm_bar.js';
 import { SnapshotPane } from './snapshot_pane.js';
 
-const LEAST_PART = 0.4, LATEST_MS = 30000; // LATEST_MS: time after which a picture is shown even if it does not contain the alarm's tag
+// LATEST_MS: time after which an alarm's picture is shown even if it does not contain the alarm's tag
+const LEAST_PART = 0.4, LATEST_MS = 30000;
 const KINDS = { views: ViewsPane, trend: TrendPane, alarms: AlarmsPane, tiles: TilesPane, clock: ClockPane, text: TextPane,
     snapshot: SnapshotPane };
 
-// Returns an area's name as a valid CSS identifier.
+// Returns an area's name as a valid CSS identifier for the grid.
 export const areaOf = (name) => (name === '.' ? name : `area-${name.replace(/\./g, '_')}`);
 
 export function paneOf(pane, context) {
@@ -26,19 +27,19 @@ export function paneOf(pane, context) {
     return { element, kind: pane.kind, tick };
 }
 
-// Returns an alarm's values as the alarm bar shows them; the present value is left out while no messages arrive from the server.
+// Returns an alarm's values as the alarm bar shows them, without the present value while no messages arrive from the server.
 const nowText = (session, alarm) => limitText(session, alarm, !['lost', 'silent'].includes(health(session, clock.now()).kind));
 
 const ageOf = (ms) => say('walls.age', { age: ms === null ? '–' : ageText(ms) });
 
-// Returns the age of the oldest usable reading of tags; null: there is none.
+// Returns the age of the oldest usable reading of these tags; null: none is usable.
 function oldestMs({ model }, names) {
     const good = names.map((name) => model.tag(name)).filter((tag) => tag && model.readings[tag.index].quality !== 'bad');
     const ages = good.map(({ index }) => model.ageMs(index, clock.now())).filter((ms) => ms !== null);
     return ages.length > 0 ? Math.max(...ages) : null;
 }
 
-// Returns a text with the quantities of tags, and the age of the oldest of their usable readings.
+// Returns a text with the quantities of these tags, and the age of the oldest usable reading.
 function aboutTags(session, names) {
     const { model } = session, groups = [...new Set(names.map((name) => model.group(model.tag(name)?.group)))].filter(Boolean);
     return [groups.map(quantityText).join(', '), ageOf(oldestMs(session, names))].filter(Boolean).join(' · ');
@@ -54,7 +55,7 @@ function valueOf({ model }, tag) {
 
 const timeOf = (session, us) => zoneClock(session.model.plant.time_zone)(us / 1000).time;
 
-// Returns the age of the oldest reading in a picture, for sessions that receive no readings themselves.
+// Returns the age of the oldest reading in the shown picture, for sessions that receive no readings themselves.
 function pictureAgeMs(session) {
     const { picture } = session;
     if (!picture || picture.oldestAgeMs === null)
@@ -78,21 +79,21 @@ function ViewsPane(pane, context) {
     const { session, call, title, element, wall, display } = context, place = `${wall.id}/${display}/${pane.area}`;
     const inner = pageIn(context, 'view', place), remembered = `plantcast.at.${place}`;
     let at = (Number(sessionStorage.getItem(remembered)) || 0) % pane.items.length, changedAt = null, shown = null, shownIn = null;
-    // views that the token may see, if it is limited; else all saved views
+    // the views that the display's token may show, if it is limited to some; else all saved views
     const viewsOf = ({ model, views }) => model?.plant.only ?? views;
     const titleOf = (id) => pane.title ?? viewsOf(session).find((view) => view.id === id)?.title ?? id;
     const words = make('span', { class: 'said' }), about = make('span', { class: 'about' }), why = make('p', { class: 'why' });
     title.append(words, about);
     context.body.append(why);
 
-    // Returns a text that says who sent the view or holds it, and since when.
+    // Returns a text that says which user sent the view to the pane or holds the pane on it, and since when.
     function byWhom({ desk, by, held, time_us: us }) {
         const who = [desk, by].filter(Boolean).join(', '), time = timeOf(session, us);
         return make('i', {}, say(held ? 'walls.held' : 'walls.sent', { who, time }));
     }
 
-    // Shows a view. wrong: names in the view that the plant does not have; they are listed instead of the picture, because another picture
-    // would mislead.
+    // Shows a view. wrong: names in the view that the plant does not have. The pane lists such names instead of the picture, because
+    // another picture would mislead.
     function showView(page, order, wrong) {
         const id = pane.items[at];
         if (wrong)
@@ -110,14 +111,14 @@ function ViewsPane(pane, context) {
             ...(order ? [' ', byWhom(order)] : []));
     }
 
-    // Returns true if the picture does not show the alarm yet: it has another group, or the tag is outside.
+    // Returns true if the picture does not show the alarm yet: it shows another sensor group, or the alarm's tag is outside the picture.
     function isComing({ session: { model, shown: params }, overlay }, alarm, now) {
         const tag = model.tag(alarm.tag.name), isOther = Boolean(tag?.group) && params.group !== tag.group;
         return isOther || (now - changedAt < LATEST_MS && !overlay.marker(tag));
     }
 
-    // Shows the alarm's state, its tag's other alarms that are unacknowledged, and the value now. All may change while the alarm's
-    // position is shown.
+    // Shows the alarm's state, its tag's other unacknowledged alarms, and the present value. All may change while the pane shows the
+    // alarm's position.
     function sayNow(alarm) {
         const others = alarm.others.filter(({ state }) => isWaiting(state))
             .map(({ kind, state }) => `${say(`kind.${kind}`)}: ${say(`state.${state}`)}`);
@@ -127,7 +128,7 @@ function ViewsPane(pane, context) {
 
     function showAlarm(page, alarm) {
         const tag = page.session.model.tag(alarm.tag.name);
-        // resets what a view that a user sent to this pane may have changed: a hidden alarm position, another range of colours
+        // resets what a view sent by a user may have changed in this pane: a section that hides the alarm, another range of colours
         page.session.setParams({ ...(tag.group ? { group: tag.group } : {}), clip: null, split: null, range: null });
         page.flyToTag(tag);
         setVariable(element, '--called', `var(--p${alarm.priority})`);
@@ -149,7 +150,7 @@ function ViewsPane(pane, context) {
         const rests = order || alarms.some(({ waiting }) => waiting) || (pane.on_alarm && call.isFlood(alarms, nowUs));
         if (!rests && pane.items.length > 1 && changedAt !== null && now - changedAt >= (pane.stops?.[at].dwell_s ?? pane.every_s) * 1000) {
             at = (at + 1) % pane.items.length;
-            sessionStorage.setItem(remembered, at); // remembers the view, so that a reloaded display continues with it
+            sessionStorage.setItem(remembered, at); // stores which view is shown, so that a reloaded display continues with it
             shown = null;
         }
         const { view, wrong, refusal } = viewsOf(page.session).find(({ id }) => id === pane.items[at]) ?? {};
@@ -162,7 +163,8 @@ function ViewsPane(pane, context) {
         const isNew = wanted !== shown || page !== shownIn;
         if (isNew)
             [shown, shownIn, changedAt] = [wanted, page, now];
-        element.classList.toggle('coming', Boolean(alarm) && isComing(page, alarm, now)); // hides the picture and its legend
+        // hides the old picture and its legend until the alarm's picture arrives
+        element.classList.toggle('coming', Boolean(alarm) && isComing(page, alarm, now));
         if (!isNew) {
             if (alarm)
                 sayNow(alarm);
@@ -180,7 +182,8 @@ function ViewsPane(pane, context) {
 function TrendPane(pane, context) {
     const { session, wall, display, title } = context, inner = pageIn(context, 'trend', `${wall.id}/${display}/${pane.area}`);
     const about = make('span', { class: 'about' });
-    let begun = null; // the iframe's page in which the trend was started; a reloaded iframe has another page and must be started again
+    // the iframe's page in which the trend was started; a reloaded iframe has another page, in which it must be started again
+    let begun = null;
     title.replaceChildren(pane.title ?? pane.items.join(', '), about);
     return { tick() {
         const { page } = inner;
@@ -206,7 +209,7 @@ function AlarmsPane(pane, { session, call, title, body }) {
         make('b', {}, `${say(`kind.${alarm.kind}`)} `, make('span', { class: 'tag' }, alarm.tag.name)),
         make('span', { class: 'what' }, [nowText(session, alarm), alarm.tag.description].filter(Boolean).join(' · ')),
         make('time', {}, timeOf(session, alarm.raisedUs)));
-    // Returns a row that takes less room: the kind's short name, the tag and its present value, and below them time and description.
+    // Returns a short row for an alarm: the kind's short name, the tag and its present value, and below them time and description.
     function briefRowOf(alarm) {
         const { tag, kind, raisedUs } = alarm, { text, unit } = tag.index === null ? { text: '', unit: '' } : valueOf(session, tag);
         return make('li', { class: `brief${alarm.waiting ? ' waiting' : ''}` }, badge(alarm.priority, isGone(alarm.state)),
@@ -221,8 +224,8 @@ function AlarmsPane(pane, { session, call, title, body }) {
 
     const isFull = () => body.scrollHeight > body.clientHeight + 1;
 
-    // Shows as many rows as fit, and the number of the other alarms. brief: makes the rows that are shown if the others do not all fit; if
-    // their first lines alone all fit, only these are shown.
+    // Shows as many rows as fit, and the number of the other alarms. brief(alarm) makes a short row, used if the normal rows do not all
+    // fit; if the first lines of the short rows alone all fit, only these are shown.
     function fill(rows, brief = null) {
         list.replaceChildren(...rows);
         let hidden = 0;
@@ -292,7 +295,7 @@ function TilesPane(pane, { session, body, title }) {
         }
     }
 
-    // Sets a tile's alarm flag: its colour shows the priority; hollow means returned to normal but unacknowledged.
+    // Sets the alarm flag of a tag's tile: its colour shows the priority; hollow means returned to normal but unacknowledged.
     function flagOf(tile, alarm) {
         const text = alarm ? `${alarm.priority} ${alarm.state}` : '';
         if (tile.flag.dataset.shows === text)
@@ -325,7 +328,7 @@ function TilesPane(pane, { session, body, title }) {
     } };
 }
 
-// Makes a pane's content fit: first by the compact form, in which values are as large as names, then by smaller letters.
+// Makes a pane's content fit: first by a compact layout, in which values are as large as names, then by smaller letters.
 function fitIn(body) {
     body.classList.remove('compact');
     setVariable(body, '--part', 1);

@@ -6,7 +6,7 @@ import { say } from '../core/words.js';
 import { clock } from '../app/common/clock.js';
 import { make, setText } from '../app/common/dom.js';
 
-// UNHEARD_MS: if this plant's server has been silent for longer, the state of the other plant counts as unknown
+// UNHEARD_MS: if this plant's server has been silent for longer, the state of the other plant is unknown
 const ASK_MS = 1000, UNHEARD_MS = 5000;
 
 // Returns { tick(now) }. timeOf(us) formats a time in the plant's time zone.
@@ -14,7 +14,7 @@ export function SnapshotPane(pane, { session, title, body, timeOf }) {
     const [id] = pane.items, image = make('img', { alt: '', hidden: '' }), card = make('div', { class: 'gone' });
     const about = make('span', { class: 'about' }), name = make('span', { class: 'said' });
     let state = null, asks = false, askedAt = -Infinity;
-    // shown: { picture (id), ageMs (the picture's age at the time `at`), at }; changedAt: time when another picture came
+    // shown: { picture (id), ageMs (the picture's age at the time `at`), at }; changedAt: time when a different picture arrived
     let shown = null, changedAt = 0;
     title.replaceChildren(name, about);
     body.append(image, card);
@@ -30,7 +30,7 @@ export function SnapshotPane(pane, { session, title, body, timeOf }) {
     }
 
     async function look() {
-        // time of the request, not of the answer, so that the time in between counts as age of the picture
+        // time of the request and not of the answer, so that the duration of the request counts as age of the picture
         const at = askedAt = clock.now();
         asks = true;
         try {
@@ -41,7 +41,7 @@ export function SnapshotPane(pane, { session, title, body, timeOf }) {
             if (said.picture && said.picture !== shown?.picture)
                 await load(state);
         } catch {
-            // the failure is not reported here: tick() reports that the server is silent once that has lasted too long
+            // ignores the failure here, because tick() reports it once the server has been silent for too long
         } finally {
             asks = false;
         }

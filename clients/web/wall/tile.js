@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A display that shows one tile of a picture across many displays: its part of the picture without a border, dots at readings, alarm
 // labels, notes, and the position at which a user at another computer points. Title and legend appear once on the wall. One display, the
-// leading one, chooses what all show.
+// leading one, chooses the view that all displays show.
 import { isGone } from '../core/alarms.js';
 import { projector } from '../core/camera.js';
 import { Connection } from '../core/connection.js';
@@ -20,7 +20,7 @@ import { TileSession } from './tile_session.js';
 
 // SMALLEST: smallest font scale of a title that is too long for one line
 const UPRIGHT = { matches: false, addEventListener() {} }, SMALLEST = 0.6;
-// REACH: fraction of a tile's width by which a label may begin beyond the edge, on the neighbouring tile
+// REACH: a label may begin on the neighbouring tile, up to this fraction of a tile's width beyond the edge
 const OLD_MS = 3000, POINTS_MS = 4000, REACH = 0.35;
 
 // Returns { element, kind, tick(now) }. pane: description of the pane from /api/v1/walls, with `tile`; second argument: the context that
@@ -134,7 +134,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         setText(said, text);
     }
 
-    // Shows faults: the leading display lists the displays that are missing, and each display reports its own.
+    // Shows faults: the leading display lists the missing displays, and each display reports its own faults.
     function saySelf(now) {
         const own = session.tiles.late.find((one) => one.display === display), { picture } = session;
         const silent = session.freshAt !== null && now - session.freshAt > OLD_MS;
@@ -153,8 +153,8 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
     // frame: the frame on the screen; pointer: position at which a user at another computer points: { position, by, until }
     let frame = null, pointer = null;
 
-    // Returns a function from a position in the plant to one on this display, as fractions of its sides; null: behind the camera, or far
-    // outside.
+    // Returns a function from a position in the plant to one on this display, as fractions of the display's sides; null: behind the camera,
+    // or far outside.
     function placer() {
         const [left, top, width, height] = session.tiles.part ?? [0, 0, 1, 1];
         const project = projector(frame.camera, frame.fullWidth / width, frame.fullHeight / height);
@@ -180,7 +180,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         return mark;
     }
 
-    // Draws the marks of readings. That of an alarm is drawn in any case, even if its sensor is hidden or its quantity is not shown.
+    // Draws the marks of readings. An alarm's mark is always drawn, even if its sensor is hidden or its quantity is not shown.
     function drawMarks() {
         const { model } = words, place = placer(), known = session.markersOf(frame.seq), marked = new Set(), out = [];
         const alarms = model.alarms.list().filter(({ state, waiting }) => waiting || !isGone(state));
@@ -209,7 +209,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         marks.replaceChildren(...out);
     }
 
-    // Draws the marks again when a picture arrives or a marked item changes.
+    // Draws the marks again when a picture arrives or a marked reading changes.
     let marksOf = '';
     function lookAtMarks() {
         if (pointer && clock.now() > pointer.until)

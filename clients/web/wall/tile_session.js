@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The session of one tile of a picture across many displays: it holds frames back until the server says when all tiles show them.
+// The session of one tile of a picture across many displays: it holds decoded frames back until the instant, chosen by the server, at which
+// all tiles show them.
 import { DecodeQueue } from '../core/decode_queue.js';
 import { Session } from '../core/session.js';
 
-// EARLY_MS: a picture may be shown this many milliseconds early, because the screen's next refresh is 17 ms later
+// EARLY_MS: how early a picture may be shown, in milliseconds, because the screen's next refresh is only 17 ms later
 const PING_MS = 2000, CLOCK_MS = 60000, EARLY_MS = 4;
 
 export class TileSession extends Session {
@@ -13,7 +14,7 @@ export class TileSession extends Session {
         super(rest);
         Object.assign(this, { tile, canvases: [...canvases], decoding }); // canvases: the visible one first
         this.tiles = { leads: false, part: null, missing: [], late: [] };
-        this.pongs = [];    // pongs of the last minute: { at, us (server clock minus ours), roundTripMs }
+        this.pongs = [];    // answers to pings of the last minute: { at, us (server's clock minus ours), roundTripMs }
         this.places = null; // marker positions of the frame on the screen: [tag, x, y, occluded, ...]
         this.reset();
         this.queue = new DecodeQueue({
@@ -36,8 +37,8 @@ export class TileSession extends Session {
     reset() {
         for (const { picture } of this.kept ?? [])
             picture.close?.();
-        this.kept = [];       // frames held back { frame, picture, decodeMs }, in order
-        this.order = null;    // the picture to show next: { seq, picture, at_us }; null: none
+        this.kept = [];       // frames held back, in order: { frame, picture, decodeMs }
+        this.order = null;    // the server's order which picture to show next: { seq, picture, at_us }; null: none
         this.drawnLast = null; // { frame, decodeMs } of the picture drawn on the hidden canvas; null: none
         this.markerRows = []; // { seq, rows }
     }
@@ -67,7 +68,8 @@ export class TileSession extends Session {
             this.markerRows.push({ seq: message.seq, rows: message.markers });
     }
 
-    // Takes over parameters from the leading display. The picture on the screen keeps its own until one with the new parameters arrives.
+    // Takes over view parameters from the leading display. The picture on the screen keeps its own parameters until a picture with the new
+    // ones arrives.
     follow(message) {
         const { shown, picture } = this;
         super.heard(message);
@@ -87,7 +89,8 @@ export class TileSession extends Session {
         this.pongs.push({ at: now, roundTripMs, us: us - (now - roundTripMs / 2) * 1000 });
     }
 
-    // The server's time, by the shortest round trip of the last minute: clocks drift, and queues only add delay.
+    // The server's time, by the shortest round trip of the last minute: older measurements are wrong because clocks drift, and longer round
+    // trips because queues add delay.
     get serverUs() {
         const best = this.pongs.reduce((a, b) => (!a || b.roundTripMs < a.roundTripMs ? b : a), null);
         return best ? best.us + this.now() * 1000 : this.clockUs();
@@ -114,7 +117,7 @@ export class TileSession extends Session {
         requestAnimationFrame(look);
     }
 
-    // Draws the next picture on the hidden canvas, so that at its instant only the canvases are swapped.
+    // Draws the next picture on the hidden canvas, so that only the canvases need to be swapped at the picture's instant.
     prepare(seq) {
         const parts = this.kept.filter(({ frame }) => frame.seq <= seq), [front, back] = this.canvases;
         this.kept = this.kept.filter(({ frame }) => frame.seq > seq);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Refusals, in German. Keys before the first [section] are codes of the server, with the arguments of PROTOCOL.md.
+// Refusals of the server, in German. Keys before the first [section] are the server's refusal codes, with the arguments of PROTOCOL.md.
 export default `
 role_operator: dafür ist die Rolle Operator nötig
 role_engineer: dafür ist die Rolle Engineer nötig

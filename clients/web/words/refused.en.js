@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Refusals, in English. Keys before the first [section] are codes of the server, with the arguments of PROTOCOL.md.
+// Refusals of the server, in English. Keys before the first [section] are the server's refusal codes, with the arguments of PROTOCOL.md.
 export default `
 role_operator: this needs the role operator
 role_engineer: this needs the role engineer
