@@ -53,16 +53,14 @@ static void add_group(struct linear_error *linear, const struct plant *plant, in
     to->in_a_row = to->columns[to->count - 1] - to->columns[0] == to->count - 1;
     to->papers = straight_looks_at_paper(from, to->count);
     linear->group_count++;
-    linear->share_count += (to->papers ? 2 : 1) * padded;
-    if (plant_prepares_any(from))
-        linear->mode_count = 2;
+    linear->share_count += (to->papers ? 4 : 2) * padded;
     linear->most_count = padded > linear->most_count ? padded : linear->most_count;
 }
 
 void linear_error_init(struct linear_error *linear, const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count,
                        const float (*places_m)[3])
 {
-    *linear = (struct linear_error){ .sensor_count = sensor_count, .mode_count = 1 };
+    *linear = (struct linear_error){ .sensor_count = sensor_count };
     linear->groups = mem_array(plant->group_count, sizeof(*linear->groups));
     for (int axis = 0; axis < 3; axis++) {
         linear->axes_m[axis] = mem_array(interp_padded(sensor_count), sizeof(float));
@@ -71,7 +69,6 @@ void linear_error_init(struct linear_error *linear, const struct plant *plant, c
     }
     for (size_t g = 0; g < plant->group_count; g++)
         add_group(linear, plant, (int)g, sensors);
-    linear->share_count *= (size_t)linear->mode_count;
 }
 
 void linear_error_finish(struct linear_error *linear)
@@ -90,7 +87,7 @@ void linear_error_finish(struct linear_error *linear)
 void linear_error_set_radius(struct linear_error *linear, const float *const largest_m[2])
 {
     for (size_t g = 0; g < linear->group_count; g++)
-        for (int mode = 0; mode < linear->mode_count; mode++) {
+        for (int mode = 0; mode < 2; mode++) {
             struct linear_error_group *group = &linear->groups[g];
             double largest = 0;
             for (size_t i = 0; i < group->count; i++)
@@ -118,8 +115,7 @@ static void room_finish(struct corner_room *room)
         mem_free(room->at);
 }
 
-/* Distances from a point to every sensor: one array along the surface (geodesic), one straight (Euclidean), which is set only if
- * straight-line distances count. */
+/* Distances from a point to every sensor: one array along the surface (geodesic), one straight (Euclidean). */
 struct distances {
     const float *of[2]; /* by enum distance_mode */
     struct corner_room straight_m, picked_m;
@@ -130,8 +126,7 @@ static void distances_init(struct distances *distances, const struct linear_erro
     size_t all = interp_padded(linear->sensor_count);
     float *straight_m = room_for(&distances->straight_m, all);
     room_for(&distances->picked_m, linear->most_count);
-    if (linear->mode_count > DISTANCE_EUCLIDEAN)
-        interp_euclidean(point_m, (const float *const *)linear->axes_m, all, straight_m);
+    interp_euclidean(point_m, (const float *const *)linear->axes_m, all, straight_m);
     distances->of[DISTANCE_GEODESIC] = geodesic_m;
     distances->of[DISTANCE_EUCLIDEAN] = straight_m;
 }
@@ -165,7 +160,7 @@ void linear_error_weights(const struct linear_error *linear, const float point_m
     float *slope = interp + linear->share_count;
     struct distances distances;
     distances_init(&distances, linear, point_m, geodesic_m);
-    for (int mode = 0; mode < linear->mode_count; mode++)
+    for (int mode = 0; mode < 2; mode++)
         for (size_t g = 0; g < linear->group_count; g++) {
             const struct linear_error_group *group = &linear->groups[g];
             const float *distance_m = pick(group, &distances, mode);
@@ -185,7 +180,7 @@ void linear_error_norms(const struct linear_error *linear, const float point_m[3
 {
     struct distances distances;
     distances_init(&distances, linear, point_m, geodesic_m);
-    for (int mode = 0; mode < linear->mode_count; mode++)
+    for (int mode = 0; mode < 2; mode++)
         for (size_t g = 0; g < linear->group_count; g++) {
             const struct linear_error_group *group = &linear->groups[g];
             interp_shepard_norm(&group->of, pick(group, &distances, mode), norms++);
@@ -198,7 +193,7 @@ void linear_error_weights_again(const struct linear_error *linear, const float p
 {
     struct distances distances;
     distances_init(&distances, linear, point_m, geodesic_m);
-    for (int mode = 0; mode < linear->mode_count; mode++)
+    for (int mode = 0; mode < 2; mode++)
         for (size_t g = 0; g < linear->group_count; g++) {
             const struct linear_error_group *group = &linear->groups[g];
             const float *distance_m = pick(group, &distances, mode);
@@ -232,7 +227,7 @@ static double worst_of(const struct linear_error *linear, const struct error_que
 {
     double most = 0;
     bool reached = true;
-    for (size_t g = 0, first = 0; g < 2 * (size_t)linear->mode_count * linear->group_count; g++) {
+    for (size_t g = 0, first = 0; g < 4 * linear->group_count; g++) {
         const struct linear_error_group *group = &linear->groups[g / 2 % linear->group_count];
         size_t count = group->of.count;
         const float *at[3];
@@ -272,7 +267,7 @@ double linear_error_in_triangle(const struct linear_error *linear, enum linear_e
 double linear_error_rim_of(const struct linear_error *linear, const struct interp_norm *norms)
 {
     float rim_m = INFINITY;
-    for (size_t n = 0; n < (size_t)linear->mode_count * linear->group_count; n++) {
+    for (size_t n = 0; n < 2 * linear->group_count; n++) {
         float reach_m = linear->groups[n % linear->group_count].of.reach_m;
         if (reach_m < INFINITY)
             rim_m = fminf(rim_m, fabsf(reach_m - norms[n].near_m));
@@ -284,7 +279,7 @@ double linear_error_nearest_of(const struct linear_error *linear, const struct i
 {
     float nearest_m = INFINITY;
     for (size_t g = 0; g < linear->group_count; g++)
-        nearest_m = fminf(nearest_m, norms[((size_t)linear->mode_count - 1) * linear->group_count + g].near_m);
+        nearest_m = fminf(nearest_m, norms[DISTANCE_EUCLIDEAN * linear->group_count + g].near_m);
     return min_of((double)nearest_m, linear_error_rim_of(linear, norms));
 }
 
@@ -301,5 +296,5 @@ double linear_error_nearest(const struct linear_error *linear, const float point
 
 size_t linear_error_sample_count(const struct linear_error *linear)
 {
-    return linear->share_count + 2 * (size_t)linear->mode_count * linear->group_count;
+    return linear->share_count + 4 * linear->group_count;
 }

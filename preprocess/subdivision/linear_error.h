@@ -2,12 +2,11 @@
 /* Linear interpolation error: how wrong a triangle or edge can be that interpolates the field linearly between its corners. A value is the
  * sum of readings times interpolation weights, for any readings within MIN and MAX. The error at a point, as a share of the range, is
  * therefore the larger of two sums over sensors. One sums the amounts by which weights exceed their linear interpolation; the other sums
- * the amounts by which weights fall below it. The result is the maximum over all groups with sensors on the asset, and over both
- * interpolations (Shepard, and Algorithm 1 of Kim & Suh, `paper` in PLANT.md), for geodesic distances. Each pixel evaluates fields of
- * straight-line distances (plant/exact.h), so their errors count only if a group also has prepared influences (harmonic, fin, gp), which
- * are interpolated linearly in the same triangles. Parameters come from the plant file. Sensors with an assumed position are ignored: they
- * show nothing, or colour the whole asset evenly. Groups whose field each pixel evaluates by default are ignored too. Where no sensor of a
- * group reaches, the group has no data, and the nearest sensor's value is continued. Thread: any, once initialised. */
+ * the amounts by which weights fall below it. The result is the maximum over all groups with sensors on the asset, over both interpolations
+ * (Shepard, and Algorithm 1 of Kim & Suh, `paper` in PLANT.md), and over geodesic and straight-line distances. Parameters come from the
+ * plant file. Sensors with an assumed position are ignored: they show nothing, or colour the whole asset evenly. Groups whose field each
+ * pixel evaluates (plant/exact.h) are ignored too. Where no sensor of a group reaches, the group has no data, and the nearest sensor's
+ * value is continued. Thread: any, once initialised. */
 #ifndef PREPROCESS_SUBDIVISION_LINEAR_ERROR_H
 #define PREPROCESS_SUBDIVISION_LINEAR_ERROR_H
 #include "plant/plant.h"
@@ -26,7 +25,6 @@ struct linear_error_group {
 struct linear_error {
     struct linear_error_group *groups;
     size_t group_count, sensor_count, share_count;
-    int mode_count;    /* kinds of distance that count: 1: geodesic; 2: geodesic and straight-line (enum distance_mode) */
     size_t most_count; /* sensor count of the largest group, padded to INTERP_LANES */
     /* x, y and z of the sensors' positions on the surface, in three arrays by index of the sensor on the asset, padded to INTERP_LANES */
     float *axes_m[3];
@@ -50,9 +48,9 @@ void linear_error_set_radius(struct linear_error *linear, const float *const lar
 /* Returns the number of floats in a sample: the weights and their changes per metre that linear_error_weights() writes for one point. */
 size_t linear_error_sample_count(const struct linear_error *linear);
 /* Computes a sample at a point. First come the sensors' interpolation weights for geodesic distances, then those for straight-line
- * distances if they count. Each is sorted by group; each group has the weights of Shepard interpolation, followed by those of Algorithm 1
- * if included. In the same order follow the largest changes of the interpolated value per metre (0 for Shepard without `slopes`).
- * geodesic_m: by sensor; INFINITY: no path. norms: receives mode_count normalisations per group (geodesic, straight-line). */
+ * distances. Each is sorted by group; each group has the weights of Shepard interpolation, followed by those of Algorithm 1 if included. In
+ * the same order follow the largest changes of the interpolated value per metre (0 for Shepard without `slopes`). geodesic_m: by sensor;
+ * INFINITY: no path. norms: receives two normalisations per group (geodesic, straight-line). */
 void linear_error_weights(const struct linear_error *linear, const float point_m[3], const float *geodesic_m, bool slopes, float *interp,
                           struct interp_norm *norms);
 /* Computes only the normalisations (sums of relative weights) that linear_error_weights() writes to norms. */
@@ -64,8 +62,8 @@ void linear_error_weights_again(const struct linear_error *linear, const float p
 /* Returns, from a sample's normalisations, a lower bound of the distance in metres to the nearest point where a group's data ends because
  * all sensors of the group are out of reach. The field may peak at such a point, so edges near it must be short. */
 double linear_error_rim_of(const struct linear_error *linear, const struct interp_norm *norms);
-/* Returns, from a sample's normalisations, the shorter of two distances in metres: that to the nearest sensor, in a straight line if
- * straight-line distances count, and that to the nearest point where a group's data ends. */
+/* Returns, from a sample's normalisations, the shorter of two distances in metres: the straight line to the nearest sensor, and the
+ * distance to the nearest point where a group's data ends. */
 double linear_error_nearest_of(const struct linear_error *linear, const struct interp_norm *norms);
 /* Return the interpolation error at a point whose sample is `between` or `inside`, as a share of the range. linear_error_on_edge() compares
  * the sample with the linear interpolation at fraction t between the samples of the edge's ends; linear_error_in_triangle() with the

@@ -33,7 +33,6 @@ struct subdiv_cache_entry {
 struct sensor { /* the parameters of a sensor that determine its interpolation weights */
     float place_m[3], strength, power;
     uint32_t group;
-    int32_t mode_count; /* kinds of distance that count, see linear_error.h */
 };
 
 struct subdiv_head {
@@ -71,9 +70,7 @@ static void list_sensors(const struct linear_error *linear, struct text *list)
     for (uint32_t g = 0; g < linear->group_count; g++) {
         const struct linear_error_group *group = &linear->groups[g];
         for (size_t i = 0; i < group->count; i++) {
-            struct sensor sensor = {
-                .strength = group->of.strength[i], .power = group->of.power, .group = g, .mode_count = linear->mode_count
-            };
+            struct sensor sensor = { .strength = group->of.strength[i], .power = group->of.power, .group = g };
             for (int axis = 0; axis < 3; axis++)
                 sensor.place_m[axis] = linear->axes_m[axis][group->columns[i]];
             text_add_bytes(list, &sensor, sizeof(sensor));

@@ -561,8 +561,7 @@ static void set_radii(struct subdiv *subdiv)
     float *straight_m = mem_array(padded, sizeof(*straight_m));
     for (size_t p = 0; p < places->count; p++) {
         const float *geodesic_m = subdiv->geodesic_m + p * subdiv->sensors;
-        if (subdiv->in->linear->mode_count > DISTANCE_EUCLIDEAN)
-            interp_euclidean(places->positions_m[p], (const float *const *)subdiv->in->linear->axes_m, padded, straight_m);
+        interp_euclidean(places->positions_m[p], (const float *const *)subdiv->in->linear->axes_m, padded, straight_m);
         for (size_t s = 0; s < subdiv->sensors; s++) {
             float geodesic = geodesic_m[s] < INFINITY ? geodesic_m[s] : 0;
             largest_m[DISTANCE_GEODESIC][s] = geodesic > largest_m[DISTANCE_GEODESIC][s] ? geodesic : largest_m[DISTANCE_GEODESIC][s];
@@ -618,7 +617,7 @@ bool subdivide_levels(struct levels *levels, struct geometry *geometry, const st
     struct subdiv subdiv = { .in = input,
                              .sensors = input->linear->sensor_count,
                              .samples = linear_error_sample_count(input->linear),
-                             .norm_count = (size_t)input->linear->mode_count * input->linear->group_count };
+                             .norm_count = 2 * input->linear->group_count };
     bool good = start(&subdiv, geometry);
     *distances = (struct distance_rows){ 0 };
     if (good) {

@@ -20,7 +20,6 @@ struct prepared_body { /* a surface with sensors of two groups, prepared by the 
     struct asset_sensor places[SENSORS];
     struct surface *surface;
     struct surface_field field;
-    bool straight;  /* the groups also have prepared influences, so that fields of straight-line distances count */
     bool as_solved; /* the truth uses the solver's distances at the point itself instead of the formula */
     struct levels levels;
     float *distances; /* distances of all vertices after subdivision */
@@ -124,11 +123,9 @@ static void make_plant(struct prepared_body *body)
     plant->tag_count = SENSORS;
     plant->groups[0] = (struct plant_group){ .max = 1, .power = 2, .reach_m = INFINITY };
     plant->groups[1] = (struct plant_group){ .max = 1, .power = 3, .radius_m = 4, .reach_m = INFINITY };
-    for (int g = 0; g < 2; g++) {
-        plant->groups[g].prepared = body->straight ? 1u << INTERPOLATION_HARMONIC : 0;
+    for (int g = 0; g < 2; g++)
         if (body->reach_m[g] > 0)
             plant->groups[g].reach_m = body->reach_m[g];
-    }
     for (int i = 0; i < SENSORS; i++) {
         plant->tags[i] = (struct plant_tag){ .group = i >= 4, .strength = i == 1 ? 2 : 1, .decay = i == 2 ? 2 : 1 };
         body->sensors[i].tag = i;
@@ -281,11 +278,11 @@ static double true_field(const struct prepared_body *body, const struct field_sh
     return field(body, showing->group, showing->paper, distance_m, body->radius_m[showing->group][showing->geodesic], showing->readings);
 }
 
-static void random_showing(const struct prepared_body *body, struct field_shown *showing, uint32_t *seed)
+static void random_showing(struct field_shown *showing, uint32_t *seed)
 {
     *showing = (struct field_shown){ .group = random_unit(seed) < 0.5,
                                      .paper = random_unit(seed) < 0.5,
-                                     .geodesic = random_unit(seed) < 0.5 || !body->straight,
+                                     .geodesic = random_unit(seed) < 0.5,
                                      .readings = (unsigned)(random_unit(seed) * (1 << SENSORS)) };
 }
 
@@ -311,7 +308,7 @@ static double error_somewhere(const struct prepared_body *body, const struct lev
     const uint32_t *v = level->indices + 3 * (uint32_t)(random_unit(seed) * (level->index_count / 3));
     double a = random_unit(seed), b = random_unit(seed), p[3] = { 0 };
     struct field_shown showing;
-    random_showing(body, &showing, seed);
+    random_showing(&showing, seed);
     if (a + b > 1) {
         a = 1 - a;
         b = 1 - b;
@@ -433,7 +430,7 @@ static double error_as_seen(const struct prepared_body *body, const struct sight
     struct field_shown showing;
     double from[3], place[3], w[3], error = NAN;
     *outline = false;
-    random_showing(body, &showing, seed);
+    random_showing(&showing, seed);
     const uint32_t *v = level->mesh.tris[(uint32_t)(random_unit(seed) * (double)level->mesh.tri_count)];
     double a = random_unit(seed), b = (1 - a) * random_unit(seed);
     for (int axis = 0; axis < 3; axis++)
@@ -575,16 +572,14 @@ static const double plate_sensors[SENSORS][3] = { { 1, 1, 0 }, { 5, 1.5, 0 }, { 
 
 TEST(nine_triangles_show_the_field)
 {
-    for (int straight = 0; straight < 2; straight++) {
-        struct prepared_body body = { .straight = straight };
-        make_plate(&body);
-        prepare(&body, plate_sensors);
-        assert_sensors(&body);
-        assert_no_cracks(&body, 20);
-        assert_field(&body, "plate", stay, 1);
-        assert_true(body.levels.at[0].index_count / 3 < 7000);
-        finish(&body);
-    }
+    struct prepared_body body = { 0 };
+    make_plate(&body);
+    prepare(&body, plate_sensors);
+    assert_sensors(&body);
+    assert_no_cracks(&body, 20);
+    assert_field(&body, "plate", stay, 1);
+    assert_true(body.levels.at[0].index_count / 3 < 7000);
+    finish(&body);
 }
 
 /* Compares by area: where the reaches of two sensors and the data end in one point, the field jumps there, surrounded by the smallest
@@ -601,7 +596,7 @@ static void assert_plate(const struct prepared_body *body)
         double place[3], w[3];
         struct field_shown showing;
         struct first_hit hit;
-        random_showing(body, &showing, &seed);
+        random_showing(&showing, &seed);
         if (!look(&finest, from, down, &hit, place, w))
             continue;
         double error = fabs(shown_field(body, &showing, finest.mesh.tris[hit.tri], w) - true_field(body, &showing, place));
@@ -687,7 +682,7 @@ static void find_errors_on_plate(const struct prepared_body *body, const struct 
         struct field_shown showing;
         if (is_hidden(p))
             continue;
-        random_showing(body, &showing, &seed);
+        random_showing(&showing, &seed);
         showing.geodesic = false;
         errors[i++] = fabs(shown_on_plate(body, level, &showing, p) - true_field(body, &showing, p));
     }
@@ -697,7 +692,7 @@ TEST(what_stands_out_of_a_body_shows_the_field)
 {
     static const double points[SENSORS][3] = { { 0, 1.3, 0.2 }, { 0, -1.3, 0.5 },  { 0, 0.1, 1.1 },
                                                { 1, 0.3, 0.2 }, { -1, -0.4, 0.6 }, { 0, -0.2, -1.1 } };
-    struct prepared_body body = { .straight = true, .as_solved = true };
+    struct prepared_body body = { .as_solved = true };
     double *errors = mem_array(POINTS, sizeof(*errors));
     make_plate_through_box(&body);
     prepare(&body, points);
@@ -747,7 +742,7 @@ TEST(what_stands_out_is_true_on_coarser_levels_too)
 {
     static const double points[SENSORS][3] = { { 0, 1.3, 0.2 }, { 0, -1.3, 0.5 }, { 0, 0.1, 1.1 },
                                                { 1, 0, 0 },     { -0.8, 0, 0.6 }, { 0, -0.2, -1.1 } };
-    struct prepared_body body = { .straight = true, .as_solved = true };
+    struct prepared_body body = { .as_solved = true };
     double *errors = mem_array(POINTS, sizeof(*errors));
     make_plate_through_ball(&body);
     prepare(&body, points);
@@ -837,28 +832,22 @@ TEST(random_plates_show_the_field)
     }
 }
 
-/* Triangles are divided for straight-line distances only if the groups have prepared influences. */
 TEST(a_cylinder_shows_the_field)
 {
     static const double at[SENSORS][2] = { { 0.3, 1 }, { 2.1, 4 }, { 4, 2.5 }, { 5.5, 4.5 }, { 1, 3 }, { 3, 0.5 } };
+    struct prepared_body body = { 0 };
     double points[SENSORS][3];
-    uint32_t indices[2];
     for (int i = 0; i < SENSORS; i++) {
         points[i][0] = cos(at[i][0]);
         points[i][1] = sin(at[i][0]);
         points[i][2] = at[i][1];
     }
-    for (int straight = 0; straight < 2; straight++) {
-        struct prepared_body body = { .straight = straight };
-        make_cylinder(&body, 96, 20);
-        prepare(&body, (const double(*)[3])points);
-        assert_sensors(&body);
-        assert_no_cracks(&body, 4 * PI);
-        assert_field(&body, "cylinder", onto_cylinder, 1);
-        indices[straight] = body.levels.at[0].index_count;
-        finish(&body);
-    }
-    assert_true(indices[0] < indices[1]);
+    make_cylinder(&body, 96, 20);
+    prepare(&body, (const double(*)[3])points);
+    assert_sensors(&body);
+    assert_no_cracks(&body, 4 * PI);
+    assert_field(&body, "cylinder", onto_cylinder, 1);
+    finish(&body);
 }
 
 /* Makes a ring of random size and varying thickness, turned at random, with sensors at distinct random vertices: two readings at one
