@@ -232,7 +232,7 @@ test('an act that the core could not read ends no link; nor does a revoked token
 test('`plantcast drain` sends the sessions of a daemon elsewhere; no other program gets its signal', options, async (t) => {
     const c = await nodes.renderer('c', core), client = await c.client({}, { token: nodes.tokens.operator });
     const stranger = runProgram('plantcast', ['drain', String(process.pid)]);
-    assert.deepEqual([stranger.code, stranger.err], [1, `plantcast: ${process.pid}: no plantcastd\n`]);
+    assert.deepEqual([stranger.code, stranger.err], [1, `plantcast: no plantcastd has the process ID ${process.pid}\n`]);
     assert.equal(runProgram('plantcast', ['drain', 'c']).code, 2);
     const pid = String(c.program.child.pid), began = performance.now();
     assert.equal(runProgram('plantcast', ['drain', pid, '--wait', '0']).code, 0);
