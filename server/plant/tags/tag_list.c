@@ -8,6 +8,7 @@
 
 #include "base/mem.h"
 #include "plant/plant_impl.h"
+#include "plant/sources/address.h"
 #include "plant/sections/plant_alarms.h"
 #include "plant/tags/tag_columns.h"
 #include "plant/tags/tag_links.h"
@@ -266,6 +267,54 @@ static void check_duplicates(const struct plant *plant, struct diag *diag)
     }
 }
 
+/* Returns the number of registers that a tag reads; 0: it reads a bit, or is not a Modbus tag. */
+static int registers_of(const struct plant *plant, const struct plant_tag *tag)
+{
+    bool modbus = tag->source >= 0 && !tag->expression && !strcmp(plant->sources[tag->source].kind, "modbus");
+    return modbus && tag->signal.type != DATA_BIT ? data_type_registers(tag->signal.type) : 0;
+}
+
+static int by_register(const void *pa, const void *pb, void *plant_ptr)
+{
+    const struct plant *plant = plant_ptr;
+    const struct plant_tag *a = &plant->tags[*(const int *)pa], *b = &plant->tags[*(const int *)pb];
+    const int keys[][2] = { { a->source, b->source },
+                            { a->signal.modbus_unit, b->signal.modbus_unit },
+                            { (int)a->signal.table, (int)b->signal.table },
+                            { a->signal.register_index, b->signal.register_index },
+                            { a->line, b->line } };
+    size_t i = 0;
+    while (i < sizeof(keys) / sizeof(keys[0]) - 1 && keys[i][0] == keys[i][1])
+        i++;
+    return (keys[i][0] > keys[i][1]) - (keys[i][0] < keys[i][1]);
+}
+
+/* Warns about values that share only some of their registers: at least one of them has a wrong address or data type. */
+static void check_overlaps(const struct plant *plant, struct diag *diag)
+{
+    int *tags = mem_array(plant->tag_count + 1, sizeof(*tags));
+    size_t count = 0;
+    for (size_t i = 0; i < plant->tag_count; i++)
+        if (registers_of(plant, &plant->tags[i]) > 0)
+            tags[count++] = (int)i;
+    qsort_r(tags, count, sizeof(*tags), by_register, (void *)(uintptr_t)plant);
+    const struct plant_tag *one = NULL; /* of the tags before `two` in its table, the one whose registers end last */
+    for (size_t i = 0; i < count; i++) {
+        const struct plant_tag *two = &plant->tags[tags[i]];
+        bool same = one && one->source == two->source && one->signal.modbus_unit == two->signal.modbus_unit &&
+                    one->signal.table == two->signal.table;
+        int from = same ? two->signal.register_index - one->signal.register_index : 0;
+        int left = same ? registers_of(plant, one) - from : 0, length = registers_of(plant, two);
+        if (left > 0 && (from > 0 || left != length))
+            diag_warning(diag, plant->files.tags_path, two->line, two->column,
+                         "Address: '%.60s' (%s) shares a register with '%.60s' (%s, line %d): check both addresses and data types",
+                         two->name, data_type_name(two->signal.type), one->name, data_type_name(one->signal.type), one->line);
+        if (left < length)
+            one = two;
+    }
+    mem_free(tags);
+}
+
 void tag_list_read(struct plant *plant, struct diag *diag)
 {
     struct tag_list list = { .plant = plant };
@@ -279,6 +328,8 @@ void tag_list_read(struct plant *plant, struct diag *diag)
     csv_close(&list.columns.csv);
     sort_names(plant);
     check_duplicates(plant, diag);
+    if (!diag->errors)
+        check_overlaps(plant, diag);
     tag_links_resolve(&list.links, plant, diag);
     tag_derived_resolve(&list.derived, plant, diag);
     mem_free(list.derived.at);
