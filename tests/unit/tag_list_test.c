@@ -345,14 +345,15 @@ CASE(names_are_unique)
     FOUND(c, { "tags.csv", 1, 1, "the header has no column 'Tag Name'" }, { "tags.csv", 1, 1, "unknown column 'Name' is ignored" });
 }
 
-/* A float begins one register too early, and a 16-bit value is the second half of another. Equal addresses, bits and other units are good. */
+/* A float begins one register too early, and 16-bit values are parts of larger ones. Equal addresses, bits and other tables are good. */
 CASE(values_that_share_some_registers_are_noticed)
 {
     plant_case_load(c, yaml, "Tag Name,Address,Data Type\nA,hr:10,Float\nB,hr:11,Float\nC,hr:20,Float\nD,hr:21,Int16\n"
                              "E,hr:30,Float\nF,hr:30,Float\nG,hr:30,Int32\nH,hr:31.3,\nI,ir:31,Int16\nJ,hr:32,Float\n"
                              "K,hr:40,Double\nL,hr:41,Int16\nM,hr:43,Int16\n");
     plant_case_assert_loaded(c, 4);
-    FOUND(c, { "tags.csv", 3, 1, "Address: 'B' (float32) shares a register with 'A' (float32, line 2): check both addresses and data types" },
+    FOUND(c,
+          { "tags.csv", 3, 1, "Address: 'B' (float32) shares a register with 'A' (float32, line 2): check both addresses and data types" },
           { "tags.csv", 5, 1, "Address: 'D' (int16) shares a register with 'C' (float32, line 4): check both addresses and data types" },
           { "tags.csv", 13, 1, "Address: 'L' (int16) shares a register with 'K' (float64, line 12): check both addresses and data types" },
           { "tags.csv", 14, 1, "Address: 'M' (int16) shares a register with 'K' (float64, line 12): check both addresses and data types" });

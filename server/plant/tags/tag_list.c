@@ -289,7 +289,7 @@ static int by_register(const void *pa, const void *pb, void *plant_ptr)
     return (keys[i][0] > keys[i][1]) - (keys[i][0] < keys[i][1]);
 }
 
-/* Warns about values that share only some of their registers: at least one of them has a wrong address or data type. */
+/* Warns about pairs of values that share only some of their registers: the address or the data type of one is wrong. */
 static void check_overlaps(const struct plant *plant, struct diag *diag)
 {
     int *tags = mem_array(plant->tag_count + 1, sizeof(*tags));
@@ -298,7 +298,7 @@ static void check_overlaps(const struct plant *plant, struct diag *diag)
         if (registers_of(plant, &plant->tags[i]) > 0)
             tags[count++] = (int)i;
     qsort_r(tags, count, sizeof(*tags), by_register, (void *)(uintptr_t)plant);
-    const struct plant_tag *one = NULL; /* of the tags before `two` in its table, the one whose registers end last */
+    const struct plant_tag *one = NULL; /* earlier tag in the table of `two` whose registers end last */
     for (size_t i = 0; i < count; i++) {
         const struct plant_tag *two = &plant->tags[tags[i]];
         bool same = one && one->source == two->source && one->signal.modbus_unit == two->signal.modbus_unit &&
