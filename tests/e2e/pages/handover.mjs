@@ -56,6 +56,16 @@ test('it says what was noted, raised, acknowledged and shelved', options, async 
     await shoot(page, 'handover');
 });
 
+test('on a phone, each row is a block of titled lines', options, async () => {
+    const screen = page.viewportSize();
+    await page.setViewportSize({ width: 390, height: 844 });
+    const cells = await page.locator('[data-part=notes] td:not(:empty)').evaluateAll((all) => all.map((cell) =>
+        [cell.clientWidth, cell.scrollWidth <= cell.clientWidth, getComputedStyle(cell, '::before').content]));
+    await page.setViewportSize(screen);
+    assert.deepEqual(cells.map(([, isWhole, title]) => [isWhole, title.length > 3]), Array(4).fill([true, true]));
+    assert.ok(cells.every(([width]) => width > 300), JSON.stringify(cells));
+});
+
 test('it is printed on paper: no controls, as many pages as it takes', options, async () => {
     const pdf = await page.pdf({ preferCSSPageSize: true });
     assert.equal(pdf.subarray(0, 5).toString(), '%PDF-');
