@@ -20,7 +20,7 @@ struct video {
     AVFrame *picture;
     AVPacket *packet;
     bool lossless;
-    bool begun; /* true: the file exists and its header is written */
+    bool begun; /* true: the video file was created and its header is written */
     int64_t next;
 };
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loads the module of the H.264 decoder on first use (encode/h264_lazy.c explains why). */
+/* Loads the module of the H.264 decoder on first use, because the many libraries behind libavcodec would slow down every start of a
+   program. */
 #include "base/system/module.h"
 #include "h264_decoder.h"
 

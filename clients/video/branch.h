@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An output of the video (SRT, for example) with a GStreamer pipeline of its own. If the pipeline fails, other outputs continue, and the
-   pipeline is restarted. Thread: that of the default main context. */
+/* One way in which viewers get the video, such as SRT, with a GStreamer pipeline of its own. If the pipeline fails, the other ways
+   continue, and the pipeline is restarted. Thread: that of the default main context. */
 #ifndef VIDEO_BRANCH_H
 #define VIDEO_BRANCH_H
 #include "options.h"
@@ -12,18 +12,18 @@ struct video_branch {
     struct outputs *outputs;
     void (*prepare)(struct video_branch *branch, GstElement *pipeline); /* called before the pipeline plays */
     const struct video_options *options;
-    GstElement *pipeline; /* pipeline of the output; NULL: the pipeline has failed and is started again at again_us */
+    GstElement *pipeline; /* pipeline that sends the video to viewers; NULL: it has failed and is started again at again_us */
     gint64 again_us;
     gint readers; /* number of connected readers; atomic */
 };
 
-/* Starts the pipeline. Takes ownership of branch->text. Returns false with the reason printed. */
+/* Starts the GStreamer pipeline that branch->text describes; takes ownership of that text. Returns false with the reason printed. */
 bool branch_begin(struct video_branch *branch);
 /* Restarts the pipeline some time after it has failed. Call it once a second. */
 void branch_look(struct video_branch *branch);
 void branch_end(struct video_branch *branch);
 
-/* Sets up the output that listens for SRT clients. */
+/* Prepares the pipeline that sends the video to SRT clients, without starting it. */
 void srt_init(struct video_branch *srt, const struct video_options *options, struct outputs *outputs);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws the frames of the video: a picture or a text card, and a strip below. */
+/* Draws the frames of the video: a picture of the plant, or while there is none a text card (a text that says why), and a strip below. */
 #include "canvas.h"
 
 #include <math.h>
@@ -76,7 +76,8 @@ static char *age_text(const struct shown *look)
     return video_say(look->words, age_s < 120 ? VIDEO_AGE_S : VIDEO_AGE_MIN, number, NULL);
 }
 
-/* Draws the strip below the picture: clock and age at the right, which always fit, and the title in the remaining room. */
+/* Draws the strip below the plant's picture: clock and age of the values at the right, which always fit, and the title in the remaining
+   room. */
 static void draw_strip(cairo_t *cairo, const struct canvas *canvas, const struct shown *look, gint64 utc_us, double y)
 {
     double height = canvas->height_px - y, px = 0.55 * height, pad = 0.5 * height;

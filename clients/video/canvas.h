@@ -10,8 +10,9 @@
 #include "render/view.h"
 
 struct shown {                /* content to draw in a frame; owned by the source (source.h), valid until its next call */
-    cairo_surface_t *picture; /* picture to draw; NULL: the text card is shown */
-    const char *headline, *detail; /* texts of the card: the state in large letters, and below it the reason */
+    cairo_surface_t *picture; /* picture of the plant; NULL: the frame shows a text card (a text in place of a picture) instead */
+    /* texts of the text card, which is shown while there is no recent picture: in large letters that fact, and below it the reason */
+    const char *headline, *detail;
     gint64 since_us; /* UTC time since which there is a reason for the text card; 0: the card shows no time */
     const char *title;
     gint64 age_ms;   /* age of the oldest value in the picture; -1: it has no values */

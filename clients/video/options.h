@@ -18,7 +18,7 @@ struct video_options {
     char *token, *ca_path, *token_path; /* NULL: not given */
     char *listen;                       /* listening address of all outputs */
     int width_px, height_px, fps, kbps, every_ms;
-    int rtsp_port, http_port, srt_port; /* port of each output; 0: the output is off */
+    int rtsp_port, http_port, srt_port; /* ports of 0 are off; RTSP and SRT send the video, HTTP serves /metrics */
     char *user, *password;              /* name and password that viewers of the RTSP stream must give; NULL: no login */
     int most_readers;                   /* limit per output */
     bool time_code;

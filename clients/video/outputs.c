@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distributes one encoded stream to any number of outputs. */
+/* Distributes the encoded video to all pipelines that send it to viewers (RTSP, SRT). */
 #include "outputs.h"
 
-enum { MAX_QUEUED_BYTES = 4 << 20 }; /* maximum number of bytes queued for one output */
+enum { MAX_QUEUED_BYTES = 4 << 20 }; /* maximum number of bytes queued for one pipeline that sends the video to viewers */
 static const GstClockTimeDiff SLACK = 500 * GST_MSECOND;
 
 struct output {
     GstAppSrc *src;
     bool begun, timed;
-    GstClockTimeDiff offset; /* running time of this output's pipeline minus that of the encoder's pipeline */
+    /* added to the time of each encoded frame: running time of this output's pipeline minus that of the encoder's pipeline */
+    GstClockTimeDiff offset;
 };
 
 struct outputs {

@@ -41,7 +41,7 @@ struct video_source {
     bool valued; /* true: the picture shows values, so their age is shown; false: it shows none */
     char headline[120], detail[240], said[240];
     gint64 since_us;    /* UTC time since which the text card is shown; 0: a picture is shown */
-    gint64 seen_utc_us; /* UTC instant of the plant that the newest picture shows */
+    gint64 seen_utc_us; /* instant that the newest picture shows, UTC */
     bool barred;        /* true: access or the saved view was withdrawn, so the picture must be hidden immediately */
     bool limited;       /* true: the token may not list the saved views but may show this view, which is then requested by its id */
     guint64 pictures;
@@ -49,7 +49,7 @@ struct video_source {
 
 /* --- errors ------------------------------------------------------------------------------------------------- */
 
-/* Stores the first line of the text `said` as valid UTF-8 in `out`, cut to `size` bytes. Frees `said`. */
+/* Stores a text for the text card or the log in `out`: only the first line of `said`, as valid UTF-8, cut to `size` bytes. Frees `said`. */
 static void keep(char *said, char *out, gsize size)
 {
     said[strcspn(said, "\n")] = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* SRT output: sends MPEG-TS to any number of callers. */
+/* Sends the video as MPEG-TS to any number of SRT clients. */
 #include <gio/gio.h>
 #include <string.h>
 

@@ -336,7 +336,8 @@ static char *place_of(const char *name, const char *plant_path, const char *hist
     return *path == '/' ? mem_strdup(path) : mem_printf("%.*s%s", (int)(text_base_name(plant_path) - plant_path), plant_path, path);
 }
 
-/* Ensures that `path` is a real directory, not a symlink. A directory that root creates gets its parent's owner. */
+/* Creates a folder if there is none. Returns false if `path` is then not a real directory: a symlink could lead the restored files
+   elsewhere. If root creates the folder, it gets its parent's owner. */
 static bool make_folder(const char *path)
 {
     struct stat st, around;
@@ -526,8 +527,7 @@ static int back_up_plant(struct backup_job *job, const char *plant_path, const c
 static int run_command(int argc, char **argv, int (*command)(int argc, char **argv, struct backup_job *job))
 {
     struct backup_job job = { .log = log_create(LOG_WARN), .files = json_array(), .added = json_array() };
-    /* pointer to the list that is freed at the end: restore and verify replace job.files by a list that belongs to the manifest they
-       read */
+    /* owns the list of files: the commands restore and verify replace job.files by a list that belongs to the manifest that they read */
     json_t *files = job.files;
     int code = command(argc, argv, &job);
     json_decref(files);

@@ -7,13 +7,16 @@
 #include "render/split_view.h"
 #include "snapshot.h"
 
-struct offline_renderer { /* offline_renderer_close() frees the members in reverse order of their declaration */
+/* The members are declared in the order in which they are opened. offline_renderer_close() frees them in reverse order, because later
+   members use earlier ones. */
+struct offline_renderer {
     struct log *log;
     struct plant *plant;
     struct scene *scene;
     struct snapshot *snapshot; /* readings to draw */
     struct baselines *baselines;
-    uint32_t turn; /* sequence number of the readings in `snapshot`; increases whenever other readings are set */
+    /* sequence number of the readings in `snapshot`: a larger number than before tells the field that the readings have changed */
+    uint32_t turn;
     struct workers *workers;
     struct field *field;
     struct gl *gl;

@@ -89,7 +89,8 @@ bool saved_view_add_from_daemon(struct snapshot_options *options, bool present)
     const char *answer = body.at ? body.at : "";
     bool good = status == 200;
     if (good) {
-        /* sends only the view's id: the daemon adds the parameters, because the user's role may not permit them in a query */
+        /* finds the view in the daemon's list and sends only its id back: the daemon adds the view's parameters, because the user's role
+           may not permit them in a query */
         json_t *message = json_loads(answer, 0, NULL);
         const json_t *view = find_or_print(options, json_object_get(message, "list"));
         good = view && snapshot_add_arg(options, "view", saved_view_text(view, "id")) &&

@@ -27,7 +27,7 @@ struct snapshot_options {
     enum gl_kind gl;
     struct gl_device gl_device;
     bool has_gl_device;
-    const char *at;                  /* instant as written on the command line; NULL: now */
+    const char *at;                  /* instant that the picture shows, as written on the command line; NULL: now */
     int64_t at_us;                   /* `at` in microseconds since 1970 */
     const char *history;             /* history folder; NULL: the one in the plant file */
     const char *from_text, *to_text; /* first and last instant of a clip, as on the command line; from_us, to_us: in microseconds since

@@ -275,7 +275,7 @@ static bool belongs(bool clip, int option)
     return clip ? !of_snapshot : !of_clip;
 }
 
-/* Applies one option. Returns false if its argument is wrong. */
+/* Stores the argument of one command-line option of `plantcast snapshot` or `clip` in *options. Returns false if the argument is wrong. */
 static bool take_own(struct snapshot_options *options, int option, const char *text)
 {
     options->offline_only = options->offline_only || option >= OPTION_VALUES;

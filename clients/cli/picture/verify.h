@@ -5,7 +5,7 @@
 #include "redraw.h"
 
 struct verify_options {
-    const char *path, *key; /* path: file to verify; key: file of the public key */
+    const char *path, *key; /* path: signed picture or film to verify; key: file of the server's public key */
     struct redraw_options redraw;
     bool tour; /* true: a film may show a tour, so the view may differ from picture to picture */
 };

@@ -94,7 +94,7 @@ static bool parse_span(const char *text, int64_t *span_us)
     return true;
 }
 
-/* Prints a duration in s, min, h or days, by its length. INT64_MAX: any time. */
+/* Writes a duration as text, in s, min, h or days according to its length; INT64_MAX becomes "any time". */
 static void print_span(int64_t span_us, char out[32])
 {
     double s = (double)span_us / US_PER_S;

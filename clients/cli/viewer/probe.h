@@ -8,7 +8,9 @@ struct probe {
     struct daemon_url url;
     const char *url_text, *codec, *signs, *folder;
     int sessions, stalled, width_px, height_px;
-    int watching; /* number of viewers that read without pause; they come first in `viewers`, and the viewers after them stall */
+    /* number of viewers that read all frames; they come first in `viewers`. The viewers after them stop reading after the first frame, like
+       hanging clients */
+    int watching;
     double seconds, hz;
     enum motion motion;
     bool as_json, blind, follow, spread;

@@ -102,7 +102,8 @@ static void record_input(struct viewer *viewer, uint32_t camera_seq, int64_t now
             add_sample(&viewer->result.input, (double)(now_ns - viewer->sent_ns[(viewer->shown_camera_seq + 1) % SENT_RING]) / 1e6);
 }
 
-/* Records how long after its leader sent the frame's camera this follower shows the frame. */
+/* Records the delay of a frame of a viewer that follows the view of another viewer: from when the other one sent the frame's camera until
+   now. */
 static void record_behind(struct viewer *viewer, const struct wire_frame *frame, int64_t now_ns)
 {
     struct leader *lead = viewer->params.lead;

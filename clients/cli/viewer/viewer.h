@@ -14,15 +14,16 @@ enum motion { MOTION_STILL, MOTION_ORBIT, MOTION_RANDOM, MOTION_COUNT };
 
 enum { VIEWER_SETTLES_S = 3, LEAD_CAMERAS = 256 };
 
-/* State that a viewer which leads others shares with its followers. */
+/* State that one viewer, the leader, shares with the viewers that show its view, the followers. */
 struct leader {
     pthread_mutex_t lock;
     /* --- below: under lock */
-    uint64_t session; /* session id of the leader; 0: not connected yet */
+    uint64_t session; /* id of the leading viewer's session, which followers ask the daemon to follow; 0: not connected yet */
+    /* newest cameras that the leading viewer sent, by sequence number modulo LEAD_CAMERAS; followers measure their delay with them */
     struct {
         double eye[3];
         int64_t sent_ns;
-    } cameras[LEAD_CAMERAS]; /* newest cameras of the leader, by sequence number modulo LEAD_CAMERAS */
+    } cameras[LEAD_CAMERAS];
     uint32_t newest;
 };
 
@@ -31,17 +32,18 @@ struct viewer_params {
     int width_px, height_px;
     const char *codec; /* "jpeg", "h264" */
     enum motion motion;
-    double seconds, hz;  /* hz: camera updates per second */
-    double start_deg;    /* start angle of the camera's orbit in degrees; in a still view, rotation from the plant's initial camera (0: that
+    double seconds, hz; /* hz: camera updates per second */
+    double start_deg;   /* start angle of the camera's orbit in degrees; in a still view, rotation from the plant's initial camera (0: that
                             camera) */
-    unsigned seed;       /* seed of random motion */
-    bool blind;          /* whether to acknowledge without decoding */
-    const char *signs;   /* which frames the daemon is asked to sign: `refined`, `all`; NULL: none */
-    const char *folder;  /* folder to save signed frames in; NULL: they are not saved */
-    int number;          /* index of this viewer, used in names of saved files */
-    bool stalls;         /* true: the viewer stops reading from its socket after the first frame, like a client that hangs */
-    struct leader *lead; /* state that leader and followers share; NULL: the viewer neither leads nor follows */
-    bool follows;        /* true: this viewer shows the view of the leader in `lead`; false: this viewer is the leader */
+    unsigned seed;      /* seed of random motion */
+    bool blind;         /* whether to acknowledge without decoding */
+    const char *signs;  /* which frames the daemon is asked to sign: `refined`, `all`; NULL: none */
+    const char *folder; /* folder to save signed frames in; NULL: they are not saved */
+    int number;         /* index of this viewer, used in names of saved files */
+    bool stalls;        /* true: the viewer stops reading from its socket after the first frame, like a client that hangs */
+    /* state shared by the viewer that leads and the viewers that show its view; NULL: this viewer takes no part in that */
+    struct leader *lead;
+    bool follows; /* true: this viewer shows the view of the viewer that leads; false: this viewer leads */
 };
 
 struct latency_samples { /* milliseconds */
@@ -60,9 +62,10 @@ struct viewer_result {
                                          frame */
     struct latency_samples input;     /* latencies from sending a camera until a frame with that camera is decoded */
     struct latency_samples sensor;    /* latencies from a change of a reading in the server until a frame with it is decoded */
-    struct latency_samples behind;    /* follower only: latencies from the leader sending a camera until a frame with it is decoded by
-                                         the follower */
-    struct latency_samples first;     /* a single sample: time from connecting until the first frame is decoded */
+    /* only of a viewer that follows another viewer's view: latencies from the other one sending a camera until this one has decoded a frame
+       with it */
+    struct latency_samples behind;
+    struct latency_samples first; /* a single sample: time from connecting until the first frame is decoded */
     struct latency_samples stages[STAGE_COUNT];
     char failure[200]; /* reason of failure; "": none */
 };
@@ -74,8 +77,8 @@ struct viewer *viewer_create(const struct viewer_params *params);
 void viewer_connect(struct viewer *viewer, struct lws_context *context);
 /* Returns true if the viewer has finished or failed. */
 bool viewer_done(const struct viewer *viewer);
-/* Returns the monotonic time at which the viewer's timer fires; 0: the viewer waits for something other than its timer and its socket.
-   *fd receives the socket; -1: none. */
+/* Returns how long a thread may sleep unless *fd, the viewer's socket (-1: none), becomes readable: until the monotonic time of the
+   viewer's timer. 0: it may not sleep, because the viewer has something else to do, for example to send. */
 int64_t viewer_rests_until_ns(const struct viewer *viewer, int *fd);
 /* Returns the viewer's measurements, which belong to the viewer. */
 const struct viewer_result *viewer_result(const struct viewer *viewer);

@@ -4,7 +4,7 @@
 import { isGone } from './alarms.js';
 
 export const TURN_MS = 10000;  // smallest time in milliseconds between two changes of the picture
-export const FLOOD = 10; // more alarms than this within FLOOD_US are a flood
+export const FLOOD = 10; // more alarms than this within FLOOD_US are a flood, during which the pane shows its own view
 const FLOOD_US = 600e6;
 
 const byGravity = (a, b) => a.priority - b.priority || a.raisedUs - b.raisedUs;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stores the alarms that are not in the state "normal", as the server sends them, and selects one annunciated alarm per tag.
+// Stores the alarms that are not in the state "normal", as the server sends them, and selects for each tag the alarm to show among its
+// annunciated ones (neither shelved, suppressed nor out of service).
 
 // [background, text] by priority. No colour map of the picture has similar colours (tests/web/alarm_colours.test.mjs).
 export const ALARM_COLOURS = [['#af0c4a', '#fff'], ['#ffff96', '#1b1300'], ['#b646aa', '#fff'], ['#1e00f5', '#fff']];
@@ -73,8 +74,8 @@ export class Alarms {
         return this.byTag.get(index) ?? null;
     }
 
-    // Returns how many tags and devices have alarms: { active, waiting (unacknowledged), latched, of (active ones by priority), gone (those
-    // that returned to normal, by priority) }
+    // Returns how many tags and devices have alarms: { active, waiting (unacknowledged), latched (returned to normal and acknowledged, but
+    // not reset yet), of (active ones by priority), gone (those that returned to normal, by priority) }
     counts() {
         const list = this.list(), of = [0, 0, 0, 0], gone = [0, 0, 0, 0];
         for (const { priority, state } of list)

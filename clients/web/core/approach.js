@@ -4,14 +4,16 @@ import { isParallel, projector, validOr } from './camera.js';
 import { corners, distance, face, orbit } from './camera_moves.js';
 import { along, length, subtract, unit } from './vector.js';
 
-// The camera's distance is the larger of PART times the middle side and LONG_PART times the longest side of the equipment's bounding box.
+// The camera's distance from a sensor is the larger of PART times the middle side and LONG_PART times the longest side of the bounding box
+// of the sensor's equipment.
 const PART = 1.1, LONG_PART = 0.7;
 const LEAST_M = 0.2, MOST_M = 16; // least and largest distance of the camera in plants of usual size, in metres
-// bounds of the camera's distance in very small and very large plants, as fractions of the plant's diagonal
+// bounds of the camera's distance from a sensor in very small and very large plants, as fractions of the plant's diagonal
 const LEAST_PART = 1 / 200, MOST_PART = 1 / 20;
 const FILL = 0.42; // fraction of the picture that the equipment's box fills, unless the bounds of the distance prevent it
-// A side of the equipment is narrow if the camera must be nearer there than NARROW times its largest distance at the first FRONT sides.
-// Narrow sides are tried last, because they show little: of a pump, only the motor's fan cover.
+// A side of the equipment looks narrow if the camera must go nearer than NARROW times the largest distance that the first FRONT cameras
+// have, until the equipment fills FILL of the picture. Narrow sides are tried last, because they show little: of a pump, only the motor's
+// fan cover.
 const NARROW = 0.75, FRONT = 9;
 const STEPS = 16;  // bisections of the distance
 const TURNS = [ // degrees: about the vertical, up

@@ -3,17 +3,21 @@
 // together share one, a call-out (protocol/LABELS.md).
 import { boxAt, CLEARANCE, hasArea, meets, SLOTS } from './labels.js';
 
-// Distances in units (CSS pixels, more on a wall). Rings closer than CLOSE get one call-out together. Rings that already share one keep it
-// up to the distance STILL_CLOSE.
+// Distances in CSS pixels (larger on a wall). Alarm rings closer than CLOSE get one label together. Rings that already share a label keep
+// it up to the distance STILL_CLOSE, so that labels do not flicker.
 const CLOSE = 26, STILL_CLOSE = 34;
-// MOST_GROUPS: maximum number of labels. As long as there are more, the distances above are multiplied by FARTHER.
+// MOST_GROUPS: maximum number of labels. As long as there are more, CLOSE and STILL_CLOSE are multiplied by FARTHER, so that more alarm
+// rings share a label.
 const MOST_GROUPS = 24, FARTHER = 1.25; // more rings than MOST_GROUPS count as a flood of alarms
 const MOST_LEADS = 4; // maximum number of leader lines of a call-out; if more rings are within FARTHEST, only the nearest has one
-const STEP_X = 24, STEP_Y = 15, STEPS = 60; // units: spacing of the grid of candidate positions for a label, around the centre of its rings
-// units: largest distance of a label from the bounding box of its rings, unless it is the only label that remains; also the largest
-// distance from a call-out to the centre of a ring with a leader line
+// steps, in CSS pixels (larger on a wall), of the grid of positions that are tried for a label around the centre of its alarm rings; STEPS:
+// on each side
+const STEP_X = 24, STEP_Y = 15, STEPS = 60;
+// largest distance, in CSS pixels (larger on a wall), of a label from the bounding box of its alarm rings, unless it is the only label that
+// remains; also the longest leader line from a label to the centre of a ring
 const FARTHEST = 60;
-const MOST_GROWTHS = 100;                   // maximum number of times that the distances grow; after that they exceed any picture
+// maximum number of times that CLOSE is multiplied by FARTHER; after that it exceeds any picture
+const MOST_GROWTHS = 100;
 
 const OFFSETS = []; // candidate positions for a label relative to the centre of its rings: [x, y, squared distance], nearest first
 for (let j = -STEPS; j <= STEPS; j++) {

@@ -129,22 +129,23 @@ export function limitLines(tags, scaleOf) {
     return [...lines.values()].map((line) => (line.tags.length === tags.length ? { ...line, tags: [] } : line));
 }
 
-// Returns the journal rows that raise an annunciated alarm: [{ us, tag, kind, priority }], oldest first.
+// Returns the rows of the alarm journal that raise an annunciated alarm (not shelved, suppressed or out of service): [{ us, tag, kind,
+// priority }], oldest first.
 export function raised(rows) {
     return rows.filter(({ event, state }) => event === 'raise' && calls(state))
         .map(({ time_us: us, tag, kind, priority }) => ({ us, tag, kind, priority }))
         .sort((a, b) => a.us - b.us);
 }
 
-// Returns from `marks` (result of raised()) the first after a time, or with `backwards` the last before it; of several at one instant the
-// most urgent. null: there is none.
+// Returns the first alarm raised after a time, or with `backwards` the last one before it; of several at one instant the most urgent.
+// marks: alarms as raised() returns them. null: there is none.
 export function nextTo(marks, us, backwards) {
     const found = backwards ? marks.findLast((mark) => mark.us < us) : marks.find((mark) => mark.us > us);
     return marks.filter((mark) => mark.us === found?.us).sort((a, b) => a.priority - b.priority)[0] ?? null;
 }
 
-// Groups marks of raised() that are closer together than nearUs: { us, priority (both of the most urgent mark), of: all marks of the group
-// }.
+// Groups alarms (`marks`, as raised() returns them) that were raised within nearUs of each other: { us, priority (both of the most urgent
+// one), of: all alarms of the group }.
 export function clustered(marks, nearUs) {
     const out = [];
     for (const mark of marks) {
@@ -159,8 +160,8 @@ export function clustered(marks, nearUs) {
 
 const MOST_BINS = 5000;
 
-// Counts marks of raised() in `count` equal parts of a time span: { bins: [{ count, priority (of the most urgent) }], most (largest count
-// of a part) }.
+// Counts the alarms raised (`marks`, as raised() returns them) in `count` equal parts of a time span: { bins: [{ count, priority (of the
+// most urgent) }], most (largest count of a part) }.
 export function density(marks, fromUs, toUs, count) {
     const bins = Array.from({ length: Math.max(1, Math.min(MOST_BINS, Math.floor(count) || 1)) }, () => ({ count: 0, priority: Infinity }));
     for (const { us, priority } of marks) {

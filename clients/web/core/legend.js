@@ -47,8 +47,8 @@ export function rampChoices(min, max) {
     return [...new Set(steps)].filter(Number.isFinite).sort((a, b) => a - b);
 }
 
-// --- the server's rule (server/field/scale.h). scale: { map, min, max, log, interval, breaks };
-// map: { rgb: Uint8Array(768), below, above }
+// --- from a value to its colour, by the same rule as on the server (server/field/scale.h). scale: { map, min, max, log, interval, breaks
+// }; map: { rgb: Uint8Array(768), below, above }
 
 export function placeOf({ min, max, log }, value) {
     return log ? Math.log(value / min) / Math.log(max / min) : (value - min) / (max - min);

@@ -120,8 +120,8 @@ export class Matches {
     }
 }
 
-// sizeOf() returns the plant's width, depth and height in metres. times: factor to apply if the model's unit is not the assumed one;
-// timesOf() returns it.
+// sizeOf() returns the plant's width, depth and height in metres, multiplied by `times`. timesOf() returns that factor for a model whose
+// unit was taken for `from` and is `to`.
 const METRES = { m: 1, mm: 0.001, cm: 0.01, in: 0.0254, ft: 0.3048 };
 export const sizeOf = ({ min, max }, times = 1) => max.map((x, i) => (x - min[i]) * times);
 export const timesOf = (from, to) => (METRES[to] && METRES[from] ? METRES[to] / METRES[from] : 1);

@@ -2,10 +2,11 @@
 // Places the pins of shift notes next to their points, where they cover neither legends nor alarm rings nor other pins.
 import { meets } from './labels.js';
 
-export const STEM = 9;  // units: length of a pin's stem if the pin is at its usual position, above and to the right of its point
+// length of a pin's stem in CSS pixels (larger on a wall) if the pin is at its usual position, above and to the right of its point
+export const STEM = 9;
 const GAP = 2; // units: space between two pins
 const ROWS = 40; // number of heights at which a pin is tried if it must cover alarm rings or markers
-const FAR = 150; // units: a pin that would have to move farther covers a marker without an alarm instead
+const FAR = 150; // in CSS pixels (larger on a wall): rather than moving farther than this, a pin covers a marker without an alarm
 
 const enlarge = ({ left, right, top, bottom }, by) => ({ left: left - by, right: right + by, top: top - by, bottom: bottom + by });
 

@@ -41,7 +41,8 @@ export function tellAsEngineer(session, type, fields = {}) {
     return session.toldSeq;
 }
 
-// Makes a session that follows this one the leader, whose view this session then follows. The server confirms with `following`.
+// Hands the lead to another session that follows this session's view: this session then follows the other one's view. The server confirms
+// with `following`.
 export function giveLead(session, other) {
     session.post({ type: 'lead', session: other });
 }

@@ -64,7 +64,7 @@ export class Session {
         this.outlived = null;    // picture of the previous connection
         this.rate = new RateMeter();
         this.latency = new LatencyMeter();
-        // recent pictures: { picture, decodeMs, hereUs (server's time when it was decoded) }
+        // recent pictures, from which core/timings.js computes latencies: { picture, decodeMs, hereUs (server's time when it was decoded) }
         this.recent = [];
         // { us, roundTripMs }: the server's clock minus the page's, measured at the shortest round trip so far
         this.skew = null;
@@ -508,7 +508,7 @@ const HANDLERS = {
 
     following({ session, who, width, height, gone = false, ...shown }) {
         this.lent ||= session ?? this.leader;
-        // the name of a leader whose session has ended is still shown
+        // if the session whose view this page follows has ended, the name of its user is still shown
         const name = who ?? (this.following?.session === session ? this.following.who : undefined);
         this.following = session === null ? null : { session, who: name, width, height, ...(gone ? { gone } : {}) };
         this.leader = session;

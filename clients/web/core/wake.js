@@ -10,7 +10,8 @@ export class Wake {
         this.apart = date() - now();
     }
 
-    // Call it regularly. Setting the wall clock forward looks like a sleep, and only costs one extra `hello` to the server.
+    // Calls onWake() if the device has slept since the last call; call it every few seconds. Setting the wall clock forward looks like a
+    // sleep, and only costs one extra `hello` to the server.
     check() {
         const apart = this.date() - this.now(), slept = apart - this.apart;
         this.apart = apart;

@@ -3,26 +3,31 @@
 // times as long. Pixels are 32-bit numbers as in an ImageData, with red in the lowest byte; 0: not drawn.
 import { FAR, FLOATS, NEAR } from './warp_mesh.js';
 
-// a rectangle's image is drawn as a parallelogram if it deviates by at most SKEW_PX from one, or the rectangle is at most LEAST_PX large
+// a rectangle of the source picture is drawn as a parallelogram if its projection deviates by at most SKEW_PX from one, or if it is at most
+// LEAST_PX large
 const SKEW_PX = 1, LEAST_PX = 4;
 const LAP_PX = 0.1; // overlap of neighbouring parallelograms, which hides cracks between them
 const LEAST_AREA = 1e-3; // parallelograms of fewer pixels are not drawn
-const TINY = 1e-7; // least change of a source position from pixel to pixel, which avoids divisions by zero
-// grey levels for undrawn places are computed for blocks of REDUCED x REDUCED pixels (fillUndrawn() divides by REDUCED by shifting)
+const TINY = 1e-7; // least change of the position in the source picture from one screen pixel to the next; avoids divisions by zero
+// greys for places that the picture does not show are computed for blocks of REDUCED x REDUCED pixels (fillUndrawn() divides by REDUCED by
+// shifting)
 const REDUCED = 4;
-const WIDE_LEVEL = 3; // index of the reduced picture that tells how wide an undrawn place is
+const WIDE_LEVEL = 3; // index of the reduced picture from which fillUndrawn() tells how wide a place is that the picture does not show
 const BITS = 16, ONE = 2 ** BITS; // fixed-point source positions
-const NEAR_ONE = 2 ** 30 - 1; // factor from nearness (a number below 2) to a 32-bit integer
-const INSIDE = 4e-3; // least distance of source positions from the right and lower edge of their quad, in pixels
+const NEAR_ONE = 2 ** 30 - 1; // factor from nearness (1 - z of a drawn surface, below 2) to a 32-bit integer
+// least distance in pixels of a position in the source picture from the right and lower edge of its quad, so that rounding does not lead
+// beyond the edge
+const INSIDE = 4e-3;
 const OPAQUE = -0x1000000;
-// brightness of the lattice's lines over undrawn places, and the lines' width as a fraction of the lattice's period
+// brightness of the lines of the lattice that marks wide places that the picture does not show, and the lines' width as a fraction of their
+// distance
 const MARK = 0.08 * 255, MARK_SHARE = 0.1;
 
 const lightOf = (pixel) => (77 * (pixel & 255) + 150 * (pixel >> 8 & 255) + 29 * (pixel >> 16 & 255)) >> 8;
 const greyPixel = (light) => (OPAQUE | Math.floor(light) * 0x10101);
 
 // The pixels of a picture, separated by surfaces: `all`, and for depth cells with two surfaces `near` and `far`, in which pixels of the
-// other surface are 0. Pixels behind a step in depth that contain a part of the colour before the step are grey in `far`.
+// other surface are 0. In `far`, pixels next to the nearer surface are grey, because they contain a part of its colour.
 export class Layers {
     // pixels: those of the whole picture, `width` pixels wide.
     constructor(pixels, width, grids) {
@@ -224,7 +229,8 @@ export class Raster {
             }
     }
 
-    // Makes a part (0 to 1) of the pixels transparent, in a dither pattern, like GONE in gl_painter.js.
+    // Makes a part (0 to 1) of the pixels transparent, in a dither pattern, so that the picture on the canvas below shows there while this
+    // picture fades out.
     leaveOut(part) {
         const { pixels, width, height } = this;
         for (let y = 0, i = 0; y < height; y++)
@@ -235,7 +241,7 @@ export class Raster {
             }
     }
 
-    // Returns the first reduced picture with `light` complete: places that are not drawn get the brightness of the nearest coarser picture
+    // Returns the first reduced picture, with a brightness also for places that are not drawn: that of the nearest coarser reduced picture
     // that shows something there.
     greys() {
         const { levels } = this, top = levels.at(-1);
@@ -255,7 +261,7 @@ export class Raster {
         return levels[0];
     }
 
-    // Computes the first reduced picture from a quarter of the pixels.
+    // Computes brightness and drawn part of the first reduced picture, for speed from only a quarter of the pixels.
     reduce({ width: columns, height: rows, light, part }) {
         const { pixels, width, height } = this;
         for (let y = 0, at = 0; y < rows; y++) {

@@ -10,7 +10,8 @@ const MIN_SIDE_PX = 16;
 const NO_AGE = 0xffffffff;
 export const CODECS = { 1: 'jpeg', 2: 'png', 3: 'h264' };
 const FLAG_KEY = 1, FLAG_STILL = 2, FLAG_NO_LIVE_DATA = 4, FLAG_MORE = 8, FLAG_DATA = 16, FLAG_PAST = 32, FLAG_DEPTH = 128;
-const DEPTH_GRID = 2, FLAG_OTHER_HALF = 2; // type and flag of a depth grid
+// message type of a depth grid; flag in its header: the grid of the split view's other half follows
+const DEPTH_GRID = 2, FLAG_OTHER_HALF = 2;
 const MAX_PAYLOAD_BYTES = 64 * 1024 * 1024;
 
 class WireError extends Error {}

@@ -177,7 +177,8 @@ export class AlarmList {
         this.showChosen();
     }
 
-    // Returns what the filter chooses, as texts. The journal filters by kind of change instead of by state.
+    // Returns the settings of the alarm list's filter as texts (search words, state, priority, area), which a button shows. The journal is
+    // not filtered by state.
     get applied() {
         const { words, which, priority, area } = this.filter;
         return [words.trim() && `“${words.trim()}”`, !this.journalOpen && which !== 'all' && say(`which.${which}`),

@@ -3,7 +3,7 @@
 import { rowsInSight, stack } from '../../core/list_window.js';
 import { make } from '../common/dom.js';
 
-const MORE = 8; // number of rows beyond each edge that are in the document in advance
+const MORE = 8; // number of rows above and below the visible ones that are in the document, too, so that scrolling shows them at once
 
 export class LongList {
     // make(row) creates the element of a row, fill(row, element) updates its content, height(row) returns CSS pixels, keyOf(row) returns a

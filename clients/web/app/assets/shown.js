@@ -34,7 +34,7 @@ export class Shown {
         this.refresh(); // draws the sensor labels over the picture again, so that those under the notice move aside
     }
 
-    // Moves the notice below the legend if the legend lies across the top of the picture.
+    // Moves the notice about hidden equipment below the legend, if the legend lies across the top of the picture.
     stand() {
         const legend = byId('legend'), lies = legend.offsetWidth > byId('viewport').clientWidth / 2;
         setVariable(this.element, '--under', `${lies ? legend.offsetTop + legend.offsetHeight + AWAY_PX : 0}px`);

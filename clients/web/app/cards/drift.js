@@ -8,7 +8,8 @@ import { say } from '../../core/words.js';
 const WIDTH = 168, HEIGHT = 28, AGAIN_MS = 600000;
 const kept = new Map(); // cached answers: query -> { at, rows }; the daemon computes drift only once an hour
 
-// Returns a promise of the daemon's rows for a query; empty if nothing is recorded or the daemon does not answer.
+// Returns a promise of the drift of the sensors that a query chooses, one entry for each sensor; empty if nothing is recorded or the daemon
+// does not answer.
 export async function driftOf(session, query) {
     const key = JSON.stringify(query), known = kept.get(key);
     if (!session.recorded || session.time.atUs !== null)

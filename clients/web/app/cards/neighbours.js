@@ -23,8 +23,8 @@ export function neighbourText(row, group) {
     return say(row.residual < 0 ? 'neighbours.below' : 'neighbours.above', { predicted, by: `${number(Math.abs(row.residual))} ${unit}` });
 }
 
-// Requests predictions at intervals while isSeen() returns true, but not while the past is shown, because the daemon predicts only the
-// present. onRows(rows) is called with each answer.
+// Requests what neighbours predict for sensors, at intervals while isSeen() returns true, but not while the past is shown, because the
+// daemon predicts only the present. onRows(rows) is called with each answer.
 export class Neighbours {
     constructor(session, isSeen, onRows) {
         Object.assign(this, { session, isSeen, onRows, query: null });

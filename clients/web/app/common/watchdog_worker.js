@@ -22,7 +22,8 @@ onmessage = ({ data }) => {
     if (typeof data === 'string')
         rests = data === 'rest';
     silent = 0;
-    // Clears the warning. Also draws once at the start, because the first frame of a canvas, its size and its font need the main thread.
+    // draws without the warning, now that the page runs again; also at the start, because the first frame of a canvas, its size and its
+    // font need the main thread, which may hang later
     if (isSaid || data.width)
         draw();
     if (data.width)

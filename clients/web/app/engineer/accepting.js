@@ -16,7 +16,8 @@ export class Accepting {
         this.names = new Set(); // tags that would be accepted
         this.found = null;      // newest message `places_accepted` (the sensors that the current filter chooses); null: none yet
         this.sent = null;       // request whose answer `tags_saved` is pending: 'accept' or 'restore'; null: none
-        // name of the tag list's version before the last acceptance; stored, so that it survives a page reload
+        // name of the tag list's version before positions were last accepted, to which the user can return; stored, so that it survives a
+        // page reload
         this.kept = stored('accepted') || null;
         this.restores = false; // true: the requested `tags_diff` (differences between two tag lists) is against an earlier version
         this.build();
@@ -72,8 +73,9 @@ export class Accepting {
             this.timer = setTimeout(() => { this.asked = tellAsEngineer(this.session, 'accept_places', this.filter); }, ASK_MS);
     }
 
-    // Handles `places_accepted`. The server also sends this message as the answer to an acceptance: with the same hash of the tag list if
-    // the server applies the list, with another hash if the list has changed in the meantime.
+    // Handles `places_accepted`, which lists the sensors that the filter chooses. The server also sends it after the user has accepted
+    // these positions: with the confirmed hash of the tag list if the server now saves the list, or with another hash if the tag list has
+    // changed since.
     onFound(message) {
         if (message && message.seq !== this.asked)
             return;
@@ -127,7 +129,7 @@ export class Accepting {
             this.end('');
     }
 
-    // Handles `tags_saved`. Returns true if the message answers a request of this module.
+    // Handles `tags_saved`, the server's result of saving the tag list. Returns true if this module has asked for it.
     onSaved(message) {
         const { saved, kept } = message;
         const { sent } = this;

@@ -78,7 +78,7 @@ export class Engineer {
         return this.open && this.part === part && this.parts[part][name] === tag.name;
     }
 
-    // Returns true if the current filter of the acceptance (accepting.js) chooses the tag's assumed position.
+    // Returns true if the form that accepts many assumed positions at once (accepting.js) is open and its filter chooses the tag.
     isAccepted(tag) {
         return this.open && this.part === 'place' && this.parts.place.accepting.names.has(tag.name);
     }

@@ -56,7 +56,7 @@ export class TagTable {
         this.matches.set(readMatches(text));
         this.element.hidden = this.matches.all.length === 0;
         this.chosen = this.matches.all.find(({ tag }) => tag === this.chosen?.tag) ?? null;
-        this.light(); // draws the boxes of the assets again after a reload of the plant
+        this.light(); // draws the boxes of the assets that the tag may belong to again, because a reload of the plant may have changed them
         this.list.renew(() => this.refresh());
     }
 
@@ -70,7 +70,7 @@ export class TagTable {
         this.refresh();
     }
 
-    // Marks decisions as saved. decided: the decisions that the server has saved.
+    // Marks decisions about tags (which asset a tag belongs to) as saved. decided: the decisions that the server has saved.
     settle(decided) {
         this.matches.settle(decided);
         this.refresh();

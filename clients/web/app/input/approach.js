@@ -26,12 +26,13 @@ export class Approach {
         Object.assign(this, { session, viewport });
         // ids of assets that this module made transparent because they hide the tag (not those that the user made transparent)
         this.ghosts = [];
-        this.number = 0; // sequence number of the newest approach: an older one that is still running finds another number here and stops
+        // counts the searches for a free view of a tag: a search that is still running stops when it finds another number here
+        this.number = 0;
         this.heard = null;
         session.on('picked', (picked) => picked.purpose === 'sight' && this.heard?.(picked));
     }
 
-    // Ends the approach, because the user moves the camera.
+    // Ends the search for a free view of a tag, because the user moves the camera.
     stop() {
         this.number++;
     }

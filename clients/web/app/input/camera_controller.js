@@ -47,7 +47,8 @@ export class CameraController {
         });
         window.addEventListener('blur', () => this.keys.clear());
         new ResizeObserver(() => this.stayHome()).observe(viewport.element);
-        // splitting a view, or ending the split, changes the shape of pictures: a camera in the home view is fitted to the new shape
+        // splitting a view, or ending the split, changes the shape of pictures: a camera that shows the whole plant is fitted to the new
+        // shape
         session.on('params', () => this.stayHome());
         probeCodecs(); // tests now whether the browser decodes H.264, which the pictures of a moving camera will need
         session.greeted(() => session.reprojects && modules.prepare('warp'));

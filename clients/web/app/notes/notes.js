@@ -14,7 +14,7 @@ import { byId, make, setText, setVariable } from '../common/dom.js';
 
 const UNTIL = ['shift', 'day', 'week', 'ever'], HOURS = { shift: 8, day: 24, week: 168 };
 const MAY = ['operator', 'engineer'], POINTS_MS = 4000, TICK_MS = 500, LONGEST = 130;
-const RING = 13, MARK = 6; // units: radius of an alarm ring with its rims, and of other markers
+const RING = 13, MARK = 6; // radius of an alarm ring with its rims, and of other markers, in CSS pixels (larger on a wall)
 
 export class Notes {
     constructor({ session, selection, viewport, overlay, modules, hangs, tell, flyToTag, selectAsset }) {
@@ -266,7 +266,8 @@ export class Notes {
         }
     }
 
-    // Returns the boxes, in units, of the alarm rings and of the other markers in the left half.
+    // Returns the boxes of the alarm rings and of the other sensor markers in the left half of a split view, in CSS pixels (larger on a
+    // wall), so that pins do not cover them.
     markers() {
         const boxes = (markers, radius) => markers.filter(({ half }) => half === 0)
             .map(({ x, y }) => ({ left: x - radius, right: x + radius, top: y - radius, bottom: y + radius }));

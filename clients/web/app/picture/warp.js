@@ -17,7 +17,7 @@ const NEAREST = 0.05;
 const SLOW_MS = 26, SLOW_COUNT = 8, PAUSE_MS = 150, LEAST_PX = 250000;
 
 const FADE_MS = 80; // time in which the warped picture fades to the server's picture
-const LATE_MS = 1000; // if the worker does not answer for this time, pictures no longer wait for it
+const LATE_MS = 1000; // if the worker that decodes depth grids does not answer for this time, pictures are shown without waiting for it
 
 const LATTICE_PX = 14;
 
@@ -30,11 +30,14 @@ const GL = { antialias: false, powerPreference: 'high-performance' };
 export class Warp {
     constructor({ session, viewport, modules }) {
         Object.assign(this, { session, viewport, modules, updates: 0, mostPx: Infinity, intervals: [], last: 0, count: 0 });
-        this.waitsFrom = null; // time since when pictures wait for the worker; null: they do not wait
+        // time since when decoded pictures wait for the worker that decodes their depth grids; null: they do not wait
+        this.waitsFrom = null;
         this.grids = [];    // newest depth grids, the newest last: { id, depth, parts: [{ grid, mesh }] or null until decoded, fails }
         this.held = null;   // newest frame, decoded but not drawn on the viewport's canvas: { frame, picture }
         this.source = null; // picture that is drawn warped: { picture, camera, parts }
-        this.loaded = this.painted = null; // loaded: the source that the painter has; painted: the source that it has drawn
+        // loaded: the value of `source` that the painter (which draws with WebGL or on the processor) has got; painted: the one that it has
+        // drawn
+        this.loaded = this.painted = null;
         this.canvas = make('canvas', { id: 'warp', 'aria-hidden': 'true' });
         this.canvas.style.display = 'none';
         if (!this.open())
@@ -83,7 +86,7 @@ export class Warp {
         this.viewport.invalidate();
     }
 
-    // Shows pictures unwarped from now on, because WebGL or the worker fails.
+    // Shows pictures unwarped from now on, because WebGL or the worker that decodes depth grids fails.
     giveUp() {
         this.hide();
         this.viewport.warp = null;
@@ -96,7 +99,7 @@ export class Warp {
         this.grids = [];
     }
 
-    // Sends the depth grids of a frame to the worker, which decodes them while the browser decodes the frame.
+    // Sends the depth grids of a frame to the worker thread that decodes them while the browser decodes the frame.
     prepare({ depth, camera, fullWidth, fullHeight }) {
         if (!depth || this.grids.some((one) => one.depth === depth))
             return;
@@ -230,7 +233,7 @@ export class Warp {
         return false;
     }
 
-    // Loads the picture and its mesh into the painter. Returns false if the canvas no longer has the picture.
+    // Gives the newest picture and its mesh to the GlPainter or CpuPainter. Returns false if the canvas no longer has the picture.
     load() {
         const { source, session, viewport, held } = this;
         if (source === this.loaded)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The share dialog: links to the current view, with a QR code; the list of sessions that follow this view, with buttons that make a
-// follower the leader.
+// The share dialog: links to the current view, with a QR code. It also lists the sessions that follow this session's view, with buttons
+// that make another session the session whose view all others follow.
 import { shareLinks, SHARERS, shortLink } from '../../core/links.js';
 import { followerNames, leaderName } from '../../core/people.js';
 import { giveLead } from '../../core/requests.js';

@@ -38,7 +38,8 @@ export class TokenDialog {
         setText(byId('token-why'), say({ bad_token: 'token.bad', locked: 'token.locked' }[code] ?? 'token.needed'));
         field.value = '';
         const nothing = { sign_in: null, notice: null }, late = new Promise((done) => setTimeout(done, 3000, nothing));
-        // asks the server without the stored token, because it would reject a wrong one
+        // asks the server how a user can sign in, without the stored token, because the server would reject the request if that token is
+        // wrong
         const me = await Promise.race([whoAmI({ token: null }).catch(() => nothing), late]);
         if (!document.body.classList.contains('denied')) // does not ask for a token if another tab has obtained access in the meantime
             return;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Status bar, connection state and banner: always visible as text. Ages are continued by the page's own clock.
+// Status bar, connection state and banner: always visible as text. Between messages from the server, ages of values grow by the page's own
+// clock.
 import { ageText, zoneClock } from '../../core/format.js';
 import { health, simulatedText } from '../../core/health.js';
 import { say } from '../../core/words.js';

@@ -7,7 +7,9 @@ const REACH_PX = 8, STARTED_PX = 5;
 
 // trends: gets the dragged tag by add(tag). handlers.click(x, y, kind): called after a press on a marker without a drag.
 export function listenToDrags({ trends, session, overlay, handlers }) {
-    let drag = null; // { tag, x, y (of the press), ghost (label at the pointer), marker (position in the picture, or null) }
+    // the drag of a tag that is going on: { tag, x, y (of the press), ghost (label at the pointer), marker (position in the picture, or
+    // null) }; null: none
+    let drag = null;
 
     function tagUnder({ target, clientX, clientY }) {
         const row = target.closest('.reading[data-row^="tag/"]');

@@ -126,8 +126,8 @@ export class Plot {
         return spanS < 300 ? time : time.slice(0, 5);
     }
 
-    // Returns the range of a value axis. It includes the bands, and those limits that are near the values; distant limits would only
-    // flatten the curve.
+    // Returns the range of a value axis. It includes the bands between lowest and highest values of the curves, and those alarm limits that
+    // are near the values; distant limits would only flatten the curve.
     range(unit, low, high) {
         let [min, max] = [low ?? Infinity, high ?? -Infinity];
         this.rows.forEach(({ tag }, i) => (this.view.unitOf(tag) || '–') === unit && this.bands[i].flat().forEach(([, , least, most]) => {

@@ -158,8 +158,8 @@ export class Overlay {
         this.isolines?.draw([...this.blocked(), ...boxes, ...marks]);
     }
 
-    // Returns the boxes, in units, of the HTML elements over the picture that do not move with it, and of those that the selector `more`
-    // adds.
+    // Returns the boxes, in units of this.unit CSS pixels, of the HTML elements over the picture that do not move with it (legend, banner,
+    // ...), and of those that the selector `more` adds.
     boxesOver(more, unit) {
         const { element } = this.viewport, origin = element.getBoundingClientRect();
         return [...element.querySelectorAll(`.legend, .banner, .simulated-note, .chip, #plant-notes, .moment, .split-bar${more}`)]
@@ -382,7 +382,7 @@ export class Overlay {
         }
     }
 
-    // Returns the width in units of a label with these parts.
+    // Returns the width of a label with these pieces of text, in units of this.unit CSS pixels.
     lineWidth(parts) {
         return Math.ceil(parts.reduce((sum, part) => sum + this.width(part), 0) + 2 * PADDING + (parts.length - 1) * 5);
     }

@@ -22,7 +22,8 @@ export class NamedViews {
         session.on('views', () => {
             this.show();
             if (this.isNew && session.named && this.own && this.own !== engineersOf(session))
-                this.regain(session.named); // the server has forgotten this session and its parameters
+                // the server has forgotten this session: takes the parameters that only engineers may send from the saved view again
+                this.regain(session.named);
             this.isNew = false;
         });
         session.on('welcome', () => {

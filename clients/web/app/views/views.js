@@ -47,7 +47,7 @@ export class Views {
         this.modules.use('namedViews', (named) => named.open(id, fly), 'open');
     }
 
-    // Sets the parameters that only engineers may send from a saved view.
+    // Takes from a saved view the parameters that only engineers may send: this session may not send them itself.
     regain(id) {
         this.modules.use('namedViews', (named) => named.regain(id), 'open');
     }

@@ -14,13 +14,14 @@ import { make } from '../common/dom.js';
 import { BEHIND_MS } from '../toolbar/status.js';
 import { titleOf } from '../viewport/legend.js';
 
-const PX_PER_DEGREE = 24; // resolution, in pixels per degree of view, of boards whose size in the view is fixed
+const PX_PER_DEGREE = 24; // resolution, in pixels per degree of view, of those canvases in the headset's view whose apparent size is fixed
 const LETTER_PX = 52; // font size; a capital letter is 0.72 of this, which is 1.56 degrees at PX_PER_DEGREE
 const PATTERN_PX = 18, LINE = 1.24, FAMILY = 'system-ui, sans-serif', INK = '#1d252d', PAPER = 'rgb(250 250 250 / 94%)', ALERT = '#7a0019';
 const WRIST_PX = 4600; // pixels per metre of the panel at the wrist
 const css = ([r, g, b]) => `rgb(${r} ${g} ${b})`;
 
-// A canvas and its WebGL texture. The canvas is drawn again only if `key` changes.
+// A rectangle with text or symbols that the headset shows in the room: a canvas and its WebGL texture. The canvas is drawn again only if
+// `key` changes.
 export class Board {
     constructor(painter, width, height) {
         this.painter = painter;
@@ -41,8 +42,8 @@ export class Board {
         return this;
     }
 
-    // Returns the board's texture, with the width and height in metres that the board must have at this distance to fill its fixed angle of
-    // view (PX_PER_DEGREE).
+    // Returns the canvas as a texture, with the width and height in metres that its rectangle must have at this distance from the eye to
+    // appear at its fixed size (PX_PER_DEGREE).
     seenFrom(metres) {
         const perPx = 2 * metres * Math.tan(0.5 * RADIANS) / PX_PER_DEGREE;
         return { texture: this.texture, width: this.canvas.width * perPx, height: this.canvas.height * perPx };
@@ -120,8 +121,8 @@ function bar(c, x, y, width, height, { colourAt, ends, labels, lines }) {
         { align: i === 0 && place === 0 ? 'left' : place === 1 ? 'right' : 'center' }));
 }
 
-// Shows the legend, the age of the data and the state of the connection. state: health() of the session; warning: [words, detail, isGrave]
-// of a warning across the view, or null.
+// Draws the legend, the age of the data and the state of the connection on a canvas in the headset's view. state: health() of the session;
+// warning: [words, detail, isGrave] of a warning across the view, or null.
 export function showLegend(board, session, state, warning, now) {
     const params = session.shown, { model, picture } = session, group = model.group(params.group);
     const hasField = group && params.look !== 'materials', past = state.kind === 'past';
@@ -153,7 +154,7 @@ export function showLegend(board, session, state, warning, now) {
     });
 }
 
-// Shows a warning in the middle of the view. grave true: white on dark red.
+// Draws a warning on the canvas in the middle of the headset's view. grave true: white on dark red.
 export function showBanner(board, words, detail, grave) {
     return board.show(`${grave} ${words} ${detail}`, (c, width) => {
         c.font = `400 ${LETTER_PX}px ${FAMILY}`;
@@ -232,7 +233,7 @@ export function showCard(board, lines) {
     });
 }
 
-// Shows a marker: its shape is the quality of the reading, its ring the priority of an alarm.
+// Draws a sensor's marker on a canvas in the headset's view: its shape is the quality of the reading, its ring the priority of an alarm.
 export function showMarker(board, quality, alarm) {
     return board.show('once', (c, width) => {
         const r = width * 0.2;
@@ -269,7 +270,7 @@ export function showMarker(board, quality, alarm) {
     });
 }
 
-// Fills a board with one colour: a ray, or a veil over the view.
+// Fills a canvas in the headset's view with one colour: it is then a pointing ray, or a veil over the whole view.
 export const showColour = (board, colour) => board.show(colour, (c, width, height) => {
     c.fillStyle = colour;
     c.fillRect(0, 0, width, height);

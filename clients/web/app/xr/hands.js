@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A user's hands (controllers) with a headset: the trigger acts on the panel at the wrist, a sensor, equipment or the floor at which the
-// hand points; grabbing moves the room.
+// The hand controllers of a headset. The trigger acts on the thing at which a controller points: the panel at the wrist, a sensor,
+// equipment or the floor. Grabbing moves the room.
 import { RADIANS } from '../../core/camera.js';
 import { directionOf, floorHit, hitOf, panelHit, pointOf, poseOf, standAt } from '../../core/headset_views.js';
 import { askPick } from '../../core/requests.js';
@@ -29,7 +29,7 @@ export class Hands {
         return this.headset.rig.axes[1];
     }
 
-    // Reads the poses of the hands in this frame, and moves the room with a hand that has grabbed it.
+    // Reads where the controllers are in this frame and where they point, and moves the room with a controller that has grabbed it.
     move(frame) {
         const { headset } = this, { xr, space } = headset;
         this.rays.clear();
@@ -54,7 +54,8 @@ export class Hands {
         }
     }
 
-    // Grabs the plant with a hand (an input source); null: releases the plant.
+    // Lets a controller (`source`, a WebXR input source) grab the plant, so that moving the controller moves the plant; null: releases the
+    // plant.
     grab(source) {
         const ray = source && this.rays.get(source);
         this.grabbed = ray ? { source, at: pointOf(this.headset.rig, ray.origin) } : null;
@@ -118,7 +119,7 @@ export class Hands {
 
     hear(picked) {
         const { asked } = this;
-        // an answer to another module also ends the hands' own request, because the server has then dropped it
+        // an answer to another module's request also ends this module's request, because the server answers only the latest
         this.asked = null;
         if (picked.purpose !== asked || (asked === 'headset again' && !this.card))
             return;
@@ -139,12 +140,13 @@ export class Hands {
         this.pick({ point: this.card.at }, 'headset again');
     }
 
-    // Closes the card, which belongs to an earlier connection.
+    // Closes the card about a sensor or point: after a reconnect its values are not valid any more.
     forget() {
         this.card = this.asked = null;
     }
 
-    // Returns the boards of the hands: { wrist, others }. isStale true: values are from before the connection was lost.
+    // Returns the rectangles to draw for the controllers: { wrist (the panel at the wrist), others (rays, the card, ...) }. isStale true:
+    // values are from before the connection was lost.
     boards(now, isStale) {
         const { headset } = this, { session, xr } = headset, head = poseOf(headset.rig, headset.head).at, list = [];
         for (const { at, along: direction, target } of this.rays.values()) {

@@ -14,7 +14,7 @@ import { Hands } from './hands.js';
 import { Painter } from './painter.js';
 
 const FARTHEST_M = 2.5; // distance in metres of the head from the picture's camera beyond which the picture is not shown
-const TEXT_MS = 250; // interval in milliseconds at which boards are checked for changes
+const TEXT_MS = 250; // interval in milliseconds at which the texts in the headset's view are checked for changes
 const LATE_MS = 1000; // time in milliseconds after which a missing picture is reported
 const LEGEND = { metres: 1.3, pitchDeg: 28 }, BANNER_M = 1.3, MARKER_PX = 32, MOST_MARKERS = 150;
 const STALE = ['lost', 'silent'], GRAVE = [...STALE, 'nodata'];
@@ -56,7 +56,7 @@ export class Headset {
         this.banner = new Board(this.painter, 1150, 440);
         this.veil = new Board(this.painter, 4, 4);
         showColour(this.veil, 'rgb(110 110 110 / 94%)');
-        this.marks = new Map(); // boards with a marker, by the quality of the reading and the alarm that they show
+        this.marks = new Map(); // canvases with a sensor marker, by the quality of the reading and the alarm that they show
         this.hands = new Hands(this);
         xr.addEventListener('select', ({ inputSource }) => this.hands.pull(inputSource));
         xr.addEventListener('squeezestart', ({ inputSource }) => this.hands.grab(inputSource));
@@ -169,7 +169,7 @@ export class Headset {
         }
     }
 
-    // Returns the entry of a picture's depth grids (../picture/warp.js); undefined: unknown.
+    // Returns the decoded depth grids of a picture, as ../picture/warp.js stores them; undefined: not known.
     gridsOf({ depth }) {
         return depth ? this.before.warp?.grids.find((one) => one.depth === depth) : undefined;
     }
@@ -193,7 +193,7 @@ export class Headset {
         return picture && picture !== shown && picture !== before.picture && now - this.shownAt > LATE_MS;
     }
 
-    // Loads a new picture with its depth grid into the painter.
+    // Gives a new picture and its depth grid to the painter, which draws the eyes' views from it (painter.js).
     take(now) {
         const { session: { picture }, painter, viewport } = this, [part, other] = (picture && this.gridsOf(picture)?.parts) || [];
         if (!part || other || picture.camera.fov === 0 || picture === this.shown)
@@ -220,7 +220,7 @@ export class Headset {
         return this.marks.get(key);
     }
 
-    // Returns the axes of a board at a position, so that the board faces the head.
+    // Returns the axes of a rectangle (a text or marker in the headset's view) at a position, so that it faces the head.
     facing(at) {
         const { at: eye, axes: [, up] } = poseOf(this.rig, this.head), z = unit(subtract(eye, at));
         const x = unit(cross(up, z));
@@ -233,7 +233,7 @@ export class Headset {
         return along(along(at, back, -metres * Math.cos(angle)), up, -metres * Math.sin(angle));
     }
 
-    // Returns all boards to draw, the nearest last.
+    // Returns all rectangles with texts, markers and rays to draw in the headset's view, the nearest last.
     boards(now) {
         const { session, rig, head } = this, eye = poseOf(rig, head).at, list = [];
         if (this.checkedAt === undefined || now - this.checkedAt >= TEXT_MS) {

@@ -95,7 +95,7 @@ export class Painter {
         gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     }
 
-    // Fills an eye's view with the lattice. The picture is drawn over it.
+    // Fills an eye's view with the lattice that marks directions that no picture shows. The picture is drawn over it.
     drawUndrawn({ axes: [right, up, back], projection: p }) {
         const { gl, undrawn } = this;
         gl.disable(gl.DEPTH_TEST);
@@ -132,8 +132,8 @@ export class Painter {
         gl.disableVertexAttribArray(0);
     }
 
-    // Draws boards in front of everything, in their order: { texture, at, axes, width, height } in plant metres; without `at`, over the
-    // whole view.
+    // Draws rectangles (texts, markers and rays in the headset's view) in front of everything, in their order: { texture, at, axes, width,
+    // height } in plant metres; without `at`, over the whole view.
     drawBoards(eye, boards) {
         const { gl, board } = this;
         gl.disable(gl.DEPTH_TEST);

@@ -19,7 +19,7 @@ export class CpuPainter {
         this.image = new ImageData(new Uint8ClampedArray(this.raster.pixels.buffer), width, height);
     }
 
-    // Returns the context of the scratch canvas after setting the canvas to this size.
+    // Returns the 2D context of a hidden canvas, through which pixels are read and mixed, after setting the canvas to this size.
     copyOf(width, height) {
         if (this.scratch.width !== width || this.scratch.height !== height)
             Object.assign(this.scratch, { width, height });
@@ -35,7 +35,8 @@ export class CpuPainter {
         this.parts = parts;
     }
 
-    // Draws the loaded picture, like GlPainter.paint(). below: canvas whose picture shows where pixels are left out.
+    // Draws the loaded picture from another camera. gone: fraction of the pixels that are left out, in a dither pattern, while the picture
+    // fades out; there the picture on the canvas `below` shows.
     paint(matrices, boxes, period, gone, below) {
         const { raster, layers, context, image, canvas: { width, height } } = this;
         raster.clear();

@@ -12,7 +12,8 @@ void main() {
     kind = vertex.w;
     gl_Position = warp * vec4(vertex.xyz, 1.0);
 }`;
-// Draws the picture on its mesh. Pixels behind a step in depth that contain a part of the colour before the step become grey.
+// Draws the picture on its depth mesh. Where the picture's depth has a step, edge pixels of the farther surface contain a part of the
+// nearer surface's colour. They become grey, because users would read the mixed colour as a value.
 export const PICTURE = `#version 300 es
 precision highp float;
 in vec2 at;
@@ -35,8 +36,8 @@ const BEHIND = `#version 300 es
 void main() {
     gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 1.0, 1.0);
 }`;
-// Computes from a reduced picture the grey around undrawn places, and how wide these places are. A reduced picture keeps this fast on
-// machines without a GPU.
+// Places that the picture does not show become grey. From a reduced picture, which is fast also without a GPU, this shader computes the
+// grey of their surroundings and how wide these places are.
 const AROUND = `#version 300 es
 precision highp float;
 uniform sampler2D drawn;
@@ -75,7 +76,8 @@ void main() {
         discard;
     colour = vec4(0.0);
 }`;
-// each block of REDUCED x REDUCED pixels becomes one pixel of the reduced picture, from which the greys are computed
+// each block of REDUCED x REDUCED pixels becomes one pixel of the reduced picture, from which the greys of places that the picture does not
+// show are computed
 const REDUCED = 4;
 
 // Returns { program, at(name) }; at() returns the location of a uniform.
@@ -99,7 +101,8 @@ export class GlPainter {
     constructor(gl) {
         this.gl = gl;
         this.loaded = null; // halves of the picture whose meshes and masks WebGL has
-        this.uploaded = []; // { buffers, masks } for each half in `loaded`
+        // for each half in `loaded`: { buffers (its mesh), masks (texture: which pixels belong to the nearer of two surfaces) }
+        this.uploaded = [];
         this.mesh = programOf(gl, MESH, PICTURE);
         this.around = programOf(gl, BEHIND, AROUND);
         this.undrawn = programOf(gl, BEHIND, UNDRAWN);
@@ -172,9 +175,9 @@ export class GlPainter {
         return { buffers, masks: texture };
     }
 
-    // Draws the loaded picture. matrices, boxes: for each half, the result of warpMatrix(), and { left, top, width, height } in drawn
-    // pixels. period: of the lattice over undrawn places, in drawn pixels. gone: fraction of the pixels that are left out, where the canvas
-    // below shows.
+    // Draws the loaded picture from another camera. matrices, boxes: for each half, the result of warpMatrix(), and { left, top, width,
+    // height } in drawn pixels. period: distance in drawn pixels between the lines of the lattice that marks places that the picture does
+    // not show. gone: fraction of the pixels that are left out while the picture fades; there the canvas below shows.
     paint(matrices, boxes, period, gone) {
         const { gl, mesh } = this;
         gl.viewport(0, 0, gl.canvas.width, gl.canvas.height);
