@@ -2,7 +2,7 @@
 // From which positions the camera looks at a tag: the distance, and the sides that are tried.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { approachDistance, approaches, atDistance, distanceBounds, fillOf } from '../../clients/web/core/approach.js';
+import { approachDistance, approaches, atDistance, distanceBounds, fillOf, silhouetteOf } from '../../clients/web/core/approach.js';
 import { valid } from '../../clients/web/core/camera.js';
 import { distance } from '../../clients/web/core/camera_moves.js';
 
@@ -65,4 +65,27 @@ test('no eye is within the bounds of solid equipment', () => {
         for (const camera of approaches({ ...usual, solid: true, point: [shape.max[0], shape.max[1] / 2, shape.max[2] / 2], box: shape }))
             assert.ok(camera.eye.some((m, i) => m <= 0 || m >= shape.max[i]), `${shape.max}: ${camera.eye}`);
     }
+});
+
+test('a thin plate is looked at from its faces first, wherever its sensor is and from wherever the user looks', () => {
+    for (const thin of [0, 1, 2]) {
+        const shape = box(...[10, 5, 8].map((m, i) => (i === thin ? 0.02 : m)));
+        for (const eye of [[30, 0, 1], [0, 30, 1], [30, 30, 20], [-1, 30, 0], [0.1, 0, 30]]) {
+            for (const along of [0.02, 0.5, 0.98]) {
+                for (const across of [0, 0.5, 1]) {
+                    const point = shape.max.map((m, i) => m * (i === thin ? across : along));
+                    const sides = approaches({ ...usual, camera: { ...CAMERA, eye }, point, box: shape, solid: true });
+                    const shown = silhouetteOf(sides[0], shape);
+                    assert.ok(shown >= 0.4, `${shape.max}, ${point}, from ${eye}: ${shown}`);
+                }
+            }
+        }
+    }
+});
+
+test('the silhouette of a box is its projected area', () => {
+    const from = (eye) => silhouetteOf({ eye, target: [0, 0, 0] }, box(2, 3, 4)), most = Math.hypot(12, 8, 6);
+    assert.ok(Math.abs(from([9, 0, 0]) - 12 / most) < 1e-9 && Math.abs(from([0, 0, -9]) - 6 / most) < 1e-9);
+    assert.ok(Math.abs(from([12, 8, 6]) - 1) < 1e-9, 'the largest');
+    assert.equal(silhouetteOf({ eye: [1, 0, 0], target: [0, 0, 0] }, box(0, 0, 0)), 0, 'a point');
 });

@@ -124,6 +124,7 @@ add('approach', 'distanceBounds', [box], ENDS);
 add('approach', 'approachDistance', [box, { least: 0.2, most: 16 }], ENDS);
 add('approach', 'atDistance', [eye, 4], { call: (...given) => [approach.atDistance(...given)].filter((at) => at !== given[0]) });
 add('approach', 'fillOf', [eye, box, 1.5]);
+add('approach', 'silhouetteOf', [eye, box]);
 add('approach', 'isRoom', [{ id: 'a', bounds: box }, [{ id: 'b', bounds: box }]], ENDS);
 add('approach', 'approaches', [{ camera: eye, point, box, aspect: 1.5, whole: box, solid: true }], { call: (given) =>
     approach.approaches(given).filter((one) => one !== given.camera) });

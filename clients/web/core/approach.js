@@ -2,7 +2,7 @@
 // Computes cameras that look at a sensor, the best first; app/input/approach.js tries them in this order.
 import { isParallel, projector, validOr } from './camera.js';
 import { corners, distance, face, orbit } from './camera_moves.js';
-import { along, length, subtract, unit } from './vector.js';
+import { along, dot, length, subtract, unit } from './vector.js';
 
 // The camera's distance from a sensor is the larger of PART times the middle side and LONG_PART times the longest side of the bounding box
 // of the sensor's equipment.
@@ -15,6 +15,9 @@ const FILL = 0.42; // fraction of the picture that the equipment's box fills, un
 // have, until the equipment fills FILL of the picture. Narrow sides are tried last, because they show little: of a pump, only the motor's
 // fan cover.
 const NARROW = 0.75, FRONT = 9;
+// A plate seen along its faces is a line, although its bounding rectangle may be large. A side from which the equipment's box covers less
+// than EDGE times its largest silhouette is also tried last.
+const EDGE = 0.4;
 const STEPS = 16;  // bisections of the distance
 const TURNS = [ // degrees: about the vertical, up
     [0, 0], [35, 0], [-35, 0], [0, 30], [70, 0], [-70, 0], [35, 30], [-35, 30], [0, 55], [110, 0], [-110, 0], [0, -20], [145, 0], [-145, 0],
@@ -46,6 +49,13 @@ export function fillOf(camera, box, aspect) {
         return (Math.max(...all) - Math.min(...all)) / whole;
     };
     return span(0, aspect) * span(1, 1) || 0; // in a picture of 0x0 pixels, the fraction is NaN: returns 0
+}
+
+// Returns the silhouette of a box in the camera's direction, as a fraction (0 to 1) of its largest silhouette in any direction. Source: the
+// projected area of a box is the sum of its faces' areas, each times the cosine of the angle between its normal and the direction.
+export function silhouetteOf({ eye, target }, { min, max }) {
+    const [x, y, z] = subtract(max, min), faces = [y * z, z * x, x * y], largest = length(faces);
+    return dot(unit(subtract(eye, target)).map(Math.abs), faces) / largest || 0; // a box of size 0 gives NaN: returns 0
 }
 
 // Returns the camera at another distance from its target, in the same direction.
@@ -81,7 +91,8 @@ export const isRoom = ({ id, bounds }, assets) =>
 export function approaches({ camera, point, box, aspect, whole, solid }) {
     const bounds = distanceBounds(whole), first = face(camera, point, box, approachDistance(box, bounds));
     const all = TURNS.map(([azimuth, rise]) => nearer(orbit(first, azimuth, rise, point), box, aspect, bounds.least));
-    const widest = Math.max(...all.slice(0, FRONT).map(distance)), shows = (side) => distance(side) >= NARROW * widest;
+    const widest = Math.max(...all.slice(0, FRONT).map(distance));
+    const shows = (side) => distance(side) >= NARROW * widest && silhouetteOf(side, box) >= EDGE;
     const sides = all.filter(({ eye }, i) => i === 0 || !solid || !isIn(eye, box));
     return [...sides.filter(shows), ...sides.filter((side) => !shows(side))];
 }
