@@ -17,7 +17,8 @@
 #include "film_boxes.h"
 
 #define FILM_KEY "plantcast_statements"
-/* largest size in bytes of the text with all statements: MAX_BYTES compressed, MAX_TEXT_BYTES uncompressed */
+/* largest size in bytes of the text that has the signed statements about all pictures of a film: MAX_BYTES compressed, MAX_TEXT_BYTES
+   uncompressed */
 static const size_t MAX_BYTES = (size_t)64 << 20, MAX_TEXT_BYTES = (size_t)1 << 30;
 
 /* --- writing ------------------------------------------------------------------------------------------------------------------- */

@@ -32,7 +32,8 @@ static bool failed(const struct video *video, const char *what, int status)
     return false;
 }
 
-/* Sets the codec's parameters. Players expect limited range; colour matrix and transfer curve are those of the pictures. */
+/* Sets the codec's parameters. Players expect video in limited range (brightness from 16 to 235); colour matrix and transfer curve are
+   those of the pictures. */
 static void describe(struct video *video, int width_px, int height_px, double fps)
 {
     AVCodecContext *codec = video->codec;

@@ -19,7 +19,7 @@ struct video_branch {
 
 /* Starts the GStreamer pipeline that branch->text describes; takes ownership of that text. Returns false with the reason printed. */
 bool branch_begin(struct video_branch *branch);
-/* Restarts the pipeline some time after it has failed. Call it once a second. */
+/* Restarts the pipeline 5 s after it has failed; call it once a second, so that a failure is noticed. */
 void branch_look(struct video_branch *branch);
 void branch_end(struct video_branch *branch);
 

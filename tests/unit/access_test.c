@@ -11,7 +11,7 @@
 
 #define HELLO_WITH(params) "{\"type\":\"hello\",\"width\":64,\"height\":64,\"codecs\":[\"png\"],\"params\":{\"seq\":1," params "}}"
 
-/* Asserts that the role `least` may send this message and that the role below may not. */
+/* Asserts that the role `least` may send this message, and that the next lower role may not. */
 static void expect_least(const char *text, enum role least)
 {
     struct message message;
@@ -97,7 +97,8 @@ TEST(where_a_daemon_may_listen)
     params = (struct access_params){ .behind_proxy = true };
     assert_false(access_allowed_at(&params, true, &why));
     params.tokens_path = "tokens";
-    assert_false(access_allowed_at(&params, true, &why)); /* no host name is allowed yet */
+    /* refused: behind a proxy, the host names under which pages are served must be listed, and none is yet */
+    assert_false(access_allowed_at(&params, true, &why));
     params.host_count = 1;
     assert_true(access_allowed_at(&params, true, &why));
     /* refused, because credentials from the proxy would cross the network unencrypted */
@@ -179,12 +180,16 @@ TEST(a_forwarded_address_is_the_one_that_a_proxy_appended)
                   { "203.0.113.7:1234", "203.0.113.7" },
                   { "unknown, [2001:db8::1]:99", "2001:db8::1" },
                   { "2001:db8::1", "2001:db8::1" },
-                  { "198.51.100.1, 203.0.113.7, 10.0.0.10", "203.0.113.7" }, /* two trusted proxies in a row */
+                  /* the request passed two trusted proxies, 203.0.113.7 is the client */
+                  { "198.51.100.1, 203.0.113.7, 10.0.0.10", "203.0.113.7" },
                   { "198.51.100.1, 203.0.113.7, fd00:1::7, 10.0.0.10", "203.0.113.7" },
-                  { "198.51.100.1, unknown, 10.0.0.10", "10.0.0.10" }, /* addresses before an unknown peer are not trusted */
-                  { "10.0.0.11, 10.0.0.10", "10.0.0.11" },             /* a client on the proxy's host */
+                  /* an entry "unknown" ends the trusted proxies: addresses before it may be forged */
+                  { "198.51.100.1, unknown, 10.0.0.10", "10.0.0.10" },
+                  /* all addresses are trusted proxies: the first one is the client, a program on a proxy's machine */
+                  { "10.0.0.11, 10.0.0.10", "10.0.0.11" },
                   { "10.0.0.10", "10.0.0.10" },
-                  { "203.0.113.7, unknown", NULL }, /* only the last address of the header comes from our proxy */
+                  /* our proxy adds only the last entry; "unknown" is no address, so the client's address is not known */
+                  { "203.0.113.7, unknown", NULL },
                   { "203.0.113.7, 1.2.3.4.5.6.7.8.9.0.1.2.3.4.5.6.7.8.9.0.1.2.3.4.5.6.7.8.9.0.1.2.3.4.5.6.7.8", NULL },
                   { "", NULL } };
     struct access_params params = { 0 };

@@ -39,13 +39,14 @@ static long same_place(const struct oracle_mesh *outer, const float p[3])
     return -1;
 }
 
-/* Source 0 is a vertex, source 1 lies inside a triangle. A full sweep tries both; the default run tries one, alternating by shape. */
+/* Source 0 is a vertex, source 1 lies inside a triangle. With PLANTCAST_LONG=1 both are tried, by default one of them, alternating by
+   shape. */
 static bool is_source_tried(int row, int source)
 {
     return sweep_takes(row, source, SOURCES);
 }
 
-/* Returns the number of grid cells per direction: `whole` in a full sweep, half of it by default, which makes the solver five times
+/* Returns the number of grid cells per direction: `whole` with PLANTCAST_LONG=1, half of it by default, which makes the solver five times
    faster. */
 static int cells(int whole)
 {

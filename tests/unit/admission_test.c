@@ -102,7 +102,8 @@ static void a_second(struct admission *admission, struct address_share *share, i
             encoded.wait_ns = data_wait_ms * NS_PER_MS;
         }
         admission_on_frame(admission, share, &encoded);
-        admission_on_frame(admission, share, &encoded); /* a second session shares this frame, which counts once */
+        /* a second session gets the same encoded frame, which must count as drawn only once */
+        admission_on_frame(admission, share, &encoded);
         packet_unref(&encoded.packet);
         frame_unref(&frame);
     }
@@ -129,7 +130,8 @@ TEST_WITH(who_would_slow_the_others_down_too_far_is_refused, set_up, NULL)
     struct address_share share = { 0 };
     admission_join(&admission, &share);
     assert_int_equal(0, refuses(&admission, &share, 1000, 0));
-    seconds(&admission, &share, 4, 6, 40, 0); /* 4 sessions at 6 frames/s each: a fifth session would leave 4.8 for each */
+    /* 4 sessions at 6 frames/s each: a fifth session would leave 4.8 for each, fewer than least-fps allows */
+    seconds(&admission, &share, 4, 6, 40, 0);
     assert_int_equal(admission_busy_percent(&admission), 96);
     assert_true(refuses(&admission, &share, 1000, 4));
     seconds(&admission, &share, 4, 7, 34, 0); /* 5.6 */
@@ -184,7 +186,8 @@ TEST_WITH(one_address_keeps_no_other_out, set_up, NULL)
     assert_int_equal(0, admission_refuses(&admission, &shares[1],
                                           1000)); /* the render thread's 31 frames per second are shared by two addresses */
     shares[1].moving = 3;
-    assert_true(admission_refuses(&admission, &shares[1], 1000)); /* with four moving sessions this address would get too few */
+    /* refused: with four moving sessions, each would get fewer frames per second than the limit least-fps allows */
+    assert_true(admission_refuses(&admission, &shares[1], 1000));
     struct address_share third = { 0 };
     assert_int_equal(0, admission_refuses(&admission, &third, 1000)); /* 31 frames per second shared by three addresses are 10 each */
     quotas_parse(&quotas, "least-fps=11");

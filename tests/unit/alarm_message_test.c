@@ -60,7 +60,6 @@ static void give(struct alarm_message_setup *s, int tag, double value, uint32_t 
         sleep_ns(5 * NS_PER_MS);
 }
 
-/* Parses the text, and frees it. */
 static json_t *parse(char *text)
 {
     json_t *o = test_json(json_loads(text, 0, NULL));
@@ -93,7 +92,7 @@ CASE(sessions_hear_what_changed)
     assert_true(json_is_true(json_object_get(all, "all")));
     assert_int_equal(json_array_size(json_object_get(all, "alarms")), 2);
     assert_string_equal(state_of(all, "HH"), "unacknowledged");
-    /* the text that another session already got is reused */
+    /* another session asks for the same alarms: the text written for the first session is used again */
     parse(alarms_text(&said, s->alarm_service, s->plant, 5000, &other));
     assert_int_equal(number, other);
     give(s, 0, 85, QUALITY_GOOD);
@@ -147,8 +146,8 @@ CASE(a_device_has_its_own)
     assert_true(ask(s, "{\"type\":\"alarm\",\"seq\":1,\"action\":\"acknowledge\",\"alarms\":[[\"plc\",\"LINK\"],[\"TT-1\",\"BAD\"]]}",
                     &message, &error));
     json_t *answer = parse(alarm_do(s->alarm_service, s->plant, &message, "local"));
-    assert_int_equal(json_integer_value(json_object_get(answer, "done")), 1); /* an alarm carried by its device's alarm cannot be
-                                                                                 acknowledged */
+    /* only one acknowledgement is done: the tag's own alarm, which the device's alarm represents, cannot be acknowledged */
+    assert_int_equal(json_integer_value(json_object_get(answer, "done")), 1);
     assert_false(ask(s, "{\"type\":\"alarm\",\"seq\":2,\"action\":\"acknowledge\",\"alarms\":[[\"TT-1\",\"LINK\"]]}", &message, &error));
     assert_non_null(strstr(error.text, "this plant has no device “TT-1”"));
     json_t *api = parse(alarms_api_text(s->alarm_service, s->plant, &(struct alarm_query){ .limit = 10 }, 5000));
@@ -299,7 +298,7 @@ CASE(the_journal_keeps_the_unit_of_the_time)
     make_older(s);
     restart_in(s, NULL, 0);
     expect_row(s, 80, NULL, NAN);
-    give(s, 0, 70, QUALITY_GOOD); /* the file gets the column for this change */
+    give(s, 0, 70, QUALITY_GOOD); /* this change of the alarm makes the service add the column for units to the journal file */
     give(s, 0, 96, QUALITY_GOOD);
     restart_in(s, NULL, 0);
     expect_row(s, 80, NULL, 96);

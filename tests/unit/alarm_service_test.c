@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Alarms of a running store: written to the journal, and restored after kill -9 and from a damaged journal. */
+/* Alarms for the live readings of a plant: the alarm service journals them, and restores them after kill -9 and from a damaged journal. */
 #include "tests/support/test.h"
 #include <stdatomic.h>
 #include <signal.h>
@@ -131,7 +131,8 @@ CASE(a_thousand_at_once_are_all_written)
     assert_int_equal(all.count, 2 * TAGS + 1);
     assert_int_equal(page.count, 500);
     assert_int_equal(read_rows(s, NULL, 100000, page.smallest_id).count, 2 * TAGS + 1 - 500);
-    struct alarm_rows one = read_rows(s, "T-0007", 2, INT64_MAX); /* one.last: the older of the tag's two newest rows */
+    /* reads the tag's two newest rows; one.last is the second one read, the older row */
+    struct alarm_rows one = read_rows(s, "T-0007", 2, INT64_MAX);
     assert_string_equal(one.last, "T-0007 H shelve shelved 3 nan kim filter is being changed");
     struct alarm_rows then = { 0 };
     assert_int_equal(journal_at(s->log, s->folder, between_us, count_row, &then), 0);

@@ -16,7 +16,7 @@ struct stage { /* fixture. Limits: TT: LL 0, L 10, H 80, HH 90; PT: H 5 with a d
     struct alarms *alarms;
     struct snapshot *snapshot;
     char log[4000]; /* lines about all alarm events so far */
-    int told[8];    /* by tag: its gravest alarm, as reported */
+    int told[8];    /* for each tag, the gravest alarm that on_tag() was told last */
 };
 
 static void on_change(void *arg, const struct alarm_change *change)
@@ -144,11 +144,12 @@ TEST(delays_are_monotonic_and_exact)
     begin(&s, ALARMS_LOCAL);
     hear(&s, 9, 0, 50, QUALITY_GOOD);
     hear(&s, 10, 1, 6, QUALITY_GOOD);
-    s.snapshot->taken_utc_ns = UTC + 4000 * S; /* the wall clock jumps forward by an hour */
+    /* the wall clock jumps forward by an hour, which must not count as time that the limit was exceeded */
+    s.snapshot->taken_utc_ns = UTC + 4000 * S;
     s.snapshot->taken_mono_ns = 11 * S;
     alarms_tick(s.alarms, s.snapshot);
     assert_told(&s, "");
-    tick(&s, 30); /* no tick came for long; the raise is dated when it was due */
+    tick(&s, 30); /* the next tick comes late: the alarm gets the time at which its delay of 2 s ended, not the time of the tick */
     assert_told(&s, "12 PT.H raise: normal > unacknowledged\n");
     end(&s);
 }
@@ -162,7 +163,8 @@ TEST(what_is_bad_is_held_and_says_so)
     s.log[0] = 0;
     hear(&s, 2, 0, 0, QUALITY_BAD_SENSOR_FAILURE);
     assert_told(&s, "2 TT.BAD raise: normal > unacknowledged\n");
-    hear(&s, 2, 2, 0, QUALITY_GOOD); /* this tag's device still answers, because another of its tags has a reading */
+    /* the device still answers for another tag, so the failed sensor's tag has an alarm of its own and keeps its limit alarm */
+    hear(&s, 2, 2, 0, QUALITY_GOOD);
     assert_string_equal(word(&s, 0, ALARM_H), "acknowledged");
     assert_true(alarms_at(s.alarms, alarms_find(s.alarms, 0, ALARM_H))->held);
     hear(&s, 3, 0, 50, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
@@ -497,8 +499,8 @@ TEST(a_stopped_controller_is_one_and_a_failed_sensor_its_own)
     hear(&s, 3, 0, 0, QUALITY_BAD_SENSOR_FAILURE);
     s.log[0] = 0;
     set_all(&s, QUALITY_BAD_DEVICE_FAILURE);
-    s.snapshot->readings[0].quality = QUALITY_BAD_SENSOR_FAILURE; /* the reading keeps its old quality: a store reports the worst quality
-                                                                     that it knew first */
+    /* when the device fails, this reading keeps the reason for Bad that it already had: its sensor had failed before */
+    s.snapshot->readings[0].quality = QUALITY_BAD_SENSOR_FAILURE;
     tick(&s, 4);
     tick(&s, 9);
     assert_told(&s, "4 a.LINK raise: normal > active\n6 PT.BAD raise: normal > suppressed\n");
@@ -581,7 +583,8 @@ TEST(a_device_without_limits_has_an_alarm)
     s.alarms = alarms_create(s.plant, &(struct alarms_listener){ on_change, on_tag, &s });
     s.snapshot = test_snapshot(5);
     hear_all(&s, 1, 50, QUALITY_GOOD);
-    hear_all(&s, 10, 50, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE); /* the reading after one missed poll */
+    /* readings after one missed poll: Uncertain, with the last values */
+    hear_all(&s, 10, 50, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
     tick(&s, 14);
     hear_all(&s, 15, 50, QUALITY_BAD_COMMUNICATION_ERROR);
     tick(&s, 24);

@@ -202,7 +202,7 @@ TEST(the_layout_is_pinned)
     assert_int_equal(ASSET_SECTION_COUNT, 15);
     struct asset_bytes f = build(&good);
     assert_memory_equal(f.bytes, "PLCASSET\6\0\0\0\x68\1\0\0", 16);
-    /* this value changes only with the version of the format */
+    /* hash of the file without its header: if it changes, the format has changed and needs a new version */
     assert_int_equal(XXH3_64bits(f.bytes + 360, f.size - 360), 0x111241323613397full);
     free(f.bytes);
 }
@@ -568,12 +568,14 @@ TEST(damaged_packed_distances_are_refused)
     make_codes(&packed, 0.01);
     pack_codes(&packed);
     const size_t block = packed.offsets[1];
-    packed_refused(&packed, 0, 8);                         /* block 0 begins inside the table */
-    packed_refused(&packed, sizeof(uint64_t) + 7, 0x80);   /* block 1 begins beyond the section */
-    packed_refused(&packed, BLOCKS * sizeof(uint64_t), 0); /* the last block ends before the section */
-    packed_refused(&packed, block + 4 * 5, 5);             /* sensor 5 is its own parent */
+    /* refused: the table of offsets says that block 0 of the distances begins inside the table itself */
+    packed_refused(&packed, 0, 8);
+    packed_refused(&packed, sizeof(uint64_t) + 7, 0x80);   /* refused: block 1 of the distances begins beyond the section's end */
+    packed_refused(&packed, BLOCKS * sizeof(uint64_t), 0); /* refused: the last block of the distances ends before the section does */
+    /* refused: the distances of sensor 5 are predicted from those of sensor 5 itself */
+    packed_refused(&packed, block + 4 * 5, 5);
     packed_refused(&packed, block + 4 * 5 + 2, 17);        /* 17 bits */
-    packed_refused(&packed, block + 4 * 5 + 3, 16);        /* more bits than the block has */
+    packed_refused(&packed, block + 4 * 5 + 3, 16);        /* refused: the distances take more bits than the block has */
     struct asset_bytes f = build_packed(&packed);
     f.header->sections[ASSET_GEODESIC].bytes -= 16;
     refused_sealed(&f, "section geodesic: ");

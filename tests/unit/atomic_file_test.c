@@ -84,12 +84,12 @@ CASE(links_and_files_beside_are_not_written_through)
     assert_nothing_beside(f);
 }
 
-/* --- file_writer.c: the thread that writes such files for the event loop --------------------------------------------------------- */
+/* --- file_writer.c: a thread that replaces files atomically, so that the event loop does not wait for the disk ------------------------ */
 
 struct held_job {
     struct file_job job;   /* first member */
-    pthread_mutex_t *gate; /* the job is written once the gate is open; NULL: at once */
-    int error, *finished;  /* error: result of the write; finished: receives it, and is ENOENT before */
+    pthread_mutex_t *gate; /* the writer thread waits for this lock before it writes the job's file; NULL: it does not wait */
+    int error, *finished;  /* error: result of writing; finished: where the test gets it, ENOENT before */
 };
 
 static int write_held(struct file_job *job)
@@ -143,7 +143,8 @@ TEST(a_failed_write_fails_those_that_build_on_it)
     assert_int_equal(file_writer_settled(writer, &first), -ETIMEDOUT);
     pthread_mutex_unlock(&gate);
     assert_true(file_writer_wait(writer, 60 * NS_PER_S));
-    assert_int_equal(one, ENOENT);                                           /* the loop gets no result before it collects the jobs */
+    /* the writer has finished, but the event loop gets no result before it collects the finished jobs */
+    assert_int_equal(one, ENOENT);
     assert_int_equal(queue_held(writer, &owner_a, NULL, 0, &late), -ENOSPC); /* builds on what failed */
     assert_int_equal(late, -ENOSPC);
     assert_true(file_writer_collect(writer));
@@ -154,10 +155,11 @@ TEST(a_failed_write_fails_those_that_build_on_it)
     assert_int_equal(file_writer_settled(writer, &first), -ENOSPC);
     assert_int_equal(file_writer_settled(writer, &second), -ENOSPC);
     assert_int_equal(file_writer_settled(writer, &none), 0);
-    assert_int_equal(queue_held(writer, &owner_a, NULL, 0, &late), 0); /* the new job builds on what is on disk */
+    /* the failure is over: the next job starts from the content on disk */
+    assert_int_equal(queue_held(writer, &owner_a, NULL, 0, &late), 0);
     file_writer_destroy(&writer);
     assert_int_equal(late, 0);
-    assert_int_equal(atomic_load(&written), 3); /* the job that followed the failed one was not written */
+    assert_int_equal(atomic_load(&written), 3); /* the job that had been queued after the failed one, for the same file, was not written */
 }
 
 TEST(a_disk_that_hangs_fills_the_queue_and_owners_may_leave)

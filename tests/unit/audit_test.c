@@ -113,7 +113,7 @@ TEST(test_lines_removed_and_moved)
     memcpy(copy + starts[2], bytes + starts[3], count - starts[3]);
     put(path, copy, count - (starts[3] - starts[2]));
     expect_fault(path, NULL, ":3: lines before this line are missing");
-    /* the first line is gone: older lines may be in another file, so the report only mentions them */
+    /* a file without its first line is valid, because older lines may be in another file; the report only mentions them */
     struct audit_chain known, none;
     struct audit_report report;
     audit_chain_init(&none);
@@ -180,7 +180,8 @@ TEST(test_rotation)
     char *dir = temp_folder(), *path = test_printf("%s/a", dir), *full = test_printf("%s.000000000004", path), *later;
     struct text lines = { 0 };
     struct audit_file file;
-    assert_null(write_lines(path, 10, 1000)); /* each line has some 280 bytes */
+    /* lines of some 280 bytes in files of at most 1,000 bytes, so the trail goes on in new files */
+    assert_null(write_lines(path, 10, 1000));
     assert_int_equal(access(full, F_OK), 0);
     expect_good(path, 3, 10);
     assert_null(write_lines(path, 1, 1000));

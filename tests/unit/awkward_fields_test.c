@@ -16,9 +16,10 @@
 #define FEW_AT_RIMS 1000  /* where reaches end, */
 #define MOST_STEPS 4.0    /* largest allowed error of any point, in colour steps */
 #define ROUNDING 1.1      /* allowance in steps, because distances are floats */
-#define NAMED 2.0         /* the report's error was found at samples; between them the error may be this many times as large */
+/* the error that the preparation's report names was found at sample points; between them the error may be this many times as large */
+#define NAMED 2.0
 #define LEAST_M 1e-5      /* metres; a sensor nearer than this has all the weight, see server/field */
-#define RIM_OF_REACH 0.05 /* no comparison within this share of the distance to where the data ends */
+#define RIM_OF_REACH 0.05 /* points this near to where the data ends are not compared; a share of that distance */
 #define MOST 4096         /* maximum number of sensors, vertices and triangles of a case */
 
 struct awkward {
@@ -123,13 +124,16 @@ static void write_plant(const struct awkward *a)
     mem_free(reach);
 }
 
-struct named {                        /* errors of the finest level according to the report, in colour steps; 0: not reported */
-    double worth_a_look, beside_rims; /* the asset's error in the report's text; its error in the report's table, which includes edges
-                                         too short to cut and the rim of the data */
+/* errors of an asset's finest level that the preparation's report names, in colour steps; 0: not named */
+struct named {
+    /* worth_a_look: error in the report's text; beside_rims: error in the report's table, which includes edges too short to cut and places
+       where the data ends */
+    double worth_a_look, beside_rims;
     double by_power;                  /* error along the surface with a high power of distances */
 };
 
-/* Returns the error in colour steps that the report gives for a high power along the surface; 0: none reported. */
+/* Returns the error in colour steps that the preparation's report names for an asset with a high power of distances along the surface; 0:
+   none named. */
 static double steps_by_power(const json_t *look_at)
 {
     size_t i;

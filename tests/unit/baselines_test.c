@@ -71,7 +71,8 @@ TEST(test_names_are_bounded)
     assert_true(baselines_may_set(baselines, "b7"));
     assert_int_equal(baselines_list(baselines, list), BASELINES_NAMED);
     assert_string_equal(list[31].name, "b31");
-    assert_int_not_equal(keep(baselines, 5), 0); /* unnamed baselines have room of their own */
+    /* a baseline without a name is stored although the maximum number of named baselines is reached */
+    assert_int_not_equal(keep(baselines, 5), 0);
     baselines_destroy(&baselines);
 }
 

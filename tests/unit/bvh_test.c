@@ -7,7 +7,8 @@
 #include "tests/support/surface_case.h"
 
 #define POINTS 400
-#define FAR 1e-9 /* share of the coordinates; between points closer than this, rounding decides */
+/* points count as equally near if their distances differ by less than this share of the coordinates, because rounding decides */
+#define FAR 1e-9
 
 /* Makes a mesh of triangles on a lattice of points, many of which share a corner or an edge, and loose triangles of all sizes and
    shapes. */

@@ -217,7 +217,9 @@ TEST(test_each_abi_of_landlock_restricts_what_it_knows)
 
 /* --- older kernels: what a confined process can do with each Landlock ABI ----------------------------------------------------- */
 
-static char secret[128], in[128], own[128], away[128]; /* secret, away: forbidden; in: may be read; own: folder that may be written */
+/* secret, away: a file and a folder that the confined process must not touch; in: a file that it may read; own: a folder that it may
+   write */
+static char secret[128], in[128], own[128], away[128];
 
 static char *in_folder(const char *folder, const char *name)
 {
@@ -248,7 +250,8 @@ static bool finds_memory(void)
     return opens(path, O_RDONLY);
 }
 
-/* Bits of a set of attempts: each is set if the attempt succeeds. */
+/* What a confined process achieves, one bit each: reading or emptying a forbidden file, sending a signal, changing other forbidden things,
+   and all that it is allowed to do. */
 enum { READ_SECRET = 1, EMPTY_SECRET = 2, SIGNAL = 4, ALTER = 8, ALLOWED = 16 };
 
 static int attempt_all(void)
@@ -295,8 +298,8 @@ static void lay_out(const char *folder)
     assert_true((mkdir(own, 0700) == 0 || errno == EEXIST) && (mkdir(away, 0700) == 0 || errno == EEXIST));
 }
 
-/* With any ABI, a confined reader can do nothing of the list but what is allowed; a confined command can also do what the log names, and no
- * more. */
+/* With each version (ABI) of Landlock, a confined process that only reads can do nothing forbidden. A confined command can do what that
+   version cannot forbid and the log names, and no more. */
 TEST(test_each_abi_of_landlock_holds_or_the_log_names_what_it_leaves_open)
 {
     char lacks[CONFINE_LACKS_BYTES], *folder = temp_folder();
@@ -345,7 +348,7 @@ static int use_cgroup(const char *service)
     if (!(procs = fopen(name, "w")) || fprintf(procs, "0") != 1 || fclose(procs) != 0)
         return 1;
     if (!cgroup_create("reader", room, 8, &path) || path)
-        return 2; /* no child group may exist before the daemon has its own */
+        return 2; /* a group for child processes is refused as long as the daemon has not moved itself into a group of its own */
     if (!cgroup_divide() || !cgroup_divide() || !cgroup_create("reader", (size_t)64 << 20, 8, &path) || !path)
         return 3;
     if (cgroup_add(path, 1 << 30) || errno != ESRCH)

@@ -245,7 +245,8 @@ static void make_boxes(struct cad *below, struct cad *above, bool stacked)
     move(above, 0, 0, 0, (double)(10 * 0.05f));
 }
 
-/* Both sides of the contact have the same vertices: one of two faces is left, or two with different diagonals. */
+/* A box stands on another one of the same width, so that both have the same vertices where they touch. Triangles there may coincide or have
+   different diagonals. */
 TEST(boxes_are_stacked)
 {
     struct cad below = { 0 }, above = { 0 };
@@ -256,7 +257,7 @@ TEST(boxes_are_stacked)
     cad_finish(&above);
 }
 
-/* The boxes share three edges of the step, with the same vertices. */
+/* A narrower box stands at the edge of a wider one: three edges of its bottom lie on edges of the wider box, with the same vertices. */
 TEST(a_box_stands_at_the_edge_of_another)
 {
     struct cad below = { 0 }, above = { 0 };
@@ -272,7 +273,7 @@ struct contact_case {
     uint64_t shape, faults;
 };
 
-/* Tries the drawn cases; the default run takes every third. */
+/* Tries pairs of boxes that are given by seeds of the random shapes and faults; the default run takes every third pair. */
 static void score_drawn(const char *name, int row, const struct contact_case *drawn, size_t count, enum cad_fault fault)
 {
     const struct cad_random was = chance;
@@ -296,8 +297,8 @@ static void score_drawn(const char *name, int row, const struct contact_case *dr
     chance = was;
 }
 
-/* Seeds where a slit at the rim once stayed open: along the rim; behind faces in the rim that no query visited; and where the edge of a
-   gap below fitted the one above and closed with it, so that nothing was hidden. */
+/* Seeds of boxes with gaps where a slit at the edge of both boxes once stayed open: along the edge; behind faces that no query visited; and
+   where the edge of a gap in the lower box fitted the upper box and was joined to it, so that no face was hidden. */
 TEST(gaps_at_a_rim_that_boxes_share)
 {
     static const struct contact_case drawn[] = { { false, 4572757393123136864u, 9974078172818400498u },

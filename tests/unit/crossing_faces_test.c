@@ -125,7 +125,7 @@ static void make_tangle(struct crossing_model *model, uint32_t points, double fl
     model_join(model, 1e-3);
 }
 
-/* Counts the sampled pieces that are crossed by edges of a piece of another face. */
+/* Counts how often edges of one sampled triangle (`piece`) cross sampled triangles of other faces. */
 static size_t count_crossings(const struct crossing_model *model, size_t piece)
 {
     const struct trimesh *mesh = &model->mesh;

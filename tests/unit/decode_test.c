@@ -234,7 +234,8 @@ TEST(a_current_says_that_its_loop_has_failed)
     tag.scale.has_range = true;
     tag.scale.raw_high = 27648;
     tag.scale.scaled_high = 100;
-    assert_int_equal(quality_of_raw(&tag, -691), QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* NE 43 is off by default */
+    /* by default, currents outside 4 to 20 mA do not mean a failed transmitter, as NAMUR NE 43 defines */
+    assert_int_equal(quality_of_raw(&tag, -691), QUALITY_UNCERTAIN_UNITS_EXCEEDED);
     tag.scale.ne43 = true;
     const struct {
         double ma;

@@ -158,7 +158,8 @@ static bool beyond(const struct plant_tag *tag, double value, enum limit low, en
     return value < tag->alarms.limits[low] || value > tag->alarms.limits[high]; /* NaN: no limit */
 }
 
-/* Returns the upset (1 to 3) that is running or whose effects still show, or CALM. */
+/* Returns the upset of the simulated process (1 to 3: a fault such as lost cooling water) that is running or whose effects still show, or
+   CALM. */
 static int upset_now(const struct sim_values *values, int *last, int *since_s)
 {
     static const char *const names[] = { "cooling water lost", "exchanger fouled", "bearing worn" };

@@ -48,7 +48,7 @@ static struct depth_cell *cells_of(const struct depth_picture *picture, const st
     int columns = depth_cells_along(picture->width_px), rows = depth_cells_along(picture->height_px), half = columns / 2;
     struct depth_cell *cells = mem_array((size_t)(columns * rows), sizeof(*cells));
     const struct depth_source source = { picture->depth, picture->pitch_px, picture->width_px, picture->height_px, lens };
-    depth_cells_find(&source, 0, rows, 0, half, cells); /* in two pieces, as the tiles of a frame */
+    depth_cells_find(&source, 0, rows, 0, half, cells); /* finds the cells in two calls, as for a picture that is drawn in tiles */
     depth_cells_find(&source, 0, rows, half, columns, cells);
     return cells;
 }

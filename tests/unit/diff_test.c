@@ -126,7 +126,8 @@ static void check_assets(const json_t *root, bool exact)
     assert_float_equal(prep_case_number(asset_of(root, "PLACED", "moved"), "move_m.2"), 0.5, 1e-5);
     if (exact)
         assert_float_equal(prep_case_number(asset_of(root, "TURNED", "moved"), "turned_deg"), 90, 1e-2);
-    assert_float_equal(prep_case_number(changed, "apart_m"), 0.025, 1e-4); /* both boxes are laid middle over middle */
+    /* the shape changed by 50 mm in height: when both boxes are compared centre on centre, their surfaces are 25 mm apart */
+    assert_float_equal(prep_case_number(changed, "apart_m"), 0.025, 1e-4);
     assert_non_null(strstr(json_string_value(json_object_get(asset_of(root, "GONE", "removed"), "why")),
                            "no node's name matches 'GONE': node 'VESSEL' has the same shape at the same place"));
     asset_of(root, "DROPPED", "removed");

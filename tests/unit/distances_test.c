@@ -30,7 +30,8 @@ static size_t write_cylinder(struct prep_case *c, struct cad_random *random)
     return vertices;
 }
 
-static double along_surface(const double a[2], const double b[2]) /* a and b: turn about the axis, height */
+/* distance on the unrolled cylinder; a and b: angle about the axis, height */
+static double along_surface(const double a[2], const double b[2])
 {
     double turn = fabs(remainder(a[0] - b[0], 2 * M_PI));
     return hypot(turn, a[1] - b[1]);

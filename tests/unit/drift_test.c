@@ -86,7 +86,8 @@ TEST(test_fit_is_least_squares)
         for (int h = 0; h < DRIFT_HOURS; h++) {
             at += random_in(-1, 1);
             predicted[h] = at;
-            nearest[h] = at + random_in(-3, 3); /* the sensor carries information that no other has, half of which is visible here */
+            /* the nearest neighbour contains changes that no other sensor shows; the tested sensor shows half of them */
+            nearest[h] = at + random_in(-3, 3);
             values[h] = gain * at + (nearest[h] - at) / 2 + change * h / DRIFT_HOURS + random_in(-noise, noise);
             if (h % 9 == round % 9)
                 values[h] = NAN;
@@ -191,7 +192,7 @@ TEST(test_what_cannot_be_told_is_unknown)
     drift_fit(values, predicted, NULL, 0, DRIFT_HOURS, 0.2, &drift);
     assert_int_equal(drift.verdict, DRIFT_NONE);
     assert_string_equal(drift_unknown_cause(&drift, 3), "");
-    drift.verdict = DRIFT_UNKNOWN; /* as drift_find() sets it if all others drift */
+    drift.verdict = DRIFT_UNKNOWN; /* sets the verdict that drift_find() gives a sensor if all others drift */
     assert_non_null(strstr(drift_unknown_cause(&drift, 3), "that do not drift"));
 }
 
@@ -200,7 +201,7 @@ TEST(test_what_cannot_be_told_is_unknown)
 struct recorded_series {
     const char *file, *columns[SENSORS];
     int count; /* number of columns */
-    double noise, beyond; /* noise of a reading; distance of the alarm limit, a tenth of the range */
+    double noise, beyond; /* noise: of a reading; beyond: distance of the alarm limit beyond all readings, a tenth of the range */
     double from, to;      /* part of the file (0 to 1) that is stretched over a week */
     double hours[DRIFT_HOURS][SENSORS];
 };
@@ -336,7 +337,7 @@ static int accused(const struct row_of_sensors *row, const struct recorded_serie
 #define RIG "hydraulic/hydraulic_ts_1hz.csv", { "TS1", "TS2", "TS3", "TS4" }, 4, 0.2, 4
 #define PROCESS { "XMEAS09", "XMEAS11", "XMEAS18", "XMEAS21", "XMEAS22" }, 5, 0.5, 10, 0, 1, { { 0 } }
 static struct recorded_series all_series[] = {
-    { RIG, 0, 1, { { 0 } } }, /* the rig's cooler is switched from 3 to 20 to 100 % at one and at two thirds of the time */
+    { RIG, 0, 1, { { 0 } } }, /* the test rig's cooler is switched from 3 to 20 to 100 % at one and at two thirds of the recording */
     { "tep/tep_d00_normal.csv", PROCESS },
     { "tep/tep_d04_reactor_cooling_step.csv", PROCESS },
     { "tep/tep_d06_a_feed_loss.csv", PROCESS }, /* a feed is lost */
@@ -345,7 +346,7 @@ static struct recorded_series all_series[] = {
     { RIG, 1464 / 2205., 1, { { 0 } } },
     { RIG, 0, 1464 / 2205., { { 0 } } },
     { RIG, 732 / 2205., 1, { { 0 } } },
-    { RIG, 0, 0.5, { { 0 } } }, /* this half served to tune how neighbours and fast hours are weighted */
+    { RIG, 0, 0.5, { { 0 } } }, /* this half of the recording served to tune the weights of neighbours and of fast hours in the drift fit */
     { RIG, 0.5, 1, { { 0 } } }, /* held out: not used for tuning */
 };
 
@@ -421,7 +422,7 @@ TEST_WITH(test_held_out_series, prep_case_set_up, prep_case_tear_down)
 }
 
 struct drift_detection {
-    int hours;      /* hour at which the drift was found; 0: not found */
+    int hours;      /* hour of the week at which the added drift was found; 0: not found */
     double drifted; /* amount drifted by that hour */
     double limit;   /* smallest distance so far between the reading and its alarm limit */
 };
@@ -464,10 +465,11 @@ TEST_WITH(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_te
 {
     enum { SIZES = 3 };
     static const double sizes[SIZES] = { 3, 4, 8 }; /* drifts, in sigmas per week */
-    /* minimum detections; some drifts of the rig are hidden by its own changes, and series with a process fault are not counted */
+    /* number of drifts that must be found, by series and size; some drifts of the test rig are hidden by its own changes. {0}: series with
+       a process fault, not tested */
     static const int least[][SIZES] = { { 2, 7, 8 }, { 10, 10, 10 }, { 0 },       { 0 },       { 8, 8, 8 }, { 7, 8, 8 },
                                         { 8, 8, 8 }, { 6, 7, 8 },    { 6, 7, 8 }, { 5, 6, 8 }, { 8, 8, 8 } };
-    int others = 0; /* sensors accused in place of the drifting one, or in addition */
+    int others = 0; /* number of sensors that were wrongly found to drift, instead of the drifting one or in addition */
     for (size_t k = 0; k < sizeof(all_series) / sizeof(*all_series); k++) {
         struct recorded_series *s = &all_series[k];
         if (least[k][0] == 0)

@@ -29,7 +29,7 @@ struct encode_streams_fixture {
     enum wire_codec codec;
 };
 
-struct chain_head { /* decoder state of the clients that share a stream */
+struct chain_head { /* state that the decoders of all clients of a stream have */
     uint64_t state;
 };
 

@@ -60,7 +60,7 @@ TEST(arithmetic)
     assert_false(isfinite(worth("1/0")));
     assert_false(isfinite(worth("sqrt(-1)")));
     assert_false(isfinite(worth("lmtd(100, 20, 20, 60)")));
-    /* a part without a value makes the whole undefined */
+    /* if an argument has no finite value, the whole expression has none, even if the result would not depend on it */
     static const char *const parts[] = { "min(1, sqrt(-1))",  "max(1, sqrt(-1))",          "min(1, 1/0)",
                                          "1/(1/0)",           "sqrt(-1)^0",                "1^sqrt(-1)",
                                          "max(1, -1/0)",      "approach(sqrt(-1),2,1,0)",  "approach(2,sqrt(-1),1,0)" };
@@ -181,12 +181,12 @@ TEST_WITH(late_inputs_change_the_result, plant_case_set_up, plant_case_tear_down
     } steps[] = {
         { 1, 1, 1, 4, QUALITY_GOOD, NAN },
         { 0, 10, 11, 10, QUALITY_GOOD, 6 },
-        { 1, 10, 12, 3, QUALITY_GOOD, 7 }, /* as new as the newest input */
+        { 1, 10, 12, 3, QUALITY_GOOD, 7 }, /* sampled at the same time as the newest input */
         { 0, 20, 21, 10, QUALITY_GOOD, 7 },
         { 1, 19, 22, 2, QUALITY_GOOD, 8 }, /* older than the newest input */
         { 1, 23, 30, 0, QUALITY_BAD_SENSOR_FAILURE, NAN },
         { 1, 24, 31, 2, QUALITY_GOOD, 8 },
-        { 1, 25, 32, 1, QUALITY_GOOD, 9 }, /* older than the time at which the result became Good again */
+        { 1, 25, 32, 1, QUALITY_GOOD, 9 }, /* sampled before the time at which the result became Good again */
     };
     for (size_t i = 0; i < sizeof(steps) / sizeof(*steps); i++) {
         write_one(store, steps[i].tag, steps[i].value, steps[i].quality, steps[i].sampled_s * S);

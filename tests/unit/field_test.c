@@ -14,7 +14,8 @@
 struct vertex_truth {
     double value;
     bool no_data, uncertain;
-    bool near_tie; /* the flags depend on a difference below the rounding of a float */
+    /* true: whether the vertex has no data, or is uncertain, depends on differences below the rounding of floats, so it is not compared */
+    bool near_tie;
 };
 
 #define MAX_SENSORS 4096
@@ -121,7 +122,8 @@ static struct vertex_truth truth_at(const struct synthetic *plant, const struct 
         truth.near_tie |= s.distance_m[i] > params->reach_m - 1e-5;
         bool at_the_rim = s.distance_m[i] > nearest_usable && nearest_usable > 0.999 * params->reach_m; /* both have hardly any weight */
         truth.near_tie |= at_the_rim && s.distance_m[i] < params->reach_m;
-        truth.near_tie |= paper && fabs(s.distance_m[i] - radius_m) < 1e-4 * radius_m; /* rounding of 1 - d/R, raised to a small power */
+        /* near the radius R, the weight 1 - d/R, raised to a small power, is mostly rounding */
+        truth.near_tie |= paper && fabs(s.distance_m[i] - radius_m) < 1e-4 * radius_m;
     }
     for (size_t i = 0; i < count; i++) {
         truth.near_tie |= fabs(s.distance_m[i] - params->reach_m) < 1e-5;
@@ -363,7 +365,7 @@ TEST(test_losing_the_hottest_is_not_painted_over)
             size_t nearest = 0;
             for (size_t i = 1; i < 5; i++) {
                 float least_m = asset_distance_m(&rig.plant->file.view, nearest, j), m = asset_distance_m(&rig.plant->file.view, i, j);
-                /* at equal distances, the vertex takes the value of the sensor that is not lost */
+                /* sensor 2 is lost: a vertex that is equally near to another sensor takes that sensor's value */
                 if (m < least_m || (m == least_m && nearest == 2))
                     nearest = i;
             }
@@ -881,7 +883,7 @@ TEST(test_version_grows_with_real_changes_only)
     rig.params.interpolation = INTERPOLATION_PAPER;
     set(&rig, 1, 300, QUALITY_GOOD);
     uint64_t paper = show(&rig)->version;
-    assert_true(paper > version); /* all parameters share one version counter */
+    assert_true(paper > version); /* versions increase even if other parameters are shown, because all scalars share one counter */
     set(&rig, 1, 400, QUALITY_GOOD);
     assert_int_equal(show(&rig)->version, paper); /* both are clamped to MAX */
     rig_finish(&rig);
@@ -937,7 +939,9 @@ TEST(test_instances_share_their_weights)
         bytes[1 + (round > 0)] = field_bytes(rig.field);
     }
     size_t columns = (size_t)3 * 256 * 16 * sizeof(float), state_bytes = (bytes[2] - columns - bytes[0]) / 9;
-    assert_int_equal(bytes[1], bytes[2]); /* columns are cached once, from the second sum with their weights on */
+    /* the weights of a sensor at all vertices (a column) are cached once for all ten instances, from the second time on that they are
+       used */
+    assert_int_equal(bytes[1], bytes[2]);
     assert_true(state_bytes < bytes[0] && state_bytes >= 700 * 16);
     for (int asset = 0; asset < 10; asset++)
         assert_true(field_scalars(rig.field, asset, &rig.params, rig.plant->snapshot)->at[0].value == 7);
@@ -971,7 +975,8 @@ TEST(test_dragging_stays_under_the_bound)
     rig_finish(&rig);
 }
 
-/* Columns that were evicted, never cached, or cached for part of the vertices give the same bits as fully cached ones. */
+/* The weights of a sensor at all vertices (a column) may be evicted from the cache, never cached, or cached for part of the vertices: the
+   field has the same bits as with all columns cached. */
 TEST(test_without_room_for_columns_the_bits_are_the_same)
 {
     uint64_t random = sweep_seed();
@@ -980,7 +985,8 @@ TEST(test_without_room_for_columns_the_bits_are_the_same)
     const size_t columns = (size_t)3000 * 37 * sizeof(float);
     field_set_cache_limit(tight, 1);
     for (int tick = 0; tick < 60; tick++) {
-        size_t bound = tick % 20 < 15 ? columns / 2 + 500000 : 4 * columns; /* bytes; everything but the columns takes some 450,000 */
+        /* limit in bytes: sometimes too small for the cached weights of all sensors (columns); everything else takes some 450,000 */
+        size_t bound = tick % 20 < 15 ? columns / 2 + 500000 : 4 * columns;
         field_set_cache_limit(half, bound);
         rig.params.interpolation = tick / 20 == 1 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         rig.params.power = tick / 20 == 2 ? 3.1 : 2;
@@ -1000,7 +1006,8 @@ TEST(test_without_room_for_columns_the_bits_are_the_same)
     rig_finish(&rig);
 }
 
-/* If the limit is too small for all columns, the cache uses all of it; once it is large enough, all columns are cached. */
+/* If the limit is too small for the cached weights of all sensors (columns), the cache uses all of it; once it is large enough, all of them
+   are cached. */
 TEST(test_as_many_columns_as_fit_are_kept)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 37));
@@ -1059,7 +1066,9 @@ TEST(test_few_sensors_are_summed_in_one_go)
                     most = fmax(most, (double)fabsf(now->at[v].value - before[v]));
                     before[v] = now->at[v].value;
                 }
-                assert_true(fabs(now->travel - travel - most) < 1e-9); /* in mode paper a single sensor may be clamped twice */
+                /* `travel` grows by the largest change of any vertex, also in mode paper, where a single sensor's value may be clamped
+                   twice */
+                assert_true(fabs(now->travel - travel - most) < 1e-9);
                 travel = now->travel;
                 uint64_t version = now->version;
                 assert_true(show(&rig)->version == version);
@@ -1203,7 +1212,8 @@ TEST(test_a_prefix_costs_less)
     rig_finish(&rig);
 }
 
-/* Pictures evaluate such a field at each pixel, so neither pictures nor picks compute its values at vertices. */
+/* A field of straight-line distances to few sensors is evaluated at each pixel, so neither pictures nor picks compute its values at
+   vertices. */
 TEST(test_a_pick_of_an_exact_field_computes_no_vertex)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 20));
@@ -1239,7 +1249,8 @@ TEST(test_in_pieces_it_is_the_same)
         set(&rig, 8, 5, round % 2 ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE);
         while (!field_advance(rig.field, 0, &rig.params, rig.plant->snapshot, 5000, 10000)) {
             if (pieces++ == 2)
-                set(&rig, 3, first + 1, QUALITY_GOOD); /* this reading comes too late for this pass, whose pieces are being computed */
+                /* this reading comes too late for the pass that is being computed piece by piece; the next pass must show it */
+                set(&rig, 3, first + 1, QUALITY_GOOD);
         }
         assert_in_range(pieces, 3, 100);
         assert_true(show(&rig)->at[3].value == (float)(first + 1));
@@ -1261,7 +1272,7 @@ TEST(test_what_is_under_way_may_be_dropped)
         field_advance(rig.field, 0, &other, rig.plant->snapshot, 5000, 10000);
     }
     assert_as_fresh(&rig);
-    field_advance(rig.field, 0, &other, rig.plant->snapshot, 5000, 10000); /* this computation is not finished before the end */
+    field_advance(rig.field, 0, &other, rig.plant->snapshot, 5000, 10000); /* leaves a computation unfinished when the field is destroyed */
     rig_finish(&rig);
 }
 

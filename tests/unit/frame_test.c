@@ -16,7 +16,7 @@ static struct snapshot *readings(const double values[TAGS], const uint32_t quali
     return snapshot;
 }
 
-/* Makes a frame with each tag in both halves of a split view; the right half shows readings. */
+/* Makes a frame of a split view with a marker for each tag in both halves; the left half shows `left`, the right half readings. */
 static struct frame *frame_of_two(enum field_show left, uint32_t baseline)
 {
     struct frame *frame = frame_create(NULL, WIDTH, HEIGHT);
@@ -99,6 +99,6 @@ TEST(a_pool_reuses_released_pixels)
     frame_unref(&frame);
     frame_pool_drop_spares(pool);
     assert_int_equal(frame_pool_bytes(pool), 2 * WIDTH * HEIGHT * 4);
-    frame_pool_unref(&pool); /* the other frame outlives its creator */
+    frame_pool_unref(&pool); /* the other frame outlives the pool that it came from */
     frame_unref(&other);
 }

@@ -196,7 +196,8 @@ static double covariance(const struct dense *d, const double *a, const double *b
     return sum;
 }
 
-/* Computes the weights of the used sensors for the value read by `place`. Returns the variance of the error. */
+/* Kriging: computes the weights of the sensors in `used` with which the value at `place` is predicted (interpolation weights of the mesh's
+   vertices). Returns the variance of the prediction's error. */
 static double krige(const struct dense *d, const struct gaussian_params *p, const uint8_t *used, const double *place, double *weights)
 {
     const size_t n = d->sensors + 1;
@@ -276,7 +277,8 @@ TEST(test_agrees_with_a_dense_one)
         }
         print_message("range %g: weights differ by %.1e, deviations by up to %.1f %%\n", cases[c].range_m, worst_share, 100 * worst);
         assert_true(worst_share < 1e-4);
-        assert_true(worst < 4 * 0.044); /* tolerance: four standard deviations of an estimate from 256 samples */
+        /* standard deviation of the deviations, which are estimated from 256 samples: 4.4 %; four times that is allowed */
+        assert_true(worst < 4 * 0.044);
         influence_fill_destroy(&fill);
         mem_free(d.kernel);
         mem_free(d.sensing);
@@ -337,7 +339,9 @@ TEST(test_readings_are_met_within_noise)
         size_t v = nearest_vertex(&s, places[i]);
         double there = 50 + 20 * (double)s.shape.positions[v][2] + 10 * (double)s.shape.positions[v][0];
         assert_true(fabs(value_at(&s, readings, v) - there) < 0.5);
-        double away = 0, x; /* the sensor is a disc and the vertex is not its centre: the sensor leaves 1 - x K_1(x) unknown, for small x */
+        /* `untold`: share of the variance that the sensor leaves unknown at this vertex, because the sensor is a disc and the vertex is not
+           its centre. The correlation is x K_1(x), here for small x */
+        double away = 0, x;
         for (int axis = 0; axis < 3; axis++)
             away += pow((double)s.shape.positions[v][axis] - places[i][axis], 2);
         x = sqrt(8) * (sqrt(away) + 0.08);

@@ -29,7 +29,8 @@ static const char plant_text[] = "plant: { name: Stock test }\n"
                                  "tags: tags.csv\n";
 static const char first_tags[] = "a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n";
 
-/* Prepared data that several tests start from or compare with, made once: of first_tags, and fresh folders by tag list. */
+/* Prepared plants that several tests start from or compare with; each is made once: one with first_tags, and for each other tag list one
+   without a cache. */
 static struct {
     struct prep_case *c; /* the plant of all tests */
     json_t *first;       /* report of the asset that was prepared into FOLDER/first */
@@ -537,7 +538,7 @@ CASE(one_of_many_sensors_is_split_for_alone)
     int first_found = 0;
     for (int move = 0; move < moves; move++) {
         char *tags = many_tags(move);
-        if (move == 1) { /* a killed run in between must make no difference */
+        if (move == 1) { /* before the second move of a sensor, a run is killed while it writes; that must make no difference */
             char *findings = kept_file(c, ".splitting");
             prepare_killed_at(c, tags, bytes_of(findings) / 2);
             mem_free(findings);
@@ -547,10 +548,12 @@ CASE(one_of_many_sensors_is_split_for_alone)
         print_message("# move %d: %d findings, %d of them kept\n", move, measured + kept, kept);
         first_found = move == 0 ? measured + kept : first_found;
         assert_true(measured > 0);
-        if (move > 0) /* levels that an earlier run rejected are not tried again */
+        if (move > 0) /* levels of detail that an earlier run rejected are not tried again, so fewer measurements are needed */
             assert_true(measured + kept < 0.97 * first_found);
         assert_true(move == 0 ? kept == 0 : kept > measured / 2);
-        if (move == moves - 1) { /* by now the uncertainties of all moves have added up (two moves in a full sweep) */
+        /* after the last move of the sensor (the second one with PLANTCAST_LONG=1, else the first), the uncertainties of cached
+           measurements have added up: the field must still equal a new one */
+        if (move == moves - 1) {
             open_prepared(&moved, c, "kept", found);
             assert_on_vertices(&moved);
             assert_shows_as_anew(c, &moved, tags, "kept");

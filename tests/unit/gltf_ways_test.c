@@ -54,7 +54,7 @@ struct gltf_corner {
     const uint8_t *color;
 };
 
-/* Returns the sheet's triangle with these corners, wound the same way, or -1. */
+/* Returns the triangle of the wavy test sheet that has these corners in the same winding, or -1. */
 static int triangle_of(const struct wavy_sheet *sheet, struct gltf_corner corners[3], double tolerance_m)
 {
     for (uint32_t t = 0; t < sheet->index_count / 3; t++)
@@ -561,7 +561,8 @@ static void second_texcoords_are_read(struct gltf_case *l, const struct wavy_she
     try_model(l, &maker);
     assert_good(l);
     const struct gltf_primitive *p = &l->model.primitives[0];
-    for (uint32_t v = 0; v < p->vertex_count; v++) /* the first primitive has a texture transform, the second has none */
+    /* the first texture of the material transforms its coordinates, the second one does not */
+    for (uint32_t v = 0; v < p->vertex_count; v++)
         assert_true(fabsf(p->second_texcoords[v][0] - sheet->texcoords[v][0]) < 1e-6f && p->texcoords[v][0] != p->second_texcoords[v][0]);
     const struct asset_material *m = &l->model.materials[0];
     assert_int_equal(m->second, 1 << 2 | 1 << 3);

@@ -82,7 +82,8 @@ static void end(struct historian_setup *s)
 {
     historian_stop(&s->historian);
     mem_free(s->tags);
-    char *disk = temp_path(s->folder, "history"); /* a failed test leaves this disk mounted */
+    /* the folder of a test with a disk of its own, which is still mounted if that test failed */
+    char *disk = temp_path(s->folder, "history");
     (void)umount2(disk, MNT_DETACH);
 }
 
@@ -237,7 +238,7 @@ CASE(a_standby_records_what_time_alone_changes)
     struct historian *standby = historian_start(&(struct historian_params){
         .log = s->log, .counters = s->counters, .plant = s->plant, .store = mirror, .folder = folder, .stands_by = true });
     struct core_samples *link = core_samples_listen(s->store);
-    store_link_lost(s->store, 0, clock_mono_ns()); /* no sample has come: the store tells no time of this loss */
+    store_link_lost(s->store, 0, clock_mono_ns()); /* no sample of this source has come yet, so the store reports the loss without a time */
     start(s);
     do {
         sleep_ns(50 * NS_PER_MS);
@@ -256,7 +257,8 @@ CASE(a_standby_records_what_time_alone_changes)
         read_series(s, "standby", i, &there);
         assert_true(here.points.count >= 2);
         assert_int_equal(here.points.count, there.points.count);
-        /* the time at which the reading went stale, not the one at which the historian saw it; 25 ms: difference of the two clocks */
+        /* the point has the time at which the reading went stale, not that at which the historian noticed; 25 ms: possible difference of
+           the two clocks */
         int64_t stale_us = here.points.at[here.points.count - 1].t_us - 500000;
         assert_true(i >= TAGS / 2 || (stale_us >= before_us - 25000 && stale_us <= after_us + 25000));
         for (size_t k = 0; k < here.points.count; k++) {
@@ -552,7 +554,7 @@ CASE(a_full_disk_has_room_for_a_spool)
     assert_int_not_equal(access(reserve, F_OK), 0);
     assert_int_equal(unlink(filler), 0);
     start(s);
-    for (int i = 0; i < 500 && access(reserve, F_OK) != 0; i++) /* waits until the reserve for the next time exists */
+    for (int i = 0; i < 500 && access(reserve, F_OK) != 0; i++) /* waits until the historian has reserved disk space for the next spool */
         sleep_ns(10 * NS_PER_MS);
     historian_stop(&s->historian);
     assert_int_not_equal(access(spool, R_OK), 0);

@@ -204,7 +204,8 @@ CASE(who_is_forgotten_leaves_room)
     for (int i = 0; i < 4 * HISTORY_QUERIES_MOST; i++) {
         query.client = (uint64_t)i + 1;
         assert_true(history_queries_ask(s->queries, &query));
-        if (i >= HISTORY_QUERIES_MOST - 2) /* the limit counts running, queued and uncollected queries */
+        /* forgets an earlier query, because the limit counts all queries whose answers have not been collected */
+        if (i >= HISTORY_QUERIES_MOST - 2)
             history_queries_forget(s->queries, query.client - HISTORY_QUERIES_MOST + 2);
         for (struct history_answer *answer = history_queries_collect(s->queries), *next; answer; answer = next) {
             next = answer->next;

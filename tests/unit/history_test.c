@@ -506,7 +506,7 @@ static void assert_intervals(const struct history_series *series, const struct h
             continue;
         while (k < got->count && got->at[k].t_us < begin_us)
             k++;
-        assert_true(k < got->count && got->at[k].t_us == begin_us); /* each interval with a point is there */
+        assert_true(k < got->count && got->at[k].t_us == begin_us); /* each interval that contains a point is in the result */
     }
     if (points[0].t_us <= from_us)
         assert_true(got->count && got->at[0].t_us <= from_us);
@@ -545,7 +545,7 @@ static int make_points(struct history_point *points, int most, bool step)
                                                 : rand() % 6 == 0 ? QUALITY_UNCERTAIN
                                                                   : QUALITY_GOOD };
         t_us += (1 + rand() % apart_s[rand() % 5]) * S;
-        if (rand() % 4 == 0) /* as in tables of other systems */
+        if (rand() % 4 == 0) /* some points lie on full hours, as in tables of other systems */
             t_us += 3600 * S - t_us % (3600 * S);
     }
     return count;
@@ -846,7 +846,7 @@ CASE(old_and_large_months_go)
         char *name = test_printf("history-2026-%02d.sqlite", m);
         make_month(s, name, 1000);
     }
-    /* 100 days before November is 24 July */
+    /* keeping 100 days before November deletes the months that ended before 24 July */
     int64_t unsent;
     assert_int_equal(retention_apply(s->log, s->folder, &(struct retention_limits){ .days = 100 }, NOVEMBER, &unsent), 3000);
     int *months = month_list(s->folder, &count);
@@ -1014,7 +1014,7 @@ CASE(months_wait_for_what_is_to_be_sent)
     retention_apply(s->log, s->folder, &limits, march_us, &unsent);
     assert_int_equal(unsent, 0);
     mem_free(month_list(s->folder, &count));
-    assert_int_equal(count, 2); /* points already sent are not kept */
+    assert_int_equal(count, 2); /* the month whose points were all sent was deleted */
     /* too large: the oldest points are deleted, including unsent ones, which are counted */
     int64_t waiting = waiting_in(s, november + 1), lost = 0;
     assert_int_equal(waiting, 20000);
@@ -1173,7 +1173,8 @@ CASE(points_of_another_quantity_are_left_out)
             assert_string_equal(batch.tags[i].name, "TT-1");
             assert_string_equal(batch.tags[i].unit, changes[c][batch.tags[i].id == batch.rows[4].tag]);
         }
-        assert_int_equal(batch.row_count, 5); /* one of them ends the first line */
+        /* five rows: the points of both units, and one without a value that ends the line in the first unit */
+        assert_int_equal(batch.row_count, 5);
         month_outbox_batch_finish(&batch);
         month_outbox_close(&outbox);
         /* the change is undone: the first points are back, and no line leads across the time between */

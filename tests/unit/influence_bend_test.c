@@ -7,13 +7,13 @@
 #include "preprocess/influence/influence_bend.h"
 #include "tests/support/surface_case.h"
 
-/* MANY sensors: more than one block of right-hand sides, the last one not full */
+/* MANY: so many sensors that their equations are solved in more than one block, the last one not full */
 enum { FEW = 5, MANY = 70, PLACES = 4000, MOST = 400000 };
 static const double DISC_M = 0.1, ON_SURFACE_M = 1e-6, FINER_M = 0.04;
 
-struct bend_case { /* coarse triangles and random points in them */
+struct bend_case { /* a shape with coarse triangles, and random points in them at which the field is checked */
     struct cad shape;
-    float (*positions)[3], (*facing)[3]; /* vertices, then points; `facing` is unused for vertices, which have triangles */
+    float (*positions)[3], (*facing)[3]; /* of the vertices, then of the random points; `facing` (normals) is not used for vertices */
     uint32_t tri[PLACES];
     double weights[PLACES][3], normals[PLACES][3];
 };
@@ -76,7 +76,7 @@ static void make_crossing(struct cad *shape)
     cad_finish(&box);
 }
 
-/* Makes the same shape with cracks that the repair bridges. */
+/* Makes the box through a sphere's wall with cracks, which the surface's repair bridges. */
 static void make_gaps(struct cad *shape)
 {
     struct cad clean = { 0 };
@@ -207,7 +207,9 @@ static void holds(const struct case_of *of)
         if (!surface_find_point_within(surface, place_m, drawn.normals[i], ON_SURFACE_M, &hit)) {
             hidden_m2 += surface_find_point_within(surface, place_m, drawn.normals[i], surface_report(surface)->tolerance_m, &hit)
                              ? 0
-                             : area_m2; /* otherwise bridging moved the point, and there is no surface point to compare with */
+                             /* area of points that are hidden inside the other body; near the surface, bridging may only have moved the
+                                point, so it is not counted */
+                             : area_m2;
             continue;
         }
         worst = fmax(worst, found);

@@ -137,7 +137,9 @@ TEST(test_sphere_between_caps)
 /* --- errors of the field drawn inside triangles --------------------------------------------------------------------------------- */
 
 struct tally {
-    double worst, beyond; /* colour steps: largest error; largest excess over the error that the corners report */
+    /* in colour steps: largest error at a point inside a triangle; by how much an error exceeds the one that the triangle's corners
+       report */
+    double worst, beyond;
     size_t compared, marked;
 };
 
@@ -169,7 +171,8 @@ static void tally_places(const struct influence_case *s, const double *readings,
 /* Between points NEAR_M away from two sensors a fin is the sum of two sinh terms, given its values at those points. */
 #define NEAR_M 0.4
 static struct {
-    double decay_m, low, high; /* decay length; field values at 1 + NEAR_M and at 5 - NEAR_M */
+    /* decay length of the fin; the field's values at x = 1 + NEAR_M and x = 5 - NEAR_M, between sensors at 1 and 5 */
+    double decay_m, low, high;
 } fin;
 
 static double exact_fin(const double at[3])

@@ -44,7 +44,7 @@ static double fading(const struct weights_trial *trial, double d)
     return isinf(reach_m) ? 0 : 2 / fmax(1e-5, reach_m - d);
 }
 
-/* Some sensors are out of reach, and some stand at the point itself. */
+/* Draws random distances from a point to sensors: some are beyond the reach, and some sensors are at the point itself. */
 static void make(struct weights_trial *trial, bool decays)
 {
     trial->count = 1 + (size_t)(cad_random(&chance) * (MOST - 8));

@@ -12,11 +12,12 @@ enum { NODES = 3, FLIGHTS = 512, STEP_MS = 10 };
 
 enum what { LOOK, BID, RENEW, GIVE, ROW, DONE, ASK, PROMISE };
 struct flight { /* a message on its way */
-    int64_t at_ns; /* time of arrival on the world's clock; 0: this slot is free */
+    int64_t at_ns; /* time of the message's arrival on the simulation's clock; 0: this entry is free */
     enum what what;
     int from, to;  /* index of the sending and of the receiving node; NODES: the database */
-    uint64_t life; /* incarnation of the node that sends or receives the message */
-    struct lease_row row; /* row that the message states or expects */
+    /* number of the process that sends or receives the message: a restarted node is a new process, which must not get old answers */
+    uint64_t life;
+    struct lease_row row; /* row of the database that an answer contains, or that a request expects to find */
     char standby[LEASE_NODE_BYTES];
     bool good;
     int64_t sent_ns; /* time of sending on the node's clock */
@@ -24,14 +25,16 @@ struct flight { /* a message on its way */
 
 struct lease_node {
     struct lease lease;
-    uint64_t life;       /* incarnation of the running process; 0: none runs */
+    uint64_t life;       /* number of the node's running process, another one after each restart; 0: none runs */
     int64_t starts_ns, wakes_ns, next_ns, asked_ns; /* of the world */
     int64_t ahead_ns, sent_ns; /* sent: on its own clock */
     double rate;
     bool waits;
-    bool alone; /* the standby of this node is in maintenance */
+    bool alone; /* true: the standby of this node is in maintenance, so the leader needs no promise from it */
     int64_t waits_since_ns;
-    int64_t ends_ns; /* of the world: the node gives its lease until this time, and ends then; 0: it does not end */
+    /* on the simulation's clock: from now on the node tries to give up its lease in good order, and ends at this time; 0: it does not
+       end */
+    int64_t ends_ns;
     int times_led;
 };
 
@@ -45,9 +48,9 @@ struct lease_world {
     uint64_t lives;
     unsigned seed;
     bool calm;
-    int most;      /* largest number of nodes that led at once */
-    int takes;     /* number of bids that won within LEASE_NS after a lease was given */
-    int64_t given_ns; /* time when the row was last given */
+    int most;      /* largest number of nodes that acted as leader at the same time */
+    int takes;     /* number of nodes that became leader within LEASE_NS after another one had given up its lease */
+    int64_t given_ns; /* time on the simulation's clock when a leader last gave up its lease */
 };
 
 static int chance(struct lease_world *world, int n)
@@ -182,7 +185,7 @@ static void on_node(struct lease_world *world, struct lease_node *node, int i, c
         struct flight *promise = send(world, PROMISE, i, flight->from);
         if (promise) {
             promise->sent_ns = flight->sent_ns;
-            promise->life = flight->life; /* incarnation of the node that asked */
+            promise->life = flight->life; /* number of the process that asked for the promise not to bid */
         }
         break;
     case PROMISE: {
@@ -405,7 +408,7 @@ TEST(a_follower_waits_for_what_binds_it)
 {
     const struct lease_row free_row = { 0 }, led = { .epoch = 3, .beat = 9, .instance = 5, .leader = "a", .standby = "b" };
     struct lease b = follower("b", &free_row, S);
-    /* b does not know whether the lease was returned or the database was recreated, so it waits */
+    /* the row names no leader: b does not know whether the lease was given up or the database was made anew, so it waits */
     assert_false(lease_may_bid(&b, 4 * S - 1));
     assert_true(lease_may_bid(&b, 4 * S));
     b = follower("b", &led, 10 * S);
@@ -441,7 +444,8 @@ TEST(a_leader_counts_the_standby_that_the_row_names)
     lease_promised(&a, "b", 3 * S);
     assert_true(lease_acts(&a, 5 * S - 1));
     lease_renew(&a, "");
-    lease_promised(&a, "b", 4 * S); /* the row that binds the leader may name no follower by now */
+    /* the promise of standby b does not count: the row may already name no standby, because a renewal that says so is on its way */
+    lease_promised(&a, "b", 4 * S);
     assert_false(lease_acts(&a, 5 * S));
     struct lease_row other = a.row;
     other.epoch++;
@@ -469,7 +473,7 @@ TEST(a_given_lease_is_taken_at_once_by_the_node_that_saw_its_leader)
     given.beat++;
     given.leader[0] = 0;
     lease_saw(&b, &given, 2 * S + 1);
-    assert_true(lease_may_bid(&b, 2 * S + 1)); /* its promise bound it only to a */
+    assert_true(lease_may_bid(&b, 2 * S + 1)); /* b had promised only a not to bid, and a has given up the lease */
     lease_saw(&c, &given, 2 * S + 1);
     assert_false(lease_may_bid(&c, 5 * S));
     assert_true(lease_may_bid(&c, 5 * S + 1)); /* b may have ended */
@@ -481,7 +485,7 @@ TEST(a_given_lease_is_taken_at_once_by_the_node_that_saw_its_leader)
     lease_saw(&other, &given, 3 * S);
     assert_false(lease_may_bid(&other, 3 * S));
     assert_true(lease_may_bid(&other, 6 * S));
-    given.beat++; /* c has won and gone on */
+    given.beat++; /* c has become leader and renewed its lease */
     given.epoch++;
     memcpy(given.leader, "c", 2);
     lease_saw(&b, &given, 4 * S);
@@ -514,12 +518,13 @@ TEST(in_maintenance_a_leader_promises_itself_and_no_other_may_bid)
     lease_bid(&a);
     lease_won(&a, S);
     lease_promised(&a, "a", 2 * S);
-    assert_false(lease_acts(&a, 3 * S)); /* the row in the database does not name this follower yet */
+    assert_false(lease_acts(&a, 3 * S)); /* a is its own standby in maintenance, but the row in the database does not say so yet */
     lease_renew(&a, "a");
     lease_renewed(&a, "a", 2 * S);
-    lease_promised(&a, "a", 100 * S); /* the promise comes without the database */
+    /* a, which is its own standby during maintenance, promises itself not to bid: that extends its lease even without the database */
+    lease_promised(&a, "a", 100 * S);
     assert_true(lease_acts(&a, 102 * S - 1));
-    assert_false(lease_acts(&a, 102 * S)); /* a process that hangs makes no promise */
+    assert_false(lease_acts(&a, 102 * S)); /* a process that hangs makes no further promise, so its lease ends */
     struct lease b = follower("b", &a.row, 10 * S), restarted = follower("a", &a.row, 10 * S);
     assert_false(lease_may_bid(&b, 1000 * S));
     assert_true(lease_may_bid(&restarted, 13 * S));
@@ -552,7 +557,7 @@ TEST(a_bid_whose_answer_is_lost_is_found_in_the_row)
     struct lease_row won = { .epoch = 1, .beat = 1, .instance = 7, .leader = "a" };
     lease_saw(&a, &won, 2 * S);
     assert_true(a.leads);
-    assert_false(lease_acts(&a, 2 * S)); /* the time of winning is unknown, so the lease needs a renewal first */
+    assert_false(lease_acts(&a, 2 * S)); /* node a does not know when its bid was accepted, so it may act only after a renewal */
     lease_renewed(&a, "", 2 * S);
     assert_true(lease_acts(&a, 2 * S));
 }

@@ -7,7 +7,7 @@
 
 #define ROUND 96u /* corners of a circle */
 
-struct bounded_shape { /* a shape of one part with one primitive or two */
+struct bounded_shape { /* an asset of one part, with triangles of one material or two */
     struct geometry g;
     struct welds welds;
     struct trimesh mesh;

@@ -140,7 +140,7 @@ TEST(a_rod_farther_than_the_tolerance_hangs_apart)
     }
 }
 
-/* At the rim both sides of the sheet are equally near. */
+/* A rod beside the rim of a sheet, where both sides of the sheet are equally near, is joined to the rim. */
 TEST(a_rod_is_joined_to_the_rim)
 {
     static const double gaps[] = { 0, 0.4, 0.8 };

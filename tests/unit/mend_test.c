@@ -12,7 +12,7 @@
 #include "surface/mesh/trimesh.h"
 #include "tests/support/gltf_case.h"
 
-#define PLATE 12 /* number of squares along a side of 4 m */
+#define PLATE 12 /* number of squares along each side of the test plate, which is 4 m long */
 
 /* --- open edges --------------------------------------------------------------------------------------------------------------- */
 

@@ -21,7 +21,7 @@ enum { SPEED = 60, TICK_MS = 50, SHORT_S = 8, OUTAGE_MS = 1500, SPIKE_MS = 400, 
 static const char plant_path[] = "tests/plants/cookie_line.yaml", map_path[] = "tests/plants/cookie_line.map";
 static const char data_path[] = "../shared/data/sensors/cookie_factory/telemetry.csv";
 
-struct register_rows { /* values that the registers held, or that the store received */
+struct register_rows { /* rows of the values that a device's registers held, or of the readings that the store received from it */
     struct register_row {
         int64_t mono_ns, utc_ns;
         double value;
@@ -36,7 +36,7 @@ struct modbus_replay {
     struct sim sim;
     int port, stop_fd;
     _Atomic bool deaf;        /* the device does not answer */
-    _Atomic int spike;        /* tag whose value is forced to a spike; -1: none */
+    _Atomic int spike;        /* tag whose value the simulated device replaces by a spike; -1: none */
     struct register_rows *held, *told; /* by tag */
     size_t *mapped, mapped_count;
 };
@@ -82,7 +82,7 @@ static void check_wire(const struct modbus_replay *r, size_t tag)
 {
     const struct register_rows *held = &r->held[tag], *told = &r->told[tag];
     const struct plant_tag *t = &r->plant->tags[tag];
-    /* `within` is half a raw step for integer types. */
+    /* `within`: allowed error of a reading, half a step of the raw value for integer types */
     double step =
         t->scale.kind == SCALING_NONE ? 1 : (t->scale.scaled_high - t->scale.scaled_low) / (t->scale.raw_high - t->scale.raw_low);
     double within = t->signal.type == DATA_FLOAT32 ? 0 : 0.501 * step;

@@ -91,9 +91,9 @@ static bool all_good(struct modbus_case *s)
     return good;
 }
 
-enum { LONGEST_TURN = 20 }; /* largest number of requests between two readings of one block; the device has three blocks */
+enum { LONGEST_TURN = 20 }; /* each of the device's three blocks must be read again after at most so many requests */
 
-/* Counts a device's requests since the last new reading of a block. Counting requests does not depend on the machine's load. */
+/* Counts the requests that a device gets until a block has a new reading: unlike times, counts do not depend on the machine's load. */
 struct turn {
     int64_t received_ns;
     int requests;
@@ -193,7 +193,7 @@ CASE(one_request_per_connection_by_key)
     modbus_case_serve(s);
     expect_steady(s, 5, 10);
     source_stop(&s->source);
-    int unused = s->device.connections - s->device.requests; /* 1 if the source was stopped after connecting and before its request */
+    int unused = s->device.connections - s->device.requests; /* connections without a request; 1 if the source was stopped in between */
     assert_in_range(unused, 0, 1);
     assert_int_equal(lines_with(" from the start"), 0);
 }

@@ -262,7 +262,8 @@ static void check_hostile(struct modbus_case *s, enum device_wire wire, int mann
     assert_true(modbus_case_look(s, 20)->value == 500);
 }
 
-/* length: the length in the header of answers whose manner is DEVICE_MEASURED. */
+/* Tests one kind of wrong answers of a device. length: wrong length that the answers state in their header, if manner is
+   DEVICE_MEASURED. */
 #define HOSTILE(name, wire, manner, length)                                                                                                \
     CASE(name)                                                                                                                             \
     {                                                                                                                                      \

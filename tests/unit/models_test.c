@@ -5,8 +5,8 @@
 
 #include "tests/support/prep_case.h"
 
-/* triangles: number in the model's own description, and degenerate ones among them; -1: not stated. pieces: separate surfaces at the
-   end; 0: several, because the model itself is in pieces. */
+/* Known facts about the models. triangles: number in the model's own description, and without_area: degenerate ones among them; -1: not
+   stated. pieces: separate surfaces after preparing; 0: several, because the model itself is in pieces. */
 static const struct known_model {
     const char *plant, *asset;
     int triangles, without_area, pieces;

@@ -77,7 +77,9 @@ static void assert_plain_sum(const struct fan *fan)
         face_of(fan, t, faces[t], &angles[t]);
     for (size_t t = 0; t < fan->count; t++) {
         double sum[3] = { 0 };
-        bool close = false; /* close to the crease angle, where the last bit decides on which side a face is */
+        /* true: the angle to another face is so close to the crease angle that rounding decides whether both share a normal, so the sum is
+           not compared */
+        bool close = false;
         for (size_t o = 0; o < fan->count; o++) {
             double cosine = faces[t][0] * faces[o][0] + faces[t][1] * faces[o][1] + faces[t][2] * faces[o][2];
             close |= fabs(cosine - CREASE_COSINE) < 1e-9;

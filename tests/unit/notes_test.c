@@ -89,7 +89,7 @@ CASE(another_user_ends_a_note_only_with_the_right_to)
     assert_string_equal(notes_author(f->notes, f->id), "kim");
     assert_null(notes_author(f->notes, "n1"));
     assert_int_equal(notes_end(f->notes, f->id, "lee", true, NOON + 3 * S), REFUSAL_NONE);
-    assert_string_equal(notes_author(f->notes, f->id), "kim"); /* also of a note that has ended */
+    assert_string_equal(notes_author(f->notes, f->id), "kim"); /* the author of a note is still known after the note has ended */
     assert_notes(notes_text(f->notes, NOON + 4 * S), "");
     char *text = notes_text_between(f->notes, NOON, NOON + S);
     assert_non_null(strstr(text, "\"ended_by\":\"lee\""));

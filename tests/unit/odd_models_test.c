@@ -28,10 +28,10 @@ enum {
     ENDS_S = 30,      /* seconds; the program promises 5, but a machine may be busy */
 };
 
-/* Kinds of stray geometry at the origin, next to a plate far away. */
+/* Kinds of stray triangles at the origin of a model whose plate is far away. */
 enum expected_stray { STRAY_NONE, STRAY_VERTEX, STRAY_NEEDLE, STRAY_TRIANGLE };
 
-/* Adds a node with one triangle: a degenerate one at the origin, one from the plate to the origin, or a small one at the origin. */
+/* Adds a node with one stray triangle: without area at the origin, a needle from the plate to the origin, or a small one at the origin. */
 static void add_stray(struct model_maker *maker, enum expected_stray stray, const double at_m[3])
 {
     static const uint32_t corners[3] = { 0, 1, 2 };

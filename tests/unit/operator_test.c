@@ -115,7 +115,8 @@ static void set_limits(struct synthetic *plant, size_t tag, double low, double h
            sizeof(plant->plant.tags[tag].alarms.limits));
 }
 
-/* Uses the positions as readings of another plant without limits: both fields must be equal. */
+/* Compares the field of positions between limits with the field of another plant that has no limits and those positions as readings: both
+   must be equal. */
 static void compare(enum interpolation interpolation, double least_place, double most_place)
 {
     struct synthetic *places = synthetic_create(.vertices = VERTICES, .sensors = SENSORS, .max = 1);
@@ -151,7 +152,7 @@ static void compare(enum interpolation interpolation, double least_place, double
 TEST(test_places_are_interpolated_with_the_same_weights)
 {
     compare(INTERPOLATION_SHEPARD, -2.5, 2.5);
-    compare(INTERPOLATION_PAPER, 0, 1); /* positions beyond the limits are left out, because the other plant would clamp them */
+    compare(INTERPOLATION_PAPER, 0, 1); /* only positions from L to H: the other plant would clamp others to its range */
 }
 
 TEST(test_tags_without_limits_have_no_place)

@@ -125,10 +125,10 @@ TEST(silence_is_a_stall_and_then_the_end)
 struct pacer_world {
     double bytes_per_s;
     int64_t rtt_ns, decode_ns;
-    double pixels; /* pixels per frame: they determine the decoding time and the bytes */
+    double pixels; /* pixels per frame, on which the simulated decoding time and the size in bytes depend */
     int64_t now_ns, link_free_ns, decoder_free_ns;
-    int64_t draw_ns;       /* time to draw a picture; 0: 20 ms */
-    int64_t busy_until_ns; /* until then the client is busy and acknowledges nothing */
+    int64_t draw_ns;       /* time in which the simulated server draws a frame; 0: 20 ms */
+    int64_t busy_until_ns; /* until this time the simulated client is busy with other work and acknowledges nothing */
     struct {
         uint32_t seq;
         int64_t at_ns, decode_ns;

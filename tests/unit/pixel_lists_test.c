@@ -11,7 +11,7 @@ enum { MOST_SENSORS = 4096, PLACES = 8 };
 static uint64_t random_state;
 
 struct list_tally {
-    double worst; /* largest error, in steps of 1/255 of the range */
+    double worst; /* largest error of the field's value, in steps of 1/255 of the range */
     size_t lists, sensors, pixels, flags_off;
     int64_t built_ns;
     int reported;
@@ -101,7 +101,7 @@ static void make_field(struct pixel_field *field, int count, bool paper, bool od
     }
 }
 
-/* A square of `cells` x `cells` cells on a tilted plane of that size; some cells also show a surface behind. */
+/* Makes a square of pixel cells on a tilted plane, of which `side` x `side` are used; some cells also show a surface behind the plane. */
 static size_t make_cells(struct pixel_cell *cells, int side, double size_m, const double corner_m[3], const double slope[2])
 {
     size_t count = 0;

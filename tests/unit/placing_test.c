@@ -20,7 +20,7 @@ struct placing_fixture {
     char *folder;
     pthread_mutex_t lock;
     pthread_cond_t came;
-    int count; /* number of notifications; needs the lock */
+    int count; /* number of times that the module announced an answer; needs the lock */
 };
 
 static void notify(void *arg)
@@ -65,7 +65,7 @@ TEST_FIXTURE(struct placing_fixture, begin, end)
 
 #define CASE(name) TEST_ON(struct placing_fixture *f, name, set_up, tear_down)
 
-/* Returns the next answer about sensor gaps; NULL once no request of the set is pending. */
+/* Returns the next answer about the gaps between a plant's sensors; NULL once no request of the test's set of positions is pending. */
 static struct sensor_coverage_answer *collect(struct placing_fixture *f, bool gaps)
 {
     for (int seen = 0;;) {

@@ -31,7 +31,8 @@ static void end(struct ramp_rows_setup *s)
         mem_free(*at);
 }
 
-/* Sets a material's ramp from black to its own colour. As context the material is grey; `grey` varies one bit. */
+/* Sets the colour ramp of a material from black to the material's own colour. grey: colour of the material where it is drawn as muted
+   context. */
 static void set(struct ramp_rows_setup *s, size_t material, uint32_t color, uint32_t grey)
 {
     for (uint32_t i = 0; i < STEPS; i++) {

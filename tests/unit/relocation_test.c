@@ -18,9 +18,10 @@
 #include "tests/support/sleep.h"
 
 #define FAR 3e-3  /* of the largest distance */
-#define ON 1e-3   /* metres; points closer than this are on the surface (bridging moves it by less) */
-#define SEEN 1e-5 /* metres; distance of a vertex from the visible surface */
-#define NEAR 0.05 /* metres; the same for vertices that only coarser levels have */
+/* metres; a point counts as on the surface if it is nearer than this, because bridging of cracks moves the surface by less */
+#define ON 1e-3
+#define SEEN 1e-5 /* metres; a vertex of the finest level counts as visible if it is nearer than this to the visible surface */
+#define NEAR 0.05 /* metres; the same for vertices that only coarser levels have, which lie off the surface */
 
 struct result_box { /* receives a result */
     pthread_mutex_t lock;
@@ -112,9 +113,9 @@ static struct asset *prepared(struct prep_case *c)
     return asset;
 }
 
-struct most {           /* allowed differences of distances, as a share of the largest distance */
-    double mean, worst; /* mean and largest difference among the compared vertices */
-    double far_share;   /* share of the finest level's visible vertices that differ by more than 0.3 % */
+struct most {           /* largest differences that are allowed between computed and stored distances, as shares of the largest distance */
+    double mean, worst; /* mean and largest allowed difference among the compared vertices */
+    double far_share;   /* allowed share of the finest level's visible vertices that differ by more than 0.3 % */
 };
 
 enum sight { UNSEEN, SEEN_FINEST, SEEN_COARSE };
@@ -222,7 +223,7 @@ static void try_sensors(const struct asset *asset, const struct relocation_shape
 
 TEST(a_moved_sensor_has_the_distances_that_would_be_stored)
 {
-    /* the largest errors occur where two parts intersect */
+    /* largest differences from stored distances that are allowed; the largest ones occur where two parts intersect */
     static const struct most as_stored[] = { { 2e-4, 0.02, 2e-3 }, { 1e-3, 0.07, 0.0065 } };
     static const struct most as_made_anew[] = { { 5e-4, 0.05, 0.015 }, { 2e-3, 0.08, 0.014 } };
     struct asset *asset = prepared(*state);
@@ -295,7 +296,8 @@ TEST(an_asset_without_surface_is_said_to_be_broken)
 
 /* --- failing allocations ------------------------------------------------------------------------------------------------------- */
 
-static atomic_int until_fault; /* the n-th allocation that may fail does fail; 0: none fails */
+/* counts down: the memory allocation that finds 1 fails, to test what happens when memory is short; 0: none fails */
+static atomic_int until_fault;
 void *__real_mem_try_array(size_t count, size_t bytes_each);
 void *__wrap_mem_try_array(size_t count, size_t bytes_each);
 void *__wrap_mem_try_array(size_t count, size_t bytes_each)
@@ -319,7 +321,8 @@ static void ask_and_wait(struct relocation *relocation, struct result_box *box)
     wait_for(box, 1);
 }
 
-/* Makes each allocation of a propagation fail once; the next request must succeed. */
+/* Computes the distances of a moved sensor again and again; each time another memory allocation fails, and the next request must
+   succeed. */
 static void try_walks_without_memory(struct relocation *relocation, const struct cad *plate)
 {
     int failed = 0;

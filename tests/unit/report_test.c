@@ -217,14 +217,15 @@ TEST(the_time_left_follows_the_work)
     progress_begin(&progress, out, 10, 4, 0);
     assert_true(progress_left_s(&progress, s) < 0);
     for (int i = 0; i < 3; i++)
-        progress_expect(&progress, i == 0 ? 400 : 100); /* three of six parts are known: 1,200 expected in all if the others are alike */
+        /* the work of three of the six assets is known, so the progress line expects 1,200 in all, as if the others were alike */
+        progress_expect(&progress, i == 0 ? 400 : 100);
     progress_step(&progress, 400, 4 * s);
     assert_float_equal(progress_left_s(&progress, 4 * s), 8, 1e-9);
     progress_step(&progress, 100, 5 * s);
     assert_float_equal(progress_left_s(&progress, 5 * s), 7, 1e-9);
     progress_step(&progress, 100, 6 * s);
     for (int i = 0; i < 3; i++)
-        progress_expect(&progress, 1); /* the other parts are not alike: they need little work */
+        progress_expect(&progress, 1); /* the work of the other three assets turns out to be small, so the remaining time shrinks */
     assert_float_equal(progress_left_s(&progress, 6 * s), 0.03, 1e-9);
     progress_end(&progress);
     fclose(out);

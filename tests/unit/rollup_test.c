@@ -66,7 +66,7 @@ static int make_points(struct history_point *points, unsigned seed)
     for (int i = 0; i < POINTS; i++) {
         bool bad = rand() % 7 == 0;
         t += 1000 + rand() % (rand() % 5 ? 3000 : 40000);
-        if (seed % 3 == 0 && i % 2) /* at the border of two buckets */
+        if (seed % 3 == 0 && i % 2) /* some points lie exactly at the border of two buckets */
             t += LENGTH - t % LENGTH;
         points[i] = (struct history_point){ t, bad ? NAN : rand() % 100, bad ? 0x80050000u : rand() % 9 ? 0 : 0x40900000u };
     }

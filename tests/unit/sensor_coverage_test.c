@@ -49,7 +49,8 @@ static double share_of(bool (*f)(const double nearest[2], double limit_m), doubl
             double triangles = inside ? 3 * inside : 1.5; /* a corner vertex has one or two triangles, 1.5 on average */
             for (int s = 0; s < SENSORS; s++) {
                 double m = hypot(x - sensors[s][0], y - sensors[s][1]);
-                if (m <= nearest[0]) { /* a sensor with a good reading counts before an equally near one without */
+                /* the later sensor wins if two are equally near: the last one has a good reading, which counts first */
+                if (m <= nearest[0]) {
                     nearest[0] = m;
                     nearest[1] = s;
                 }
@@ -78,7 +79,7 @@ TEST_WITH(test_the_farthest_place_and_the_next_sensor, set_up, tear_down)
     assert_true(fabs(gaps.farthest_m - hypot(1, 4)) < 1e-6);
     assert_true(fabs(gaps.farthest_at_m[0] - 101) < 1e-5 && fabs(gaps.farthest_at_m[1] - 4) < 1e-5);
     assert_true(fabs(gaps.farthest_at_m[2] - 7) < 1e-5);
-    /* the distance from the first sensor to the second, which are 1.1 m apart across the plate */
+    /* the gap between the first two sensors: 1.1 m apart through the plate, but 4 m along its surface */
     assert_true(fabs(gaps.next_m - 4) < 1e-6);
     assert_int_equal(gaps.next_tags[0], 0);
     assert_int_equal(gaps.next_tags[1], 1);

@@ -66,7 +66,8 @@ CASE(it_asks_while_it_works_and_not_while_it_hangs)
     struct service_patience *patience = service_patience_begin("working", LIMIT_S);
     work_ms(5 * EVERY_MS);
     assert_true(asked(s) >= 3);
-    rest_ms(EVERY_MS + EVERY_MS / 2); /* work done before this pause may cause one more request */
+    /* work done before this pause may still cause one more request to the service manager, which is not counted */
+    rest_ms(EVERY_MS + EVERY_MS / 2);
     asked(s);
     rest_ms(3 * EVERY_MS);
     assert_int_equal(asked(s), 0);
@@ -98,7 +99,7 @@ CASE(one_step_may_not_last_for_ever)
     int asks = asked(s);
     if (clock_work_ns() - before_ns > 1500 * NS_PER_MS)
         assert_true(asks >= 5);
-    else /* without processor time the thread made no progress, so the count proves nothing */
+    else /* the machine was too busy: without processor time the thread made no progress, so the number of requests proves nothing */
         print_message("# not judged: asked %d times in %lld ms of a processor\n", asks,
                       (long long)((clock_work_ns() - before_ns) / NS_PER_MS));
     rest_ms(200); /* one more request may have been waiting for space in the socket */

@@ -362,7 +362,7 @@ CASE(rests_once_nothing_waits_for_time)
     uint32_t seq = send_picture(f);
     assert_false(session_rests(f->session, f->now_ns)); /* the frame is under way */
     ack(f, seq);
-    assert_false(session_rests(f->session, f->now_ns)); /* the frame is to be refined */
+    assert_false(session_rests(f->session, f->now_ns)); /* a preview was acknowledged, but its refined frame is still to be drawn */
     f->now_ns += 250 * MS;
     show(f);
     assert_false(session_rests(f->session, f->now_ns)); /* counts as moving */
@@ -371,7 +371,7 @@ CASE(rests_once_nothing_waits_for_time)
     session_on_data(f->session, f->now_ns);
     assert_false(session_rests(f->session, f->now_ns));
     show(f);
-    assert_false(session_rests(f->session, f->now_ns)); /* values are to be sent too */
+    assert_false(session_rests(f->session, f->now_ns)); /* the frame was acknowledged, but the readings' values are still to be sent */
     expect(f, "tags ");
     assert_true(session_rests(f->session, f->now_ns));
     session_on_data(f->session, f->now_ns);
@@ -1090,7 +1090,8 @@ CASE(a_follower_is_shown_its_leaders_view)
     session_on_leader(f->session, f->now_ns);
     request = show(f);
     assert_true(request.view.camera.eye_m[0] == 3 && request.view.field.group == leader->view.field.group);
-    assert_int_equal(request.view.camera_seq, 1); /* camera_seq: this client itself requested no other camera */
+    /* number of the camera that this client sent last, not of the camera of the session that it follows */
+    assert_int_equal(request.view.camera_seq, 1);
     following = hear(f);
     assert_string_equal(json_string_value(json_object_get(following, "group")), "pressure");
     say(f, "{\"type\":\"resize\",\"width\":320,\"height\":200}");

@@ -29,7 +29,7 @@ static void tear_down(struct wall_case *wall)
     }
 }
 
-/* Gives tile i a sent and acknowledged frame of `picture`. */
+/* Records that tile i was sent a frame of the wall's `picture` and has acknowledged it. */
 static void have(struct wall_case *wall, int i, uint64_t picture, uint32_t seq)
 {
     session_tile_sent(wall->members[i], picture, seq);
@@ -60,7 +60,7 @@ TEST(test_of_two_pictures_none_is_waited_for)
     set_up(&wall);
     have(&wall, 0, 6, 3);
     have(&wall, 1, 7, 3);
-    wall.members[0]->delivery.pacer.asked = 1; /* a request is pending: the tile may still get the other picture */
+    wall.members[0]->delivery.pacer.asked = 1; /* tile 0 has a request under way, so it may still get picture 7, which tile 1 has */
     session_tiles_present(&wall.tiles, &presented, 0, 0);
     assert_false(wall.members[0]->demand.any || wall.members[1]->demand.any);
     wall.members[0]->delivery.pacer.asked = 0;
@@ -95,7 +95,7 @@ TEST(test_an_answer_without_a_frame_overtakes_one)
     tear_down(&wall);
 }
 
-/* Answers a tile's request for a picture without a frame. */
+/* Answers a tile's request for a picture with the message that no frame comes, for the reason `absence`. */
 static void answer_without_frame(struct session *session, uint64_t picture, uint64_t number, enum frame_absence absence)
 {
     struct encoded_frame *encoded = mem_new(sizeof(*encoded));

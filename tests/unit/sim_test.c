@@ -188,7 +188,8 @@ static const struct process_tag unit[] = {
 };
 enum { TAGS = sizeof(unit) / sizeof(unit[0]), CYCLE_TICKS = 6900 };
 
-struct course { /* observed behaviour of one tag during a cycle of upsets */
+/* the values of one simulated tag during a cycle of process upsets: extremes, sum of the values without an upset, and largest step */
+struct course {
     double least, most, calm_sum, jump;
     int calm_count;
 };
@@ -272,7 +273,7 @@ TEST(wide_series)
     bool found;
     assert_true(series_read(&series, path, "a", &found, why) && found);
     assert_int_equal(series.count, 3);
-    assert_true(series.length_s == 540); /* the last time, 6 min, and one step */
+    assert_true(series.length_s == 540); /* the series lasts 9 min: until its last time, 6 min, and one step of 3 min more */
     assert_true(series_at(&series, 0, false) == 1.5);
     assert_true(series_at(&series, 179.9, false) == 1.5); /* held, nothing invented */
     assert_true(series_at(&series, 180, false) == 2.5);

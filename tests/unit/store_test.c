@@ -10,7 +10,7 @@
 #define S INT64_C(1000000000)
 
 struct store_setup {
-    struct plant *plant; /* tags 0 and 1 of source 0, tag 2 of source 1; all become stale after 5 s */
+    struct plant *plant; /* a plant with tags 0 and 1 from source 0, and tag 2 from source 1; readings become stale after 5 s */
     struct store *store;
     struct snapshot *snapshot;
 };

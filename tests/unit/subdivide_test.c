@@ -13,18 +13,19 @@
 #define PI 3.14159265358979323846
 #define SENSORS 6
 
-struct prepared_body { /* a surface with sensors of two groups, prepared by the test */
+struct prepared_body { /* one asset with the sensors of two groups, as the test prepares it */
     struct geometry g;
     struct plant plant;
     struct plant_sensor sensors[SENSORS];
     struct asset_sensor places[SENSORS];
     struct surface *surface;
     struct surface_field field;
-    bool as_solved; /* the truth uses the solver's distances at the point itself instead of the formula */
+    /* true: the expected values use distances that the solver computes at the point, for a shape whose distances have no formula */
+    bool as_solved;
     struct levels levels;
     float *distances; /* distances of all vertices after subdivision */
     uint32_t own_vertices;
-    double (*distance)(const double a[3], const double b[3]); /* formula of the distance along the surface */
+    double (*distance)(const double a[3], const double b[3]); /* formula of the distance along this shape's surface */
     size_t own_triangles;
     double radius_m[2][2]; /* paper's: [group][geodesic] */
     double reach_m[2];     /* metres by which each group's sensors reach; 0: no limit */
@@ -263,7 +264,7 @@ static void onto_surface(const struct prepared_body *body, double p[3])
     memcpy(p, hit.point_m, sizeof(hit.point_m));
 }
 
-struct field_shown { /* values of a field at the vertices of a level */
+struct field_shown { /* a field as a level of detail shows it: group, formula, kind of distance and readings */
     int group;
     bool paper, geodesic;
     unsigned readings;
@@ -326,7 +327,7 @@ static double error_somewhere(const struct prepared_body *body, const struct lev
 
 /* --- coarser levels compared along rays, as a camera sees them ----------------------------------------------------------------- */
 
-struct sight_target { /* triangles and their BVH, for casting rays */
+struct sight_target { /* triangles at which rays are cast, with their bounding volume hierarchy */
     struct trimesh mesh;
     struct bvh *bvh;
 };
@@ -374,8 +375,9 @@ static bool look(const struct sight_target *seen, const double from[3], const do
     return true;
 }
 
-#define OUTLINE 12.0 /* maximum depth, in pixels, between two neighbouring pixels of one surface */
-struct outline_camera { /* orthographic view from afar with pixels of the level's error: from nearer the level is not drawn */
+#define OUTLINE 12.0 /* two neighbouring pixels whose depths differ by more than this many pixels show two surfaces, and so an outline */
+/* Orthographic camera far away, whose pixels are as large as the error of the level of detail: nearer cameras do not draw this level. */
+struct outline_camera {
     double along[3], right[3], up[3], pixel_m, back_m;
 };
 
@@ -390,7 +392,8 @@ static void random_camera(struct outline_camera *camera, double pixel_m, double 
     camera->back_m = 4 * size_m;
 }
 
-struct sighted { /* view of the finest level by side * side rays within a pixel */
+/* lowest and highest value, and nearest and farthest depth, that side * side rays at the finest level meet within a pixel */
+struct sighted {
     double low, high, nearest, farthest;
     bool missed;
 };
@@ -652,7 +655,7 @@ static bool is_in_box(const double p[3])
     return fabs(p[0]) < 1 && fabs(p[1]) < 1 && fabs(p[2]) < 1;
 }
 
-/* Returns the value that a level shows at a point of that plate. */
+/* Returns the value that a level shows at a point of the plate that passes through a box or a ball. */
 static double shown_on_plate(const struct prepared_body *body, const struct level *level, const struct field_shown *showing,
                              const double p[3])
 {
@@ -704,7 +707,7 @@ TEST(what_stands_out_of_a_body_shows_the_field)
     finish(&body);
 }
 
-/* Makes a sphere of radius 1 with the same plate through its centre. */
+/* Makes a sphere of radius 1 with a plate of two triangles through its centre. */
 static void make_plate_through_ball(struct prepared_body *body)
 {
     enum { AROUND = 64, HIGH = 32 };

@@ -7,7 +7,8 @@
 enum { SIDE_PX = 100, TILES = (SIDE_PX + SUN_TILE_STEP_PX - 1) / SUN_TILE_STEP_PX, ROUNDS = 20000, AREA_PX = 20 };
 
 struct lookup_counts {
-    int told, open, half; /* number of points decided by bounds, by texels, and of the latter those partly lit */
+    /* number of points in light or shadow: told: decided by the bounds of a tile; open: looked up in texels; half: of those, partly lit */
+    int told, open, half;
 };
 
 /* Returns the depth at a texel of a random map with flat areas, slopes and noise. */

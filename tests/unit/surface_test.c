@@ -70,7 +70,7 @@ static double cylinder_distance(const double size[3], const double a[3], const d
     return hypot(turn > M_PI ? 2 * M_PI - turn : turn, a[2] - b[2]);
 }
 
-/* The slot spans x from size[0] to size[1] and y from 0 to size[2]. */
+/* Makes a plate with a slot that spans x from size[0] to size[1] and y from 0 to size[2]. */
 static void make_slot(struct cad *cad, double size[3], int wide)
 {
     int first = 60 + (int)(40 * cad_random(&chance)), high = 60 + (int)(40 * cad_random(&chance));
@@ -95,7 +95,7 @@ static bool is_blocked(const double slot[3], const double a[3], const double b[3
 {
     double low = 0, high = 1, dx = b[0] - a[0], dy = b[1] - a[1];
     const double from[3] = { a[0] - slot[0], slot[1] - a[0], slot[2] - a[1] }, slope[3] = { dx, -dx, -dy };
-    for (int i = 0; i < 3; i++) { /* inside the slot where from + t slope > 0 */
+    for (int i = 0; i < 3; i++) { /* finds the part of the line that is inside the slot: where from + t slope > 0 for all three sides */
         if (slope[i] == 0 && from[i] <= 1e-6)
             return false;
         if (slope[i] > 0)
@@ -591,7 +591,8 @@ TEST(short_ways_are_exact_whatever_edges_are_flipped)
         int across, up;
         uint64_t state;
     } hard[HARD] = {
-        { 1, 5, 1558015352152668877u },  /* a corner lies behind an end of the opposite side */
+        /* Seeds of meshes that are hard for window propagation. Here, a corner of a triangle lies behind an end of the opposite side */
+        { 1, 5, 1558015352152668877u },
         { 5, 5, 12376468115645539828u }, /* the source lies exactly on an edge */
         { 1, 6, 15378426302762057891u }, /* an edge whose farther end is reached before the nearer one */
     };

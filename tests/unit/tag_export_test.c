@@ -86,7 +86,7 @@ TEST(test_ignition)
     assert_non_null(strstr(why, "line 1: not JSON"));
 }
 
-/* JSON of an Ignition provider with these types and tags. */
+/* Export of the SCADA system Ignition (JSON): a provider with these data types and tags. */
 #define PROVIDER(types, tags)                                                                                                              \
     "{'name':'','tagType':'Provider','tags':[{'name':'_types_','tagType':'Folder','tags':[" types                                          \
     "]},{'name':'A','tagType':'Folder','tags':[" tags "]}]}"
@@ -103,7 +103,7 @@ TEST(test_udt_kinds)
 {
     static const struct {
         const char *kind, *json;
-        const char *name, *unit, *high, *address; /* expected fields of the first tag */
+        const char *name, *unit, *high, *address; /* expected fields of the first tag that is read */
         size_t count;
         const char *remark; /* NULL: none */
     } cases[] = {
@@ -247,7 +247,7 @@ TEST(test_header_kinds)
 {
     static const struct {
         const char *kind, *text;
-        const char *name, *address, *unit, *low, *high, *description; /* expected fields of the first tag */
+        const char *name, *address, *unit, *low, *high, *description; /* expected fields of the first tag that is read */
     } cases[] = {
         { "German", "Messstelle;Adresse;Einheit;Messbereich von;Messbereich bis;Bezeichnung\nT1;4001;°C;0;150;Lager\n", "T1", "4001",
           "°C",
@@ -453,7 +453,9 @@ TEST(test_encodings)
         tag_export_finish(&list);
     }
     assert_true(read_text(&list, "\xef\xbb\xbfTag\nTT-\xff"
-                                 "1\n")); /* the byte order mark says UTF-8 */
+                                 /* the file begins with a byte order mark, so it is UTF-8: the wrong byte is replaced, and no other
+                                    encoding is guessed */
+                                 "1\n"));
     assert_int_equal(list.damaged, 1);
     check(&list, 0, EXPORT_NAME,
           "TT-\xef\xbf\xbd"

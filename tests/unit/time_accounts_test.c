@@ -47,7 +47,8 @@ TEST(who_comes_anew_owes_what_it_had)
     assert_ptr_equal(who_has_had_less(greedy, other), other);
     for (int i = 0; i < 60; i++)
         serve(&accounts, other, 20 * NS_PER_MS);
-    time_accounts_leave(&accounts, &greedy); /* the other address has caught up: no time is owed */
+    /* the address with less render time in the past has caught up, so nothing about it needs to be remembered */
+    time_accounts_leave(&accounts, &greedy);
     assert_int_equal(accounts.count, 1);
     greedy = time_accounts_join(&accounts, 1);
     time_accounts_asked(&accounts, greedy, SHARE);

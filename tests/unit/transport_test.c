@@ -120,7 +120,7 @@ TEST(test_accordion)
     double first[3], here[3], worst = 0;
     vector_at(&c, 0, first);
     for (size_t v = 1; v < c.shape.vertex_count; v++) {
-        vector_at(&c, v, here); /* asserts that the vector is known */
+        vector_at(&c, v, here); /* fails the test if the transported vector is unknown at this vertex */
         worst = fmax(worst, fabs(first[1] - here[1]));
     }
     printf("# accordion: worst %.2g\n", worst);

@@ -245,7 +245,7 @@ CASE(files_say_their_unit_or_mean_the_row_s)
         struct history_reader *reader = history_reader_create(log, pass ? again : folder);
         assert_int_equal(history_series(reader, "F", start_us, start_us + 9 * US_PER_S, 100, &series), 0);
         history_reader_destroy(&reader);
-        assert_int_equal(series.points.count, 4); /* four points, including the one that ends the line */
+        assert_int_equal(series.points.count, 4); /* four points, including the one without a value after which no line is drawn */
         for (int i = 0; i < 3; i++)
             assert_true(fabs(series.points.at[i].value - (i < 2 ? 100 : 50)) < 1e-6);
         series_text_csv_head(&out, false);

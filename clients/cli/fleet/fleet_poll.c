@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The polling thread of a fleet: sends the requests and stores the responses. */
+/* The thread that asks the servers of a fleet for their metrics and pictures, and stores the responses. */
 #include "fleet_poll.h"
 
 #include <pthread.h>

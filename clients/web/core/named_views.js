@@ -11,8 +11,8 @@ export const textOf = (session, tag = null) => {
     return addressOf({ camera, params, time: null, ownParams }, tag).slice(1);
 };
 
-// Returns { camera, params, tag } that change a session from any state to the saved view. A view without a camera gets the home camera. id:
-// id of the saved view; from it, the server takes the parameters that only engineers may send.
+// Returns { camera, params, tag } that change a session from any state to the saved view. A view without a camera gets the home camera,
+// which shows the whole plant. id: id of the saved view; from it, the server takes the parameters that only engineers may send.
 export function viewOf(session, text, id) {
     const { camera, params, tag } = readAddress(text), group = session.model.group(params.group) ?? session.group;
     const plain = { ...session.ownOf(group), range: null, ramp_interval: 0, breaks: group.breaks?.length ? group.breaks : null,

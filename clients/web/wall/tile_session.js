@@ -48,7 +48,7 @@ export class TileSession extends Session {
         return { ...(this.token ? { token: this.token } : {}), tile: { wall, display } };
     }
 
-    // Returns the home camera for the whole picture, of which this display shows a part.
+    // Returns the home camera, which shows the whole plant in the whole picture; this display shows a part of that picture.
     homeIn(width, height) {
         return super.homeIn(width * this.tile.columns, height * this.tile.rows);
     }

@@ -172,8 +172,8 @@ export class Approach {
         return { seen: isThere || (sensor === tag.name && !occluded), asset, position };
     }
 
-    // Asks the server what is at the points AROUND, near the centre of the camera's picture. Returns the number of points at which an asset
-    // other than `id` is clearly in front of the target; stops counting at `most`.
+    // Asks the server what is at the points AROUND, near the centre of the camera's picture, where the tag is. Returns the number of points
+    // at which an asset other than `id` is clearly in front of the tag; stops counting at `most`.
     async coverAround(camera, { id }, most) {
         const far = length(subtract(camera.target, camera.eye));
         let count = 0;

@@ -128,7 +128,7 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
             openPlace(x, y, session.camera);
     }
 
-    // Opens the card of a clicked point, unless the camera has moved since the click: another point would be under the pointer.
+    // Opens the card of a clicked point. If the camera has moved since the click, another point is under the pointer now, so no card opens.
     const openPlace = (x, y, camera) => modules.use('place', (place) => camera === session.camera && place.open(x, y));
 
     function point(place) {

@@ -178,7 +178,7 @@ function wristRows(session, leave) {
         [{ text: say('xr.leave'), act: leave }]];
 }
 
-// Shows the panel at the wrist. Returns its buttons with their rectangles as fractions of the board.
+// Draws the panel at the wrist with the user's controls. Returns its buttons with their rectangles as fractions of the panel's size.
 export function showWrist(board, session, pointed, leave) {
     const rows = wristRows(session, leave), { width, height } = board.canvas, tall = height / rows.length;
     const buttons = rows.flatMap((row, j) => row.map((button, i) => ({ ...button, x: i / row.length, y: j / rows.length,
