@@ -275,8 +275,9 @@ static bool is_plain_message(const uint8_t *unit, size_t count, char why[FILM_BO
         last = unit[i];
     }
     if (type != MESSAGE_TEXT && type != MESSAGE_RECOVERY)
-        return FAIL("unexpected H.264 message (SEI) of type %u: Plantcast's films have none", type);
-    return (content == length + 1 && last == 0x80) || FAIL("one unit has more than one H.264 message (SEI)");
+        return FAIL("unexpected H.264 message (SEI) of type %u, which Plantcast's films do not have: the film was changed", type);
+    return (content == length + 1 && last == 0x80) ||
+           FAIL("a part of the video (NAL unit) has more than one H.264 message (SEI): the film was changed");
 }
 
 bool film_units_plain(const uint8_t *sample, size_t count, char why[FILM_BOXES_WHY_BYTES])

@@ -256,9 +256,11 @@ static char *manifest_text(struct log *log, const char *folder, const struct fol
             json_array_append_new(tags, json_string(entries[i].tags[t]));
         json_t *asset = json_pack("{s:s, s:s, s:s, s:s, s:o, s:o}", "id", entries[i].id, "file", file, "key", key, "recipe", recipe,
                                   "placement", placement, "tags", tags);
-        json_t *missing = entries[i].missing ? json_string(entries[i].missing) : NULL;
-        if (entries[i].missing)
-            json_object_set_new(asset, "missing", missing ? missing : json_string("the output folder of plantcast-prep cannot be used"));
+        const char *missing = entries[i].missing;
+        if (missing) {
+            json_t *why = json_string(missing);
+            json_object_set_new(asset, "missing", why ? why : json_string("not prepared: plantcast-prep cannot use its output folder"));
+        }
         add_surface(asset, folder, entries[i].geometry_key);
         add_resolved(asset, log, folder, entries[i].key);
         add_left_out(asset, &entries[i], json_object_get(old_root, "assets"));

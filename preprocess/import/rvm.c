@@ -201,7 +201,7 @@ static bool read_primitive(struct rvm_reader *r)
     double box;
     struct primitive primitive = { .byte = r->at - HEADER };
     if (r->depth == 0)
-        return fail(r, "a primitive is outside every group");
+        return fail(r, "a primitive shape (PRIM) is outside every group (CNTB): the file is damaged or incomplete");
     if (!read_word(r, &version) || !read_word(r, &kind))
         return false;
     for (int i = 0; i < 12; i++)

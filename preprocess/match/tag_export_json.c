@@ -498,7 +498,7 @@ bool tag_export_read_json(struct tag_export *list, const char *text, size_t leng
     say(list, &reader.unknown, "instances have a type that is not in the export; export the folder of types too");
     say(list, &reader.circular, "instances have a type that contains itself: the inner copies are left out");
     say(list, &reader.unresolved, "addresses refer to parameters that have no value");
-    say(list, &reader.without, "units, ranges and descriptions are bound to items without a value: left out");
+    say(list, &reader.without, "units, ranges and descriptions refer to tags or parameters that have no value in this export: left out");
     if (reader.too_deep || reader.too_many)
         snprintf(why, why_bytes, reader.too_deep ? "folders deeper than %d" : "more than %d tags",
                  reader.too_deep ? MAX_DEPTH : TABLE_MAX_ROWS);

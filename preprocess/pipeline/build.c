@@ -292,7 +292,7 @@ static void check(struct build *build)
     if (!known && !is_constant(input->plant, input->sensors, input->sensor_count))
         build->failed[1] = !surface_check(measured->surface, &measured->field);
     if (build->failed[1])
-        wrong(build->why, "out of memory for the check of the asset's distances");
+        wrong(build->why, "out of memory while checking the distances along the asset's surface");
     if (!input->cache) {
         *report = *found;
     } else if (!known) {

@@ -124,7 +124,7 @@ static const char *core_standing(const struct server_context *server)
     if (!keeper)
         return NULL;
     if (!core_end_leads(server))
-        return server->session_context.core_up ? "standby: follows the core that leads" : "standby: another core leads, or none yet";
+        return server->session_context.core_up ? "standby: follows the core that leads" : "standby: not connected to a core that leads";
     return lease_keeper_is_alone(keeper)     ? "leads; standby: maintenance, no other core takes over"
            : !renderers_have_standby(server) ? "leads; no standby follows this core: the log says why"
                                              : "leads; a standby follows";

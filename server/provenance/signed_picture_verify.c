@@ -20,7 +20,7 @@ static bool is_signed(const struct signing_key *key, const char *statement, size
     uint8_t bytes[96];
     if (sscanf(signature, "ed25519 %16[0-9a-f] %95[A-Za-z0-9+/=]", by, base64) != 2 || strlen(base64) != 88 ||
         EVP_DecodeBlock(bytes, (const unsigned char *)base64, 88) != 66)
-        return FAIL("the signature cannot be read: expected 'ed25519 KEY SIGNATURE'");
+        return FAIL("the picture's signature cannot be read: expected 'ed25519 KEY-ID SIGNATURE'");
     signing_key_id(key, own);
     if (strcmp(by, own) != 0)
         return FAIL("the picture was signed with another key: %s; the given key is %s", by, own);

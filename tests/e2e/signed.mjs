@@ -105,7 +105,7 @@ test('so is a statement of another picture, and a signature of another key', { s
     const { code, err } = runProgram('plantcast', ['verify', path('asked.png'), '--key', path('other.pub')]);
     assert.equal(code, 1);
     assert.match(err, /signed with another key: [0-9a-f]{16}; the given key is [0-9a-f]{16}/);
-    refused(withText(picture, SIGNATURE, (text) => text.replace(/.$/, '')), /the signature cannot be read/);
+    refused(withText(picture, SIGNATURE, (text) => text.replace(/.$/, '')), /the picture's signature cannot be read/);
     refused(withText(picture, SIGNATURE, (text) => text.replace(/(\w{16} )(.)/, (_, id, first) => id + (first === 'A' ? 'B' : 'A'))),
         /the signature is wrong/);
 });

@@ -158,7 +158,7 @@ CASE(what_is_wrong_is_said_at_its_place)
           { "plant.yaml", 9, 18, "the address must not begin with #" },
           { "plant.yaml", 9, 9, "view 'v' is listed twice (first at line 8)" }, { "plant.yaml", 10, 3, "view" },
           { "plant.yaml", 12, 22, "displays: expected at least one" }, { "plant.yaml", 14, 11, "inches" },
-          { "plant.yaml", 15, 14, "a span such as" }, { "plant.yaml", 17, 12, "areas in lower case" },
+          { "plant.yaml", 15, 14, "a span such as" }, { "plant.yaml", 17, 12, "the names of panes' areas" },
           { "plant.yaml", 18, 13, "expected one of views, trend, alarms" }, { "plant.yaml", 18, 21, "the grid has no area 'b'" },
           { "plant.yaml", 20, 13, "expected one of views" }, { "plant.yaml", 20, 55, "'b' is used by two panes" },
           { "plant.yaml", 20, 102, "allowed only in a pane of views" }, { "plant.yaml", 20, 78, "the grid has no area 'z'" },

@@ -209,7 +209,8 @@ TEST(test_udt_kinds)
           "[PLC1]HR0", 2, NULL },
         { "a unit bound to another tag", PROVIDER(TYPE("Pump", "'tags':[" MEMBER("T", ",'engUnit':{'bindType':'tag','binding':'[.]U'}")
             "]"), INSTANCE("P", "Pump", "")),
-          "A/P/T", "", "", "", 1, "1 units, ranges and descriptions are bound to items without a value: left out: A/P/T ([.]U)" },
+          "A/P/T", "", "", "", 1,
+          "1 units, ranges and descriptions refer to tags or parameters that have no value in this export: left out: A/P/T ([.]U)" },
         { "a type's path with the provider and another case", PROVIDER(PUMP, INSTANCE("P", "[default]_types_/pump", "")), "A/P/T", "°C",
           "120", "[PLC1]HR0", 1, NULL },
         { "one member of two overridden",

@@ -111,7 +111,8 @@ void say_errors(const file_losses &of)
             printf("error\t%zu\tOpen CASCADE: %s%s%s%s\n", kind.count, of.file.c_str(), text.c_str(), kind.ids.c_str(),
                    kind.count > MOST_IDS ? " ..." : "");
     if (printed > MOST_KINDS)
-        printf("error\t%zu\tOpen CASCADE: %serrors of further kinds, which are not listed\n", printed - MOST_KINDS, of.file.c_str());
+        printf("error\t%zu\tOpen CASCADE: %sfurther kinds of errors in the file, which are not listed\n", printed - MOST_KINDS,
+               of.file.c_str());
 }
 
 /* --- faces -------------------------------------------------------------------------------------------------------------------------- */

@@ -99,7 +99,7 @@ enum openid_finish openid_finish(struct openid *openid, const struct openid_retu
     }
     bool other = is_other_issuer(openid, brought->iss);
     const char *why = other            ? "the provider's answer names another issuer (iss) than the file of --openid"
-                      : brought->error ? "the provider refused the sign-in"
+                      : brought->error ? "the identity provider refused to sign this user in, with the error"
                       : !brought->code ? "the provider's answer has no authorization code"
                                        : NULL;
     if (why) {

@@ -197,7 +197,8 @@ static void read_grid(struct yaml_reader *reader, yaml_node_t *node, void *recor
         yaml_node_t *row = yaml_list_item(reader, node, i);
         const char *text = yaml_text(row);
         if (!text || text[strspn(text, "abcdefghijklmnopqrstuvwxyz0123456789. ")] || strlen(text) > 400)
-            yaml_expected(reader, row, "grid", "areas in lower case with blanks between them, such as 'main main alarms'");
+            yaml_expected(reader, row, "grid",
+                          "the names of panes' areas (lower-case letters and digits), separated by blanks, such as 'main main alarms'");
         else
             display->rows[display->row_count++] = mem_strdup(text);
     }
