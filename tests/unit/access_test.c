@@ -225,7 +225,7 @@ TEST(only_the_named_networks_are_proxies)
         if (access_is_proxy(&params, others[i]))
             fail_msg("a proxy: %s", others[i]);
     assert_false(params.behind_proxy);
-    /* a local proxy: from now on, local clients are not trusted */
+    /* a proxy on this machine: from now on, requests from local addresses may come from anybody and are not trusted */
     assert_true(access_add_proxy(&params, "127.0.0.1") && params.behind_proxy);
     while (params.proxy_count < ACCESS_MAX_NAMES)
         assert_true(access_add_proxy(&params, "10.0.0.10"));

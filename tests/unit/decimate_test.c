@@ -212,7 +212,7 @@ TEST(what_is_not_flat_stays)
     plate_init(&plate, 0);
     put_inside(&plate, 0);
     plate.mesh.points[4][2] = 1e-3;
-    put_on_edge(&plate, 0, 1); /* the rim may move by no more than the surface may */
+    put_on_edge(&plate, 0, 1); /* adds a point on the plate's rim and moves it off the straight rim: decimation must keep that point */
     plate.mesh.points[5][1] = -1e-3;
     thin(&plate);
     assert_int_equal(plate.mesh.point_count, 6);

@@ -98,7 +98,7 @@ static void expect_cell(const struct depth_picture *picture, const struct depth_
     }
 }
 
-/* Returns the mask's bits of pixels within the picture. */
+/* Returns the mask of a depth cell without the bits of pixels that lie outside the picture. */
 static uint64_t within(const struct depth_picture *picture, int column, int row, uint64_t mask)
 {
     for (int i = 0; i < 64; i++)

@@ -489,7 +489,7 @@ TEST_WITH(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_te
                     others += accuses_another(&row, s, i, sign * sizes[size] * none[i].scatter);
                     if (at.hours == 0)
                         continue;
-                    assert_true(at.limit > 0); /* the alarm limit was not reached by then */
+                    assert_true(at.limit > 0); /* when the drift was found, the reading had not yet reached its alarm limit */
                     most_sigmas = fmax(most_sigmas, fabs(at.drifted) / none[i].scatter);
                     least_limit = fmin(least_limit, at.limit);
                 }

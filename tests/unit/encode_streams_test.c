@@ -241,11 +241,11 @@ CASE(depth_that_packets_lack_is_sent_to_clients_that_want_it)
     show(f, 1, 0, 1, false);
     f->gives_depth = true;
     show(f, 1, 0, 1, false);
-    assert_int_equal(f->encodes, 1); /* the client does not want depth */
+    assert_int_equal(f->encodes, 1); /* client 0 wants no depth, so the packet that was encoded without depth is used again */
     show(f, 2, 0, 1, false);
     assert_true(f->encodes == 2 && f->plan.again);
     show(f, 2, 0, 1, true);
-    assert_int_equal(f->encodes, 2); /* the packet that has depth is reused */
+    assert_int_equal(f->encodes, 2); /* for client 1, the packet that was encoded with depth is used again */
 }
 
 /* Hundreds of acknowledgements arrive one by one: some clients request the next view while others still wait for the previous one. */

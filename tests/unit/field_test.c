@@ -1327,7 +1327,8 @@ TEST(test_distance_from_one_sensor)
     rig.params.show = straight.show = SHOW_DISTANCE;
     rig.params.sensor = straight.sensor = 4;
     straight.distance = DISTANCE_EUCLIDEAN;
-    assert_null(field_scalars(rig.field, 0, &rig.params, rig.plant->snapshot)); /* sensor 4 is on the other asset */
+    /* sensor 4 is on the other asset, so on this asset no distance along the surface from it exists */
+    assert_null(field_scalars(rig.field, 0, &rig.params, rig.plant->snapshot));
     const struct scalars *way = field_scalars(rig.field, 1, &rig.params, rig.plant->snapshot);
     const struct scalars *line = field_scalars(rig.field, 1, &straight, rig.plant->snapshot);
     float most = 0;
@@ -1419,7 +1420,8 @@ TEST(test_difference_needs_both)
     set(&rig, 2, 60, QUALITY_GOOD);
     set(&rig, 3, 60, QUALITY_BAD_SENSOR_FAILURE);
     const struct scalars *scalars = show(&rig);
-    assert_true(scalars->at[1].no_data && scalars->at[3].no_data);          /* sensor 1 was Bad then; sensor 3 is Bad now */
+    /* no difference: sensor 1 was Bad in the baseline, and sensor 3 is Bad now */
+    assert_true(scalars->at[1].no_data && scalars->at[3].no_data);
     assert_true(!scalars->at[2].no_data && scalars->at[2].uncertain > 127); /* sensor 2 was Uncertain then */
     assert_true(!scalars->at[0].no_data && scalars->at[0].value == 0);      /* the sensor that came back does not count as a change */
     baselines_set(baselines, "then", rig.plant->snapshot);                  /* the baseline is replaced for all sessions that show it */

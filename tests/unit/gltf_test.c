@@ -402,7 +402,7 @@ CASE(a_name_that_is_there_several_times_is_refused)
     assert_float_equal(place[0], 10.5, 1e-9);
     assert_true(geometry_node_place(&l->model, &params, "south/pump", place, why));
     assert_float_equal(place[0], 20.5, 1e-9);
-    params.nodes = "south"; /* only one of the three pumps is in the asset */
+    params.nodes = "south"; /* only one of the three nodes named "pump" is in this asset, so the name alone selects it */
     assert_true(geometry_node_place(&l->model, &params, "pump", place, why));
     assert_float_equal(place[0], 20.5, 1e-9);
     assert_true(geometry_node_place(&l->model, &params, "south/", place, why)); /* the pattern names a node without a name */

@@ -130,7 +130,7 @@ CASE(test_harmonic_is_straight_and_follows_readings)
     for (size_t i = 0; i < SENSORS; i++)
         assert_true(fabs((double)look(&u, place_of(i))->value - 10.0 * (double)i) < 0.05);
     assert_true(fabs((double)look(&u, place_of(3) + 0.4)->value - 35) < 0.5);
-    u.snapshot->readings[4].value = 90; /* one changed reading updates only its column */
+    u.snapshot->readings[4].value = 90; /* a changed reading adds its change times the weights of its own sensor only */
     assert_true(fabs((double)look(&u, place_of(3) + 0.4)->value - 60) < 0.5);
     assert_true(fabs((double)look(&u, place_of(4))->value - 90) < 0.1);
     finish(&u);
@@ -191,7 +191,8 @@ CASE(test_fin_knows_how_far_it_sees)
     for (double x = 0.1; x < 3 * decay_m; x += 0.1) {
         const struct scalar *at = look(&u, place_of(1) + x);
         double expected = 20 + 80 * exp(-fmax(x - 0.0957, 0) / decay_m);
-        assert_true(fabs((double)at->value - expected) < 2.5); /* the nearest vertex is up to 5 cm away */
+        /* tolerance: the vertex at which the field is read is up to 5 cm away from x */
+        assert_true(fabs((double)at->value - expected) < 2.5);
         if (fabs(x - 0.0957 - decay_m * log(10)) > 0.1)
             assert_int_equal(at->no_data, x - 0.0957 < decay_m * log(10) ? 0 : 255);
     }
@@ -437,7 +438,8 @@ CASE(test_gp_meets_readings_and_lets_lost_ones_go)
     u.params.fill = FILL_NEIGHBOURS;
     u.snapshot->readings[4] = (struct reading){ .value = 5000, .quality = QUALITY_BAD };
     assert_true(fabs((double)look(&u, place_of(4))->value - 40) < 3);
-    u.params.show = SHOW_OPERATOR; /* rows of weights sum to 1, so the operator can be shown */
+    /* each vertex's weights sum to 1, so the operator's view (positions between alarm limits) can be computed with them */
+    u.params.show = SHOW_OPERATOR;
     assert_null(field_params_wrong(u.plant, &u.params));
     finish(&u);
 }

@@ -894,7 +894,7 @@ CASE(large_readings_keep_all_digits)
     char *text = reply_api_tags_text(&f->context, 1, 1);
     assert_non_null(strstr(text, "\"value\":12345678.531,"));
     mem_free(text);
-    /* the text for a display is filtered, and written again */
+    /* a display whose token is limited to some tags gets a list without the other tags; numbers in it must keep their digits */
     f->session->identity.holder.display = 1;
     f->session->scope.tags = mem_array(f->context.plant->tag_count + 1, sizeof(*f->session->scope.tags));
     f->session->scope.tags[1] = true;
