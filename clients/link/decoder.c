@@ -18,7 +18,8 @@ struct decoder {
     uint8_t *pixels;
     size_t pixel_bytes;
 #ifdef PLANTCAST_H264
-    /* functions of the loadable H.264 module; NULL: not loaded yet, and the H.264 members below are not valid */
+    /* functions of the H.264 module, which is loaded with the first H.264 frame; NULL: not loaded yet, and the H.264 members below are not
+       valid */
     const struct h264_decoder_functions *functions;
     struct h264_decoder *h264;
 #endif

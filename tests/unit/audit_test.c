@@ -194,13 +194,13 @@ TEST(test_rotation)
     assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
     assert_null(later);
     expect_good(path, 4, 13);
-    /* truncated by another program while it is open */
+    /* another program truncates the audit trail while the daemon has it open */
     assert_int_equal(truncate(path, 0), 0);
     assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
     assert_non_null(strstr(later, "another program changed the file"));
     mem_free(later);
     expect_fault(path, NULL, "lines before this line are missing");
-    /* removed by another program while it is open */
+    /* another program removes the audit trail while the daemon has it open */
     unlink(path);
     assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
     assert_non_null(strstr(later, "was removed"));

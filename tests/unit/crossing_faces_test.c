@@ -92,7 +92,7 @@ TEST(a_pipe_that_winds_into_itself_has_some)
     mem_free(model);
 }
 
-/* Returns whether the edge crosses the triangle, as repair.h defines a crossing. */
+/* Returns whether an edge crosses a triangle of another part, as crossing_faces_find() must report it (repair.h defines it). */
 static bool piece_crosses(const struct crossing_model *model, const uint32_t edge[2], uint32_t own, uint32_t tri)
 {
     const struct trimesh *mesh = &model->mesh;

@@ -214,7 +214,8 @@ CASE(bridges_and_points_are_those_of_the_report)
     assert_float_equal(prep_case_number(positions, "min.0"), 0, 1e-6);
     assert_float_equal(prep_case_number(positions, "max.0"), 0.0002, 1e-6);
     assert_null(node_shape(&glb, "unreachable"));
-    assert_non_null(node_shape(&glb, "hidden")); /* faces where the two boxes cover each other are hidden */
+    /* faces where one of the two boxes covers the other are in the debug view's node "hidden" */
+    assert_non_null(node_shape(&glb, "hidden"));
     glb_close(&glb);
 }
 
@@ -229,8 +230,8 @@ CASE(what_cannot_be_reached_is_shown)
     assert_float_equal(prep_case_number(positions, "max.0"), 1, 1e-6);
     glb_close(&glb);
     glb_open(&glb, c, "plant.debug/INSIDE.glb");
-    positions = positions_of(&glb, node_shape(&glb, "hidden")); /* spans 21 to 22 along x with the origin at 22, and 1 to 2 in height
-                                                                   with the origin at 2 */
+    /* the hidden box spans 21 to 22 along x in the model and 1 to 2 in height; the asset's origin is at 22 and 2 */
+    positions = positions_of(&glb, node_shape(&glb, "hidden"));
     assert_float_equal(prep_case_number(positions, "min.0"), -1, 1e-6);
     assert_float_equal(prep_case_number(positions, "max.1"), 0, 1e-6);
     glb_close(&glb);

@@ -100,7 +100,7 @@ static void thin(struct flat_plate *plate)
                   plate->plane, 2, plate->target);
 }
 
-/* Returns the summed area of the pieces on one side of the diagonal, and asserts that all face along `normal`. */
+/* Returns the summed area of the triangles on one side of the plate's diagonal, and asserts that all face along `normal`. */
 static double area_of(const struct flat_plate *plate, int side, const double normal[3])
 {
     double sum = 0;

@@ -315,7 +315,8 @@ static void find(const struct row_of_sensors *row, const struct recorded_series 
     drift_find(row->neighbours, values, hours, noise, out, NULL);
 }
 
-/* Looks for drift each hour from half a week on. Returns how many different sensors are ever accused; *times receives how often. */
+/* Looks for drift each hour from half a week on, in readings without drift. Returns how many sensors were ever found to drift, wrongly;
+   *times receives how often. */
 static int accused(const struct row_of_sensors *row, const struct recorded_series *s, int *times)
 {
     bool ever[SENSORS] = { false };
@@ -448,7 +449,7 @@ static struct drift_detection search(const struct row_of_sensors *row, const str
     return out;
 }
 
-/* Returns whether at the week's end a sensor other than the drifting one is accused. */
+/* Returns whether at the week's end a sensor other than the drifting one is found to drift. */
 static bool accuses_another(const struct row_of_sensors *row, const struct recorded_series *s, int sensor, double change)
 {
     struct drift drifts[SENSORS];
@@ -522,7 +523,7 @@ TEST_WITH(test_one_that_drifts_does_not_accuse_others, prep_case_set_up, prep_ca
     leave(&row);
 }
 
-/* A sensor that is lost for a day and a half accuses no other, whatever it reads before and after. */
+/* A sensor that is lost for a day and a half makes no other sensor look as if it drifted, whatever it reads before and after. */
 TEST_WITH(test_one_that_is_lost_for_a_while_accuses_nobody, prep_case_set_up, prep_case_tear_down)
 {
     struct recorded_series s = all_series[1];

@@ -199,7 +199,8 @@ TEST_WITH(late_inputs_change_the_result, plant_case_set_up, plant_case_tear_down
     derived_destroy(&derived);
 }
 
-/* The measuring range is in the unit of the row (212 °F are 100 °C, 373.15 K). */
+/* The result of a derived tag is compared with its measuring range, which is in the unit of the tag list's row (212 °F are 100 °C, 373.15
+   K). */
 TEST_WITH(results_beyond_the_range_are_uncertain, plant_case_set_up, plant_case_tear_down)
 {
     struct plant_case *c = *state;

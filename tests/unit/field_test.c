@@ -288,8 +288,8 @@ TEST(test_extreme_parameters)
     rig_finish(&rig);
 }
 
-/* 4,096 sensors in every mode. Lost sensors leave no data at their positions; in shepard the others show their own readings at theirs;
-   elsewhere plain loops give the truth. */
+/* 4,096 sensors with every interpolation. Lost sensors leave no data at their positions; with shepard, the other sensors' positions show
+   their own readings. Other cases are compared with plain loops. */
 TEST(test_4096_sensors)
 {
     uint64_t random = sweep_seed();
@@ -480,11 +480,12 @@ TEST(test_of_assumed_places_the_nearest_to_trouble_stands_for_all)
     set(&rig, 0, 40, QUALITY_GOOD);
     set(&rig, 1, 75, QUALITY_GOOD);
     set(&rig, 2, 30, QUALITY_GOOD);
-    assert_even(&rig, 75); /* range 0 to 100 without limits: 75 is farthest from the middle */
+    /* the asset shows the reading that is farthest from the middle of its range, 0 to 100, as no limits are set: 75 */
+    assert_even(&rig, 75);
     set(&rig, 2, 5, QUALITY_GOOD);
     assert_even(&rig, 5);
     rig.plant->plant.tags[0].alarms.limits[LIMIT_H] = 35;
-    assert_even(&rig, 40); /* this reading is beyond the tag's own limit */
+    assert_even(&rig, 40); /* the asset shows the only reading that is beyond a limit of its own tag */
     assert_as_fresh(&rig);
     set(&rig, 0, 40, QUALITY_BAD_NO_COMMUNICATION);
     assert_even(&rig, 5);
@@ -624,7 +625,8 @@ TEST(test_a_sensor_out_of_reach_does_not_make_its_place_lost)
 {
     struct field_rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
     for (size_t j = 0; j < 300; j++)
-        synthetic_set_distance(rig.plant, 0, j, INFINITY); /* sensor 0 is Bad and on another part */
+        /* sensor 0 is Bad and has no path to these vertices, because it is on another part */
+        synthetic_set_distance(rig.plant, 0, j, INFINITY);
     set(&rig, 0, 90, QUALITY_BAD_SENSOR_FAILURE);
     set(&rig, 1, 40, QUALITY_GOOD);
     const struct scalars *scalars = show(&rig);
@@ -666,12 +668,12 @@ TEST(test_a_sensor_fades_towards_its_reach)
         rig.params.reach_m = 4;
         set(&rig, 0, 20, QUALITY_GOOD);
         set(&rig, 1, 80, QUALITY_GOOD);
-        for (size_t k = 0; k < 200; k++) { /* vertex 150 is where the second sensor's reach ends */
+        for (size_t k = 0; k < 200; k++) { /* the second sensor's reach ends at vertex 150 of this row */
             synthetic_set_distance(rig.plant, 0, 20 + k, 2);
             synthetic_set_distance(rig.plant, 1, 20 + k, 2.5f + 0.01f * (float)k);
         }
         synthetic_set_distance(rig.plant, 0, 20, 4);
-        synthetic_set_distance(rig.plant, 1, 20, 4);      /* as far as both sensors reach, the value mixes both */
+        synthetic_set_distance(rig.plant, 1, 20, 4);      /* exactly at the reach of both sensors: the value is a mixture of both */
         synthetic_set_distance(rig.plant, 0, 21, 3.999f); /* a vertex reached by one sensor alone shows no fading */
         synthetic_set_distance(rig.plant, 1, 21, 4.001f);
         const struct scalar *at = show(&rig)->at + 20;
@@ -1203,7 +1205,7 @@ TEST(test_a_prefix_costs_less)
     assert_int_equal(scalars->version, version);
     show(&rig); /* the asset is seen from near, with all its vertices */
     assert_true(scalars->ready == 20000 && scalars->version > version && scalars->grown > grown && scalars->flags_version > version);
-    for (int tick = 0; tick < 3; tick++) { /* unused vertices expire: after a while only the prefix is kept up to date */
+    for (int tick = 0; tick < 3; tick++) { /* nobody needs the other vertices: after a while only the first 500 are kept up to date */
         set(&rig, 2, 10 + tick, QUALITY_GOOD);
         field_scalars_of(rig.field, 0, &rig.params, rig.plant->snapshot, 500);
     }
@@ -1390,7 +1392,8 @@ TEST(test_difference_is_that_of_two_fields)
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         for (size_t i = 0; i < 12; i++)
-            set(&rig, i, between(&random, -30, 130), QUALITY_GOOD); /* values beyond the range, which paper clamps */
+            /* readings beyond the colour scale's range, which interpolation paper clamps before it takes the difference */
+            set(&rig, i, between(&random, -30, 130), QUALITY_GOOD);
         rig.params.baseline = baselines_set(baselines, "then", rig.plant->snapshot);
         assert_int_equal(show(&rig)->at[500].value, 0);
         const struct snapshot *then = baselines_take(baselines, rig.params.baseline);
@@ -1424,7 +1427,8 @@ TEST(test_difference_needs_both)
     assert_true(scalars->at[1].no_data && scalars->at[3].no_data);
     assert_true(!scalars->at[2].no_data && scalars->at[2].uncertain > 127); /* sensor 2 was Uncertain then */
     assert_true(!scalars->at[0].no_data && scalars->at[0].value == 0);      /* the sensor that came back does not count as a change */
-    baselines_set(baselines, "then", rig.plant->snapshot);                  /* the baseline is replaced for all sessions that show it */
+    /* baselines belong to all sessions: the new readings replace the baseline also for the session that shows it */
+    baselines_set(baselines, "then", rig.plant->snapshot);
     scalars = show(&rig);
     assert_true(!scalars->at[1].no_data && scalars->at[1].value == 0 && scalars->at[3].no_data);
     baselines_remove(baselines, "then");

@@ -242,7 +242,7 @@ static const double few_places[FEW][3] = { { 0.2, 0.3, 0 }, { 1.7, 0.2, 0 }, { 1
 
 TEST(test_agrees_with_a_dense_one)
 {
-    /* the last range is far longer than the body */
+    /* the last case has a range of 40 m, far longer than the body */
     static const struct gaussian_params cases[3] = { { 0.8, 0.5, 10 }, { 3, 0.1, 4 }, { 40, 0.2, 20 } };
     for (int c = 0; c < 3; c++) {
         struct gaussian_case s = { 0 };

@@ -316,7 +316,7 @@ CASE(nodes_are_chosen_by_pattern_and_taken_once)
 {
     good(l, FACILITY);
     struct geometry g = cut(l, &(struct geometry_params){ .nodes = "P-101*", .unit_m = 1, .up = AXIS_Z });
-    assert_int_equal(g.primitive_count, 3); /* a node "seal" matches two patterns and is taken once */
+    assert_int_equal(g.primitive_count, 3); /* the node "seal" is part of two nodes that match, but its triangles are taken only once */
     assert_string_equal(g.names.at + g.primitives[2].name, "P-101B/seal");
     geometry_finish(&g);
     g = cut(l, &(struct geometry_params){ .nodes = "E-7", .unit_m = 1, .up = AXIS_Z });

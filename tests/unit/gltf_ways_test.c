@@ -575,7 +575,8 @@ static void second_texcoords_are_read(struct gltf_case *l, const struct wavy_she
     assert_true(g.second_texcoords && g.materials[0].second == m->second);
     geometry_finish(&g);
 
-    maker = seed_open(15, "textured.glb", sheet); /* the primitive lacks the coordinate set that the texture uses */
+    /* the material's occlusion texture uses a coordinate set that the primitive does not have */
+    maker = seed_open(15, "textured.glb", sheet);
     json_object_set_new(maker_get(&maker, "materials", 0), "occlusionTexture", json_pack("{s:i,s:i}", "index", 0, "texCoord", 7));
     try_model(l, &maker);
     assert_good(l);
@@ -740,7 +741,8 @@ CASE(assets_are_cut_from_a_tree)
     g = cut(l, "branch", 0.001, AXIS_Y); /* a sub-tree of a model in millimetres, y up */
     assert_int_equal(g.primitive_count, 1);
     assert_string_equal(g.names.at + g.primitives[0].name, "twig");
-    assert_float_equal(g.origin_m[1], -0.0095, 1e-6); /* y of the sheet is z of the branch, which is -y of the asset */
+    /* along this axis, y of the wavy test sheet is z of the node "branch" and -y of the asset */
+    assert_float_equal(g.origin_m[1], -0.0095, 1e-6);
     geometry_finish(&g);
 
     g = cut(l, "[fm]*", 1, AXIS_Z);

@@ -222,7 +222,8 @@ CASE(time_zones_do_not_touch_what_is_recorded)
     const int64_t begins[] = { autumn - 1800 * S, NOVEMBER - 1800 * S };
     size_t count;
     for (size_t b = 0; b < 2; b++)
-        for (int quarter = 0; quarter < 4; quarter++) { /* records each quarter of an hour in another time zone */
+        /* the machine's time zone changes each quarter of an hour while recording goes on */
+        for (int quarter = 0; quarter < 4; quarter++) {
             set_zone(zones[quarter]);
             int64_t from_us = begins[b] + quarter * 900 * S;
             int error;
@@ -308,7 +309,8 @@ CASE(every_point_comes_back_bit_by_bit)
         struct history_row rows[TAGS];
         size_t count = 0;
         for (int tag = 0; tag < TAGS; tag++) {
-            int at = rand() % 20 == 0 ? rand() % (second + 1) : second; /* now and then the clock was set back */
+            /* now and then a point is older than those before, as after the clock was set back */
+            int at = rand() % 20 == 0 ? rand() % (second + 1) : second;
             uint32_t quality = rand() % 8 ? QUALITY_GOOD : 0x80000000U + (unsigned)rand();
             struct history_point point = { NOVEMBER + at * S + at % 7, odd_value(), quality };
             if (rand() % 3)
@@ -659,7 +661,8 @@ CASE(gaps_are_told_in_order_and_joined)
     assert_true(gaps.at[0].from_us == october && gaps.at[0].to_us == october + 10 * S);
     assert_true(gaps.at[1].from_us == october + 200 * S && gaps.at[1].to_us == NOVEMBER + 86600 * S);
     mem_free(gaps.at);
-    assert_int_equal(history_gaps(s->reader, NOVEMBER + 3600 * S, NOVEMBER + 7200 * S, &gaps), 0); /* this gap began in the month before */
+    /* an hour within a gap that began in the month before: the gap is found in that month's file */
+    assert_int_equal(history_gaps(s->reader, NOVEMBER + 3600 * S, NOVEMBER + 7200 * S, &gaps), 0);
     assert_int_equal(gaps.count, 1);
     mem_free(gaps.at);
     assert_int_equal(history_gaps(s->reader, october + 20 * S, october + 30 * S, &gaps), 0);
@@ -699,7 +702,8 @@ CASE(damage_inside_is_noticed)
     fseek(file, 0, SEEK_END);
     long pages = ftell(file) / 4096;
     assert_true(pages > 20);
-    for (long page = 12; page < pages; page++) { /* the first pages hold the roots of tables, whose damage is noticed earlier */
+    /* damages all pages but the first ones, which hold the roots of tables, whose damage is noticed earlier */
+    for (long page = 12; page < pages; page++) {
         fseek(file, page * 4096, SEEK_SET);
         assert_int_equal(fwrite(rubbish, sizeof(rubbish), 1, file), 1);
     }
@@ -1015,7 +1019,7 @@ CASE(months_wait_for_what_is_to_be_sent)
     assert_int_equal(unsent, 0);
     mem_free(month_list(s->folder, &count));
     assert_int_equal(count, 2); /* the month whose points were all sent was deleted */
-    /* too large: the oldest points are deleted, including unsent ones, which are counted */
+    /* a month file that is too large loses its oldest points, including unsent ones, which are counted */
     int64_t waiting = waiting_in(s, november + 1), lost = 0;
     assert_int_equal(waiting, 20000);
     limits.bytes = (double)size_of_month(s, month_begin_us(november + 1)) * 0.7;
@@ -1138,7 +1142,7 @@ CASE(points_of_another_quantity_are_left_out)
         const char *before = changes[c][0], *after = changes[c][1];
         struct history_series series;
         write_in_unit(s, before, NOVEMBER, 100, 3, true);
-        /* the new unit is known, but the file has no point with it yet */
+        /* the plant now has the new unit, but the file has only points in the old one */
         char *said = read_in_unit(s, after, NOVEMBER + 100 * S, 1000, &series);
         assert_int_equal(series.points.count, 0);
         char *line = test_printf("TT-1: 3 points in '%s' are left out, because '%s' cannot be converted to '%s'", before, before, after);
@@ -1147,7 +1151,7 @@ CASE(points_of_another_quantity_are_left_out)
         assert_null(strstr(first + 1, line)); /* the second query says nothing */
         mem_free(said);
         history_series_finish(&series);
-        /* the present month's file has both units */
+        /* now this month's file has points in both units */
         write_in_unit(s, after, NOVEMBER + 10 * S, 20, 1, true);
         said = read_in_unit(s, after, NOVEMBER + 100 * S, 1000, &series);
         assert_non_null(strstr(said, line));

@@ -220,7 +220,7 @@ static void holds(const struct case_of *of)
     print_message("said: %.3f steps; seen: %.3f; nearest to what was said of its triangle: %.3f; %zu places, hidden %.3f (%.3f of the "
                   "places), %.2g unknown\n",
                   report.steps, worst, nearest, bend.count, report.hidden_share, hidden_m2 / whole_m2, report.unknown_share);
-    /* the field is curved here, and the reported bound is not much too large */
+    /* the field inside triangles is curved enough to test the bound, and the reported bound is not much larger than the errors */
     assert_true(worst <= report.steps + 0.02 && nearest > 0.8 && worst > 1);
     assert_true(report.measured == 1 && report.unmeasured == 0 && report.over_share > 0);
     assert_true(report.unknown_share < 0.01 && fabs(report.hidden_share - hidden_m2 / whole_m2) < 0.04);

@@ -168,7 +168,8 @@ CASE(test_lost_sensor_is_bridged_and_its_place_unknown)
     begin(&u, c, "", ", interpolation: harmonic, disc_m: 0.1", SENSORS);
     u.snapshot->readings[4] = (struct reading){ .value = 5000, .quality = QUALITY_BAD };
     assert_int_equal(look(&u, place_of(4))->no_data, 255);
-    assert_true(fabs((double)look(&u, place_of(3) + 0.2)->value - 31.7) < 0.4); /* linear from sensor 3 to sensor 5, outside their discs */
+    /* sensor 4 is lost: the field is linear from sensor 3 to sensor 5, outside the discs that the sensors cover */
+    assert_true(fabs((double)look(&u, place_of(3) + 0.2)->value - 31.7) < 0.4);
     assert_true(look(&u, place_of(3) + 0.3)->uncertain < 128);
     u.snapshot->readings[5].quality = QUALITY_UNCERTAIN; /* the Uncertain tag contributes half of the value at the lost sensor */
     assert_true(look(&u, place_of(4) - 0.3)->uncertain > 127);
@@ -394,7 +395,7 @@ CASE(test_directions)
     found = points_at(&u, 5);
     expect_along(&found, 1, 0);
     say(&u, "U", 1, 0), say(&u, "U", 2, 0);
-    say(&u, "T", 0, 0), say(&u, "T", 3, 0); /* a flow of speed 0 has no direction */
+    say(&u, "T", 0, 0), say(&u, "T", 3, 0); /* both sensors read speed 0, and a flow of speed 0 has no direction */
     found = points_at(&u, 5);
     assert_false(found.known); /* half-way between two opposite directions */
     found = points_at(&u, 4.5);

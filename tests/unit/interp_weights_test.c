@@ -133,7 +133,8 @@ TEST(papers_shares_are_those_of_a_plain_loop)
     }
 }
 
-/* Random distances near and far, but no sensor crosses the radius, with any readings: the value changes no faster than the bound. */
+/* The bound on how fast the value changes with the sensors' distances holds for any readings and for random distances, as long as no sensor
+   crosses its radius. */
 TEST(no_value_changes_faster_than_is_said)
 {
     for (int n = 0; n < 2000; n++) {

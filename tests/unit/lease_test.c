@@ -134,7 +134,7 @@ static void change(struct lease_world *world, struct flight *flight)
 static void on_database(struct lease_world *world, struct flight *flight)
 {
     struct flight asked = *flight;
-    if (world->now_ns < world->frozen_ns) { /* a paused node acts when it wakes */
+    if (world->now_ns < world->frozen_ns) { /* the database is frozen: it handles the message when it wakes up */
         flight->at_ns = world->frozen_ns + 1;
         return;
     }
@@ -226,7 +226,7 @@ static void lead(struct lease_world *world, struct lease_node *node, int i)
     const char own[2] = { (char)('a' + i), 0 }, other[2] = { follower < 0 ? 0 : (char)('a' + follower), 0 };
     const char *name = node->alone ? own : other;
     lease_promised(&node->lease, own, clock_of(world, node));
-    /* after a lost connection the node does not know whether its last request arrived */
+    /* the node may have lost the answer to its last request: from time to time it reads the row to find out */
     if (!node->waits && chance(world, 10) == 0 && node->sent_ns && !world->calm) {
         ask_database(world, node, i, LOOK, "");
     } else if (!node->waits) {
@@ -301,7 +301,8 @@ static void deliver(struct lease_world *world, struct flight *flight)
         on_database(world, flight);
         return;
     }
-    bool asks = flight->what == ASK; /* requests for a promise reach whatever incarnation runs on the node */
+    /* a question whether a node promises not to bid is answered by whatever process runs on that node, also after a restart */
+    bool asks = flight->what == ASK;
     if (node->life && world->now_ns < node->wakes_ns) {
         flight->at_ns = node->wakes_ns + 1;
         return;
@@ -481,7 +482,8 @@ TEST(a_given_lease_is_taken_at_once_by_the_node_that_saw_its_leader)
     assert_false(a.lost);
     assert_false(lease_may_bid(&a, 100 * S)); /* a ends */
     struct lease late = follower("b", &given, 3 * S), other = follower("b", &none, 3 * S);
-    assert_false(lease_may_bid(&late, 3 * S)); /* the row may be old, from a restored database */
+    /* `late` has seen only this row, which may be an old one in a restored database, so it waits */
+    assert_false(lease_may_bid(&late, 3 * S));
     lease_saw(&other, &given, 3 * S);
     assert_false(lease_may_bid(&other, 3 * S));
     assert_true(lease_may_bid(&other, 6 * S));

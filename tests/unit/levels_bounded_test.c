@@ -255,7 +255,7 @@ TEST(seams_stay)
         const uint32_t *v = left + 3 * t;
         uint32_t primitive = s.welds.primitive[v[0]];
         assert_true(primitive == s.welds.primitive[v[1]] && primitive == s.welds.primitive[v[2]]);
-        /* samples along each edge must lie on their own side of the wave, within the border's tolerance */
+        /* 20 points along each edge must lie on the triangle's own side of the wavy border, within the border's tolerance */
         for (uint32_t k = 0; k <= 20; k++) {
             for (int e = 0; e < 3; e++) {
                 const float *a = s.welds.positions_m[v[e]], *b = s.welds.positions_m[v[(e + 1) % 3]];

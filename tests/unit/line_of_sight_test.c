@@ -65,8 +65,8 @@ static double way_round(const struct sheet_and_rod *pair, const double p[3], con
     return least;
 }
 
-/* Checks distances to the sheet's sides. pieces: 1 if the rod must be joined to the sheet, 2 if it must stay apart. beside: the rod lies
-   along a rim. */
+/* Checks distances from the rod to both sides of the sheet. pieces: 1 if the rod must be joined to the sheet, 2 if it must stay apart.
+   beside: the rod lies along a rim. */
 static void test_pair(const char *name, const struct sheet_and_rod *pair, bool below, bool beside, size_t pieces)
 {
     /* no fault with gaps: gaps would be as wide as the sheet is thick */

@@ -13,7 +13,7 @@
 
 #define SOURCES 6
 #define MODELS "../shared/data/models/"
-#define LONGEST 2.0   /* sample spacings; such long edges span faces that were cut on two sides */
+#define LONGEST 2.0   /* longest allowed edge, in spacings of the sample points: longer edges span faces that were cut on two sides */
 #define ROUNDING 1e-5 /* of the straight line: floats */
 
 static size_t draw(size_t count)

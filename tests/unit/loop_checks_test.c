@@ -133,7 +133,8 @@ TEST_WITH(test_a_line_that_was_cut_off_spoils_no_other, set_up, tear_down)
     assert_int_equal(loop_checks_add(f->loop_checks, 1, &passed), REFUSAL_NONE);
     char *both = read_file(f);
     size_t end = strlen(both);
-    for (size_t cut = length; cut < end - 1; cut++) { /* truncates the file at every byte of the second line */
+    /* cuts the file of loop checks at every byte of its second line: the first line must stay valid */
+    for (size_t cut = length; cut < end - 1; cut++) {
         assert_int_equal(truncate(path, (off_t)cut), 0);
         open_again(f);
         assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_PASSED);

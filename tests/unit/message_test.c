@@ -410,7 +410,7 @@ TEST(halves_show_what_the_plants_own_view_does)
         farther += after[i] * after[i];
     }
     assert_true(farther > 1.5 * nearer); /* the camera steps back */
-    for (int i = 0; i < 3; i++)          /* the camera looks the same way as before */
+    for (int i = 0; i < 3; i++)          /* the camera was moved back along its old direction */
         assert_float_equal(after[i] / sqrt(farther), before[i] / sqrt(nearer), 1e-6);
     assert_true(query(args, 2, &given, &error) && given.camera.eye_m[1] == -9); /* a camera stated by the client is not moved */
     plant->display.view = (struct plant_view){ 0 };

@@ -283,7 +283,7 @@ CASE(one_refusal_loses_nothing)
         }
     }
     assert_int_equal(s->device.refused, 4);
-    assert_int_equal(s->device.most, 10); /* the block of 10 registers was not split */
+    assert_int_equal(s->device.most, 10); /* reads of all 10 registers at once were kept: the refusal did not split the block */
 }
 
 CASE(what_was_refused_is_asked_again_after_seconds)

@@ -58,14 +58,15 @@ static void check_asset(const json_t *asset, const char *plant)
     const json_t *sensors = json_object_get(asset, "sensors");
     bool surface = !json_is_null(json_object_get(asset, "surface"));
     const char *state = json_string_value(json_object_get(asset, "state"));
-    double off_m = strcmp(plant, "../plant_room") ? 0.01 : 0.02; /* the pumps' thermowells protrude by 12 mm */
+    double off_m = strcmp(plant, "../plant_room") ? 0.01 : 0.02; /* sensors in thermowells of pumps are up to 12 mm above the surface */
     assert_true(!strcmp(state, "built") || !strcmp(state, "shared"));
     assert_true(surface == (json_array_size(sensors) > 0));
     assert_true(of(asset, "vertices") == of(asset, "model_vertices") + of(asset, "vertices_added"));
     check_levels(asset);
     if (surface)
         check_surface(asset);
-    for (size_t s = 0; s < json_array_size(sensors); s++) /* the sensors were placed on vertices, some of which are hidden */
+    /* the sensors of these plants were placed on vertices; a hidden vertex lies off the surface that is used */
+    for (size_t s = 0; s < json_array_size(sensors); s++)
         assert_true(of(json_array_get(sensors, s), "surface_distance_m") < off_m);
     print_message("# %-26s %-9s %6.0f triangles, split %6.0f; ", plant, json_string_value(json_object_get(asset, "id")),
                   of(asset, "model_triangles"), of(asset, "triangles"));

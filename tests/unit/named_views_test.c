@@ -94,7 +94,8 @@ CASE(what_they_were_is_kept)
     char title[12];
     assert_int_equal(save(f, "a", "0", -1), REFUSAL_NONE);
     assert_int_equal(versions_of(f, "a", 1), 0);
-    assert_int_equal(save(f, "a", "0", 0), REFUSAL_NONE); /* only the view's place in the order changes */
+    /* the same view is saved at another place in the order: that makes no new version */
+    assert_int_equal(save(f, "a", "0", 0), REFUSAL_NONE);
     assert_int_equal(versions_of(f, "a", 1), 0);
     for (int i = 1; i < 2 * NAMED_VIEW_VERSIONS; i++) {
         snprintf(title, sizeof(title), "%d", i);
@@ -112,7 +113,8 @@ CASE(the_plant_file_has_its_own)
     assert_int_equal(save(f, "mine", "Mine", -1), REFUSAL_NONE);
     f->plant.screens.view_count = 0;
     assert_int_equal(save(f, "all", "Mine", -1), REFUSAL_NONE);
-    f->plant.screens.view_count = 1; /* the plant file has the view again, and its version replaces the saved one */
+    /* the plant file defines the view "all" again, which replaces the view that a user saved under this id */
+    f->plant.screens.view_count = 1;
     assert_order(f, "all mine");
 }
 

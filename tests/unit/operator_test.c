@@ -39,10 +39,10 @@ TEST(test_limits_that_are_missing)
     expect(&high, 40, 0.5);
     expect(&high, 80, 1);
     expect(&high, 90, 2);
-    expect(&high, -50, 0); /* without a low limit, nothing is too low */
+    expect(&high, -50, 0); /* for a tag without a low limit, no reading is too low */
     expect(&alone, 80, 1);
     expect(&alone, 120, 1.5);
-    expect(&alone, 500, 2); /* a value just below HH has not passed HH */
+    expect(&alone, 500, 2); /* a reading far beyond H stays below 2, the position of HH, because this tag has no HH */
     assert_true(limit_place(&range_0_100, &alone, 500) < 2);
     expect(&last, 40, 0.5);
     assert_true(limit_place(&range_0_100, &last, 79.999) < 1); /* no limit is passed yet */
@@ -56,7 +56,7 @@ TEST(test_limits_that_are_missing)
     expect(&both, 40, 0);
     expect(&both, 20, -1);
     expect(&both, -10, -2.5 + 0.501); /* cut */
-    expect(&beyond, -60, 0);          /* half the range away from a limit that lies below MIN */
+    expect(&beyond, -60, 0);          /* this tag's limit is below MIN: the position 0 is half the range below the limit */
     expect(&beyond, -10, 1);
     struct plant_tag none = with_limits(NAN, NAN, NAN, NAN);
     assert_true(isnan(limit_place(&range_0_100, &none, 5)));
@@ -79,7 +79,8 @@ TEST(test_places_rise_with_readings)
             double place = limit_place(&range_0_100, &tag, value);
             assert_true(place >= before - 1e-12 && fabs(place) <= 3);
             struct reading reading = { .value = value };
-            enum alarm_kind alarm = alarm_beyond(&tag, &reading); /* the alarm agrees with the colours */
+            /* the alarm limits that a reading exceeds must agree with its position and so with its colour */
+            enum alarm_kind alarm = alarm_beyond(&tag, &reading);
             assert_int_equal(alarm == ALARM_HH, place >= 2 - 1e-9 && isfinite(limits[LIMIT_HH]));
             assert_int_equal(alarm == ALARM_LL, place <= -2 + 1e-9 && isfinite(limits[LIMIT_LL]));
             assert_int_equal(alarm == ALARM_NONE, fabs(place) < 1 - 1e-9);
@@ -97,7 +98,8 @@ TEST(test_alarms_need_usable_readings)
     assert_int_equal(alarm_beyond(&tag, &reading), ALARM_H);
     reading.value = 1;
     assert_int_equal(alarm_beyond(&tag, &reading), ALARM_L);
-    reading.quality = QUALITY_UNCERTAIN_UNITS_EXCEEDED; /* a reading beyond the instrument's range is beyond its limits */
+    /* a reading that is Uncertain because it exceeds the instrument's range exceeds its limits, too */
+    reading.quality = QUALITY_UNCERTAIN_UNITS_EXCEEDED;
     assert_int_equal(alarm_beyond(&tag, &reading), ALARM_L);
     reading.quality = QUALITY_BAD_SENSOR_FAILURE;
     assert_int_equal(alarm_beyond(&tag, &reading), ALARM_NONE);
@@ -165,7 +167,7 @@ TEST(test_tags_without_limits_have_no_place)
     for (int i = 0; i < LIMIT_COUNT; i++)
         plant->plant.tags[1].alarms.limits[i] = NAN;
     plant->snapshot->readings[0].value = 60;
-    plant->snapshot->readings[1].value = 1e6; /* a tag without limits takes no part */
+    plant->snapshot->readings[1].value = 1e6; /* this tag has no limits, so its huge reading must not count in the field of positions */
     plant->snapshot->readings[2].value = 60;
     struct field_params params;
     field_params_default(&plant->plant, 0, &params);

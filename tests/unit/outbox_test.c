@@ -210,7 +210,8 @@ CASE(nobody_is_told_twice_after_a_restart)
     outbox_put(f->outbox, &missed, true, T0 + 10 * S);  /* raised just before the daemon ended: only the journal has it */
     assert_true(outbox_next(f->outbox, BOSS, T0 + 10 * S, &message));
     assert_int_equal(message.count, 1);
-    assert_string_equal(message.id, id); /* Alertmanager can recognise the repeated message */
+    /* after a restart the message is sent again with the same id, so that Alertmanager recognises it */
+    assert_string_equal(message.id, id);
     outbox_sent(f->outbox, BOSS, T0 + 10 * S);
     assert_int_equal(deliver(f, OPS, T0 + 70 * S), 1);
     assert_int_equal(deliver(f, BOSS, T0 + 70 * S), 1);
@@ -335,7 +336,8 @@ CASE(what_ended_while_nobody_looked_is_over)
     assert_int_equal(deliver(f, AM, T0 + 3 * S), 2);
     restart(f);
     struct alarm stands = alarm_of(f, 1, LOCAL, true, true, T0);
-    outbox_put(f->outbox, &stands, true, T0 + 60 * S); /* alarm 0 is missing, because its limit no longer exists */
+    /* after a restart, alarm 0 is not reported again, because its limit no longer exists */
+    outbox_put(f->outbox, &stands, true, T0 + 60 * S);
     outbox_end_unseen(f->outbox, T0 + 60 * S);
     assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN), 0);
     assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN + 3 * S), 1);

@@ -47,7 +47,7 @@ static struct frame *draw(int tag, bool occluded, bool split)
     return draw_beside(tag, occluded, split ? &same : NULL);
 }
 
-/* Returns whether the lower left corner has a list of alarms. */
+/* Returns whether the lower left corner of a frame has the list of alarms without a visible marker. */
 static bool has_list(const struct frame *frame)
 {
     for (int y = HEIGHT * 2 / 3; y < HEIGHT; y++)
@@ -76,7 +76,7 @@ TEST(alarms_out_of_sight_are_listed)
         reading->alarm_status = ALARM_ACTIVE;
         assert_false(lists(2, false, split));
         assert_true(lists(2, true, split));
-        assert_true(lists(1, false, split)); /* the tag's marker is outside the frame, so its alarm is listed */
+        assert_true(lists(1, false, split)); /* the marker of tag 1 is outside the frame, so its alarm is listed in the corner */
     }
     reading->alarm = ALARM_NONE;
 }
@@ -87,7 +87,7 @@ TEST(any_number_of_alarms_fits)
         stand.snapshot->readings[i].alarm = ALARM_BAD;
     struct frame *frame = draw(0, true, false), *small = frame_create(NULL, 16, 16);
     assert_true(has_list(frame));
-    for (int y = 0; y < HEIGHT / 2; y++) /* at most a third of the frame's height, below the clock */
+    for (int y = 0; y < HEIGHT / 2; y++) /* the list of alarms leaves the upper half of the frame free, below the clock */
         assert_true(y < 80 || frame->bgrx[y * frame->stride_bytes + 40] == 255);
     view_default(&stand.toy->scene, 16, 16, &small->view);
     overlay_draw(small, &stand.toy->scene, stand.snapshot, NULL);
@@ -196,7 +196,8 @@ TEST(halves_share_a_legend_that_says_the_same)
         right.look = way == LOOK ? LOOK_MATERIALS : right.look;
         right.field.show = way == SHOWN ? SHOW_DIFFERENCE : right.field.show;
         struct frame *frame = draw_beside(0, false, &right);
-        bool shared = way == SAME || way == DISTANCE; /* a different field, but the same colours for the same values */
+        /* these two ways make another field but not another colour for a value, so one legend serves both halves */
+        bool shared = way == SAME || way == DISTANCE;
         if ((legend_px(frame, 0) > 20) == shared || (legend_px(frame, 1) > 20) != (way != LOOK))
             fail_msg("way %d: %d pixels of the left half, %d of the right", way, legend_px(frame, 0), legend_px(frame, 1));
         frame_unref(&frame);
@@ -302,7 +303,7 @@ static void differ(struct view *right, int way)
 TEST(halves_say_what_they_differ_in)
 {
     struct frame *plain = draw(0, false, true);
-    for (int x = 0; x < 240; x++) /* halves that are computed alike have no caption */
+    for (int x = 0; x < 240; x++) /* both halves of this frame are computed alike, so no caption says how */
         assert_int_equal(plain->bgrx[20 * plain->stride_bytes + 4 * (WIDTH / 2 + 4 + x)], 255);
     for (int way = 0; way < 9; way++) {
         struct view right;

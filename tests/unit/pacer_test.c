@@ -69,7 +69,8 @@ TEST(a_picture_cut_short_is_not_waited_for)
     pacer_asked(&pacer);
     pacer_sent(&pacer, 1000, &note, MS);
     pacer_gave_up(&pacer);
-    assert_false(pacer_may_ask(&pacer, 2 * MS)); /* the end of the frame is still to be sent */
+    /* the frame was given up, but its remaining bytes must be sent before another one is requested */
+    assert_false(pacer_may_ask(&pacer, 2 * MS));
     assert_int_equal(pacer_state(&pacer, 2100 * MS), PACER_STALLS);
     pacer_wrote(&pacer, true, 2200 * MS);
     assert_true(pacer_may_ask(&pacer, 2201 * MS));
@@ -284,7 +285,7 @@ TEST(a_client_that_is_busy_for_a_moment_keeps_its_quality)
 {
     struct pacer pacer = fresh();
     struct pacer_world world = { .bytes_per_s = 100e6, .rtt_ns = MS, .decode_ns = 4 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
-    channel_on_bytes(&pacer.channel, 1000000, 2500 * MS); /* the first text messages, sent while the page starts */
+    channel_on_bytes(&pacer.channel, 1000000, 2500 * MS); /* 1 MB of text messages, sent while the page starts */
     quality_ladder_begin(&pacer.ladder, &pacer.channel, world.pixels);
     run_busy(&world, &pacer, 700 * MS, 0.75);
     run_world(&world, &pacer, 0.1); /* carries two or three pictures */
@@ -338,7 +339,7 @@ TEST(who_see_the_same_take_one_step)
     struct quality_ladder ladder = { .step = 1 }, seen = { 0 };
     assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 1, 0, 1 }), -1);
     int common = quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 60, 30, 5, 0, 0, 5 });
-    assert_int_equal(common, 1); /* the slowest few clients do not pull down the common quality step */
+    assert_int_equal(common, 1); /* 10 of 100 clients have slower steps; they must not pull down the quality step that all share */
     assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ [QUALITY_LADDER_STEPS - 1] = 10 }),
                      QUALITY_LADDER_STEPS - 1);
     seen.unit_bytes = 90e3; /* bytes per frame: too many for 500 clients, not for 100 */

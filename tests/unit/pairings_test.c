@@ -135,7 +135,8 @@ CASE(few_wait_and_few_guesses_are_judged)
     for (int i = 0; i < PAIRINGS_FROM - 1; i++)
         assert_int_equal(ask(f, PAIRINGS + i, 0, more), PAIRING_WAITS);
     assert_int_equal(ask(f, PAIRINGS + PAIRINGS_FROM - 1, 0, more), PAIRING_FULL);
-    assert_int_equal(ask(f, 0, 0, more), PAIRING_FULL); /* the first address lost one request and now has as many as the others */
+    /* the first address lost one pending request to the ninth one and now has as many as the others, so it gets no more */
+    assert_int_equal(ask(f, 0, 0, more), PAIRING_FULL);
     assert_int_equal(ask(f, PAIRINGS, PAIRING_QUIET_S * NS_PER_S, more), PAIRING_WAITS); /* all other requests have expired */
     for (int i = 0; i < PAIRINGS_FROM - 1; i++)
         assert_int_equal(ask(f, PAIRINGS + 1 + i, PAIRING_QUIET_S * NS_PER_S, digits), PAIRING_WAITS);
@@ -146,10 +147,11 @@ CASE(few_wait_and_few_guesses_are_judged)
     const uint8_t address[16] = { PAIRINGS / PAIRINGS_FROM };
     assert_int_equal(pairings_ask(f->pairings, &(struct pairing_request){ secret, ROOM, address, "" }, PAIRING_QUIET_S * NS_PER_S, digits,
                                   &left_s),
-                     PAIRING_FULL); /* that address already has eight requests */
+                     PAIRING_FULL); /* refused: this address already has eight pending requests */
     for (int i = 0, now_s = PAIRING_QUIET_S; i < PAIRING_WRONG; i++)
         assert_int_not_equal(approve(f, "abcdef", now_s * NS_PER_S), REFUSAL_NONE);
-    assert_int_not_equal(approve(f, more, (PAIRING_QUIET_S + 1) * NS_PER_S), REFUSAL_NONE); /* right digits, which are not judged now */
+    /* right digits, but after too many wrong ones no digits are accepted for a minute */
+    assert_int_not_equal(approve(f, more, (PAIRING_QUIET_S + 1) * NS_PER_S), REFUSAL_NONE);
     assert_int_equal(ask(f, PAIRINGS, (PAIRING_QUIET_S + 30) * NS_PER_S, more), PAIRING_WAITS);
     assert_int_equal(approve(f, more, (PAIRING_QUIET_S + 61) * NS_PER_S), REFUSAL_NONE);
 }

@@ -119,7 +119,8 @@ TEST_WITH(test_a_move_is_a_trial_at_once_and_a_better_one_later, set_up, tear_do
         farthest_m = fmax(farthest_m, along_m);
         assert_true(along_m > 0.94 * straight_m - 0.05); /* no path along the surface is much shorter than the straight line */
     }
-    assert_true(farthest_m > 1.85 && farthest_m < 2.4); /* path to the middle of the bottom: 0.5 + 1 + 0.5 */
+    /* the farthest vertex is in the middle of the box's bottom: 0.5 + 1 + 0.5 m along the surface */
+    assert_true(farthest_m > 1.85 && farthest_m < 2.4);
     trials_give(placing_trials(f->placing), &trial);
 }
 

@@ -136,7 +136,8 @@ CASE(a_plant_is_prepared)
     assert_int_equal(own, (ACROSS + 1) * (UP + 1));
     assert_true(v->header->level_count > 1 && own < v->header->vertex_count);
     assert_true(v->sensors[1].node_hash != 0 && v->sensors[0].node_hash == 0);
-    for (uint32_t i = 0; i < v->header->vertex_count; i++) { /* on a plate the distance along the surface is the straight distance */
+    /* on a flat plate, stored distances along the surface must equal straight distances */
+    for (uint32_t i = 0; i < v->header->vertex_count; i++) {
         float x = v->positions_m[i][0] + 1, y = v->positions_m[i][1] + 0.5f;
         assert_float_equal(asset_distance_m(v, 0, i), hypotf(x, y), 1e-3);
         assert_float_equal(asset_distance_m(v, 1, i), hypotf(2 - x, 1 - y), 1e-3);
@@ -359,7 +360,7 @@ CASE(a_field_that_is_constant_needs_no_triangles)
         json_t *report = prep_case_json(&c->out);
         triangles[more] = prep_case_number(report, "assets.0.levels.0.triangles");
         const json_t *surface = json_object_get(json_array_get(json_object_get(report, "assets"), 0), "surface");
-        for (int n = 0; n < 2; n++) /* distances are checked by a second method only if the field depends on them */
+        for (int n = 0; n < 2; n++) /* the report has the results of a second distance method only if the field depends on distances */
             assert_int_equal(json_is_null(json_object_get(surface, n ? "heat_disagreement" : "time_m2")), more == 0);
     }
     assert_in_range((int)triangles[0], 2 * ACROSS * UP, 2 * ACROSS * UP + 8); /* a vertex for each sensor */

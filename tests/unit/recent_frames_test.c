@@ -28,7 +28,7 @@ TEST(a_view_is_found_while_nothing_newer_was_said_of_its_readings)
     struct recent_frames recent = { 0 };
     struct view view = view_of(1), other = view_of(2);
     draw(&recent, 1, 7, NOW_NS);
-    view.camera_seq = 99; /* the client's camera_seq is not compared */
+    view.camera_seq = 99; /* another camera number must not matter: views are compared by what they show */
     assert_true(recent_frames_find_view(&recent, &view, NOW_NS - 50 * MS, NOW_NS + 20 * MS)->content == 7);
     assert_non_null(recent_frames_find_view(&recent, &view, NOW_NS, NOW_NS + 20 * MS));
     assert_null(recent_frames_find_view(&recent, &view, NOW_NS + 10 * MS, NOW_NS + 20 * MS));

@@ -282,7 +282,7 @@ TEST(an_asset_without_surface_is_said_to_be_broken)
         box_init(&box);
         struct relocation *relocation = relocation_create(the_log, workers, &shapes[i]);
         uint64_t ticket = relocation_request(relocation, (const double[3]){ 0.5, 0.1, 0 }, put_into_box, &box);
-        assert_true((ticket > 0) == (i == 0)); /* sensors may be placed on a degenerate triangle too */
+        assert_true((ticket > 0) == (i == 0)); /* on the first shape, a degenerate triangle, sensors may be placed, too */
         assert_true(relocation_place(relocation, (const double[3]){ 0.5, 0.1, 0 }, &place, NULL) == (i == 0));
         if (ticket) {
             wait_for(&box, 1);

@@ -157,7 +157,7 @@ CASE(what_is_not_in_the_file_is_bad)
     assert_true(s->events.at[1].tag == 0 && s->events.at[1].value == 0);
     wait_for_link(s, true);
     int64_t begin_ns = clock_mono_ns();
-    source_stop(&s->source); /* stopped long before the recording ends */
+    source_stop(&s->source); /* stops the replay long before the end of the recording; this must not take longer than 2 s */
     assert_true(clock_mono_ns() - begin_ns < 2 * NS_PER_S);
 }
 

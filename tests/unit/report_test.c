@@ -103,7 +103,7 @@ TEST_WITH(numbers_are_those_of_the_model, set_up, prep_case_tear_down)
         if (!(found >= expected[i].least && found <= expected[i].most))
             fail_msg("%s is %.9g, expected %g to %g", expected[i].path, found, expected[i].least, expected[i].most);
     }
-    for (int asset = 0; asset < 4; asset++) { /* numbers in the asset file against numbers in the report's levels */
+    for (int asset = 0; asset < 4; asset++) { /* numbers in the asset file must agree with those of the report's levels of detail */
         char path[60];
         snprintf(path, sizeof(path), "assets.%d.levels.0.triangles", asset);
         double split = prep_case_number(report, path);

@@ -159,7 +159,7 @@ CASE(everything_is_in_its_place)
     assert_point(b->sensors[1].position_m, 8, 24, 30);
     assert_point(b->sensors[0].surface_m, 8, 21, 32.5);
     assert_float_equal(b->sensors[0].surface_distance_m, 0.5, 1e-6);
-    assert_point(c->sensors[0].position_m, -4, -3, 2); /* placement turns y to z and z to -y */
+    assert_point(c->sensors[0].position_m, -4, -3, 2); /* the asset's placement in the plant file turns y of the model to z, and z to -y */
     assert_point(a->bounds_min_m, 0, 1, 1);
     assert_point(a->bounds_max_m, 4, 2, 3);
     assert_point(b->bounds_min_m, 8, 20, 31);
@@ -316,7 +316,8 @@ CASE(home_is_the_view_of_the_plant)
     scene_home(scene, 1.5, &camera);
     assert_true(camera_valid(&camera));
     assert_true(scene->extreme_count >= 4);
-    for (int i = 0; i < 3; i++) { /* the outermost points of assets lie within the plant's bounds and nearly reach them */
+    /* scene->extremes_m: outermost points of the assets, which lie within the plant's bounds and nearly reach them */
+    for (int i = 0; i < 3; i++) {
         double least = INFINITY, most = -INFINITY, slack = 0.15 * (scene->bounds_max_m[i] - scene->bounds_min_m[i]) + 1e-6;
         for (size_t n = 0; n < scene->extreme_count; n++) {
             least = fmin(least, scene->extremes_m[n][i]);
@@ -350,7 +351,8 @@ CASE(home_is_of_what_is_shown_at_the_start)
     for (size_t n = 0; n < scene->extreme_count; n++)
         assert_true(scene->extremes_m[n][0] < scene->assets[1].bounds_min_m[0]);
     scene_destroy(&scene);
-    f->plant->assets[0].start = f->plant->assets[2].start = PLANT_START_HIDDEN; /* without visible assets the home view covers all */
+    /* all assets are hidden at the start: the home view then covers all of them */
+    f->plant->assets[0].start = f->plant->assets[2].start = PLANT_START_HIDDEN;
     scene = scene_create(f->log, f->plant, f->prepared);
     assert_non_null(scene);
     assert_true(scene->extreme_count >= 4);

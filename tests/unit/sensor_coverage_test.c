@@ -46,7 +46,8 @@ static double share_of(bool (*f)(const double nearest[2], double limit_m), doubl
         for (int j = 0; j <= CELLS; j++) {
             double x = side_m * i / CELLS, y = side_m * j / CELLS, nearest[2] = { INFINITY, 0 };
             int inside = (i > 0 && i < CELLS) + (j > 0 && j < CELLS);
-            double triangles = inside ? 3 * inside : 1.5; /* a corner vertex has one or two triangles, 1.5 on average */
+            /* area of the vertex in triangles of the plate's grid: a corner vertex has one or two triangles, 1.5 on average */
+            double triangles = inside ? 3 * inside : 1.5;
             for (int s = 0; s < SENSORS; s++) {
                 double m = hypot(x - sensors[s][0], y - sensors[s][1]);
                 /* the later sensor wins if two are equally near: the last one has a good reading, which counts first */
@@ -114,7 +115,7 @@ TEST_WITH(test_a_sensor_that_is_tried_out_counts, set_up, tear_down)
     assert_true(sensor_coverage_find(&order, &gaps));
     /* the farthest point is the corner that the moved sensor left */
     assert_true(fabs(gaps.farthest_m - 4) < 1e-6 && fabs(gaps.farthest_at_m[0] - 104) < 1e-5);
-    trial.sensors[0].asset = 1; /* the sensor moves to the other asset, which has no sensor */
+    trial.sensors[0].asset = 1; /* in the trial, sensor 0 moves to the other asset, which has no sensor of its own */
     order.asset = 1;
     trial.sensors[0].vertex = 0;
     memset(trial.sensors[0].surface_m, 0, sizeof(trial.sensors[0].surface_m));

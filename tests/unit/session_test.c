@@ -260,7 +260,7 @@ CASE(refined_frames_are_asked_for_signed)
     f->now_ns += NS_PER_S;
     struct frame_request refined = show(f);
     assert_true(refined.view.tier == TIER_REFINED && refined.record && refined.codec == WIRE_CODEC_PNG && !refined.draft);
-    /* the request is for the recoloured refined frame, or for a preview like those before */
+    /* asks for the refined frame with new colours as a PNG file to sign, or else for a preview in JPEG like those before */
     struct frame_request data = show_data(f, true);
     assert_true(data.record && data.codec == WIRE_CODEC_PNG && (!data.or_moving || data.moving_codec == WIRE_CODEC_JPEG));
     say(f, "{\"type\":\"sign\",\"frames\":\"all\"}");
@@ -396,7 +396,7 @@ CASE(readings_that_are_rare_do_not_make_what_is_shown_old)
     assert_int_equal(session_fresh_ns(f->session), f->now_ns);
     int64_t then_ns = f->now_ns;
     f->now_ns += 100 * MS;
-    session_on_data(f->session, f->now_ns); /* the frame has been outdated since the data came, not for a minute */
+    session_on_data(f->session, f->now_ns); /* new readings outdate the shown frame from now on, although it was drawn a minute ago */
     session_on_tick(f->session, f->now_ns);
     assert_int_equal(session_fresh_ns(f->session), then_ns);
     f->now_ns += NS_PER_S;
@@ -677,7 +677,7 @@ CASE(data_does_not_wait_for_the_first_refined_picture)
     show(f);
     f->now_ns += NS_PER_S;
     assert_true(ask(f, &refined) && refined.view.tier == TIER_REFINED);
-    for (int i = 0; i < 5; i++) { /* a link so slow that a single frame fills it */
+    for (int i = 0; i < 5; i++) { /* the link is so slow that a single frame of 20 kB fills it */
         session_on_data(f->session, f->now_ns += 3 * NS_PER_S);
         assert_true(ask(f, &data) && (i > 0 || (data.view.tier == TIER_REFINED && data.or_moving)));
         session_on_data(f->session, f->now_ns += 100 * MS);
@@ -843,7 +843,8 @@ CASE(views_shown_again_and_again_are_admitted_as_new_ones)
     struct frame_request request;
     greet(f);
     show(f);
-    for (int i = 0; i < 3; i++) /* drawing takes all of the time, and readings are delayed */
+    /* pretends that drawing takes all of the time and that readings are delayed, so that no new session would be admitted */
+    for (int i = 0; i < 3; i++)
         f->admission.windows[i] = (struct admission_window){ .drawing_ns = NS_PER_S, .data_wait_ns = 2 * NS_PER_S };
     f->now_ns += NS_PER_S;
     say(f, HIDE);

@@ -84,7 +84,7 @@ TEST(test_an_answer_without_a_frame_overtakes_one)
     wall.members[0]->delivery.pacer.asked = 1;
     have(&wall, 1, 7, 4);
     session_tiles_present(&wall.tiles, &presented, 0, 0);
-    assert_int_equal(presented, 5); /* picture 7 must not be presented by the frame of 5 */
+    assert_int_equal(presented, 5); /* tile 0 shows the frame of picture 5, which must not count as its frame of picture 7 */
     session_tile_came(wall.members[0], &request, 0);
     assert_int_equal(request.picture, 7);
     wall.members[0]->delivery.pacer.asked = 0;
@@ -121,7 +121,7 @@ TEST(test_a_skipped_picture_is_not_one_that_the_tile_shows)
         assert_int_equal(tile->delivery.pacer.asked, 0);
         session_tiles_present(&wall.tiles, &presented, 0, 0);
         assert_int_equal(presented, unchanged ? 6 : 5);
-        assert_true(tile->demand.any == !unchanged); /* another picture is requested for all tiles */
+        assert_true(tile->demand.any == !unchanged); /* if a tile's request was skipped, another picture is requested for all tiles */
         tear_down(&wall);
     }
 }
@@ -152,7 +152,8 @@ static void check_moves(int width_px, int height_px)
 TEST(test_tiles_are_moved_within_the_picture)
 {
     check_moves(320, 180);
-    check_moves(4096, 2160); /* three such displays exceed the largest picture and so start smaller */
+    /* a picture across three such displays would exceed the largest one that the server draws, so it starts smaller */
+    check_moves(4096, 2160);
     check_moves(8192, 8192);
 }
 
@@ -228,8 +229,9 @@ TEST(test_a_server_that_takes_long_makes_smaller_pictures)
     assert_int_equal(size_after(&ladder, 120, 1000, 9000), 0); /* pictures are made fast enough */
     assert_int_equal(size_after(&ladder, 220, 10000, 10400), 0);
     assert_int_equal(size_after(&ladder, 220, 10450, 10600), 1); /* pictures took too long for half a second */
-    assert_int_equal(size_after(&ladder, 125, 11000, 19000), 1); /* the current cost is right: the size neither grows nor shrinks */
-    assert_int_equal(size_after(&ladder, 60, 20000, 29000), 1);  /* frames of the next larger size would take 107 ms, so the size stays */
+    /* frames of this size take 125 ms: not so long that they shrink, and not so short that the next larger size would be fast enough */
+    assert_int_equal(size_after(&ladder, 125, 11000, 19000), 1);
+    assert_int_equal(size_after(&ladder, 60, 20000, 29000), 1); /* frames of the next larger size would take 107 ms, so the size stays */
     assert_int_equal(size_after(&ladder, 40, 30000, 32900), 1);
     assert_int_equal(size_after(&ladder, 40, 32950, 33100), 0);
     assert_int_equal(size_after(&ladder, 900, 40000, 60000), QUALITY_LADDER_SIZES - 1);

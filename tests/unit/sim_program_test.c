@@ -222,7 +222,7 @@ CASE(every_type_over_the_wire)
         assert_string_equal(control(s, command), "ok");
         expect(&reader, s->plant, sets[i].name, QUALITY_GOOD, sets[i].value);
     }
-    expect(&reader, s->plant, "bit 4", QUALITY_GOOD, 1); /* changing the neighbouring bit left this bit unchanged */
+    expect(&reader, s->plant, "bit 4", QUALITY_GOOD, 1); /* setting other bits of the same register left this bit unchanged */
     reader_stop(&reader);
 }
 

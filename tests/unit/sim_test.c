@@ -35,7 +35,8 @@ static void check_there_and_back(const struct plant_tag *tag, double value, doub
     struct sample sample;
     assert_true(sim_encode(tag, value, words));
     decode_sample(tag, words, &sample);
-    if (tag->scale.kind == SCALING_SQUARE_ROOT) { /* a raw step is a step of the squared value */
+    /* square-root scaling: a step of the raw value is a step of the squared value, so small values have a larger error */
+    if (tag->scale.kind == SCALING_SQUARE_ROOT) {
         double low = tag->scale.negate ? -tag->scale.scaled_low : tag->scale.scaled_low;
         allowed = allowed * fabs(tag->scale.scaled_high - tag->scale.scaled_low) /
                   fmax(fabs(value - low), sqrt(allowed * fabs(tag->scale.scaled_high - tag->scale.scaled_low)));

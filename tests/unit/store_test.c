@@ -94,11 +94,11 @@ CASE(goes_stale)
     assert_quality(look(s, 0, 15 * S - 1)->quality, QUALITY_GOOD);
     uint32_t before = look(s, 0, 15 * S - 1)->changes;
     assert_quality(look(s, 0, 15 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
-    assert_int_equal(look(s, 0, 16 * S)->changes, before + 1); /* turning stale counts as one change, however often snapshots are taken */
+    assert_int_equal(look(s, 0, 16 * S)->changes, before + 1); /* `changes` counts turning stale once, however often snapshots are taken */
     write_one(s, 0, 7, QUALITY_GOOD, 20 * S);
     const struct reading *r = look(s, 0, 20 * S);
     assert_quality(r->quality, QUALITY_GOOD);
-    assert_int_equal(r->changes, before + 2); /* the value is the same, but it became usable again */
+    assert_int_equal(r->changes, before + 2); /* the same value counts as a change, because the reading became usable again */
 }
 
 CASE(uncertain_stays_uncertain)
@@ -191,7 +191,8 @@ CASE(counts_every_change)
     store_link_lost(s->store, 0, 13 * S);
     store_link_lost(s->store, 0, 13 * S);
     assert_int_equal(look(s, 0, 13 * S)->changes, ++wanted);
-    assert_int_equal(look(s, 0, 17 * S)->changes, ++wanted); /* quality falls from Uncertain to Bad by age alone */
+    /* the reading's quality falls from Uncertain to Bad by age alone, which counts as a change */
+    assert_int_equal(look(s, 0, 17 * S)->changes, ++wanted);
     write_one(s, 0, 0, QUALITY_BAD_DEVICE_FAILURE, 18 * S);
     assert_int_equal(look(s, 0, 18 * S)->changes, ++wanted);
     write_one(s, 0, 5, QUALITY_BAD_DEVICE_FAILURE, 19 * S); /* the value of a Bad sample is ignored */
@@ -235,7 +236,8 @@ CASE(readings_go_on_in_another_plant)
     store_adopt(store, s->store);
     store_snapshot(store, 30 * S, 1030 * S, snapshot);
     assert_true(snapshot->readings[1].value == 42);
-    assert_int_equal(snapshot->readings[1].alarm, ALARM_NONE); /* no alarm is shown until the new plant's alarms report one */
+    /* readings are taken over without their alarms: the alarms of the new plant have reported none yet */
+    assert_int_equal(snapshot->readings[1].alarm, ALARM_NONE);
     assert_quality(snapshot->readings[1].quality, QUALITY_GOOD); /* the new plant's stale time is longer */
     assert_true(snapshot->readings[1].age_ns == 20 * S);
     assert_quality(snapshot->readings[0].quality, QUALITY_BAD_WAITING);
@@ -386,7 +388,7 @@ CASE(other_tags_vouch)
     store_listen(s->store, on_sample_event, heard);
     write_one(s, 0, 20, QUALITY_GOOD, 0);
     write_one(s, 2, 30, QUALITY_GOOD, 0);
-    assert_quality(look(s, 0, 0)->quality, QUALITY_UNCERTAIN); /* the quality tag has no value yet */
+    assert_quality(look(s, 0, 0)->quality, QUALITY_UNCERTAIN); /* tag 0 has its quality from another tag, which has no value yet */
     const struct {
         double word;
         uint32_t pattern, any;
@@ -398,7 +400,8 @@ CASE(other_tags_vouch)
                   { 0x1p62 + 0x1p10, QUALITY_UNCERTAIN, QUALITY_UNCERTAIN } }; /* the lowest bits of the 64 are unknown */
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         write_one(s, 1, cases[i].word, QUALITY_GOOD, S);
-        assert_quality(heard[0], cases[i].pattern); /* the event comes immediately, not with this tag's own next sample */
+        /* tag 0 has its quality from tag 1: the change is reported at once, not with tag 0's own next sample */
+        assert_quality(heard[0], cases[i].pattern);
         assert_quality(heard[2], cases[i].any);
         assert_quality(look(s, 0, S)->quality, cases[i].pattern);
         assert_quality(look(s, 2, S)->quality, cases[i].any);

@@ -467,7 +467,8 @@ static void say_errors(const struct prepared_body *body, size_t level, const cha
 }
 
 #define POINTS sweep(20000, 5000)
-/* Checks the finest level: 99.5 % of the points are within one colour step, all within `most`. */
+/* Checks the field on the finest level at random points: 99.5 % of the points must be within one colour step of the truth, and all within
+   `most` steps. */
 static void assert_field(const struct prepared_body *body, const char *name, void (*snap)(double p[3]), double most)
 {
     double *errors = mem_array(POINTS, sizeof(*errors));
@@ -585,8 +586,8 @@ TEST(nine_triangles_show_the_field)
     finish(&body);
 }
 
-/* Compares by area: where the reaches of two sensors and the data end in one point, the field jumps there, surrounded by the smallest
-   allowed triangles. */
+/* Checks the field on a plate, with points drawn by area: where the reaches of two sensors and the data end in one point, the field jumps,
+   and the smallest allowed triangles there would count too much. */
 static void assert_plate(const struct prepared_body *body)
 {
     struct sight_target finest;

@@ -90,7 +90,7 @@ static void make_narrow_slot(struct cad *cad, double size[3])
     make_slot(cad, size, 2);
 }
 
-/* Returns whether the straight line passes through the slot. */
+/* Returns whether the straight line from a to b passes through the plate's slot. */
 static bool is_blocked(const double slot[3], const double a[3], const double b[3])
 {
     double low = 0, high = 1, dx = b[0] - a[0], dy = b[1] - a[1];
@@ -277,7 +277,7 @@ static bool second_plate_reached(double dx, double dz)
 
 TEST(gaps_are_closed_and_walls_are_not_passed)
 {
-    assert_true(second_plate_reached(1.0003, 0));   /* plates 0.3 mm apart are joined */
+    assert_true(second_plate_reached(1.0003, 0));   /* two plates with a gap of 0.3 mm are joined */
     assert_false(second_plate_reached(1.02, 0));    /* a slot of 20 mm */
     assert_false(second_plate_reached(0, 0.01));    /* two sheets 10 mm apart */
     assert_true(second_plate_reached(0.5, 0.0002)); /* one plate lies on the other */
@@ -335,11 +335,13 @@ TEST(a_pipe_that_ends_inside_a_shell_is_joined_to_it)
     assert_int_equal(report->components, 2);
     assert_int_equal(report->components_after, 1);
     assert_bridges_are_shown(surface, -0.25, 0.25);
-    assert_true(report->hidden_vertices >= 48 * 8);                   /* the pipe's rings inside the sphere are hidden */
-    double seam = asin(0.2), truth = M_PI - seam + (3.5 - cos(seam)); /* true distance: over the sphere to the pipe, then along the pipe */
+    assert_true(report->hidden_vertices >= 48 * 8); /* the pipe's rings inside the sphere are hidden */
+    /* the true distance from the sphere's pole to the pipe's end: over the sphere to the pipe, then along the pipe */
+    double seam = asin(0.2), truth = M_PI - seam + (3.5 - cos(seam));
     assert_float_equal(distances[both.vertex_count - 1], truth, 0.01 * truth);
     for (size_t v = sphere_count; v < both.vertex_count; v++)
-        assert_true(isfinite(distances[v])); /* hidden ends have distances too, for the triangles that cross the shell */
+        /* the pipe's hidden end inside the sphere has distances, too, because triangles that cross the sphere's shell need them */
+        assert_true(isfinite(distances[v]));
     surface_destroy(&surface);
     cad_finish(&both);
     cad_finish(&pipe);

@@ -171,7 +171,8 @@ TEST(what_is_held_is_the_newest)
     assert_int_equal(held.t_us, 3 * S);
 }
 
-/* The line to the newest sample before the door closes keeps the same bound: a step must not look like a ramp meanwhile. */
+/* The line to the newest sample, which the filter may not keep, is as close to the samples as the line through kept points: a step must not
+   look like a ramp until the next point is kept. */
 TEST(whoever_reads_now_is_promised_the_same)
 {
     srand(20260101);

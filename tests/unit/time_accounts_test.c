@@ -26,7 +26,8 @@ TEST(each_address_has_half_of_the_time)
     struct time_account *large = time_accounts_join(&accounts, 1), *small = time_accounts_join(&accounts, 2);
     int64_t had_ns[2] = { 0 };
     for (int i = 0; i < 29; i++)
-        assert_ptr_equal(time_accounts_join(&accounts, 1), large); /* an address has one account for all its sessions */
+        /* further sessions of an address share the account that its first session has */
+        assert_ptr_equal(time_accounts_join(&accounts, 1), large);
     while (had_ns[0] + had_ns[1] < 60 * NS_PER_S) {
         struct time_account *next = who_has_had_less(large, small);
         int64_t cost_ns = next == large ? 300 * NS_PER_MS : 20 * NS_PER_MS;

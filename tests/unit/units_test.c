@@ -282,7 +282,8 @@ CASE(what_was_recorded_is_shown_in_the_unit_of_now)
         struct history_tag *tags = history_tags(c->plant);
         struct snapshot *snapshot = snapshot_create(1);
         struct history_series points, buckets;
-        history_reader_show_by(reader, pass ? NULL : c->plant); /* in the second pass the month file itself stores the unit */
+        /* in the second pass the reader knows no plant, and takes the unit from the month file */
+        history_reader_show_by(reader, pass ? NULL : c->plant);
         assert_int_equal(history_series(reader, "F", start_us, start_us + 7200 * US_PER_S, 20000, &points), 0);
         assert_int_equal(history_intervals(reader, "F", start_us, start_us + 3600 * US_PER_S, 10, &buckets), 0);
         assert_int_equal(history_at(reader, tags, start_us + 2 * US_PER_S, snapshot), 0);

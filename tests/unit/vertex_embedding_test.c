@@ -95,7 +95,9 @@ TEST(what_stands_off_is_on_the_side_that_it_looks_along)
     double worst_m = 0, nearest_m = INFINITY;
     cad_random_start(&chance);
     make_bent_plate(&plate, &chance);
-    for (int i = 0; i < COUNT; i++) { /* the first half of the points is on the side itself, like the finest level's vertices */
+    /* the first half of the points lies exactly on one side of the plate, as vertices of the finest level do; the second half lies off
+       it */
+    for (int i = 0; i < COUNT; i++) {
         double turn = 0.8 * (cad_random(&chance) - 0.5), y = UP * CELL * (0.3 + 0.4 * cad_random(&chance));
         double off_m = CELL * (0.55 + 0.4 * cad_random(&chance));
         on_side(turn, y, outer, places[i]);
@@ -168,7 +170,8 @@ static size_t count_far(const struct asset_view *view, const struct surface *sur
     return far;
 }
 
-/* The coarsest level's error equals the plate's thickness, and in some places the level intersects itself: neither side is right there. */
+/* The coarsest level's error equals the plate's thickness, and in some places that level intersects itself, so that no side is the right
+   one there. */
 TEST(coarser_levels_have_the_distances_of_their_own_side)
 {
     struct prep_case *c = *state;

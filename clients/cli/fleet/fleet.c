@@ -21,7 +21,9 @@ enum { PORT = 8090, HEADER_BYTES = 2048, CHUNK = 16384, NAME_BYTES = 256 };
 struct fleet_site {
     struct fleet_poll *poll;
     const struct fleet_file *file;
-    const char *host; /* name that a request's Host header may contain in addition to local names; NULL: none */
+    /* host name under which the fleet page may be requested in addition to local names; other Host headers are refused (DNS rebinding).
+       NULL: none */
+    const char *host;
 };
 
 struct fleet_answer { /* response of one connection */

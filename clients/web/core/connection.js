@@ -121,7 +121,7 @@ export class Connection {
             if (back)
                 this.leastWait = back[1] * 1000;
             const known = CLOSE_REASONS[event.code];
-            // onUnopened() is not called after the first failure, because a server that restarts is reachable again by the second attempt
+            // onUnopened() is called only from the second failure in a row on: after the first one, the server may just be restarting
             const again = this.state === 'connecting' && !known && this.unopened++;
             this.lose(known ? say(known) : event.reason || this.blocked || say('reason.unreachable'));
             if (again)

@@ -181,7 +181,7 @@ export class Session {
         this.cameraSeq = this.paramsSeq = 0;
         this.asked = new Map([[-1, shown]]);
         if (this.picture)
-            // the number of this picture's parameters belongs to the previous connection; -1 is no number of the new one
+            // the parameters of the picture on the screen have a number of the previous connection, which may occur again; -1 never occurs
             this.picture.paramsSeq = -1;
         this.greetedCamera = parts.includes('camera') ? this.camera : null;
         const message = { type: 'hello', ...this.size, ...this.proofs(), codecs: this.codecs,
