@@ -56,7 +56,7 @@ test('after a reload or a reconnect, a viewer takes these parameters from the vi
     assert.deepEqual([isEngineers('strength=2'), isEngineers('look=flat')], [true, false]);
 });
 
-test('a plant that is loaded anew may have none any more', () => {
+test('a plant that is loaded again may have none any more', () => {
     const { session, say } = greeted('viewer');
     say(vector('server/views.json'));
     assert.ok(session.views.length > 0);

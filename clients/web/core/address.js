@@ -2,7 +2,7 @@
 // Writes the view to the fragment of the page's URL (after #) and reads it, so that a reload or a shared link shows the same view.
 import { valid } from './camera.js';
 import { clipText, numbersText, readNumbers, readSensors, sensorsText } from './query.js';
-import { ENGINEERS } from './session.js';
+import { withoutEngineers } from './session.js';
 
 const CHOICES = {
     // parameter of the view -> its valid names; null: any name, which the server checks
@@ -28,7 +28,7 @@ const HALF = ['group', 'show', 'distance', 'interpolation', 'colormap', 'look'];
 // Returns the fragment for a view. own: default values of parameters, such as those of the sensor group; parameters with these values are
 // left out. named: id of the saved view from which the server takes the parameters that only engineers may send.
 export function writeAddress({ camera, params: all = {}, tag = null, time = null, own = {}, named = null }) {
-    const params = named ? Object.fromEntries(Object.entries(all).filter(([name]) => !ENGINEERS.includes(name))) : all;
+    const params = named ? withoutEngineers(all) : all;
     const parts = [], differs = (name) => JSON.stringify(params[name]) !== JSON.stringify(own[name]);
     const put = (name, value) => parts.push(`${name}=${encodeURIComponent(value).replace(/%2C|%3A|%3B/g, decodeURIComponent)}`);
     for (const name of Object.keys(CHOICES)) {

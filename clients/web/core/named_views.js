@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Saved views: converts between a view's text, a session's state, and the query for a picture of the view.
 import { addressOf, readAddress } from './address.js';
-import { ENGINEERS } from './session.js';
+import { ENGINEERS, withoutEngineers } from './session.js';
 
 const ID_CHARS = 48;
 
@@ -17,31 +17,27 @@ export function viewOf(session, text, id) {
     const { camera, params, tag } = readAddress(text), group = session.model.group(params.group) ?? session.group;
     const plain = { ...session.ownOf(group), range: null, ramp_interval: 0, breaks: group.breaks?.length ? group.breaks : null,
         split: null, selected: null, clip: null, sensors: null };
-    const all = { ...plain, ...params };
-    if (session.role !== 'engineer') {
-        ENGINEERS.forEach((name) => delete all[name]);
-        if (id)
-            all.named = id;
-    }
+    const all = { ...plain, ...params }, isEngineer = session.role === 'engineer';
+    const sent = isEngineer ? all : { ...withoutEngineers(all), ...(id ? { named: id } : {}) };
     const { width, height, pixel_ratio: ratio = 1 } = session.size;
-    return { camera: camera ?? session.homeIn(width / ratio, height / ratio), params: all, tag };
+    return { camera: camera ?? session.homeIn(width / ratio, height / ratio), params: sent, tag };
 }
 
 // Returns whether a view has parameters that only engineers may send.
-export const isEngineers = (text) => ENGINEERS.some((name) => readAddress(text).params[name] !== undefined);
+export function isEngineers(text) {
+    const { params } = readAddress(text);
+    return ENGINEERS.some((name) => params[name] !== undefined);
+}
 
 // Returns those of a session's parameters that only engineers may send, as text; null: all have their default values.
 export function engineersOf({ params, ownParams: own }) {
-    const differs = (name) => (name === 'sensors' ? Object.keys(params.sensors ?? {}).length > 0
-        : JSON.stringify(params[name]) !== JSON.stringify(own[name]));
-    return ENGINEERS.some(differs) ? JSON.stringify(ENGINEERS.map((name) => params[name])) : null;
+    const textFrom = (from) => JSON.stringify(ENGINEERS.map((name) => from[name] ?? {})), text = textFrom(params);
+    return text === textFrom(own) ? null : text;
 }
 
 // Returns the session's current parameters, with those that only engineers may send taken from the saved view `id`.
 export function regained(session, id) {
-    const { params } = viewOf(session, textOf(session));
-    ENGINEERS.forEach((name) => delete params[name]);
-    return { ...params, named: id };
+    return { ...withoutEngineers(viewOf(session, textOf(session)).params), named: id };
 }
 
 // Returns an id made from a title. No other saved view has this id.

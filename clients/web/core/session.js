@@ -15,6 +15,7 @@ export const PARAMS = [
 const SAID = [...PARAMS, 'sensor', 'baseline', 'baselines', 'sensors', 'unit']; // parameters that the server reports
 // Parameters that only engineers may send. The build makes the server's list from this line.
 export const ENGINEERS = ['fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'sensors'];
+export const withoutEngineers = (params) => Object.fromEntries(Object.entries(params).filter(([name]) => !ENGINEERS.includes(name)));
 // parameters that are the same for both halves of a split view
 const SHARED = ['light', 'environment', 'backdrop', 'arrows', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split'];
 // parameters with lists of assets: an empty list is sent, too, because the default list of the plant file may not be empty

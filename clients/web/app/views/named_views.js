@@ -60,7 +60,7 @@ export class NamedViews {
     regain(id) {
         const { session } = this;
         if (!session.views.some((view) => view.id === id)) {
-            session.named = null;
+            this.remember(null);
             this.tell(say('named.unknown', { id }));
             return;
         }
@@ -79,8 +79,9 @@ export class NamedViews {
         const { session } = this;
         if (!session.named || this.isNew || session.params !== session.confirmed)
             return;
-        this.own ??= engineersOf(session);
-        if (!this.own || this.own !== engineersOf(session))
+        const own = engineersOf(session);
+        this.own ??= own;
+        if (!own || own !== this.own)
             this.remember(null);
     }
 
