@@ -53,9 +53,9 @@ function valueOf(model, tag, { value, limit, unit: was }) {
 function tableOf(titles, rows) {
     if (rows.length === 0)
         return make('p', { class: 'none' }, say('none'));
-    const body = rows.slice(0, MOST).map((cells) => make('tr', {}, ...cells.map((text, i) =>
-        make('td', { 'data-title': say(`handover.${titles[i]}`) }, text))));
-    const table = make('table', {}, make('thead', {}, make('tr', {}, ...titles.map((name) => make('th', {}, say(`handover.${name}`))))),
+    const names = titles.map((name) => say(`handover.${name}`));
+    const body = rows.slice(0, MOST).map((cells) => make('tr', {}, ...cells.map((text, i) => make('td', { 'data-title': names[i] }, text))));
+    const table = make('table', {}, make('thead', {}, make('tr', {}, ...names.map((name) => make('th', {}, name)))),
         make('tbody', {}, ...body));
     return rows.length > MOST ? make('div', {}, table, make('p', { class: 'none' }, say('walls.more',
         { count: rows.length - MOST }))) : table;

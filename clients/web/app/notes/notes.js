@@ -234,11 +234,11 @@ export class Notes {
     // that it does not jump.
     show() {
         const { picture, shown } = this.session, half = picture && halves(shown, picture.shownWidth)[0];
-        const project = half && projector(picture.camera, half.width, picture.fullHeight), { width, height } = this.viewport;
-        const unit = this.scale, wide = width / unit, high = height / unit;
+        const project = half && projector(picture.camera, half.width, picture.fullHeight), { wide, high } = this.overlay;
         const pins = [...(this.pointer ? [this.pointer] : []), ...[...this.pins.values()].reverse()];
         const area = half && { left: 0, top: 0, right: ((half.left + half.width) * wide) / picture.shownWidth, bottom: high };
-        const [fixed, rings, marks] = pins.length > 0 && half ? [this.overlay.boxesOver('', unit), ...this.markers()] : [[]];
+        const [fixed, rings, marks] = pins.length > 0 && half ? [this.overlay.boxesOver(''), ...this.markers()] : [[], [], []];
+        const marked = [...rings, ...marks];
         for (const pin of pins) {
             const { element, position } = pin, at = project?.(position);
             const x = at && ((half.left + at[0]) * wide) / picture.shownWidth, y = at && (at[1] * high) / picture.fullHeight;
@@ -252,10 +252,10 @@ export class Notes {
             const [left, top] = picture.still || !pin.offset ? [-1, -1] : [x + pin.offset[0], y + pin.offset[1]];
             const kept = { left, top, right: left + pin.wide, bottom: top + pin.high };
             const isFree = left >= 0 && top >= 0 && kept.right <= area.right && kept.bottom <= area.bottom &&
-                ![...fixed, ...rings].some((other) => meets(kept, other));
+                !fixed.some((other) => meets(kept, other)) && !rings.some((ring) => meets(kept, ring));
             const box = isFree ? kept : placePin({ ...pin, x, y }, area, fixed, rings, marks);
             pin.offset = [box.left - x, box.top - y];
-            element.classList.toggle('over', [...rings, ...marks].some((mark) => meets(mark, box)));
+            element.classList.toggle('over', marked.some((mark) => meets(mark, box)));
             fixed.push(box);
             const fromX = Math.max(box.left, Math.min(box.right, x)), fromY = Math.max(box.top, Math.min(box.bottom, y));
             const px = { left: box.left, top: box.top, 'from-x': fromX - box.left - 1, 'from-y': fromY - box.top - 1,
@@ -273,10 +273,5 @@ export class Notes {
             .map(({ x, y }) => ({ left: x - radius, right: x + radius, top: y - radius, bottom: y + radius }));
         return [boxes(this.overlay.project().filter(({ alarm }) => alarm), RING),
             boxes(this.overlay.markers.filter(({ alarm }) => !alarm), MARK)];
-    }
-
-    // Scale factor of the pins, which are larger on a wall.
-    get scale() {
-        return document.body.classList.contains('wall') ? Number(document.body.style.getPropertyValue('--wall')) || 1 : 1;
     }
 }

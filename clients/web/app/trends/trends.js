@@ -401,11 +401,10 @@ export class Trends {
     // Requests the alarms of the tags in the time range, and earlier ones, which may last into the range.
     async askAlarms() {
         const { tags, span } = this, { token } = this.session;
-        const all = await Promise.all(tags.map(async ({ name, unit, group }) => {
+        const all = await Promise.all(tags.map(async ({ name, unit }) => {
             const query = { tag: name, to: (span[1] / 1e6).toFixed(3), limit: ALARM_ROWS };
             const answer = await ask('api/v1/alarms/journal', query, token).catch(() => null);
-            return answer ? alarmSpans((await answer.json()).rows, unit || this.session.model.group(group)?.unit || '')
-                .filter(({ endUs }) => endUs === null || endUs > span[0]) : [];
+            return answer ? alarmSpans((await answer.json()).rows, unit).filter(({ endUs }) => endUs === null || endUs > span[0]) : [];
         }));
         if (tags !== this.tags || span !== this.span || !this.isOpen)
             return;

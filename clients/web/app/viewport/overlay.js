@@ -143,8 +143,8 @@ export class Overlay {
         this.all = this.project();
         this.markers = this.thinned();
         this.radius = markerRadius(this.all.filter((marker) => !marker.occluded));
-        const labels = this.labels();
-        this.places = this.place(labels);
+        const labels = this.labels(), blocked = this.blocked();
+        this.places = this.place(labels, blocked);
         this.arrows?.draw();
         for (const marker of this.markers)
             this.drawMarker(marker);
@@ -155,13 +155,13 @@ export class Overlay {
             return { left, top, right: left + wide, bottom: top + high };
         });
         const marks = this.markers.map(({ x, y }) => ({ left: x - 5, right: x + 5, top: y - 5, bottom: y + 5 }));
-        this.isolines?.draw([...this.blocked(), ...boxes, ...marks]);
+        this.isolines?.draw([...blocked, ...boxes, ...marks]);
     }
 
     // Returns the boxes, in units of this.unit CSS pixels, of the HTML elements over the picture that do not move with it (legend, banner,
     // ...), and of those that the selector `more` adds.
-    boxesOver(more, unit) {
-        const { element } = this.viewport, origin = element.getBoundingClientRect();
+    boxesOver(more) {
+        const { unit, viewport: { element } } = this, origin = element.getBoundingClientRect();
         return [...element.querySelectorAll(`.legend, .banner, .simulated-note, .chip, #plant-notes, .moment, .split-bar${more}`)]
             .map((e) => e.getBoundingClientRect()).filter((box) => box.width > 0).map((box) => ({
                 left: (box.left - origin.left) / unit, right: (box.right - origin.left) / unit,
@@ -171,7 +171,7 @@ export class Overlay {
 
     // Returns the boxes of everything that labels must not cover.
     blocked() {
-        const own = this.boxesOver(', .card, .note-pin', this.unit);
+        const own = this.boxesOver(', .card, .note-pin');
         const middle = this.wide / 2; // also blocks the line between the halves of a split view, so that no label crosses it
         return this.session.shown.split ? [...own, { left: middle - 1, right: middle + 1, top: 0, bottom: this.high }] : own;
     }
@@ -182,8 +182,8 @@ export class Overlay {
 
     // Places the labels of each half of a split view. Requests the module for call-outs (labels shared by several alarm rings) when rings
     // may need it.
-    place(labels) {
-        const { shown } = this.session, { wide: width, high: height, callouts } = this, blocked = this.blocked();
+    place(labels, blocked) {
+        const { shown } = this.session, { wide: width, high: height, callouts } = this;
         const placed = halves(shown, width).map((half, number) => placeLabels(labels.filter((label) => label.half === number), {
             area: { left: half.left, top: 0, right: half.left + half.width, bottom: height }, blocked,
             rings: callouts?.place, measure: (members) => callouts.measure(members),
