@@ -113,7 +113,7 @@ unsuppress: 억제 해제
 out_of_service: 사용 중지
 in_service: 사용 재개
 carry: 장치 알람으로 대체
-call: 다시 알림
+call: 다시 발생
 
 [moment]
 show: 발생 30초 전 보기

@@ -38,7 +38,7 @@ interpolation: Interpolation
 say: Laut Nachbarsensoren
 above: {predicted}; zeigt {by} mehr
 below: {predicted}; zeigt {by} weniger
-title: Größte Abweichungen von Nachbarsensoren
+title: Größte Abweichungen gegenüber Nachbarsensoren
 why: Vergleicht jeden Messwert mit dem, was die anderen Sensoren am Anlagenteil erwarten lassen. Gilt nicht, wo ein
   Sensor abweichen soll, etwa am Einlass.
 
@@ -233,7 +233,7 @@ ended: entfernt von {who}, {time}
 cut: Liste gekürzt: es gab mehr Alarme
 gives: Übergeben von
 takes: Übernommen von
-denied: Nur Operatoren dürfen die Übergabe öffnen: anmelden oder Token eingeben, dann von der Seite aus öffnen
+denied: Die Übergabe ist für Operatoren: anmelden oder Token eingeben, dann von der Seite aus öffnen
 
 [named]
 legend: Gespeicherte Ansichten
@@ -400,7 +400,7 @@ known: Gültig
 focus: Diese Kurve hervorheben und ihre Grenzwerte zeigen
 chart: Diagramme. Pfeiltasten bewegen das Fadenkreuz, Plus und Minus zoomen, Bildtasten verschieben, Enter zeigt den Zeitpunkt.
 table: Werte und Statistik
-raised: {alarm}, ausgelöst {time}
+raised: {alarm}, gekommen {time}
 remove: {tag} entfernen
 gaps: Schraffiert: kein Wert von {tags}
 failed: Kein Trend: {why}
@@ -434,8 +434,8 @@ ago: {instant} · vor {age}
 lost: {source}: keine Verbindung
 uncounted: Zu viele Alarme zum Zählen
 unrecorded: nicht aufgezeichnet
-raised(one): {count} Alarm ausgelöst
-raised(other): {count} Alarme ausgelöst
+raised(one): {count} Alarm gekommen
+raised(other): {count} Alarme gekommen
 
 [quality]
 because: {quality}: {detail}

@@ -61,7 +61,7 @@ radius_automatic: Radius automatisch
 reach: Reichweite {} m
 reach_unlimited: Reichweite unbegrenzt
 not_filled: Nicht gefüllt
-filled: Aus Nachbarn gefüllt
+filled: Aus der Umgebung gefüllt
 weighted: Von Hand gewichtete Sensoren: {}
 as_configured: Sensoren wie konfiguriert
 `;

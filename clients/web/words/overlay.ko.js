@@ -61,7 +61,7 @@ radius_automatic: 반경 자동
 reach: 도달 거리 {} m
 reach_unlimited: 도달 거리 무제한
 not_filled: 채우지 않음
-filled: 이웃 값으로 채움
+filled: 주변 값으로 채움
 weighted: 수동으로 가중치를 준 센서: {}
 as_configured: 센서 설정 그대로
 `;

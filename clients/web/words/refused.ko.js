@@ -119,8 +119,8 @@ file_length: Content-Length 헤더가 없습니다
 file_large: 파일이 2 GB보다 큽니다
 files: 파일은 최대 64개까지 올릴 수 있습니다. 일부를 제거하세요
 files_large: 모든 파일의 합이 8 GB를 넘게 됩니다
-uploads: 올리기 네 개가 진행 중입니다. 하나가 끝날 때까지 기다리세요
-upload_slow: 올리기가 너무 느립니다(10 kB/s 미만)
+uploads: 업로드 네 개가 진행 중입니다. 하나가 끝날 때까지 기다리세요
+upload_slow: 업로드가 너무 느립니다(10 kB/s 미만)
 upload_cut: 파일이 모두 전송되기 전에 업로드가 중단되었습니다
 
 [class]
