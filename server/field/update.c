@@ -38,7 +38,7 @@ struct update {
     /* indices of blocks of vertices. next: block to update next; old: end of the blocks that already had values before; end: end of the
        blocks that need values */
     size_t next, old, end;
-    bool anew;  /* true: sums the weights of all sensors; false: in blocks below `old`, adds only the changes of changed readings */
+    bool sums_all; /* true: sums the weights of all sensors; false: in blocks below `old`, adds only the changes of changed readings */
     bool flags; /* true: qualities changed, so flags of all blocks are set; false: flags in blocks below `old` stay */
     bool marks; /* true: the reading of at least one sensor in the sum has the quality Uncertain */
     pthread_mutex_t lock;
@@ -185,15 +185,15 @@ void update_begin(struct field_state *state, size_t count)
     update->changed = choose_terms(state, false);
     update->flags = qualities_changed(state);
     update->flags |= choose_error_limit(state);
-    update->anew = !state->sums || update->flags || state->added >= MAX_ADDED || !steps_are_small(update);
+    update->sums_all = !state->sums || update->flags || state->added >= MAX_ADDED || !steps_are_small(update);
     for (size_t i = 0; i < update->all.count; i++)
         update->marks |= update->all.marked[i];
     /* no input changed: blocks that have values stay unchanged, and only new blocks are computed */
-    if (!update->anew && update->changed.count == 0)
+    if (!update->sums_all && update->changed.count == 0)
         update->next = update->old;
     update_rule(state, state->now, &update->rule);
     pthread_mutex_init(&update->lock, NULL);
-    state->added = update->anew ? 0 : state->added + 1;
+    state->added = update->sums_all ? 0 : state->added + 1;
     state->wanted = count;
     state->update = update;
 }
@@ -245,7 +245,7 @@ static bool sum_block(const struct update *update, size_t block, size_t begin, s
     struct weights *weights = update->state->weights;
     double total[KERNEL_BLOCK], marked[KERNEL_BLOCK];
     struct weights_sums sums = { .values = values };
-    if (!update->anew && block < update->old) {
+    if (!update->sums_all && block < update->old) {
         weights_add(weights, begin, count, &update->changed, &sums);
         return false;
     }
@@ -335,7 +335,7 @@ static void update_blocks(void *arg, size_t begin, size_t end)
 static double block_work(const struct update *update, size_t block)
 {
     const struct weights *weights = update->state->weights;
-    bool step = !update->anew && block < update->old, kept = weights_has_columns(weights, block * KERNEL_BLOCK);
+    bool step = !update->sums_all && block < update->old, kept = weights_has_columns(weights, block * KERNEL_BLOCK);
     bool whole = !step && (!(weights->known[block] & KNOWN_TOTAL) || update->marks);
     double each = kept && !(whole && weights->interpolation == INTERPOLATION_PAPER) ? ADD_WORK : MAKE_WORK;
     return KERNEL_BLOCK * ((double)(step ? update->changed.count : update->all.count) * each + 4);
