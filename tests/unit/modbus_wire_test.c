@@ -114,14 +114,14 @@ CASE(late_replies_do_not_poison_the_next_connection)
 }
 
 /* A device becomes so slow that every answer comes after the timeout: its values are lost, and never those of another request. */
-static void check_always_late(struct modbus_case *s, enum device_wire wire, int late_ms)
+static void check_always_late(struct modbus_case *s, enum device_wire wire)
 {
     modbus_case_add_registers(s, 1);
     plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16);
     use_wire(s, wire);
     s->plant->sources[0].timeout_ms = 200;
-    s->plant->sources[0].pause_ms = 100;
-    s->device.late_ms = late_ms;
+    s->plant->sources[0].pause_ms = 200;
+    s->device.late_ms = 300;
     modbus_case_start(s);
     for (int tag = 0; tag < 2; tag++)
         modbus_case_expect(s, tag, QUALITY_GOOD, 3);
@@ -141,12 +141,12 @@ static void check_always_late(struct modbus_case *s, enum device_wire wire, int 
 
 CASE(a_slow_device_on_rtu_over_tcp_is_lost)
 {
-    check_always_late(s, DEVICE_RTU_TCP, 250);
+    check_always_late(s, DEVICE_RTU_TCP);
 }
 
 CASE(a_slow_device_on_a_serial_line_is_lost)
 {
-    check_always_late(s, DEVICE_LINE, 250);
+    check_always_late(s, DEVICE_LINE);
 }
 
 CASE(an_absent_line_is_tried_again)
