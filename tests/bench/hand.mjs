@@ -3,6 +3,7 @@
 // Prints one JSON object per row. Arguments: WIDTHxHEIGHT, CODEC (auto), ROUND_TRIP_MS (0), BYTES_PER_S of the link (0: no limit). Without
 // arguments, measures the links of LINKS in turn, and prints a table of the goals.
 import { createRequire } from 'node:module';
+import { setTimeout as sleep } from 'node:timers/promises';
 import { missing, startPlant } from '../e2e/support/plant.mjs';
 import { cpuMs, family } from '../e2e/support/processes.mjs';
 import { Relay, relayMissing } from '../e2e/support/relay.mjs';
@@ -20,7 +21,6 @@ function say(what, value, unit, more = {}) {
     console.log(JSON.stringify({ name: `${name}_${what}`, value, unit, ...more }));
     results[what] = more.p95 ?? value;
 }
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const round = (x) => Math.round(10 * x) / 10;
 const rank = (values, share) => round([...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))]);
 

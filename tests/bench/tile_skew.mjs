@@ -5,6 +5,7 @@ import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
+import { setTimeout as sleep } from 'node:timers/promises';
 import { browserOn, SCREENSHOTS } from '../e2e/support/browser.mjs';
 import { PlainClient } from '../e2e/support/plain_client.mjs';
 import { missing, TinyPlant } from '../e2e/support/tiny_plant.mjs';
@@ -16,7 +17,6 @@ const options = { skip: why ?? false, timeout: 240000 };
 const [WIDTH, HEIGHT] = [640, 360], SPAN_M = 20, BITS = 5, PLACES_M = [1.2, 2.7, 4.2, 5.7, 7.2];
 const FRAME_MS = 1000 / 30, CHANGE_MS = 200, CLOCK_MS = 5000;
 const boxes = [-1, 1].flatMap((side) => PLACES_M.map((x, i) => ({ id: `${side < 0 ? 'L' : 'R'}${i}`, x: side * x })));
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const screens = [], ending = [];
 let plant;
 

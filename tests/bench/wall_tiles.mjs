@@ -3,6 +3,7 @@
 // that all six tiles showed, processor time per picture, regularity, and quality.
 // SECONDS: duration, 10 by default. REALTIME=1: daemon and clients get real-time priority (needs root; use a few SECONDS only).
 import { spawnSync } from 'node:child_process';
+import { setTimeout as sleep } from 'node:timers/promises';
 import { PlainClient } from '../e2e/support/plain_client.mjs';
 import { missing, startPlant } from '../e2e/support/plant.mjs';
 import { cpuMs } from '../e2e/support/processes.mjs';
@@ -10,7 +11,6 @@ import { cpuMs } from '../e2e/support/processes.mjs';
 const [COLUMNS, ROWS, WIDTH, HEIGHT] = [3, 2, 1920, 1080], HZ = 30;
 const SECONDS = Number(process.env.SECONDS) || 10, SETTLE_S = process.env.REALTIME ? 4 : 8;
 const codec = process.argv[2] ?? 'h264', name = `wall_3x2_1080p_${codec}`;
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const say = (what, value, unit, more = {}) => console.log(JSON.stringify({ name: `${name}_${what}`, value, unit, ...more }));
 const why = missing();
 

@@ -533,7 +533,7 @@ large('400,000 triangles and 300 tags: a first picture within 5 minutes of the f
     }
 });
 
-test('a source: stated, values seen to arrive, corrected, kept when the plant is made anew', options, async () => {
+test('a source: stated, values seen to arrive, corrected, kept when the plant is made from scratch', options, async () => {
     const own = await Served.start(), seen = await openPage(`${own.url}?lang=en`, DESK), { page: desk } = seen;
     const list = ['Tag Name,Address,Data Type,Scaled Low,Scaled High,Eng Units,Description', 'E-101.TT-01,400001,Float,0,150,degC,Shell',
         'P-201A.TT-01,400003,Float,0,120,degC,Bearing', 'P-201B.PT-01,400005,Float,0,16,bar,Outlet', ''].join('\n');

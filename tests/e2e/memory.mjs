@@ -4,6 +4,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
+import { setTimeout as sleep } from 'node:timers/promises';
 import { Curious, dice } from './support/curious.mjs';
 import { get } from './support/plain_client.mjs';
 import { missing, startPlant } from './support/plant.mjs';
@@ -17,7 +18,6 @@ let plant, port, start, one;
 
 const status = () => readFileSync(`/proc/${plant.pid}/status`, 'utf8');
 const megabytes = (name) => Number(status().match(new RegExp(`${name}:\\s+(\\d+)`))[1]) / 1024;
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
 // Returns memory gauges in MB, by their label.
 async function gauges() {

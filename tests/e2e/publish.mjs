@@ -128,7 +128,7 @@ test('a value that replaces another of the same time is published', options, asy
     }
 });
 
-test('a broker that is killed and comes back has all anew; who dies is offline', options, async () => {
+test('a broker that is killed and comes back receives all values again; a daemon that dies is shown as offline', options, async () => {
     await broker.restart();
     await plant.daemon.line(/publish: .*: not publishing: /);
     await listen();

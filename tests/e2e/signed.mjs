@@ -352,7 +352,7 @@ test('the past agrees with what was recorded', { skip }, async () => {
 });
 
 const filmed = { skip: skip || noFfmpeg, timeout: 120000 };
-test('a film is good picture by picture; one that was changed, cut or made anew is not', filmed, () => {
+test('a film is good picture by picture; one that was changed, cut or encoded again is not', filmed, () => {
     const from = new Date(Date.now() - 4500).toISOString(), to = new Date(Date.now() - 3500).toISOString(), film = path('film.mp4');
     const made = runProgram('plantcast', ['clip', `http://127.0.0.1:${plant.port}/`, '-o', film, '--from', from, '--to', to, '--speed', '1',
         '--fps', '3', '--size', '321x200', '--signed'], 60000);

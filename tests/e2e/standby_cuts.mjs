@@ -85,7 +85,7 @@ test('with the database away and the standby gone it stops; whoever finds the da
 });
 
 
-test('a leader that was loaded anew goes on by the promise of a standby that was not', options, async (t) => {
+test('a leader that was reloaded goes on by the promise of a standby that was not', options, async (t) => {
     const core = await two.leader(), other = two.other(core), text = readFileSync(two.file, 'utf8');
     await two.followed(core);
     for (const one of [core, other])
@@ -104,7 +104,7 @@ test('a leader that was loaded anew goes on by the promise of a standby that was
     await two.goesOn(t, core, 1);
 });
 
-test('a leader is loaded anew while the database says nothing, and its standby asks all the time', options, async (t) => {
+test('a leader reloads while the database says nothing, and its standby asks all the time', options, async (t) => {
     const core = await two.leader();
     await two.followed(core);
     await core.toDatabase.freeze();

@@ -31,7 +31,7 @@ const valuesOf = async (core, from_us, to_us) => {
     return (await (await core.node.fetch(path)).json()).series[0].points.map(([, value]) => value);
 };
 
-test('what was recorded behind a cut is read although the plant is loaded anew meanwhile', options, async (t) => {
+test('what was recorded behind a cut is read although the plant is reloaded meanwhile', options, async (t) => {
     const core = await two.leader(), other = two.other(core), from_us = Date.now() * 1000;
     await other.toOther.cut();
     for (let i = 0; i < CUT_S * 2; i++) { // changes that the other core misses because of the cut
@@ -45,7 +45,7 @@ test('what was recorded behind a cut is read although the plant is loaded anew m
     change(two.file, 100, 101);
     other.program.child.kill('SIGHUP');
     await other.program.line(/reload: configuration/);
-    assert.equal(other.program.said.match(READ), null, 'it was loaded anew before');
+    assert.equal(other.program.said.match(READ), null, 'it was reloaded before');
     await until('the points of then', async () => (await valuesOf(other, from_us, to_us))
         .filter((value) => value === 71).length >= CUT_S - 2, 60);
     await other.toOther.mend();

@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { appendFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { setTimeout as sleep } from 'node:timers/promises';
 import { burnShift } from '../../clients/web/core/wall.js';
 import { openPage, SCREENSHOTS, shoot } from './support/browser.mjs';
 import { PlainClient } from './support/plain_client.mjs';
@@ -20,7 +21,7 @@ walls:
 - { id: wide, tile: { columns: 2, rows: 1, views: all } }
 `;
 const CAMERA = { type: 'camera', seq: 1, eye: [3.5, -7, 1], target: [1.5, 0, 0], up: [0, 0, 1], fov: 30 };
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms)), shiftNow = () => burnShift(Date.now() * 1000);
+const shiftNow = () => burnShift(Date.now() * 1000);
 let plant;
 
 before(async () => {

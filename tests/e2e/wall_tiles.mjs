@@ -275,7 +275,7 @@ test('what is no tile is refused by name', options, async () => {
         plant.daemon.child.kill('SIGHUP');
         await client.until('another plant', () => client.texts.filter(({ type }) => type === 'welcome').length > welcomes);
     }
-    await client.until('its place anew', () => client.texts.slice(said).some(({ type }) => type === 'tiles'));
+    await client.until('its place again', () => client.texts.slice(said).some(({ type }) => type === 'tiles'));
     assert.equal(part(), before, 'it is laid out by its display, not by what that was made to');
     client.close();
 });

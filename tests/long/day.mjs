@@ -9,6 +9,7 @@ import { spawn, spawnSync } from 'node:child_process';
 import { appendFileSync, existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
+import { setTimeout as sleep } from 'node:timers/promises';
 import { isDeepStrictEqual } from 'node:util';
 import { missingClocks, SetClock } from '../e2e/support/clocks.mjs';
 import { get } from '../e2e/support/plain_client.mjs';
@@ -19,7 +20,6 @@ const absent = missing();
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}`
     : missingClocks() ?? (existsSync(SERIES) ? false : `${SERIES} is not there`);
 const SESSIONS = 20, PROBE_S = 15, GROWTH = 1.1, WAIT_MS = 120000, BEFORE_END_S = 30, MONTH_DESCRIPTORS = 4;
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const pid = () => plant.daemon.child.pid;
 let plant, clock, marked = 0;
 const marks = [];

@@ -5,6 +5,7 @@ import assert from 'node:assert/strict';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
+import { setTimeout as sleep } from 'node:timers/promises';
 import { missing, TinyPlant } from '../e2e/support/tiny_plant.mjs';
 
 const SERIES = resolve('../shared/data/sensors/hydraulic/hydraulic_ts_1hz.csv');
@@ -19,7 +20,6 @@ TI-1,400001,Float,°C,left,temperature,E-101,0.5,0,0,1,${WITHIN}
 TI-2,400003,Float,°C,right,temperature,E-101,-0.5,0,0,1,${WITHIN}
 PI-1,400005,Float,bar,pump,pressure,P-101A,3,0,0.5,1,0.01
 `;
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const now = () => Date.now() / 1000;
 let plant, started, spike, gap;
 

@@ -190,7 +190,7 @@ test('what is not proven is said to be so to everybody, and stays through a relo
     assert.deepEqual(await page.evaluate(() => globalThis.plantcast.session.model.tags.map((tag) =>
         globalThis.plantcast.session.model.unproven(tag))), [null, 'fail', 'none', null]);
     await says('#legend .keys', 'Not loop-checked');
-    assert.notDeepEqual(await snapshot(), plain, 'in the server\'s pictures too, whose plant was loaded anew before');
+    assert.notDeepEqual(await snapshot(), plain, 'in the server\'s pictures too, whose plant was loaded again before');
     await settle(page);
     await shoot(page, 'engineer-unproven');
     assert.deepEqual(browser.errors, []);

@@ -228,7 +228,7 @@ test('legend and markers are of the picture that is seen, however late the one c
     relay.close();
 });
 
-test('a page that was kept from another version loads itself anew, once', options, async () => {
+test('a page that was kept from another version reloads itself, once', options, async () => {
     const asked = [];
     await withPage(url, TABLET, async (page, browser) => {
         await page.goto('about:blank'); // leaves the page, so that it requests no more parts

@@ -227,7 +227,7 @@ test('hands that cannot be followed are told so, and are followed once they can 
     await waitForMove(page, before);
 }, (page) => page.route('**/app/input/camera_controller.js*', (route) => route.abort())));
 
-test('a page whose server was another one meanwhile loads itself anew instead of mixing both', options, () => {
+test('a page whose server was another one meanwhile reloads itself instead of mixing both', options, () => {
     let version = 'aaaaaaaaaaaa';
     const serve = (route) => route.fulfill({ contentType: 'text/javascript', body: `export const version = '${version}';\n` });
     return withPage(async (page) => {

@@ -6,6 +6,7 @@ import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { setTimeout as sleep } from 'node:timers/promises';
 import { shareOpcua } from './server.mjs';
 import { missingClocks } from '../support/clocks.mjs';
 import { distort, LIES, tellLies } from '../support/lying_server.mjs';
@@ -19,7 +20,6 @@ const ROWS = ['TI-1,nsu=urn:test:plant%3B1;s=TI-1,,°C,temperature,E-101,0.5,0,0
 const canMount = process.getuid() === 0 && spawnSync('unshare', ['--mount', 'true']).status === 0;
 const MOST_MB = 48; // maximum memory in MB that a lying server may cost
 const good = { quality_name: 'Good' };
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let server, plant;
 
 shareOpcua(options, (...made) => { [server, plant] = made; });
@@ -63,7 +63,7 @@ test('what lies about sizes is left, named, and costs nothing', options, async (
 });
 
 test('a real server\'s messages with sizes in them that are none cost no more', options, async () => {
-    await server.anew();
+    await server.reset();
     const real = server.port;
     for (const spared of [0, 600, 3000]) {
         server.port = await freePort();
@@ -81,7 +81,7 @@ test('a real server\'s messages with sizes in them that are none cost no more', 
 });
 
 test('a reading whose source is an hour ahead is shown, and not as if it came from the future', options, async () => {
-    await server.anew({});
+    await server.reset({});
     await plant.run('security: none', ROWS);
     await server.set('TI-1', 33, { at: Date.now() + 3600000 });
     const ahead = await plant.until('TI-1', { ...good, value: 33 });
@@ -94,7 +94,7 @@ test('of a name with several addresses, each is tried', named, async () => {
     const hosts = join(server.folder, 'hosts');
     writeFileSync(hosts, '127.0.0.1 localhost\n127.0.0.9 plc.test\n127.0.0.1 plc.test\n');
     plant.plant.before = ['unshare', '--mount', 'sh', '-c', `mount --bind ${hosts} /etc/hosts && exec "$@"`, 'sh'];
-    await server.anew({});
+    await server.reset({});
     const real = server.port;
     server.port = await freePort();
     const link = await distort(server.port, real, Infinity); // listens on 127.0.0.1 only

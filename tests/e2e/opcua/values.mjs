@@ -30,7 +30,7 @@ const start = (keys, rows = ROWS) => plant.start(keys, rows);
 const browse = (url, ...more) => runProgram('plantcast', ['tags', '--browse', url, ...more], PATIENCE_MS);
 
 test('values, status codes and times come as they are, and nothing is ever written', options, async () => {
-    await server.anew();
+    await server.reset();
     const first = performance.now();
     await plant.run(server.security(), [...ROWS, ROW3, TEXT, ...TEMPS, `GONE,${NODE}Gone,,,,,,,,,,,,,`]);
     await until('TI-1', { ...good, value: 20 });
@@ -65,8 +65,8 @@ test('values, status codes and times come as they are, and nothing is ever writt
     assert.equal((await server.tell({})).sessions, 0, 'the session was closed');
 });
 
-test('all tags are Bad as soon as the server is gone; all is subscribed anew, whatever number its namespace has', options, async (t) => {
-    await server.anew();
+test('all tags are Bad as soon as the server is gone; all is subscribed again, whatever number its namespace has', options, async (t) => {
+    await server.reset();
     await plant.run(server.security(), ROWS);
     await until('TI-1', { ...good, value: 20 });
     await server.kill();
@@ -87,7 +87,7 @@ test('all tags are Bad as soon as the server is gone; all is subscribed anew, wh
 });
 
 test('a notification that is lost is noticed, and all nodes are read', options, async () => {
-    await server.anew();
+    await server.reset();
     await plant.run(server.security(), ROWS);
     await until('TI-1', { ...good, value: 20 });
     await until('TI-2', { ...good, value: 21.5 });
@@ -101,7 +101,7 @@ test('a notification that is lost is noticed, and all nodes are read', options, 
 });
 
 test('a deadband is the server\'s to apply; a node that cannot have one is read without', options, async () => {
-    await server.anew();
+    await server.reset();
     await plant.run(`${server.security()}, deadband_percent: 10`, [...ROWS, `B,${NODE}Bounded,,,,,,,,,,,,,`]);
     await until('B', { ...good, value: 50 });
     await server.set('Bounded', 55);
@@ -114,7 +114,7 @@ test('a deadband is the server\'s to apply; a node that cannot have one is read 
 });
 
 test('a tag may have a deadband of its own; one that the server refuses is logged', options, async () => {
-    await server.anew();
+    await server.reset();
     const rows = ROWS.map((row) => `${row},${{ 'TI-1': '5', 'TI-2': '10%', 'PI-1': '0' }[row.split(',')[0]] ?? ''}`);
     await plant.run(`${server.security()}, deadband: 20`, [...rows, `B,${NODE}Bounded,,,,,,,,,,,,,,20 %`], ',OPC Deadband');
     await said(/s=TI-2: the server refuses the OPC Deadband 10% \(Bad\w+\) and reports every change/); // a node without EURange
@@ -137,7 +137,7 @@ test('a tag may have a deadband of its own; one that the server refuses is logge
 });
 
 test('a server that is full is tried again until it has room', options, async () => {
-    await server.anew({ sessions: 1 });
+    await server.reset({ sessions: 1 });
     await plant.run(server.security(), ROWS);
     const other = await PublishedPlant.create(server);
     try {
@@ -154,7 +154,7 @@ test('a server that is full is tried again until it has room', options, async ()
 
 test(`${MANY} nodes, and changes of all of them`, options, async () => {
     const rows = Array.from({ length: MANY }, (_, i) => `N${i},${NODE}N${i},,,,,,,,,,,,,`);
-    await server.anew({ many: MANY });
+    await server.reset({ many: MANY });
     await plant.run(server.security(), rows);
     // waits until all values have arrived before the next change: the server keeps only the newest of each
     for (const each of [0, 1e6, 2e6]) {
@@ -172,7 +172,7 @@ test(`${MANY} nodes, and changes of all of them`, options, async () => {
 });
 
 test('plantcast tags --browse writes a tag list that is read as it is', options, async () => {
-    await server.anew({ many: MANY }); // the server has more nodes than fit into one answer
+    await server.reset({ many: MANY }); // the server has more nodes than fit into one answer
     const url = `opc.tcp://127.0.0.1:${server.port}`, at = (file) => join(server.folder, file);
     const secure = ['--certificate', at('client.crt'), '--key', at('client.key'), '--trusted', at('trusted')];
     const { code, out, err } = browse(url, ...secure);

@@ -5,11 +5,11 @@ import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { connect as connectTcp } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { setTimeout as sleep } from 'node:timers/promises';
 import mqtt from 'mqtt';
 import { freePort } from './ports.mjs';
 
 const PROGRAM = ['/usr/sbin/mosquitto', '/usr/local/sbin/mosquitto'].find(existsSync);
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
 // Returns why there is no broker on this machine, or null.
 export const missingBroker = () => (PROGRAM ? null : 'no mosquitto');

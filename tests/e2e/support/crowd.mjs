@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Many clients, and what they cost the daemon.
 import { readdirSync, readFileSync, readlinkSync } from 'node:fs';
+import { setTimeout as sleep } from 'node:timers/promises';
 import { get, PlainClient } from './plain_client.mjs';
 
-export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+export { sleep };
 export const sanitized = /asan|tsan/.test(process.env.PLANTCAST_OUT ?? '');
 
 export const residentKb = (pid) => Number(readFileSync(`/proc/${pid}/status`, 'utf8').match(/^VmRSS:\s+(\d+)/m)[1]);

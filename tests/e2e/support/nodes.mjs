@@ -7,8 +7,8 @@ import { PlainClient } from './plain_client.mjs';
 import { freePort } from './ports.mjs';
 import { Program, runProgram, TinyPlant } from './tiny_plant.mjs';
 import { until } from './until.mjs';
+export { setTimeout as sleep } from 'node:timers/promises';
 
-export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
 export { until };
 

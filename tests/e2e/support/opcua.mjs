@@ -76,9 +76,9 @@ export class OpcuaServer {
     }
 
     // Resets the server to its state after a start with these settings.
-    async anew(settings = this.settings ?? {}) {
+    async reset(settings = this.settings ?? {}) {
         if (this.runs && isDeepStrictEqual(settings, this.settings))
-            await this.tell({ anew: true });
+            await this.tell({ reset: true });
         else
             await this.restart(settings);
     }

@@ -105,7 +105,7 @@ for await (const line of createInterface({ input: process.stdin })) {
         lose();
     else if (order.set)
         set(order.set);
-    else if (order.anew) {
+    else if (order.reset) {
         for (const [name, { first }] of Object.entries(nodes))
             set({ name, value: first });
         counts.write = counts.call = 0;

@@ -3,10 +3,10 @@
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { setTimeout as sleep } from 'node:timers/promises';
 import { TinyPlant } from './tiny_plant.mjs';
 
 const HEAD = 'Tag Name,Address,Data Type,Eng Units,Group,Asset,X,Y,Z,Stale s,Scaling,Raw Low,Raw High,Scaled Low,Scaled High';
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
 export class PublishedPlant {
     static async create(broker) {

@@ -9,8 +9,8 @@ import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { faultOf } from './fault.mjs';
 import { freePort } from './ports.mjs';
+export { setTimeout as sleep } from 'node:timers/promises';
 
-export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 export const BIN = resolve(process.env.PLANTCAST_BIN ?? 'build');
 const NOBODY = 65534;
 export const PROGRAMS = ['plantcastd', 'plantcast-prep', 'plantcast-sim', 'plantcast'];

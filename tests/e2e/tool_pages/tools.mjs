@@ -374,7 +374,7 @@ test('what the server refuses is said in the reader\'s language', options, async
     await other.close();
 });
 
-test('who leads may load the page anew: those who follow stay, and go on', options, async () => {
+test('a leader may reload the page: those who follow stay, and go on', options, async () => {
     const leader = await openPage(url, { viewport: { width: 900, height: 600 } });
     try {
         await waitForPicture(leader.page);
