@@ -54,7 +54,8 @@ function tableOf(titles, rows) {
     if (rows.length === 0)
         return make('p', { class: 'none' }, say('none'));
     const names = titles.map((name) => say(`handover.${name}`));
-    const body = rows.slice(0, MOST).map((cells) => make('tr', {}, ...cells.map((text, i) => make('td', { 'data-title': names[i] }, text))));
+    const rowOf = (cells) => make('tr', {}, ...cells.map((text, i) => make('td', { 'data-title': names[i] }, text)));
+    const body = rows.slice(0, MOST).map(rowOf);
     const table = make('table', {}, make('thead', {}, make('tr', {}, ...names.map((name) => make('th', {}, name)))),
         make('tbody', {}, ...body));
     return rows.length > MOST ? make('div', {}, table, make('p', { class: 'none' }, say('walls.more',

@@ -4,7 +4,7 @@
 export default `
 none: keine
 novalue: kein Wert
-viewport: Anlage, 3D-Ansicht. Pfeile drehen, Plus und Minus zoomen, W A S D verschieben, F passt die Ansicht ein, Fragezeichen öffnet Hilfe.
+viewport: Anlage, 3D-Ansicht. Pfeile drehen, Plus und Minus zoomen, W A S D verschieben, F passt Ansicht ein, Fragezeichen öffnet Hilfe.
 legend: Legende
 card: Messstelle
 place: Stelle
