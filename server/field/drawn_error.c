@@ -235,14 +235,24 @@ static bool amplifies_distances(const struct weights *weights)
     return weights->distance != DISTANCE_EUCLIDEAN && weights->interpolation == INTERPOLATION_SHEPARD && weights->power >= AMPLIFYING_POWER;
 }
 
-/* Writes the error that errors of distances cause at each vertex of some blocks. If the weights of some sensors grow by the factor 1 + e
-   and those of all others shrink by the factor 1 - e, the value changes by up to 2 e a (1 - a) times the spread of the readings. `a` is the
-   share of the sensors whose weights grow. The nearest sensor's share `a` gives the largest change if it is at least 1/2, else a = 1/2.
-   Errors below half a colour step are left out: added to errors of interpolation just below a step, they would mark most of the surface. */
+/* If each weight is multiplied by a factor between `least` and `most`, the weighted mean v of readings changes by at most the sum of weight
+   times |factor - (least + most) / 2| times |reading - v|, divided by the sum of the new weights. */
+double drawn_error_of_distances(const struct weights *weights)
+{
+    if (!amplifies_distances(weights))
+        return 0;
+    double power = (double)weights->power, most = pow(1 + PLANT_DISTANCE_ERROR, power), least = pow(1 - PLANT_DISTANCE_ERROR, power);
+    return (most - least) / (2 * least);
+}
+
+/* Writes the error that errors of distances cause at each vertex of some blocks, for the worst readings. If one sensor's share of the
+   weights is `a`, the mean deviation of the readings is at most 2 a (1 - a) times their spread. The nearest sensor's share gives the
+   largest deviation if it is at least 1/2, else a = 1/2. Errors below half a colour step are left out: added to errors of interpolation
+   just below a step, they would mark most of the surface. */
 static void amplify_some(void *arg, size_t begin, size_t end)
 {
     const struct drawn_error_job *job = arg;
-    const double e = PLANT_DISTANCE_ERROR * (double)job->weights->power;
+    const double e = drawn_error_of_distances(job->weights);
     const struct weights_terms terms = { job->members, job->ones, job->members_marked, job->weights->member_count };
     for (size_t block = begin; block < end; block++) {
         double values[KERNEL_BLOCK] = { 0 }, total[KERNEL_BLOCK] = { 0 };
@@ -321,56 +331,78 @@ static float accepted_of(const struct weights *weights)
     return PAPER_ACCEPTED;
 }
 
-static void add_areas(const struct asset_view *file, uint32_t first_index, uint32_t index_count, const float *errors, double erring[],
-                      double *all)
+/* Writes the fraction of the level's area whose error is at least 1, 1/2, 1/4, ..., and returns the largest error. */
+static float find_erring(const struct asset_view *file, const struct asset_level *level, const float *errors, float erring[WEIGHTS_ERRING])
 {
-    for (uint32_t i = first_index; i < first_index + index_count; i += 3) {
-        const float(*at)[3] = file->positions_m;
-        double normal[3];
-        vecf_normal(at[file->indices[i]], at[file->indices[i + 1]], at[file->indices[i + 2]], normal);
-        double area = vec_length(normal);
-        *all += area;
-        for (int b = 0; b < WEIGHTS_ERRING; b++)
-            erring[b] += errors[i / 3] >= ldexpf(1, -b) ? area : 0;
+    double areas[WEIGHTS_ERRING] = { 0 }, all = 0;
+    float largest = 0;
+    for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++) {
+        const struct asset_primitive *primitive = &file->primitives[p];
+        for (uint32_t i = primitive->first_index; i < primitive->first_index + primitive->index_count; i += 3) {
+            const float(*at)[3] = file->positions_m;
+            double normal[3];
+            vecf_normal(at[file->indices[i]], at[file->indices[i + 1]], at[file->indices[i + 2]], normal);
+            double area = vec_length(normal);
+            all += area;
+            largest = fmaxf(largest, errors[i / 3]);
+            for (int b = 0; b < WEIGHTS_ERRING; b++)
+                areas[b] += errors[i / 3] >= ldexpf(1, -b) ? area : 0;
+        }
     }
+    for (int b = 0; b < WEIGHTS_ERRING; b++)
+        erring[b] = all > 0 ? (float)(areas[b] / all) : 0;
+    return largest;
 }
 
-/* Returns the error with which all vertices of a level are marked if too much of the level is wrong; 0: it is not. Distances along the
-   surface are measured on the same triangles. If most triangles are too long for the field, the distances are wrong, too, so triangles
-   without an error of interpolation cannot be trusted either (tests/bench/notes/windows.md). The thresholds 1, 1/2, 1/4, ... are tried in
-   this order. If errors reach a threshold on the share MARK_ALL of the level's area, the result is twice this threshold, but not more than
-   the level's largest error. */
-static float error_of_all(const struct weights *weights, const double erring[], double all, float largest)
+/* Returns the error with which all vertices of a level are marked if too much of the level has errors of interpolation; 0: it has not.
+   Distances along the surface are measured on the same triangles. If most triangles are too long for the field, the distances are wrong,
+   too, so triangles without an error of interpolation cannot be trusted either (tests/bench/notes/windows.md). The thresholds 1, 1/2, 1/4,
+   ... are tried in this order. If errors reach a threshold on the share MARK_ALL of the level's area, the result is twice this threshold,
+   but not more than the level's largest error. */
+static float error_of_all(const struct weights *weights, const float erring[WEIGHTS_ERRING], float largest)
 {
     for (int b = 0; b < WEIGHTS_ERRING && weights->distance != DISTANCE_EUCLIDEAN; b++)
-        if (all > 0 && erring[b] >= MARK_ALL * all)
+        if ((double)erring[b] >= MARK_ALL)
             return fminf(ldexpf(1, 1 - b), largest);
     return 0;
 }
 
+/* Raises the error of each vertex to that of the adjacent triangles, and at least to `least`. */
+static void raise_vertices(const struct asset_view *file, const struct asset_level *level, const float *errors, float least,
+                           float *of_vertex)
+{
+    for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++) {
+        const struct asset_primitive *primitive = &file->primitives[p];
+        for (uint32_t i = primitive->first_index; i < primitive->first_index + primitive->index_count; i++) {
+            float *error = &of_vertex[file->indices[i]];
+            *error = fmaxf(*error, fmaxf(least, errors[i / 3]));
+        }
+    }
+}
+
+/* Merges the errors of a level's triangles into those of its vertices. errors: errors of interpolation. at_vertices: errors that errors of
+   distances cause, by vertex, which are added to `errors`; NULL: none. */
 static void spread(struct weights *weights, float *errors, const float *at_vertices, const struct asset_level *level)
 {
     const struct asset_view *file = &weights->layout->file->view;
-    double erring[WEIGHTS_ERRING] = { 0 }, all = 0;
-    for (uint32_t p = level->first_primitive; at_vertices && p < level->first_primitive + level->primitive_count; p++)
-        for (uint32_t i = file->primitives[p].first_index; i < file->primitives[p].first_index + file->primitives[p].index_count; i += 3)
-            errors[i / 3] +=
-                fmaxf(at_vertices[file->indices[i]], fmaxf(at_vertices[file->indices[i + 1]], at_vertices[file->indices[i + 2]]));
-    for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++)
-        add_areas(file, file->primitives[p].first_index, file->primitives[p].index_count, errors, erring, &all);
-    for (int b = 0; b < WEIGHTS_ERRING && all > 0; b++)
-        weights->erring[b] = fmaxf(weights->erring[b], (float)(erring[b] / all));
-    float largest = 0;
-    for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++)
-        for (uint32_t i = 0; i < file->primitives[p].index_count; i += 3)
-            largest = fmaxf(largest, errors[(file->primitives[p].first_index + i) / 3]);
-    const float least = error_of_all(weights, erring, all, largest);
-    weights->largest_error = fmaxf(weights->largest_error, largest);
-    for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++)
-        for (uint32_t i = file->primitives[p].first_index; i < file->primitives[p].first_index + file->primitives[p].index_count; i++) {
-            float *error = &weights->errors[file->indices[i]];
-            *error = fmaxf(*error, fmaxf(least, errors[i / 3]));
+    float erring[WEIGHTS_ERRING], largest = find_erring(file, level, errors, erring), least = error_of_all(weights, erring, largest);
+    if (at_vertices) {
+        if (!weights->interpolation_errors)
+            weights->interpolation_errors = mem_try_array(weights->layout->vertex_count, sizeof(float));
+        if (weights->interpolation_errors)
+            raise_vertices(file, level, errors, least, weights->interpolation_errors);
+        for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++) {
+            const struct asset_primitive *primitive = &file->primitives[p];
+            for (uint32_t i = primitive->first_index; i < primitive->first_index + primitive->index_count; i += 3)
+                errors[i / 3] +=
+                    fmaxf(at_vertices[file->indices[i]], fmaxf(at_vertices[file->indices[i + 1]], at_vertices[file->indices[i + 2]]));
         }
+        largest = find_erring(file, level, errors, erring);
+    }
+    for (int b = 0; b < WEIGHTS_ERRING; b++)
+        weights->erring[b] = fmaxf(weights->erring[b], erring[b]);
+    weights->largest_error = fmaxf(weights->largest_error, largest);
+    raise_vertices(file, level, errors, least, weights->errors);
 }
 
 /* Measures the errors of all triangles of one level of detail. resolved true: preparation left no interpolation error, so only the effect

@@ -15,5 +15,8 @@
    parameters and all sensors are used, if the weights are prepared (linear within triangles by definition), or when out of memory. */
 void drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices, bool in_range,
                          struct workers *workers);
+/* Returns the largest change of a value by errors of distances along the surface, as a multiple of the mean of |reading - value|, weighted
+   as in the value. 0: these errors change no value noticeably, or distances have none. */
+double drawn_error_of_distances(const struct weights *weights);
 
 #endif

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "field/drawn_error.h"
 #include "field/field_impl.h"
 #include "field/update.h"
 #include "plant/influence.h"
@@ -23,14 +24,19 @@ static void point_drawn(const struct scalars *scalars, const struct field_place 
     *out = (struct field_point){ .value = value, .no_data = no_data > 0.5, .uncertain = uncertain > 0.5 };
 }
 
-/* Returns the largest interpolation error of the triangles around the point's three corners, since any level of detail may be drawn
-   there. */
-static double error_near(const struct field_state *state, const struct field_place *place)
+/* Returns the largest error of the value at a place, or 0 if it is below a colour step. Any level of detail may be drawn there, so the
+   largest interpolation error of the triangles around the corners counts. of_distances: error that errors of distances cause there. */
+static double error_near(const struct field_state *state, const struct field_place *place, double of_distances)
 {
+    const struct weights *weights = state->weights;
+    const float *errors = weights ? weights->errors : NULL;
     double most = 0;
-    for (int k = 0; k < 3 && state->weights && state->weights->errors; k++)
-        most = fmax(most, (double)state->weights->errors[place->corners[k]]);
-    return most > state->error_limit ? most * state->error_scale : 0;
+    if (errors && weights->interpolation_errors)
+        errors = weights->interpolation_errors;
+    for (int k = 0; k < 3 && errors; k++)
+        most = fmax(most, (double)errors[place->corners[k]]);
+    most = most * state->error_scale + of_distances;
+    return most > state->error_limit * state->error_scale ? most : 0;
 }
 
 struct single_point { /* a layout (sensors and distances) with one point instead of the asset's vertices */
@@ -62,11 +68,12 @@ static void point_distance(const struct field_state *state, const struct single_
     out->value = out->no_data ? out->value : far_m;
 }
 
-/* Computes the value at the point as the weighted sum of the readings that the state's scalars show, with the same arithmetic as at
-   vertices. */
-static void point_sum(const struct field_state *state, const struct single_point *point, struct field_point *out)
+/* Sums the sensors' weights at the point, multiplied by the readings that the scalars show, with the same arithmetic as at vertices.
+   Returns the largest change of the value by errors of distances, for these readings. */
+static double point_sum(const struct field_state *state, const struct single_point *point, struct field_point *out)
 {
     const size_t sensors = point->layout.sensor_count;
+    double deviation = 0;
     uint8_t *usable = mem_array(sensors, 1), *marked = mem_array(sensors, 1);
     double *values = mem_array(sensors, sizeof(*values)), value = 0, total = 0, uncertain = 0;
     uint32_t *members = mem_array(sensors, sizeof(*members));
@@ -91,12 +98,20 @@ static void point_sum(const struct field_state *state, const struct single_point
         out->value = state->params.show == SHOW_BLIND ? (double)update_blind(point->layout.group, weights->near_m[0]) : (double)shown;
         out->no_data = at.no_data;
         out->uncertain = at.uncertain > 127;
+        const double factor = total > 0 ? drawn_error_of_distances(weights) : 0;
+        for (uint32_t m = 0; m < weights->member_count && factor > 0; m++)
+            values[m] = fabs(values[m] - value / total);
+        if (factor > 0)
+            weights_add(weights, 0, 1, &(struct weights_terms){ members, values, marked, weights->member_count },
+                        &(struct weights_sums){ &deviation, NULL, NULL });
+        deviation = factor > 0 ? factor * deviation / total : 0;
     }
     weights_destroy(&weights);
     mem_free(usable);
     mem_free(marked);
     mem_free(values);
     mem_free(members);
+    return deviation;
 }
 
 bool field_at(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot,
@@ -120,9 +135,8 @@ bool field_at(struct field *field, int asset, const struct field_params *params,
         point_distance(state, &point, out);
         return true;
     }
-    if (!state->weights->prepared)
-        point_sum(state, &point, out);
-    out->drawn_error = field_params_cover(params) ? 0 : error_near(state, place);
+    const double of_distances = state->weights->prepared ? 0 : point_sum(state, &point, out);
+    out->drawn_error = field_params_cover(params) ? 0 : error_near(state, place, of_distances);
     out->uncertain |= out->drawn_error > 0;
     return true;
 }

@@ -281,6 +281,7 @@ void weights_destroy(struct weights **weights_ptr)
     mem_free(weights->ones);
     mem_free(weights->beyond_m);
     mem_free(weights->errors);
+    mem_free(weights->interpolation_errors);
     influence_fill_destroy(&weights->fill);
     mem_free(weights);
     *weights_ptr = NULL;

@@ -73,6 +73,7 @@ struct weights {
     float deviation;         /* for interpolation gp: standard deviation of the prior */
     float *errors;           /* for each vertex: largest error of linear interpolation within the adjacent triangles; unit and method in
                                 drawn_error.h; NULL: not measured */
+    float *interpolation_errors; /* `errors` without the part that errors of distances cause; NULL: `errors` has no such part */
     float largest_error;     /* largest element of `errors` */
     /* erring[b]: fraction of the surface (of the vertices for prepared interpolations) whose interpolation error is at least 2^-b; the
        largest such fraction of all measured levels of detail */
