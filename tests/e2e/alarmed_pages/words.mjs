@@ -123,6 +123,17 @@ test('titles and present values of the alarm list and the journal are whole, als
                 }
                 await page.setViewportSize({ width: 1920, height: 900 });
             }
+            await page.locator('#alarms-tab').click();
+            for (const width of [412, 390, 375, 360]) {
+                await page.setViewportSize({ width, height: 844 });
+                const [needed, room] = await page.locator('#alarms-list td[data-col=state]').first().evaluate((cell) => {
+                    const now = cell.parentElement.querySelector('[data-col=now]');
+                    now.firstChild.data = '200.00';
+                    now.querySelector('small').textContent = 'mm/s';
+                    return [cell.scrollWidth, cell.clientWidth];
+                });
+                assert.ok(needed <= room, `${lang}, ${width}: a state of ${needed} pixels is cut at ${room}`);
+            }
         } finally {
             await close();
         }

@@ -135,6 +135,8 @@ test('a shelf needs a reason, and keeps the alarm from being seen', options, asy
     const id = await page.evaluate((hot) => globalThis.plantcast.session.model.alarms.list().find(({ tag, kind }) => tag.name === hot &&
         kind === 'HH').id, HOT);
     await page.locator(`tr[data-alarm="${id}"] button[data-action="shelve"]`).click();
+    await page.locator('#shelve[open]').waitFor();
+    assert.equal(await page.evaluate(() => document.activeElement.id), 'shelve-reason', 'the reason can be typed at once');
     await page.locator('#shelve button[type="submit"]').click();
     assert.ok(await page.locator('#shelve').isVisible(), 'without a reason nothing happens');
     await shoot(page, 'alarms-shelve');
