@@ -427,3 +427,34 @@ test('at 200 % zoom, the engineering panel is as high as the picture, and both f
             Math.round((await boxOf(page, one)).height)));
         assert.deepEqual(heights, Array(3).fill(heights[0]));
     }));
+
+test('legends half a phone wide: the names of limits do not overlap, and the last number does not reach the arrow', options, () => withPage(
+    { ...PHONE, viewport: { width: 360, height: 640 } }, async (page) => {
+        await page.locator('#viewport').focus();
+        await page.keyboard.press('j');
+        await page.locator('#split-bar').waitFor();
+        await page.evaluate(() => {
+            const { legend, session } = globalThis.plantcast;
+            session.model.group('temperature').limits = { LL: 60, L: 62, H: 64, HH: 66 };
+            legend.show(true);
+        });
+        const edge = await page.locator('#legend').evaluate((e) => {
+            const arrow = Number.parseFloat(getComputedStyle(e, '::after').width), { right } = e.getBoundingClientRect();
+            return right - Number.parseFloat(getComputedStyle(e).paddingRight) - arrow -
+                e.querySelector('.ticks span:last-child').getBoundingClientRect().right;
+        });
+        assert.ok(edge >= 0, `${edge} px between the last number and the arrow`);
+        await page.locator('#legend').tap();
+        for (const width of ['', '60px']) {
+            await page.locator('#legend .scale').evaluate((e, wide) => { e.style.width = wide; }, width);
+            const names = await page.evaluate(() => {
+                const { legend } = globalThis.plantcast, was = legend.element.querySelector('.scale').style.width;
+                legend.fit();
+                legend.element.querySelector('.scale').style.width = was;
+                return [...legend.element.querySelectorAll('.limits span')].map((e) => [e.textContent, e.getBoundingClientRect()])
+                    .map(([text, { left, right }]) => ({ text, left, right }));
+            });
+            assert.deepEqual(names.map(({ text }) => text), width ? ['LL', 'HH'] : ['LL', 'L', 'H', 'HH']);
+            assert.ok(names.every(({ left }, i) => i === 0 || left >= names[i - 1].right), JSON.stringify(names));
+        }
+    }));

@@ -220,7 +220,8 @@ export class Legend {
         const inside = Object.entries(limits).filter(([, value]) => value !== null && value >= min && value <= max);
         inside.sort((a, b) => a[1] - b[1]);
         // otherwise the names would overlap
-        const names = (inside.length - 1) * 15 > this.long ? [0, inside.length - 1] : [...inside.keys()];
+        const isTight = (inside.length - 1) * (this.lying.matches ? 27 : 15) > this.long;
+        const names = isTight ? [0, inside.length - 1] : [...inside.keys()];
         const places = this.apart(inside.map(([, value]) => placeOf(rule, value)), 15, 27);
         return make('div', { class: 'limits' }, ...inside.flatMap(([name, value], i) => [
             at(make('i', {}), placeOf(rule, value)),
