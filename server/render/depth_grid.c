@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encodes a depth grid (depth_grid.h): quantises the depths of its cells to codes, predicts each code from its neighbours, and deflates the
-   differences. */
+/* Encodes a depth grid, the coarse depth of a frame by which a client shows it from another camera (depth_grid.h): quantises the depths of
+   its cells to codes, predicts each code from those of neighbouring cells, and deflates the differences. */
 #include "render/depth_grid.h"
 
 #include <math.h>
@@ -15,15 +15,16 @@
 enum { MASK_SIDE = DEPTH_CELL_PX / 2, MASK_BYTES = MASK_SIDE * MASK_SIDE / 8, MOST_LEVELS = 4095 };
 enum { ESCAPE = 255, MOST_SYMBOL_BYTES = 3 };
 enum { PART_DIVIDED, PART_BACK, PART_NEAR, PART_MASKS, PARTS }; /* of the payload */
-/* maximum number of bytes that the ends of deflate blocks add to a payload */
+/* allowance in bytes for the ends of deflate blocks in the payload of a depth grid, which deflateBound() does not count: one block per
+   part */
 enum { MOST_BLOCK_BYTES = 100 };
-/* Largest camera movement for which pictures that a client reprojects by a depth grid must be right to a fraction of a pixel. Unit:
-   distance from the camera to the surface. It corresponds to an orbit by six degrees. */
+/* Camera movement up to which a depth grid must let the client warp a picture correctly, to a fraction of a pixel. Unit: distance from the
+   camera to the surface. 0.1 corresponds to an orbit by six degrees. */
 static const double MOVEMENT = 0.1;
 /* Shifts in pixels on the screen that a camera movement by MOVEMENT causes. STEP_SHIFT_PX: smallest shift between two depths that counts as
    a step between them. UNIT_SHIFT_PX: shift between two depths whose codes differ by 1. */
 static const double STEP_SHIFT_PX = 2, UNIT_SHIFT_PX = 1.5;
-/* Ground whose inverse distance (1/m) is below this counts as background: it is more than 100 km away. */
+/* Ground whose inverse distance from the camera (1/m) is below this counts as background: it is more than 100 km away. */
 static const double LEAST_INVERSE = 1e-5;
 
 /* --- from the depth buffer to metres ----------------------------------------------------------------------------------------- */
@@ -34,7 +35,8 @@ static void aim_at_ground(struct depth_lens *lens, const double clip_from_plant[
 {
     double clip[16], h[3][3], depth[3], determinant = 0, inverse[3][3];
     matrix_multiply(clip_from_plant, plant_from_ground, clip);
-    /* h: matrix that maps (u, v, 1) on the ground to (x w, y w, w), with x and y in pixels; depth: row vector that maps it to (depth w) */
+    /* h: homogeneous matrix from a position (u, v, 1) on the ground to the pixel (x w, y w, w). depth: row vector that maps the same
+       position to its depth times w */
     for (int c = 0; c < 3; c++) {
         const double *column = &clip[c == 2 ? 12 : 4 * c];
         h[0][c] = 0.5 * width_px * (column[3] + column[0]);
@@ -100,7 +102,9 @@ struct coder {
     const struct depth_lens *lens;
     int width_px, height_px, columns, rows;
     float *nears, *fars; /* depths; -INFINITY: background */
-    uint8_t *swapped;    /* 1: the cell's ground is nearer than its surface, although the mask marks only the surface */
+    /* by cell: 1: the ground lies in front of the cell's surface, so near and far side are swapped, and the mask of the surface must be
+       inverted */
+    uint8_t *swapped;
     uint16_t *near, *far, *masks; /* masks: of divided cells */
     uint8_t *data;
     size_t data_bytes;
@@ -129,8 +133,8 @@ static void coder_finish(struct coder *coder)
     mem_free(coder->data);
 }
 
-/* Returns the pixel coordinate of the middle of a cell along one axis. A cell at the frame's border counts only as far as it lies within
-   the frame. */
+/* Returns the pixel coordinate, along one axis, of the middle of a depth grid cell. Of a cell that extends beyond the frame, only the part
+   inside counts. */
 static double middle(int cell, int px)
 {
     int begin = cell * DEPTH_CELL_PX, end = begin + DEPTH_CELL_PX;
@@ -229,8 +233,8 @@ static uint8_t *put_back(const struct coder *coder, uint8_t *out)
     return out;
 }
 
-/* Writes the near code of each divided cell, predicted by the near code of the left, upper or upper left neighbour: the first of these that
-   is nearer than the cell's far code. */
+/* Writes the near code (depth code of the nearer side) of each cell that a depth step divides. It is predicted by the near code of the
+   left, upper or upper left neighbour: the first of these that is nearer than the far side of the cell. */
 static uint8_t *put_near(const struct coder *coder, uint8_t *out)
 {
     size_t i = 0, columns = (size_t)coder->columns;
@@ -246,12 +250,13 @@ static uint8_t *put_near(const struct coder *coder, uint8_t *out)
     return out;
 }
 
-/* Reduces a cell's mask to MASK_SIDE x MASK_SIDE bits, each 1 if at least one of 2 x 2 pixels belongs to the near surface. Some pixels of
-   the far surface thus move with the near one. The opposite would be more visible: a thin near object, such as a handrail, would appear
-   twice. */
+/* Reduces a cell's mask, one bit per pixel, to MASK_SIDE x MASK_SIDE bits, each 1 if at least one of 2 x 2 pixels belongs to the near
+   surface. Some pixels of the far surface thus move with the near one. The opposite would be more visible: a thin near object, such as a
+   handrail, would appear twice. */
 static unsigned coarse_mask(uint64_t mask)
 {
-    /* after this and the next line, bits 0, 2, 4 and 6 of every second row say whether one of the 2 x 2 pixels there is near */
+    /* this line and the next merge each square of 2 x 2 pixels into one bit: 1 if any of the four is near. These bits are 0, 2, 4 and 6 of
+       every second row; the lines after that move them together */
     mask |= mask >> 1;
     mask |= mask >> DEPTH_CELL_PX;
     mask &= 0x0055005500550055;
@@ -261,8 +266,8 @@ static unsigned coarse_mask(uint64_t mask)
     return (unsigned)((mask | mask >> 24) & 0xffff);
 }
 
-/* Returns the mask of a neighbour of cell `i`, from which the mask of cell `i` is predicted. A neighbour without a depth step has no mask:
-   the result is all ones if its depth is closer to the near depth of cell `i`, else 0. */
+/* Returns the mask of a neighbouring cell, from which the mask of cell `i` is predicted. A neighbour that no depth step divides has no
+   mask: the result is all ones if its depth is closer to the near side of cell `i` than to the far side, else 0. */
 static unsigned mask_beside(const struct coder *coder, size_t neighbour, size_t i)
 {
     int back = coder->far[neighbour];
@@ -293,7 +298,8 @@ static uint8_t *put_masks(const struct coder *coder, uint8_t *out)
     return out;
 }
 
-/* Deflates the parts of the payload one by one, so that each part gets blocks with Huffman codes of its own. */
+/* Deflates the parts of the payload (codes of the far sides, of the near sides, and so on) one by one, so that each gets Huffman codes of
+   its own. */
 static uint8_t *deflated(const uint8_t *data, uint8_t *const ends[PARTS], size_t *bytes)
 {
     enum { RAW = -15, MEMORY = 8, LEVEL = 1 };

@@ -13,7 +13,8 @@ struct depth_cell {
     /* near: depth at the centre of the cell; if a step in depth divides the cell, depth of the nearer side. far: depth of the farther side,
        equal to `near` if there is no step */
     float near, far;
-    uint64_t mask; /* one bit per pixel, row by row; 1: the pixel belongs to the nearer side of the step */
+    /* one bit per pixel of the cell, row by row; 1: the pixel belongs to the nearer side of the depth step that divides the cell */
+    uint64_t mask;
 };
 
 /* Converts values in the depth buffer to distances from the camera. (depth - offset) / factor is 1 / distance in a perspective view, and
@@ -21,16 +22,20 @@ struct depth_cell {
 struct depth_lens {
     bool orthographic;
     double offset, factor;
-    /* A difference in depth counts as a step if it exceeds step * depth + least_step. */
+    /* A difference in depth within a cell counts as a step, which divides the cell, if it exceeds step * depth + least_step. */
     float step, least_step;
     /* the ground, onto which shadows fall: its depth at the pixel (x, y) is ground[0] x + ground[1] y + ground[2] */
     bool has_ground;
-    double ground[3], ground_from_pixel[3][3]; /* ground_from_pixel: matrix, column by column, to (u s, v s, s); u, v: 0..1 on the ground */
+    /* ground_from_pixel: homogeneous matrix, column by column, from a pixel (x, y, 1) to the position (u s, v s, s) on the ground; u, v:
+       0..1 */
+    double ground[3], ground_from_pixel[3][3];
 };
 
 struct depth_grid {
     _Atomic int refs;
-    struct wire_depth wire; /* header of the depth grid's message, without the sequence number and without the position in the picture */
+    /* header of the message that carries the grid to clients; sequence number and x_px, y_px are not set yet, because they differ from one
+       message to another */
+    struct wire_depth wire;
     uint8_t *payload;
 };
 
@@ -42,7 +47,8 @@ static inline int depth_cells_along(int px)
    from positions on the drawn ground rectangle, 0..1 along each side, to the plant; NULL: the view shows no ground. */
 void depth_lens_init(struct depth_lens *lens, const struct view_constants *constants, const double *plant_from_ground, int width_px,
                      int height_px);
-/* Encodes the cells of a frame, row by row. Returns NULL when out of memory. The caller owns the grid (depth_grid_unref). */
+/* Encodes the cells (squares of pixels) of a frame as a depth grid; `cells` is row by row. Returns NULL when out of memory. The caller owns
+   the grid (depth_grid_unref). */
 struct depth_grid *depth_grid_create(const struct depth_cell *cells, const struct depth_lens *lens, int width_px, int height_px);
 struct depth_grid *depth_grid_ref(struct depth_grid *grid); /* accepts NULL */
 void depth_grid_unref(struct depth_grid **grid);            /* accepts a pointer to NULL */

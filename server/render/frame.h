@@ -67,7 +67,9 @@ struct frame {
     struct baseline baseline;    /* baseline from which the frame shows differences; id 0: none */
     /* copies of the readings from which the frame was drawn (render/frame_record.h); NULL: none were requested */
     struct frame_record *record;
-    struct depth_grid *depth[2]; /* depth grid of the frame, or of each half of a split view; NULL: none */
+    /* depth grid of the frame, or of each half of a split view: coarse depth by which clients warp the picture to a moved camera; NULL:
+       none */
+    struct depth_grid *depth[2];
     /* hash of the view and of the versions of its fields, without sequence numbers and times; two frames with the same hash look the
        same */
     uint64_t content;

@@ -23,11 +23,13 @@ struct frame_context {
     const int *visible;                 /* indices of the visible assets, the nearest asset first */
     size_t visible_count;
     struct shaded_colormap colormap;
-    struct reference *reference; /* object that computes the field at each fragment; NULL: the field is interpolated between vertices */
+    /* reference method, for tests: shaders compute the field at each fragment from all sensors; NULL: the field is interpolated between
+       vertices */
+    struct reference *reference;
     /* largest error of a level of detail's surface, in pixels of the frame (render/plan/lod_selection.h); 0: finest levels only */
     double error_px;
     uint64_t shape; /* content_hash_shape() of the frame plan: a hash of all that the frame shows except values and colours */
-    bool gives_depth; /* true: a depth grid is made for the frame */
+    bool gives_depth; /* true: the frame gets a depth grid, by which clients warp the picture to a moved camera (render/depth_grid.h) */
     bool measured;  /* true: the frame receives the field's values as floats instead of colours */
 };
 

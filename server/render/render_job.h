@@ -20,7 +20,8 @@ struct render_job {
     struct frame_context context; /* context of the frame; its view, fields and visible list point into this struct */
     struct view view;
     struct frame *frame;
-    struct light_set *light;            /* reference to the light set that lights the frame; NULL: that light set is not baked yet */
+    /* reference to the light set (baked light) that lights the frame; NULL: that light set is not baked yet */
+    struct light_set *light;
     const struct fields_entry **fields; /* by asset: its field; NULL: the asset shows no field */
     /* copies of the shown fields, per asset; NULL: the frame is drawn in a single call and needs no copies */
     struct fields_entry *copies;

@@ -28,7 +28,8 @@ struct colormap_shades {
 };
 void colormap_shades_init(const struct colormap *map, struct colormap_shades *out);
 struct shaded_colormap {
-    uint32_t (*texels)[COLORMAP_COLUMNS]; /* COLORMAP_ROWS rows: blue | green << 8 | red << 16 | 0xff000000 */
+    /* colours of the scale, one row per brightness step: blue | green << 8 | red << 16 | 0xff000000 */
+    uint32_t (*texels)[COLORMAP_COLUMNS];
     float *nearest;       /* for each position on the scale, the nearest position that has an isoline; NULL: there are no isolines */
     GLuint colors, lines; /* colors: texture of `texels`; lines: texture of `nearest`, 0: there are no isolines */
     uint64_t version;     /* number of the colour map, from 1 up, different for every colour map made */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the cells of a frame's depth grid with a compute shader, which writes the cells to a buffer that the CPU maps. */
+/* Computes the cells of a frame's depth grid (coarse depth for clients, render/depth_grid.h) with a compute shader. It writes the cells to
+   a buffer that the CPU maps. */
 #include "render/gl/depth_query.h"
 
 #include "gpu/mesh.h"

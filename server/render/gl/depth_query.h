@@ -8,10 +8,11 @@
 struct depth_query {
     GLuint program; /* program of shaders/depth_cells.comp, owned by the caller; zero-initialise all other members */
     GLuint buffer;
-    const struct depth_cell *cells; /* cells of the depth grid, which the GPU writes to memory that is mapped into this process */
+    /* cells (squares of pixels with their depth) of the depth grid, which the GPU writes to memory that is mapped into this process */
+    const struct depth_cell *cells;
     size_t capacity;
     struct depth_lens lens;
-    int width_px, height_px; /* size in pixels of the frame whose cells are computed; 0: the frame gets no depth grid */
+    int width_px, height_px; /* size in pixels of the frame whose depth grid is computed; 0: the frame gets no depth grid */
 };
 
 /* Starts computing the cells of the frame's depth grid on the GPU, if the frame gets a grid. Call it after the multisampled frame is

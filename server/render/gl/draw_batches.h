@@ -10,8 +10,8 @@
 #include "render/gl/model.h"
 
 struct draw_instance { /* as in shaders/instance.glsl */
-    /* rows of the matrix that turns normals of the asset into eye space. The fourth elements of the three rows hold block indices into the
-       buffers of draw_batch_state: light, field, unused */
+    /* Rows of the matrix that turns normals of the asset into eye space. The fourth elements of the three rows are indices of the asset's
+       first block: in the buffer of baked light, in the buffer of field values; the third is unused. */
     float normals[3][4];
     float clip_from_file[16];
     float from_file[3][4]; /* rows */

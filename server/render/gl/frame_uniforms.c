@@ -47,7 +47,7 @@ static void fill_scale(struct frame_uniforms *block, const struct frame_context 
    it is always the middle row. */
 static void fill_shade(struct frame_uniforms *block, const struct view *view)
 {
-    /* brightness range that the colour map's rows cover; darker or brighter surfaces are clamped */
+    /* range of a surface's brightness from the first to the last row of the shaded colour map; darker or brighter surfaces are clamped */
     static const double dark = 0.14, bright = 0.86;
     double rows = COLORMAP_ROWS - 1;
     bool shaded = view->look == LOOK_DEFAULT;

@@ -32,7 +32,8 @@ static const double INITIAL_PIXEL_NS[GL_PASSES] = { 200, 20 };
 struct gl_job {
     struct target target;
     struct frame_tiles tiles;
-    struct frame_in_flight *in_flight; /* slot of the frame, once the whole frame is submitted to the GPU; NULL: not submitted yet */
+    /* place of the frame among those that the GPU still computes (frames_in_flight.h); NULL: the frame is not submitted to the GPU yet */
+    struct frame_in_flight *in_flight;
     size_t drawn;                      /* number of assets of the current tile drawn so far, nearest first */
     bool short_of_memory;              /* true: the GPU ran out of memory while drawing, so the frame's content is undefined */
 };
@@ -223,7 +224,9 @@ static bool step(struct renderer *renderer, struct render_job *job, int64_t budg
     int cells = count_cells(job);
     unsigned shortages = gl_out_of_memory_count();
     if (own->tiles.next < cells && !take_up(renderer, job))
-        own->tiles.next = cells; /* take_up() failed: no further tiles are drawn; end() calls take_up() again and reports the error */
+        /* the light set or the colour map could not be bound (no GPU memory): no further tiles are drawn; end() tries again and reports the
+           error */
+        own->tiles.next = cells;
     while (own->tiles.next < cells && (spent_ns == 0 || spent_ns + (last_ns > TILE_NS ? last_ns : TILE_NS) <= budget_ns)) {
         int64_t work_ns = clock_work_ns();
         struct drawn_tile drawn = draw_tile(renderer, job);

@@ -46,7 +46,9 @@ struct gl_model {
     GLuint *textures;
     size_t level_count, material_count, texture_count;
     GLuint material_buffer;
-    uint32_t *ramp_texels[MODEL_RAMPS]; /* MODEL_LIGHT_STEPS colours per material, computed by ramp_fill() */
+    /* tables, in main memory, of the colour ramps by MODEL_MUTED and MODEL_OWN: per material MODEL_LIGHT_STEPS colours from dark to
+       bright */
+    uint32_t *ramp_texels[MODEL_RAMPS];
     GLuint ramps[MODEL_RAMPS];          /* textures of the colour ramps, by MODEL_MUTED and MODEL_OWN; one row per material */
 };
 

@@ -17,8 +17,8 @@ static const double FORWARD_SLOPE = 0.05;
 enum { UNIT_COLORMAP = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3, UNIT_LIGHTS = 12, UNIT_SCALARS = 13, UNIT_LINES = 15 };
 
 /* Returns whether a variant of the shader program is compiled at start because most plants use it; others are compiled when first used.
-   Previews use textures only for the holes they cut. Without SURFACE_FIELD, only the plain program and the textured one of refined frames
-   are frequent. */
+   Variants for section planes are rare. Previews use textures only to cut holes, which is rare, too. Without a field, only the plain
+   program and, in refined frames, the textured one are frequent. */
 static bool is_used(int tier, int variant)
 {
     if (variant & SURFACE_CLIP)

@@ -13,10 +13,10 @@
 #include "render/matrix.h"
 
 enum { SKY_DIRECTIONS = 32, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096 };
-/* openness (0..255) of every point in a rough light set, which is baked without computing openness */
+/* openness (visible part of the sky, 0..255) at every point of a rough light set, which is baked fast by leaving openness out */
 static const uint8_t ROUGH_OPENNESS = 190;
-/* A triangle is large if its longest edge is at least this long, in texels of the sky's depth maps. Light is also sampled inside large
-   triangles: otherwise one vertex in a dark corner would darken the whole triangle. */
+/* Lower bound of openness (0: no sky is visible from a point, 1: the whole sky) when users hide assets as large as the plant. It is
+   proportionally less for smaller ones. Openness is baked with all assets shown, so places next to hidden assets would stay dark. */
 static const double LARGE_FACE_TEXELS = 8;
 /* empty border of the sun's shadow map, as a fraction of its width: a filtered lookup also reads the texels around a point */
 static const double SUN_MARGIN = 0.002;

@@ -22,9 +22,11 @@ struct light_set {
     double texture_from_plant[16]; /* matrix from plant coordinates to texture coordinates and depth of sun_map */
     double texel_m, depth_m;       /* side of a texel of sun_map, and difference between the ends of its depth range, in metres */
     GLuint sun_map;
-    GLuint ground; /* texture of the ground in the format RG8: visible part of the sun, and openness */
+    GLuint ground; /* texture of the ground in the format RG8: visible part of the sun, and openness (visible part of the sky) */
     struct pool *pool;
-    struct pool_slice **baked; /* baked light per asset, 4 bytes per vertex: light, ambient, openness, sun */
+    /* baked light per asset, 4 bytes per vertex: brightness by sun and sky together, light of the sky, openness (visible part of the sky),
+       cosine of the angle to the sun */
+    struct pool_slice **baked;
     size_t bytes;
     uint64_t used;
     int holds;

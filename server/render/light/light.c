@@ -107,8 +107,8 @@ void light_drop(struct light *light, const struct light_key *usual)
             drop(light, &light->sets[i]);
 }
 
-/* Returns an empty slot of the cache of light sets. First drops light sets that exceed the memory limit and that nobody holds. NULL: all
-   slots are held. */
+/* Returns an empty slot of the cache of light sets (baked light). First drops sets that exceed the memory limit and that nobody holds.
+   NULL: all slots are held. */
 static struct light_set *make_room(struct light *light, size_t bytes)
 {
     for (;;) {
@@ -149,8 +149,8 @@ static bool begin(struct light *light, const struct light_key *key)
     return light->bake != NULL;
 }
 
-/* Starts to write the set's openness to the openness file, unless that was done already. Openness of a set that was baked while assets were
-   hidden is never written, because it was raised to a lower bound. */
+/* Starts to write the openness (visible part of the sky) of a light set to the openness file, unless that was done already. Openness of a
+   set that was baked while assets were hidden is never written, because it was raised to a lower bound. */
 static void keep_openness(struct light *light, const struct light_set *set)
 {
     if (light->kept || set->key.rough || bake_least_open(light->gpu_scene, &set->key.shown) > 0)

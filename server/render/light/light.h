@@ -14,13 +14,14 @@ struct light {
     /* matrix to plant coordinates from the ground's texture coordinates (x, y) and the height above the ground (z) */
     double plant_from_ground[16];
     double ground_height_m; /* height of the ground: its coordinate along the up axis */
-    /* bytes of GPU memory: limit, and sum over all light sets. A set that a job holds (light_hold) is never dropped, even above the
-       limit */
+    /* GPU memory of all light sets (baked light) in bytes: bound_bytes: limit; bytes: what they take. A set that a job holds (light_hold)
+       is never dropped, even above the limit */
     size_t bound_bytes, bytes;
     struct light_set sets[LIGHT_SETS];
     struct bake *bake; /* in progress; NULL: none */
     uint64_t uses, last_id;
-    bool kept;                      /* true: the openness file has been written, or writing was attempted and failed */
+    /* true: the file with the plant's openness (visible part of the sky) has been written, or writing was attempted and failed */
+    bool kept;
     struct openness_writer *writer; /* thread that writes the openness file; NULL: not writing */
 };
 

@@ -10,9 +10,9 @@
 
 enum { OPENNESS_GROUND_PX = 256 }; /* width and height, in texels, of the texture with the ground's light */
 
-struct openness { /* the mapped file: openness of the ground's texels, then of the vertices, asset by asset */
+struct openness { /* the mapped openness file: visible part of the sky at the texels of the ground, then at the vertices, asset by asset */
     struct cache_file file;
-    size_t vertex; /* index, counted through all assets, of the next vertex to upload */
+    size_t vertex; /* index, counted through all assets, of the next vertex whose openness is uploaded */
 };
 
 /* Opens the openness file of the plant. Returns false if there is no valid file; openness_close() is then not needed. */
@@ -21,7 +21,7 @@ void openness_close(struct openness *openness); /* a zeroed struct is fine */
 /* Uploads the next asset's openness into byte 2 of each texel of `slice`, the asset's range in the buffer of baked light. Returns false
    when the GPU is out of memory, logged. */
 bool openness_upload(struct openness *openness, const struct gpu_scene *gpu_scene, const struct pool_slice *slice);
-/* Uploads the ground's openness into byte 1 of each texel of its texture. */
+/* Uploads the ground's openness (visible part of the sky) into byte 1 of each texel of the ground's texture. */
 void openness_upload_ground(const struct openness *openness, GLuint ground);
 
 struct openness_writer; /* writer of the openness file, which runs on a thread of its own */

@@ -8,10 +8,12 @@
 #include "base/math/vec.h"
 #include "render/matrix.h"
 
-enum { TRIED_ANGLES = 32 }; /* number of rotations tried within a quarter turn around the sun's direction */
+/* number of rotations around the sun's direction, within a quarter turn, that are tried to find the smallest frustum */
+enum { TRIED_ANGLES = 32 };
 
 struct sun_extent {
-    /* bounds along three axes, relative to the scene's centre, in metres: across and up as seen from the sun, and towards the sun */
+    /* bounds of the assets that cast shadows, in metres from the scene's centre, along three axes: across and up as seen from the sun, and
+       towards the sun */
     double low[3], high[3];
 };
 

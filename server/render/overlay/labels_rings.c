@@ -35,11 +35,14 @@ struct rings {
     struct label_layout *layout;
     const int *order;
     size_t count, group_count;
-    double least; /* pixels per unit of CLOSE and STILL_CLOSE; more than the size of a unit if that would leave too many labels */
+    /* pixels per unit of CLOSE and STILL_CLOSE: first the size of a unit, then enlarged step by step until at most MAX_GROUPS labels
+       remain */
+    double least;
     struct ring_group *groups;
-    /* by index in `order`: position in pixels from which the ring's distance to other rings is measured for grouping */
+    /* for each alarm ring, in the order of `order`: position in pixels that represents the ring when near rings are grouped
+       (set_anchors) */
     double (*anchors)[2];
-    int *group_of;          /* by index in `order`: index of the group that contains the item's alarm ring */
+    int *group_of;          /* for each alarm ring, in the order of `order`: index of its group in `groups` */
     int *members;           /* indices of the items (markers) of all groups of alarm rings, group after group */
     struct offset *offsets; /* sorted by distance */
 };

@@ -10,7 +10,8 @@
 #include "value/quality.h"
 
 enum { MAX_ROWS = 5 };
-/* ROW: height of a row, as a multiple of text_px; MAX_HEIGHT: largest part of the frame's height that the list may take */
+/* ROW: height of a row of the list, as a multiple of the font size (text_px); MAX_HEIGHT: largest part of the frame's height that the list
+   may take */
 static const double ROW = 1.5, MAX_HEIGHT = 0.3;
 
 struct unseen {

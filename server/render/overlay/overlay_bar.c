@@ -10,7 +10,8 @@ struct ticks {
     double values[MAX_TICKS], places[MAX_TICKS]; /* positions of the ticks' texts along the bar: 0 at MIN, 1 at MAX */
     int count;
 };
-static const double LINE_GAP = 1.12; /* minimum distance between lines of text, as a multiple of text_px */
+/* minimum distance between lines of text at the colour bar, as a multiple of the font size (text_px) */
+static const double LINE_GAP = 1.12;
 
 /* Returns a step of 1, 2 or 5 times a power of ten that divides the range into at most `count` steps. */
 static double nice_step(double range, double count)

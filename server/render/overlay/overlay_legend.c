@@ -337,7 +337,7 @@ static void draw_swatch(struct pen *pen, const struct label_box *box, enum row r
         overlay_outline(pen, box->x + box->width / 2, box->y + box->height / 2, 0.27 * box->height, false);
         overlay_outline(pen, box->x + box->width / 2, box->y + box->height / 2, 0.47 * box->height, false);
         break;
-    case ROW_ARROW: /* draw_longest() draws the arrow, next to the row's text */ break;
+    case ROW_ARROW: /* this row has no sample before its text: draw_longest() draws the arrow next to the text */ break;
     case ROW_NOWHERE: overlay_unknown_direction(pen, box->x + box->width / 2, box->y + box->height / 2); break;
     default:
         overlay_ring(pen, box->x + box->width / 2, box->y + box->height / 2, 0.5 * box->height, (int)row - ROW_ALARM + 1, ALARM_ACTIVE);

@@ -67,7 +67,8 @@ void overlay_ring(struct pen *pen, double x, double y, double radius, int priori
     double wide = word == ALARM_ACKNOWLEDGED ? 0.22 : 0.42;
     cairo_new_path(pen->cairo);
     cairo_arc(pen->cairo, x, y, radius, 0, 2 * M_PI);
-    cairo_set_source_rgb(pen->cairo, 1, 1, 1); /* white rim outside the ring's dark rim */
+    /* white rim around the dark rim of the alarm ring, so that the ring is visible on any colour */
+    cairo_set_source_rgb(pen->cairo, 1, 1, 1);
     cairo_set_line_width(pen->cairo, fmax(4.6, (wide + 0.4) * radius));
     cairo_stroke_preserve(pen->cairo);
     pen_dark(pen, 1);
@@ -283,7 +284,7 @@ static void write_callout(const struct marker_labels *wanted, const int *members
     pen_say(pen, WORD_WORST, grave, NULL, text->worst, sizeof(text->worst));
 }
 
-static const double LINE = 1.25; /* line height of call-outs, in text_px */
+static const double LINE = 1.25; /* line height of call-outs (labels shared by several markers), as a multiple of the font size (text_px) */
 
 static void measure_callout(void *arg, const int *members, size_t count, double size[2])
 {

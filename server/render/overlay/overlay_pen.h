@@ -46,7 +46,7 @@ void pen_rounded_path(struct pen *pen, const struct label_box *box);
 void pen_rgb(struct pen *pen, const uint8_t rgb[3]);
 void pen_ink(struct pen *pen, double alpha);
 void pen_dark(struct pen *pen, double alpha);
-/* Sets the font in which the pen draws from now on. size: a multiple of text_px. */
+/* Sets the font of the texts that the pen draws from now on. size: a multiple of the overlay's font size (text_px). */
 void pen_font(struct pen *pen, double size, bool bold);
 /* Returns the width of a text in the current font. */
 double pen_text_width(struct pen *pen, const char *text);

@@ -11,7 +11,8 @@
 #define OVERLAY_MEMBER(name, ...) WORD_##name,
 enum overlay_word {
     OVERLAY_WORDS(OVERLAY_MEMBER) OVERLAY_WORDS,
-    WORD_LOOKS = WORD_LOOK_DEFAULT, /* index of the word for the first look; the word for another look is at WORD_LOOKS + its enum look */
+    /* index of the text that names the first enum look (way of colouring); the texts of the other looks follow in the order of the enum */
+    WORD_LOOKS = WORD_LOOK_DEFAULT,
     WORD_INTERPOLATIONS = WORD_INTERPOLATION_SHEPARD,
     WORD_DISTANCES = WORD_DISTANCE_GEODESIC,
 };

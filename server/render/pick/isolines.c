@@ -12,9 +12,11 @@
 #include "render/pick/markers.h"
 
 enum { POINTS_PER_LINE = 16, MAX_POINTS = 2048, MAX_LABELS = 128, MAX_ARROWS = 192, MAX_STROKES = 48 };
-/* MAX_PIECES: maximum number of pieces into which an edge is divided; MAX_BISECTIONS: steps of bisection within one piece. */
+/* The field along a triangle's edge need not be linear. MAX_PIECES: maximum number of pieces of an edge that are searched for crossings
+   with isolines; MAX_BISECTIONS: steps of bisection that locate a crossing within a piece. */
 enum { MAX_BISECTIONS = 24, MAX_PIECES = 16 };
-static const double SPACING = 0.1; /* minimum distance between points on isolines, relative to the asset's size */
+/* minimum distance between the points of isolines at which labels may be placed, as a fraction of the asset's size */
+static const double SPACING = 0.1;
 /* minimum distance between labels of the same isoline on a frame, as a multiple of that between labels of different isolines */
 static const double SAME_LINE_FACTOR = 4;
 
@@ -66,7 +68,7 @@ static bool is_apart(const struct isoline_search *search, double value, const do
 
 /* A piece of an edge. */
 struct edge_piece {
-    float ends_m[2][3]; /* positions of both ends, in coordinates of the asset file */
+    float ends_m[2][3]; /* positions of both ends of the piece of a triangle's edge, in coordinates of the asset file */
     double values[2];
 };
 

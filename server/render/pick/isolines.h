@@ -13,7 +13,8 @@ struct isoline_point {
     double value, place_m[3];
     double along[3]; /* direction of an arrow in the plant frame; zero: unknown */
     bool arrow, uncertain;
-    uint16_t stroke; /* index of the stroke in this frame, from 1 up, equal for all of its points; 0: the point belongs to no stroke */
+    /* number of the stroke (short streamline) in this frame, from 1 up, equal for all of its points; 0: the point belongs to no stroke */
+    uint16_t stroke;
     float slack_m;   /* depth tolerance in metres: how far the point may lie behind the drawn surface */
 };
 struct isoline_set { /* points of one asset */
@@ -25,7 +26,8 @@ struct isoline_set { /* points of one asset */
 };
 
 struct isolines {
-    struct isoline_set *sets; /* isoline points, by asset; `arrows` and `strokes` are indexed by asset, too */
+    /* points on isolines, at which labels may be placed, by asset; `arrows` and `strokes` are indexed by asset, too */
+    struct isoline_set *sets;
     struct arrow_set *arrows;
     struct stroke_set *strokes;
     size_t asset_count;
@@ -36,7 +38,7 @@ struct isoline_points { /* isoline points of one frame; zero-initialise, free `a
     uint16_t stroke_count;
 };
 
-/* Returns whether frames of this view show arrows or strokes for the directions of a field. Pure. */
+/* Returns whether frames of this view show the directions of a field by arrows or by strokes (short streamlines). Pure. */
 bool isolines_has_arrows(const struct scene *scene, const struct view *view);
 void isolines_init(struct isolines *isolines, size_t asset_count);
 void isolines_finish(struct isolines *isolines);

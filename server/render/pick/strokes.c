@@ -13,15 +13,16 @@
 
 #define STROKE_NONE UINT32_MAX
 enum { MAX_CROSSINGS = 64 };          /* edges crossed within one step */
-static const double STEP_PART = 0.35; /* length of a step along a stroke, as a fraction of the distance between arrows */
-/* smallest cosine between directions of consecutive steps (120 degrees): a faster turn is a vortex too small to follow */
+/* length of a step when a stroke (short streamline) is traced, as a fraction of the distance between arrows */
+static const double STEP_PART = 0.35;
+/* smallest cosine between the directions of consecutive steps of a stroke (120 degrees): a faster turn is a vortex too small to follow */
 static const double MIN_DOT = -0.5;
 
 /* --- neighbours ------------------------------------------------------------------------------------------------------------- */
 
 struct triangle_side { /* one side of a triangle */
     float low[3], high[3];
-    uint32_t at; /* identity of the side: 3 * index of the triangle + number (0 to 2) of the corner where the side begins */
+    uint32_t at; /* which side of which triangle this is: 3 * index of the triangle + number (0 to 2) of the corner where the side begins */
 };
 
 static int compare_sides(const void *a, const void *b)
@@ -29,8 +30,8 @@ static int compare_sides(const void *a, const void *b)
     return memcmp(a, b, 6 * sizeof(float));
 }
 
-/* Finds neighbours by corner positions, since vertices are duplicated where normals or materials differ. A side shared by more than two
-   triangles is a border. */
+/* Finds the neighbours of each triangle by corner positions, since vertices are duplicated where normals or materials differ. A side shared
+   by more than two triangles counts as a border of the surface. */
 static void find_neighbours(struct stroke_set *set, const struct asset_view *view, const struct asset_level *level, size_t tri_count)
 {
     struct triangle_side *sides = mem_array(3 * tri_count + 1, sizeof(*sides));

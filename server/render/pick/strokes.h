@@ -6,7 +6,7 @@
 #define RENDER_PICK_STROKES_H
 #include "render/pick/arrows.h"
 
-enum { STROKE_POINTS = 12, STROKES_MOST = 100 }; /* maximum number of points of a stroke, and of strokes of an asset */
+enum { STROKE_POINTS = 12, STROKES_MOST = 100 }; /* maximum number of points of a stroke (short streamline), and of strokes of an asset */
 
 struct stroke_point {
     struct direction_place place;
@@ -17,10 +17,10 @@ struct stroke_set { /* strokes of one asset; zero-initialise, free with strokes_
        no neighbour */
     uint32_t (*across)[3];
     struct stroke_point (*points)[STROKE_POINTS];
-    int *lengths; /* number of points per stroke; 0: the direction at its start is unknown */
+    int *lengths; /* number of points of each stroke (short streamline); 0: the direction at its start is unknown */
     size_t count;
     bool sought;
-    uint64_t content; /* hash of the sensor directions from which the strokes were traced */
+    uint64_t content; /* hash of the sensor directions from which the strokes (short streamlines) were traced */
 };
 
 /* Traces the asset's strokes (short streamlines) again if the directions of its arrows changed; `arrows` must be up to date. */

@@ -230,8 +230,8 @@ static struct fields_entry *look(struct fields *fields, const struct fields_ask 
     return entry;
 }
 
-/* Takes slices (ranges of a GPU buffer) for all entries without one. First announces all these entries to the pool, so that the slices lie
-   next to each other. */
+/* Takes slices (ranges of a GPU buffer) for all entries that have none yet. First announces all these entries to the pool of slices, so
+   that their slices lie next to each other. */
 static void make_room(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries)
 {
     size_t texels = 0, slices = 0;

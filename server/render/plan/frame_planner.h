@@ -21,7 +21,7 @@ bool frame_plan_prepare(struct frame_plan *plan, const struct frame_planner *pla
 /* Computes the plan's fields from the newest readings in the snapshot and fills in the remaining members. A field for which there is no
    memory shows no data; logged. Plans with equal content give equal frames. */
 void frame_plan_complete(struct frame_plan *plan, const struct frame_planner *planner, const struct snapshot *snapshot);
-/* Returns the key of the light set that the view asks for, whether or not that set is baked. */
+/* Returns the key of the light set (baked light) that the view asks for, whether or not that set is baked. */
 struct light_key frame_plan_wanted_light(const struct view *view);
 
 #endif

@@ -85,7 +85,7 @@ bool soft_parts_close(struct soft_parts *parts, const struct asset_view *file, c
     }
     for (size_t r = 0; r < closed->run_count; r++)
         for (uint32_t i = 0; i < closed->runs[r].index_count; i++)
-            /* one flag per vertex is enough: no vertex belongs to both a closed and an open body */
+            /* one flag per vertex suffices to mark closed bodies: no vertex belongs to both a closed and an open body */
             of_file[file->indices[closed->runs[r].first_index + i]] = 1;
     parts->closed = mem_try_array(parts->vertex_count, 1);
     for (size_t i = 0; i < parts->vertex_count && parts->closed; i++)

@@ -21,8 +21,8 @@ struct near_corner {
 };
 
 struct near_corner near_corner_of(const struct soft_mesh *mesh, uint32_t vertex, float a, float b, uint32_t flags);
-/* Clips a triangle against the near plane, the guard band and the first `cuts` section planes. Returns the number of corners of the
-   remaining polygon, in order: 0, or 3 and more. */
+/* Clips a triangle against the near plane, the guard band (a border around the frame) and the first `cuts` section planes. Returns the
+   number of corners of the remaining polygon, in order: 0, or 3 and more. */
 int near_cut(const struct raster *raster, int cuts, const struct near_corner at[3], struct near_corner out[NEAR_CORNERS]);
 
 static inline struct near_patterns near_patterns_of(uint32_t flags)

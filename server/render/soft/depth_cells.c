@@ -6,8 +6,8 @@
 
 #include "render/soft/lanes.h"
 
-/* Smallest gap between the two sides of a depth step within a cell, as a fraction of the range of the cell's depths; with a smaller gap the
-   cell is not divided. In a single tilted plane, depths are closer together than that. */
+/* Smallest gap between the two sides of a depth step within a depth grid cell, as a fraction of the range of the cell's depths; with a
+   smaller gap the cell is not divided. In a single tilted plane, depths are closer together than that. */
 static const float LEAST_GAP = 0.25f;
 
 SOFT_INLINE float least_of_all(lanes x)
@@ -27,8 +27,9 @@ SOFT_INLINE lanes row_at(const float *depth, size_t pitch_px, int row)
     return *(const lanes *)(depth + (size_t)row * pitch_px);
 }
 
-/* Divides a cell into pixels nearer than the depth `border` and pixels farther away. low: least depth of the farther pixels; 0: they show
-   only background. high: largest depth of the cell. Returns false if the gap between both sides is too small (LEAST_GAP). */
+/* Divides the pixels of a depth grid cell into those nearer than the depth `border` and those farther away. low: least depth of the farther
+   pixels; 0: they show only background. high: largest depth of the cell. Returns false if the gap between both sides is too small
+   (LEAST_GAP). */
 SOFT_INLINE bool divide(const float *depth, size_t pitch_px, float low, float border, float high, struct depth_cell *cell)
 {
     lanes zero = { 0 }, nearest_behind = zero, farthest_before = zero + high;
@@ -47,8 +48,8 @@ SOFT_INLINE bool divide(const float *depth, size_t pitch_px, float low, float bo
     return true;
 }
 
-/* Returns the depth of the farthest surface in a cell, ignoring background. Larger depths are nearer, so this is the least depth above
-   0. */
+/* Returns the depth of the farthest surface in a depth grid cell, ignoring background. Larger depths are nearer, so this is the least depth
+   above 0. */
 SOFT_INLINE float farthest_surface(const float *depth, size_t pitch_px, float high)
 {
     lanes most = { 0 }, least = most + high;
@@ -80,7 +81,7 @@ SOFT_INLINE void find_cell(const struct depth_lens *lens, const float *depth, si
         divide(depth, pitch_px, 0, 0, high, cell);
 }
 
-/* Computes a cell that extends beyond the frame. Outside the frame, it repeats the pixels at the frame's edge. */
+/* Computes a depth grid cell that extends beyond the frame. Outside the frame, the pixels at the frame's edge are repeated. */
 static void find_edge_cell(const struct depth_source *source, int row, int column, struct depth_cell *cell)
 {
     float depth[DEPTH_CELL_PX * DEPTH_CELL_PX];

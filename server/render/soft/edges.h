@@ -44,14 +44,16 @@ SOFT_INLINE float edge_row(const struct raster_edge *edge, float y)
     return edge->dx * (y - edge->y) + edge->dy * edge->x;
 }
 
-/* Returns a negative lane for each pixel on the outer side of the edge. Only the sign bit counts, so a pixel with the edge function -0 is
-   also on exactly one side. x: x of the pixel centres. */
+/* Returns eight numbers, negative for each pixel on the outer side of the edge. Only the sign bit counts, so a pixel with the edge function
+   -0 is also on exactly one side. x: x of the pixel centres. */
 SOFT_INLINE lanes_int edge_side(const struct raster_edge *edge, float row, lanes x)
 {
     return (lanes_int)(row - edge->dy * x) ^ edge->negative;
 }
 
-struct slopes { /* vectors from the first corner of the triangle to the two others, divided by twice the triangle's area */
+/* vectors from the first corner of a triangle to the two others, divided by twice the triangle's area; plane_of() computes from them how a
+   value changes per pixel */
+struct slopes {
     float x1, y1, x2, y2;
 };
 

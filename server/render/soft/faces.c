@@ -5,7 +5,8 @@
 
 #include "render/soft/kernels.h"
 
-#define FARTHEST 1e6f /* colour map columns are clamped to this absolute value, which is far outside the scale */
+/* colour map columns of values far outside the scale are clamped to this absolute value */
+#define FARTHEST 1e6f
 
 /* --- vertices --------------------------------------------------------------------------------------------------------------- */
 
@@ -203,14 +204,14 @@ SOFT_INLINE bool is_hidden(const struct soft_tile *tile, const struct soft_face 
 struct eight { /* eight triangles */
     lanes_int corners[3];
     lanes_int left, right, top, bottom;
-    /* per triangle, -1: true. kept: the triangle will be drawn. doubtful: the depth blocks at the four corners of its rectangle hide the
-       triangle, but the rectangle has more blocks, which are not tested yet */
+    /* per triangle, -1: true. kept: the triangle will be drawn. doubtful: nearer surfaces fill the depth blocks (8 x 8 pixels) at the four
+       corners of its bounding rectangle, but the rectangle has more blocks, which are not tested yet */
     lanes_int kept, doubtful;
     lanes nearest;
 };
 
-/* Drops triangles whose rectangle touches only hidden depth blocks (8 x 8 pixels). If the rectangle has blocks besides those at its four
-   corners, marks the triangle as doubtful instead. */
+/* Drops triangles that nearer surfaces hide in all depth blocks (8 x 8 pixels) of their bounding rectangle. Tests only the blocks at the
+   four corners of the rectangle; if it has more blocks, marks the triangle as doubtful instead. */
 SOFT_INLINE void hide(const struct soft_tile *tile, struct eight *eight)
 {
     const float *farthest = &tile->farthest[0][0], *depth = tile->corners.depth;

@@ -116,8 +116,8 @@ static double margin(double at)
     return t * t * (3 - 2 * t);
 }
 
-/* Returns the brightness of a ground texel, 0..255, as shaders/ground.frag computes it. light: sunlight and openness; u, v: position on the
-   ground, 0..1. */
+/* Returns the brightness of a ground texel, 0..255, as shaders/ground.frag computes it. light: sunlight, and openness (visible part of the
+   sky); u, v: position on the ground, 0..1. */
 static uint8_t ground_factor(const uint8_t light[2], double u, double v)
 {
     double dark = fmin(GROUND_SUN * (1 - light[0] / 255.0) + GROUND_SKY * (1 - light[1] / 255.0), GROUND_MOST);

@@ -18,7 +18,9 @@
 #define SOFT_JOIN(name, set) name##set
 #define SOFT_IN_SET(name, set) SOFT_JOIN(name, set)
 
-enum { LANES = 8 }; /* number of elements per vector; at most SOFT_STRETCH_LEAST (soft_impl.h), so that eight pixels lie in one stretch */
+/* number of elements per vector: eight pixels are processed at once. At most SOFT_STRETCH_LEAST, so that the sky's elevation is linear over
+   eight pixels (soft_impl.h) */
+enum { LANES = 8 };
 typedef float lanes __attribute__((vector_size(32), aligned(4)));
 typedef int32_t lanes_int __attribute__((vector_size(32), aligned(4)));
 typedef uint32_t lanes_uint __attribute__((vector_size(32), aligned(4)));

@@ -63,8 +63,8 @@ static void aim_rays(struct raster *raster, const double clip[16])
    interpolation deviates from the sine of a ray's elevation by at most 0.15 n^2 / f^2. */
 static void choose_stretch(struct raster *raster)
 {
-    /* largest permitted error of the interpolation, in columns of the backdrop table: half a grey level at the horizon, where the backdrop
-       changes most */
+    /* largest permitted error of the interpolated elevation of the sky, in columns of the table of backdrop colours: half a grey level at
+       the horizon, where the backdrop changes most */
     static const double most = 1;
     const float(*m)[3] = raster->ray_from_pixel;
     double step2 = 0, area2 = 0, volume = 0;
@@ -90,7 +90,7 @@ static void aim_ground(struct raster *raster, const struct light *light)
     float(*to)[3] = raster->ground_from_pixel;
     raster->has_ground = sky_sees_ground(raster->context, light);
     matrix_multiply(raster->context->constants.clip_from_plant, light->plant_from_ground, clip);
-    double h[3][3]; /* matrix: maps (u, v, 1) on the ground to (x w, y w, w), with x and y in pixels; column by column */
+    double h[3][3]; /* homogeneous matrix from a position (u, v, 1) on the ground to the pixel (x w, y w, w), column by column */
     for (int c = 0; c < 3; c++) {
         const double *column = &clip[c == 2 ? 12 : 4 * c];
         h[0][c] = 0.5 * raster->width_px * (column[3] + column[0]);

@@ -39,11 +39,13 @@ struct sun_aim {
     lanes u_part, v_part, place;
     /* tile: index of the shadow map tile; at: index, in soft_light.sun_map, of the upper left of the four texels */
     lanes_int tile, at;
-    lanes_int open; /* mask of lanes whose texels must still be read; for the others `lit` is final: the visible part of the sun, 0..1 */
+    /* mask of those of the eight points whose texels must still be read; for the others `lit` is final: the visible part of the sun,
+       0..1 */
+    lanes_int open;
     lanes lit;
 };
 
-/* Begins the lookup of eight shadows: finds tiles and texels. s_t_depth: position on the map and depth, 0..1. wanted: mask of the lanes
+/* Begins the lookup of eight shadows: finds tiles and texels. s_t_depth: position on the map and depth, 0..1. wanted: mask of the points
    that need a shadow. */
 SOFT_INLINE void sun_aim(const struct soft_light *light, const lanes s_t_depth[3], lanes_int wanted, struct sun_aim *aim)
 {
@@ -80,7 +82,7 @@ SOFT_INLINE void sun_bound(const struct soft_light *light, struct sun_aim *aim)
     aim->lit = lanes_choose(lit, one, none);
 }
 
-/* Prefetches the texels that sun_look() reads. */
+/* Prefetches into the CPU cache the shadow map texels of the points that sun_bound() left undecided. */
 SOFT_INLINE void sun_prefetch(const struct soft_light *light, const struct sun_aim *aim)
 {
     lanes_int at = aim->at & aim->open;

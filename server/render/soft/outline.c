@@ -63,7 +63,7 @@ static void paint(const struct raster *raster, const uint8_t *rim)
 const uint8_t *raster_rim(const struct raster *raster)
 {
     struct brush brush;
-    uint8_t *rim = (uint8_t *)raster->depth; /* `rim` reuses the memory of the depth buffer, which is no longer needed */
+    uint8_t *rim = (uint8_t *)raster->depth; /* by pixel: enum soft_rim; uses the memory of the depth buffer, which is no longer needed */
     brush_init(&brush, lines_outline_px(raster->context->view));
     memset(rim, 0, (size_t)raster->pitch_px * (size_t)raster->height_px);
     for (int y = 0; y < raster->height_px; y++)

@@ -10,8 +10,10 @@
 #include "render/matrix.h"
 #include "render/gl/ghosts.h"
 
-#define SLACK_PX 0.02f    /* tolerance in pixels, because projected boxes and projected vertices round differently */
-#define SLACK_DEPTH 1e-5f /* tolerance for rounding errors in a depth, as a fraction of the depth */
+/* margin in pixels around the projected bounding boxes of triangles, because boxes and vertices round differently */
+#define SLACK_PX 0.02f
+/* factor minus 1 by which the nearest depth of a bounding box is enlarged (brought nearer), against rounding errors */
+#define SLACK_DEPTH 1e-5f
 /* depth used for points in front of the near plane; larger than any real depth, so that they count as nearest */
 #define IN_FRONT_OF_NEAR 2.0f
 

@@ -54,7 +54,8 @@ static inline void soft_part_triangle(const struct soft_parts *parts, const stru
 
 /* Makes the parts (groups of triangles) of a level of detail. Returns false when out of memory. Call soft_parts_finish() in either case. */
 bool soft_parts_init(struct soft_parts *parts, const struct asset_view *file, const struct model_level *level);
-/* Computes `closed` if it is NULL. vertex_count: vertices of the level of detail. Returns false when out of memory. */
+/* Computes parts->closed (which vertices belong to closed bodies) unless that is done already. vertex_count: number of vertices of the
+   level of detail. Returns false when out of memory. */
 bool soft_parts_close(struct soft_parts *parts, const struct asset_view *file, const struct closed_bodies *closed, uint32_t vertex_count);
 void soft_parts_finish(struct soft_parts *parts);
 

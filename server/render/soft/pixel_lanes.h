@@ -122,8 +122,8 @@ SOFT_INLINE void pixel_sum_shepard(const struct pixel_field *field, const struct
         pixel_add_far(field, list, at, near2, lanes_exp2(0.5f * field->power * near_log2 + list->top), sums);
 }
 
-/* Sums the weights 1 / distance^2 of a list whose sensors are all used. Unlike other kinds of weights, these need not be scaled by the
-   nearest sensor's weight: they fit into a float even at a sensor. */
+/* Sums the weights 1 / distance^2 of a list of sensors that all have a usable reading. Unlike other kinds of weights, these need not be
+   scaled by the nearest sensor's weight: they fit into a float even at a sensor. */
 SOFT_INLINE void pixel_sum_inverse_square(const struct pixel_field *field, const struct pixel_list *list, const lanes at[3],
                                           struct eight_sums *sums)
 {
@@ -214,8 +214,8 @@ SOFT_INLINE void pixel_lanes_at(const struct pixel_field *field, const struct pi
     const float reach2 = field->reach_m < 1e15f ? field->reach_m * field->reach_m : 0.5f * PIXEL_FAR2;
     lanes_int reached = nearest.used <= reach2, lost = nearest.lost < nearest.used;
     pixel_value_of(field, &sums, out);
-    /* `show: blind`: height of the smallest hot spot that is detectable at the point, seen * 2^(log2(e)/2 (near/s)^2), where near is the
-       distance of the nearest sensor and s the size of a hot spot; `most` limits the result */
+    /* view of blindness: height of the smallest hot spot at this point that a sensor would notice, field->seen * e^((d/s)^2 / 2), but at
+       most field->most. d: distance of the nearest sensor; s: size of a hot spot */
     if (field->show == PIXEL_BLIND) {
         lanes down = nearest.used * (-0.72134752f / (field->hot_spot_m * field->hot_spot_m));
         out->value = lanes_least(field->seen / lanes_exp2_down(lanes_most(down, none - 100.0f)), none + field->most);

@@ -18,11 +18,12 @@ static const float FAR_M = 1e15f, MOST_SHARE = 0.0625f, LOG2_E = 1.44269504f;
 enum node_column { PLACE_X, PLACE_Y, PLACE_Z, VALUE, STRENGTH, DECAY, STATE, INDEX, COLUMNS };
 
 struct node {
-    /* table of the sensors that are not far yet, by enum node_column, padded to LANES. The columns STATE and INDEX (index in
-       field->sensors) hold integers */
+    /* table of the near sensors, which no polynomial replaces yet: one column per enum node_column, padded to LANES. The columns STATE and
+       INDEX (index in field->sensors) hold integers */
     float *columns[COLUMNS];
     int count;
-    struct pixel_list far; /* polynomials that replace the far sensors; its member `sensors` is not set */
+    /* polynomials that replace the far sensors: those whose weight is smooth in the square of pixels; its member `sensors` is not set */
+    struct pixel_list far;
     float least;           /* lower bound of the sum of the weights of the far sensors */
     float left;            /* remaining error budget: fraction of the sum of all weights by which the polynomials may still deviate */
 };
@@ -52,7 +53,8 @@ float pixel_lists_step(const float *scale)
 
 struct eight_sensors {
     lanes at[3], value, strength, decay;
-    /* masks of the sensors in each state. counts: mask of the lanes that hold a sensor; lanes beyond the end of the list hold none */
+    /* masks of the sensors (of eight) in each state. counts: mask of the elements that hold a sensor; beyond the end of the list they hold
+       none */
     lanes_int used, lost, no_limits, uncertain, counts;
 };
 
@@ -100,8 +102,8 @@ SOFT_INLINE lanes weight_at(const struct pixel_field *field, const struct eight_
     return field->paper ? weight : weight * of->strength;
 }
 
-/* quadratic approximation of a sensor's weight in the box: value and derivatives by the distance, at the box's centre; a bound of the
-   error; and the smallest weight in the box. tilt: added to the slope to lower the error */
+/* Quadratic approximation of a sensor's weight within a box around the surface points of a square of pixels: value and derivatives by the
+   distance, at the box's centre; a bound of the error; and the smallest weight in the box. tilt: added to the slope to lower the error. */
 struct jet {
     lanes value, first, second, tilt, error, least;
 };
@@ -137,9 +139,9 @@ SOFT_INLINE void add_pole(struct logarithm *to, lanes times, lanes left)
     to->third += 2.0f * times * over * over * over;
 }
 
-/* Bounds the derivatives of a weight's logarithm in the box. near_m, far_m: smallest and largest distance from the sensor there; factors
-   with a pole at the sensor are evaluated at near_m, those with a pole at the reach or radius at far_m. sign: sign with which the second
-   derivative of the factors evaluated at far_m is added. */
+/* Bounds the derivatives of a weight's logarithm in a box around surface points. near_m, far_m: smallest and largest distance from the
+   sensor there; factors with a pole at the sensor are evaluated at near_m, those with a pole at the reach or radius at far_m. sign: sign
+   with which the second derivative of the factors evaluated at far_m is added. */
 SOFT_INLINE struct logarithm logarithm_of(const struct pixel_field *field, const struct eight_sensors *of, lanes near_m, lanes far_m,
                                           bool term, float sign)
 {
@@ -167,8 +169,8 @@ SOFT_INLINE struct logarithm logarithm_of(const struct pixel_field *field, const
     return out;
 }
 
-/* Fills *out with approximations of the weights of eight sensors as functions of the position in the box. distance: from each sensor to the
-   box's centre. Correct only for weights that fall with distance, as all do. */
+/* Fills *out with quadratic approximations of the weights of eight sensors in a box around surface points. distance: from each sensor to
+   the box's centre. Correct only for weights that fall with distance, as all do. */
 SOFT_INLINE void jet_of(const struct pixel_field *field, const struct eight_sensors *of, lanes distance, float radius, bool term, float top,
                         struct jet *out)
 {
@@ -258,11 +260,12 @@ SOFT_INLINE lanes distances_of(const struct eight_sensors *of, const struct box 
     return distance;
 }
 
-/* upper bounds of the distance from any point of the box to the nearest sensor of each state (used, lost, no limits); FAR_M: there is no
-   sensor of that state */
+/* upper bounds of the distance from any surface point of a square of pixels to the nearest sensor of each state (used, lost, no limits);
+   FAR_M: there is no sensor of that state */
 struct nearest_bounds {
     float used, lost, no_limits;
-    /* base-2 logarithm of a number close to the largest weight in the box; weights are divided by that number to fit in floats */
+    /* base-2 logarithm of a number close to the largest weight that any sensor has at these points; weights are divided by that number to
+       fit in floats */
     float top;
 };
 
@@ -292,7 +295,8 @@ struct centre_sums {
     lanes weights, by_distance, along[3];
 };
 
-/* For weights of the form strength / distance^2: adds eight sensors to the sums from which least_by_centre() computes its bound. */
+/* For weights of the form strength / distance^2: adds eight sensors to the sums from which least_by_centre() computes a lower bound of the
+   sum of all weights. */
 SOFT_INLINE void add_at_centre(const struct eight_sensors *of, lanes distance, float radius, float top, const lanes away[3],
                                struct centre_sums *sums)
 {
@@ -304,9 +308,9 @@ SOFT_INLINE void add_at_centre(const struct eight_sensors *of, lanes distance, f
         sums->along[c] += weight * q * (distance * over) * away[c];
 }
 
-/* Returns a lower bound of the sum of all weights in the box. By Cauchy's inequality, the sum of s_i / D_i is at least (sum of p_i)^2 /
-   (sum of p_i^2 D_i / s_i) for any p_i. D_i are squared distances, s_i strengths and p_i the weights at the box's centre, so the last sum
-   is a quadratic function of the place. */
+/* Returns a lower bound of the sum of all weights in a box around surface points. By Cauchy's inequality, the sum of s_i / D_i is at least
+   (sum of p_i)^2 / (sum of p_i^2 D_i / s_i) for any p_i. D_i are squared distances, s_i strengths and p_i the weights at the box's centre,
+   so the last sum is a quadratic function of the place. */
 SOFT_INLINE float least_by_centre(const struct centre_sums *sums)
 {
     float weights = sum_of(sums->weights), along = 0;
@@ -347,7 +351,8 @@ SOFT_INLINE float bound_errors(const struct building *building, const struct nod
     return fmaxf(sum_of(least), square ? least_by_centre(&sums) : 0);
 }
 
-/* Returns the sum of all elements of errors[] that are at most `most`. */
+/* Returns by how much field values change at most if polynomials replace all sensors whose error is at most `most`: the sum of these
+   errors. */
 SOFT_INLINE float sum_up_to(const float *errors, int count, float most)
 {
     lanes sum = { 0 };
@@ -387,8 +392,8 @@ SOFT_INLINE void keep(const struct node *from, int sensor, struct node *to)
     to->count++;
 }
 
-/* Splits the parent node's list: sensors with an error of at most `most` become far and are added to the polynomials; the others stay in
-   the list. */
+/* Splits the list of sensors of the larger square: sensors with an error of at most `most` become far and are added to the polynomials; the
+   others stay in the list. */
 SOFT_INLINE void split(const struct building *building, const struct node *from, const struct box *box, float most, float top,
                        struct node *to)
 {
@@ -422,8 +427,8 @@ SOFT_INLINE void split(const struct building *building, const struct node *from,
     to->least = from->least * times + sum_of(sums.least);
 }
 
-/* Makes the node of a smaller square from the node of the square around it. last true: the node may use all of the remaining error budget;
-   false: it leaves a part for smaller squares. */
+/* Makes the list of near sensors of a square of pixels from that of the larger square around it. last true: the list may use all of the
+   remaining error budget; false: it leaves a part for the smaller squares inside. */
 static void make_node(const struct building *building, const struct node *from, const struct box *box, bool last,
                                   struct node *to)
 {
@@ -501,7 +506,8 @@ static void add_list(struct pixel_lists *lists, const struct node *node, const s
     list->row = cell->row;
     list->first = lists->sensor_count;
     list->unit = lanes_exp2(all(list->top))[0];
-    if (repeats) { /* the cell has the same sensors as the cell before: both lists share one range of sensor indices */
+    /* the cell (square of 16 x 16 pixels) has the same sensors as the cell before: both lists share one range of sensor indices */
+    if (repeats) {
         list->first = list[-1].first;
         list->all_used = list[-1].all_used;
         return;

@@ -15,13 +15,13 @@ enum { PIXEL_FEW = 8, CELL_SHIFT = 4, CELL_PX = 1 << CELL_SHIFT, SQUARE_CELLS = 
 
 struct pixel_cell {        /* the pixels of one cell (a square with sides of CELL_PX pixels) that show one mesh */
     float low[3], high[3]; /* box in metres around the surface points that the cell's pixels show */
-    uint16_t column, row;  /* position of the cell in the frame, in cells from the top left */
+    uint16_t column, row;  /* position of this square of pixels (cell) in the frame, in cells from the top left */
     uint32_t mesh;
 };
 
 struct pixel_list {
-    const uint32_t *sensors; /* indices in field->sensors of the near sensors: those evaluated at each pixel of the cell; NULL: the first
-                                `count` sensors */
+    /* indices in field->sensors of the near sensors: those evaluated at each pixel of the square; NULL: the first `count` sensors */
+    const uint32_t *sensors;
     size_t first;            /* index of the list's first sensor in pixel_lists.sensors */
     int count;
     bool all_used;  /* true: all sensors in the list have a usable reading */
@@ -31,7 +31,8 @@ struct pixel_list {
        Uncertain, all times 2^-top. `unit` is 2^top. Coefficients of 1, x, y, z, xx, xy, xz, yy, yz, zz, with x, y, z in metres from
        `centre`. */
     float top, unit, centre[3], total[PIXEL_TERMS], values[PIXEL_TERMS], marked[PIXEL_TERMS];
-    uint32_t mesh, column, row; /* mesh and position of the list's cell, copied from struct pixel_cell */
+    /* mesh and position of the square of pixels (cell) for which the list is made, copied from struct pixel_cell */
+    uint32_t mesh, column, row;
     uint32_t next;              /* index for the caller's own use, such as a linked list; the functions below ignore it */
 };
 

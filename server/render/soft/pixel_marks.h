@@ -8,7 +8,8 @@
 struct mark_ink {
     int32_t last_row; /* index of the last row of the colour map; rows are brightness steps */
     float pattern_px;
-    bool rich; /* true: marks need the slower code path, because there are isolines or the scale is logarithmic */
+    /* true: the pixels' colour codes (marks) need the slower code path, because there are isolines or the scale is logarithmic */
+    bool rich;
     bool log;
     float low, over;    /* on a logarithmic scale, the position of a value, 0..1, is (log2(value) - low) * over */
     float line_px;      /* width of isolines in pixels; 0: there are no isolines */
@@ -67,8 +68,8 @@ SOFT_INLINE lanes_int stipple(lanes x, float y, float pattern_px)
     return across * across + down * down < (float)STIPPLE_RADIUS * (float)STIPPLE_RADIUS;
 }
 
-/* Computes the marks of eight pixels of a field with isolines or a logarithmic scale, without patterns, as field_color() in
-   shaders/field.glsl does. value_x, value_y: change of the value per pixel. */
+/* Computes the marks (colour codes, soft_impl.h) of eight pixels of a field with isolines or a logarithmic scale, without patterns, as
+   field_color() in shaders/field.glsl does. value_x, value_y: change of the value per pixel. */
 SOFT_INLINE lanes_int rich_mark(lanes value, lanes value_x, lanes value_y, lanes row, const struct mark_ink *ink)
 {
     const float slack = 1e-5f, columns = COLORMAP_PLACES / (1 + 2 * slack), first = 1 + slack * columns, farthest = 1e6f;
@@ -102,8 +103,8 @@ SOFT_INLINE bool rule(float y, float pattern_px)
     return phase < (float)-RULE_EDGE || phase > (float)RULE_EDGE;
 }
 
-/* Replaces the marks of pixels (of eight) that show a pattern: no data, uncertain or no limits. Called for faces whose corners have
-   different flags, or a flag that shows a pattern. */
+/* Replaces the marks (colour codes) of those of eight pixels that show a pattern: no data, uncertain or no limits. Called for faces whose
+   corners have different flags, or a flag that shows a pattern. */
 SOFT_INLINE lanes_int pattern_marks(lanes_int marks, lanes_int no_data, lanes_int uncertain, lanes_int no_limits, lanes row, lanes x,
                                     float y, const struct mark_ink *ink)
 {

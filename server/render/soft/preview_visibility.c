@@ -16,7 +16,7 @@ struct keeping {
 
 struct preview_triangle { /* a triangle projected into the frame; cached while the visibility buffer is filled */
     uint32_t id;
-    uint32_t number; /* index of the triangle in the band's list of triangles */
+    uint32_t number; /* index of the triangle in the list of its band (group of pixel rows) */
     /* coefficients from soft_weights(): the weight of corner i at the point (x, y) is weights[i][0] x + weights[i][1] y + weights[i][2], up
        to a common factor */
     double weights[3][3];
@@ -66,7 +66,7 @@ static uint32_t weights_at(const struct preview_triangle *spot, double x, double
         double part = sum != 0 ? w[i + 1] / sum : 0;
         out[i] = part <= 0 ? 0 : part >= 1 ? 65535 : (uint32_t)(part * 65535 + 0.5);
     }
-    if (out[0] + out[1] > 65535) /* the two weights may exceed 65535 in sum because of rounding */
+    if (out[0] + out[1] > 65535) /* rounding may lift the sum of the two corner weights above 65535, which means 1 */
         out[1] = 65535 - out[0];
     return out[0] | out[1] << 16;
 }

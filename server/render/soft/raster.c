@@ -88,8 +88,8 @@ SOFT_INLINE void setup_init(struct setup *setup, const struct soft_vertex v[3], 
         setup_patterns(setup, &slopes, v, patterns);
 }
 
-/* Returns the marks of eight pixels that show the field. a, b: column and row of the colour map. w: 1 / inverse_w at the pixels, used only
-   if the face needs perspective correction. */
+/* Returns the marks (colour codes, soft_impl.h) of eight pixels that show the field. a, b: column and row of the colour map. w: 1 /
+   inverse_w at the pixels, used only if the face needs perspective correction. */
 SOFT_INLINE lanes_int field_marks(const struct setup *setup, const struct mark_ink *ink, lanes a, lanes b, lanes w)
 {
     lanes none = { 0 }, x = none + setup->a.dx, y = none + setup->a.dy;
@@ -321,7 +321,7 @@ static void count_face(const struct soft_tile *tile, const struct soft_face *fac
         float sides[3];
         for (int e = 0; e < 3; e++)
             sides[e] = edge_row(&edges[e], (float)row + 0.5f);
-        /* begins at a multiple of LANES, so that each pixel is counted once */
+        /* blocks of LANES pixels begin at multiples of LANES, so that they do not overlap and no pixel is counted twice */
         for (int column = face->left / LANES * LANES; column <= face->right; column += LANES) {
             lanes x = LANES_IOTA + ((float)column + 0.5f);
             lanes_int side = edge_side(&edges[0], sides[0], x) | edge_side(&edges[1], sides[1], x) | edge_side(&edges[2], sides[2], x);

@@ -116,7 +116,7 @@ static bool take_up(struct refined *refined, const struct frame_context *context
     raster_aim_cuts(raster);
     raster->out = frame->bgrx;
     raster->out_stride_bytes = (size_t)frame->stride_bytes;
-    /* the light set may have been copied again since the last step, so the meshes' pointers into its copy are set again */
+    /* the light set (baked light) may have been copied again since the last step, so the meshes' pointers into its copy are set again */
     if (refined->step > REFINED_FIND && refined->step < REFINED_INK)
         for (size_t m = 0; m < raster->mesh_count; m++)
             raster->meshes[m].baked = (const uint8_t(*)[4])raster->light->baked[raster->meshes[m].asset];

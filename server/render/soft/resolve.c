@@ -16,7 +16,7 @@ struct coloring {
     /* log: the colour scale is logarithmic; rich: the slower code path is needed, for isolines or a logarithmic scale */
     bool log, rich;
     struct frame *frame;
-    /* lists of near sensors (pixel_lists.h) for the cells of the band of pixel rows that is being coloured */
+    /* lists of near sensors (pixel_lists.h) for the cells (squares of pixels) of the band of pixel rows that is being coloured */
     const struct band_lists *lists;
 };
 
@@ -152,8 +152,8 @@ static void interpolate_place(const struct coloring *coloring, const uint32_t ve
     out->slope = slope_of(coloring, d1 * steps[0][0] + d2 * steps[1][0], d1 * steps[0][1] + d2 * steps[1][1], out->carried);
 }
 
-/* Evaluates the field at one pixel from its sensors: lane 0 at the pixel itself, lanes 1 and 2 one pixel farther in x and y, which give the
-   slope. */
+/* Evaluates the field at one pixel from its sensors: element 0 of the vectors is for the pixel itself, elements 1 and 2 for points one
+   pixel farther in x and y, which give the slope. */
 static void evaluate_place(const struct coloring *coloring, const struct visibility_band *band, uint32_t triangle, const float w[3],
                            float steps[2][2], int cell, struct shown_place *out)
 {
@@ -314,7 +314,7 @@ typedef uint64_t sums __attribute__((vector_size(32), aligned(8)));
 enum { PARTS_AHEAD = 64 };
 struct ahead {
     size_t first, end;
-    /* true: no corner of the surfaces first..end-1 has flags, and the frame has no isolines */
+    /* true: no corner of the surfaces first..end-1, whose colours are stored, has flags, and the frame has no isolines */
     bool all_known;
     uint32_t known[PARTS_AHEAD];                          /* 0: a corner has flags */
     uint64_t colors[PARTS_AHEAD + VISIBILITY_MOST_PARTS]; /* colour times share */

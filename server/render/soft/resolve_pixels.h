@@ -7,8 +7,8 @@
 
 struct band_lists { /* sensor lists of one band of pixel rows, for meshes whose fields have more than PIXEL_FEW sensors */
     struct pixel_lists lists;
-    uint32_t *of_cells; /* by cell of the band: 1 + index of the cell's first list in `lists`; 0: the cell has none */
-    int columns;        /* number of cells next to each other in a row of the band */
+    uint32_t *of_cells; /* by cell (square of pixels) of the band: 1 + index of the cell's first list in `lists`; 0: the cell has none */
+    int columns;        /* number of cells (squares of pixels) next to each other in a row of the band */
 };
 
 /* eight points on triangles. at: position of the point in metres; second, third: vectors from the triangle's first corner to its second and

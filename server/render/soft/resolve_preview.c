@@ -278,7 +278,7 @@ struct many { /* pixels within a square of cells that show one field of many sen
     const struct soft_pixels *pixels;
     const struct soft_rect *rect;
     int left, top;
-    uint32_t mark; /* mark of the pixels that show the field, without its low byte, which is the row of the colour map */
+    uint32_t mark; /* mark (colour code) of the pixels that show the field, without its low byte, which is the row of the colour map */
 };
 
 SOFT_INLINE lanes_int *marks_of_many(const struct many *many, int column, int row)

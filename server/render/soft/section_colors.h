@@ -34,7 +34,7 @@ SOFT_INLINE lanes_int inside_color(const lanes v[3], const lanes n[3], const flo
     return pack_color(inside[0] * bright, inside[1] * bright, inside[2] * bright);
 }
 
-/* Encodes a normal of any length as a mark of a surface's inner side, by octahedral mapping. */
+/* Encodes a normal of any length as the mark (colour code of a pixel) of a surface's inner side, by octahedral mapping. */
 static inline uint32_t inside_mark(const float n[3])
 {
     float sum = fabsf(n[0]) + fabsf(n[1]) + fabsf(n[2]), over = sum > 0 ? 1 / sum : 0, x = n[0] * over, y = n[1] * over;

@@ -55,8 +55,8 @@ static void abandon(struct renderer *renderer, struct render_job *job)
     job->of.soft = NULL;
 }
 
-/* Sets the job's light set and colour map, and binds its environment, before its next step: other frames may have been drawn in between.
-   Returns false on failure, logged. */
+/* Sets the job's light set (baked light) and colour map, and binds its environment, before its next step: other frames may have been drawn
+   in between. Returns false on failure, logged. */
 static bool take_up(struct renderer *renderer, struct render_job *job)
 {
     if (!renderer_light_job(renderer, job))
@@ -71,7 +71,8 @@ static bool step(struct renderer *renderer, struct render_job *job, int64_t budg
 {
     struct refined *refined = job->of.soft->refined;
     int64_t start_ns = clock_mono_ns(), spent_ns = 0, last_ns = 0;
-    bool done = !refined || !take_up(renderer, job); /* if take_up() fails, no step is left: end() fails as well and reports the error */
+    /* if the job's light cannot be set, no step is left: end() fails as well and reports the error */
+    bool done = !refined || !take_up(renderer, job);
     while (!done && spent_ns + 2 * last_ns <= budget_ns) {
         done = refined_step(refined, &job->context, &renderer->light, job->frame);
         last_ns = clock_mono_ns() - start_ns - spent_ns;

@@ -39,7 +39,8 @@ enum { MOST_RAMPS = 1 << 14 };
 
 struct soft_vertex {
     float x, y, depth; /* x, y: pixels from the top left of the frame; depth: 1 near, 0 far */
-    float inverse_w;   /* 1 / clip w; 0: the vertex is in front of the near plane or beyond the guard band (clip.h) */
+    /* 1 / clip w; 0: the vertex is in front of the near plane, or beyond the guard band (a border around the frame, clip.h) */
+    float inverse_w;
     /* a, b: if the vertex has a field: column of the colour map (logarithmic scale: the value) and row of the colour map; otherwise:
        ambient light and sunlight */
     float a, b;
@@ -96,7 +97,7 @@ struct soft_found {
 };
 
 struct soft_light {       /* copy of a light_set, read back from the GPU */
-    uint64_t id;          /* id of the light set; 0: the entry is empty */
+    uint64_t id;          /* id of the light set (baked light) that was copied; 0: the entry is empty */
     uint8_t (**baked)[4]; /* baked light, indexed by asset and then by vertex */
     /* shadow map of the sun in square tiles; a tile takes two cache lines and is stored row by row, so that neighbouring texels mostly
        share cache lines */
@@ -142,7 +143,7 @@ struct raster { /* all data of one frame's rasterization, input and pixels; its 
     const float *lines;
     struct frame_uniforms block;
     struct soft_mesh *meshes;
-    struct soft_found *found; /* by mesh: list of its parts that may be visible */
+    struct soft_found *found; /* by mesh: list of its parts (groups of triangles) that may be visible */
     size_t found_capacity;
     size_t mesh_count, vertex_count;
     size_t mesh_capacity;
@@ -150,12 +151,12 @@ struct raster { /* all data of one frame's rasterization, input and pixels; its 
     size_t pixels_count, pixels_capacity;
     int row_bias; /* number added to the colour map row that a MARK_PIXELS mark stores, so that the stored number is not negative */
     int width_px, height_px, pitch_px; /* pitch_px: number of elements from one row to the next, a multiple of LANES */
-    /* largest distance of a sample from the pixel's centre along x or y; bounding rectangles of parts are enlarged by it. Previews: 0 */
+    /* largest distance of a sample from the pixel's centre along x or y, by which bounding rectangles are enlarged. Previews: 0 */
     float reach_px;
     float *depth;
     uint32_t *marks;
-    /* by pixel: id of the triangle that it shows (first_id of the part + index in the part); valid where the pixel has a mark; NULL: not
-       needed */
+    /* by pixel: id of the triangle that it shows (first_id of the part + index in the part); valid where the pixel's mark (colour code) is
+       not 0; NULL: not needed */
     uint32_t *ids;
     size_t pixel_capacity;
     uint8_t *out;
@@ -172,7 +173,7 @@ struct raster { /* all data of one frame's rasterization, input and pixels; its 
     /* true: assets without a field are drawn grey (in views of values relative to alarm limits) */
     bool greys;
     float sun_from_pixel[4][4], ground_from_pixel[3][3], ray_from_pixel[3][3]; /* matrices, as columns */
-    /* cells of the depth grid; finds_cells: true: raster_tiles() with SOFT_COLORS computes the cells, too */
+    /* cells (squares of pixels) of the depth grid; finds_cells: true: raster_tiles() with SOFT_COLORS computes the cells, too */
     struct depth_cell *cells;
     size_t cell_capacity;
     bool finds_cells;
@@ -224,7 +225,8 @@ void refined_destroy(struct refined **refined); /* frees the refined frame and s
 size_t refined_bytes(const struct refined *refined);
 /* Steps of drawing a frame, declared in the order in which they are called. */
 void raster_aim(struct raster *raster, const struct light *light); /* computes the matrices from pixels */
-/* Prepares for the depth grid, if the frame gets one; call it after raster_aim(). Without memory for the cells, the frame has no grid. */
+/* Prepares for the depth grid (coarse depth for clients, render/depth_grid.h), if the frame gets one; call it after raster_aim(). Without
+   memory for the cells, the frame has no grid. */
 void raster_aim_depth(struct raster *raster, const struct light *light);
 /* Computes the depth grid's cells in a rectangle of the frame, whose top left corner must be the corner of a cell. Runs on a worker. */
 void raster_find_cells(const struct raster *raster, const struct soft_rect *rect);
@@ -248,12 +250,12 @@ bool raster_find(struct raster *raster, bool bodies);
 bool raster_find_only(struct raster *raster, int asset);
 /* like raster_find(), but lists the parts (groups of triangles) of ghosted assets */
 bool raster_find_ghosts(struct raster *raster);
-/* draws the lines of ghosted assets into `veil` (rows of width_px): by pixel, the part that a line covers, 0..255; overwrites the marks.
-   bgr: receives the lines' colour. Returns false when out of memory */
+/* draws the lines of ghosted assets into `veil` (rows of width_px): by pixel, the part that a line covers, 0..255; overwrites the pixels'
+   marks (colour codes). bgr: receives the lines' colour. Returns false when out of memory */
 bool raster_ghosts(struct raster *raster, uint8_t *veil, uint8_t bgr[3]);
 void raster_paint_ghosts(const struct raster *raster, const uint8_t *veil, const uint8_t bgr[3]);
-/* output of raster_tiles(): SOFT_CAPS: only marks of section caps; SOFT_DEPTH: all marks and depth; SOFT_COLORS: marks, depth and
-   colours */
+/* output of raster_tiles() for each pixel: SOFT_CAPS: only marks (colour codes) of section caps; SOFT_DEPTH: all marks, and depth;
+   SOFT_COLORS: marks, depth and colours */
 enum soft_output { SOFT_CAPS, SOFT_DEPTH, SOFT_COLORS };
 void raster_tiles(struct raster *raster, enum soft_output output);       /* rasterizes the found parts */
 bool raster_make_room(struct raster *raster, const struct frame *frame); /* false: out of memory */
@@ -279,7 +281,7 @@ void raster_find_triangle(const struct raster *raster, uint32_t id, struct soft_
 /* Computes the weights of the triangle's three corners at any point of the frame, up to a common factor: weight i = weights[i][0] x +
    weights[i][1] y + weights[i][2]. vertices: indices in the asset file. */
 void soft_weights(const struct soft_mesh *mesh, const uint32_t vertices[3], double weights[3][3]);
-/* draws the outline of the selected asset around all pixels that have a mark; overwrites raster->depth */
+/* draws the outline of the selected asset, whose pixels are those with a mark (colour code); overwrites raster->depth */
 void raster_outline(const struct raster *raster);
 
 #endif

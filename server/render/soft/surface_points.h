@@ -32,8 +32,8 @@ struct corners {
     float z[3][LANES], g[3][LANES];
 };
 
-/* Projects the corners of an item's triangle into lane i, as soft_place_part() in faces.c does; an item is a surface to shade. If a corner
-   cannot be projected (it may lie behind the eye), homogeneous coordinates are stored. */
+/* Projects the corners of the triangle of an item (surface to shade) into element i of `out`, as soft_place_part() in faces.c does. If a
+   corner cannot be projected (it may lie behind the eye), homogeneous coordinates are stored. */
 SOFT_INLINE void see_corners(const struct refined *refined, const struct refined_item *item, int i, struct corners *out)
 {
     const struct raster *raster = &refined->raster;

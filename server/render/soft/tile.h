@@ -22,7 +22,9 @@ struct soft_corners { /* vertices of a part with the members of struct soft_vert
     int count, placed;  /* number of vertices; placed: those that clipping did not add, which come first */
     uint32_t all_flags; /* the OR of all flags */
     bool flat;          /* perspective is negligible */
-    bool cut;           /* true: some vertices are in front of the near plane or beyond the guard band (clip.h), so faces must be clipped */
+    /* true: some vertices are in front of the near plane, or beyond the guard band (a border around the frame, clip.h), so faces must be
+       clipped */
+    bool cut;
 };
 
 struct soft_face { /* a triangle that faces the eye and covers a pixel centre of the tile; its area in pixels is positive */
@@ -37,7 +39,7 @@ enum { FACE_BACK = 0x8000, FACE_TRIANGLE = PART_TRIANGLES - 1 }; /* FACE_BACK: t
 enum { MOST_SAMPLES = 4 };
 struct soft_sample { /* buffers with one sample for each pixel of a tile, row by row from the tile's upper left corner */
     float *depth;
-    uint32_t *marks; /* mark of each sample; NULL: not needed (`ids` may be NULL, too) */
+    uint32_t *marks; /* mark (colour code, soft_impl.h) of each sample; NULL: not needed (`ids` may be NULL, too) */
     uint32_t *ids;   /* id of the triangle at each sample: first_id of the part + index in the part, and the flag ID_BACK */
     float x, y;      /* offset from the pixel's centre */
 };
@@ -71,7 +73,7 @@ struct soft_tile {
     /* list to which DRAW_BLENDED appends a fragment for each transparent triangle at each sample; in this mode neither depth nor ids are
        written */
     struct soft_fragments *fragments;
-    /* --- the part that is being drawn --- */
+    /* --- the part (group of triangles) that is being drawn --- */
     const struct soft_mesh *mesh;
     const struct soft_parts *parts;
     const struct soft_part *part;
@@ -102,10 +104,10 @@ bool soft_is_hole(const struct soft_cutout *cutout, float x, float y);
 /* Appends a fragment to tile->fragments. column, row: pixel of the frame. */
 void soft_add_fragment(const struct soft_tile *tile, int sample, const struct soft_face *face, int column, int row, float depth);
 
-/* Counts, in the marks of pixels, the closed bodies to which the triangles of a part (group of triangles) belong: +1 where a ray leaves a
-   body, -1 where it enters one. */
+/* Counts, in place of the pixels' colour codes (marks), the closed bodies to which the triangles of a part (group of triangles) belong: +1
+   where a ray leaves a body, -1 where it enters one. */
 void soft_count_part(struct soft_tile *tile, const struct soft_found *found, const struct soft_item *item);
-/* converts the counts of closed bodies that soft_count_part() left in the marks into section caps: their marks and depth */
+/* turns the counts of closed bodies that soft_count_part() left in raster->marks into section caps: their colour codes (marks) and depth */
 void soft_cap_tile(struct soft_tile *tile);
 /* Marks the vertices of the tile's current part (group of triangles) that a section plane cuts off, by setting their inverse_w to 0. */
 void soft_cut_corners(struct soft_tile *tile);

@@ -10,8 +10,8 @@
 #include "render/soft/pixel_lists.h"
 
 /* Values of surfaces[], by pixel. VISIBILITY_FIXED | a colour that no reading changes (blue | green << 8 | red << 16); VISIBILITY_MIXED |
-   index of a struct visibility_mixed in the band; or, without a flag, the pixel shows a field, and the value is the index of its triangle
-   in the band. */
+   index of a struct visibility_mixed in the band (group of pixel rows); or, without a flag, the pixel shows a field, and the value is the
+   index of its triangle in the band. */
 #define VISIBILITY_FIXED 0x80000000u
 #define VISIBILITY_MIXED 0x40000000u
 
@@ -36,7 +36,7 @@ enum { VISIBILITY_SHARES = 256, VISIBILITY_MOST_PARTS = 4 };
 
 struct visibility_mixed {
     /* blue_red: sum of the colours that no reading changes, each times the area that it covers, 16 bits each for blue and red; first_part:
-       index in the band of the pixel's first visibility_part */
+       index of the pixel's first surface with a field among the `parts` of the band */
     uint32_t blue_red, first_part;
     uint16_t green;  /* the same sum for green */
     uint16_t x, row; /* position in the band */
@@ -65,7 +65,7 @@ struct visibility_band { /* a band: group of pixel rows; written by one worker *
     /* by triangle: slopes of the corner weights over the frame; only filled in where there are isolines */
     struct visibility_slopes *slopes;
     struct visibility_part *parts;
-    struct visibility_gloss *gloss; /* light of each element of `parts`; only filled in for the glossy look */
+    struct visibility_gloss *gloss; /* light on each surface in `parts`; only filled in for the glossy look */
     struct visibility_mixed *mixed;
     struct pixel_cell *cells; /* cells that show fields of many sensors (pixel_lists.h), sorted by square, then by mesh */
     size_t triangle_count, part_count, mixed_count;
@@ -99,13 +99,14 @@ struct visibility_buffer {
     uint8_t *ink;
     uint8_t *veil; /* by pixel: coverage by ghost lines, 0..255; NULL: there are no ghosts */
     uint8_t veil_bgr[3];
-    bool lined;   /* true: the bands' `slopes` are stored, because the frame has isolines */
+    bool lined;   /* true: `slopes` of all bands (groups of pixel rows) are stored, because the frame has isolines */
     float *depth; /* depth of each pixel, for placing isoline labels; rows of width_px; NULL: not stored */
     struct visibility_band *bands;
     struct visibility_mesh *meshes;
     size_t mesh_count, mesh_capacity, vertex_count;
     bool evaluates; /* true: the field of at least one mesh is evaluated at pixels */
-    /* true: resolve_read() must compute the bands' `cells` again, because the set of meshes with many sensors has changed */
+    /* true: resolve_read() must find the cells (squares of pixels that show fields of many sensors) again, because the set of meshes with
+       such fields has changed */
     bool finds_cells;
     /* frame_uniforms.scale (MIN, range and logarithm of the colour scale) by which the values in `carried` were computed */
     float scale[4];
@@ -113,7 +114,7 @@ struct visibility_buffer {
     /* value at each visible vertex, which is interpolated over triangles: column of the colour map (on a logarithmic scale the field's
        value); NAN: a flag of the vertex selects a pattern */
     float *carried;
-    float *plain;                 /* the same values as in `carried`, but without NAN */
+    float *plain;                 /* the values of `carried`, also at vertices where `carried` is NAN because a pattern is shown */
     uint32_t *flags;              /* from soft_flags() */
     struct depth_grid *grid;      /* reference to the frame's depth grid; NULL: the frame has none */
     struct frame_marker *markers; /* positions of markers in the frame, and whether surfaces hide them */
@@ -133,7 +134,8 @@ struct resolve_paint {        /* colours, patterns and isolines of a frame */
     const float *nearest;     /* table of struct shaded_colormap: by position on the scale, the nearest position that has an isoline */
 };
 
-/* Adds a triangle to the band's list, unless it equals the triangle added last. Returns its index in the list. Runs on a worker. */
+/* Adds a triangle to the list of the band (group of pixel rows), unless it equals the triangle added last. Returns its index in the list.
+   Runs on a worker. */
 uint32_t visibility_add_triangle(struct visibility_band *band, const uint32_t vertices[3]);
 void visibility_buffer_add_mesh(struct visibility_buffer *buffer, const struct visibility_mesh *mesh);
 /* Completes the buffer once all pixels and ink (lines drawn over pixels) are set: drops vertices that no pixel shows and renumbers the
