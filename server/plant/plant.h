@@ -114,7 +114,7 @@ struct plant_gp { /* parameters of the interpolation `gp` */
     /* range_m: correlation length in metres; noise, deviation: standard deviations of a reading's noise and of the field (interpolated
        values), in the group's unit; NaN: plantcast-prep determines it from readings */
     double range_m, noise, deviation;
-    char *fit; /* path of a file with readings from which plantcast-prep determines these parameters; NULL: none */
+    char *fit; /* path of a file with readings from which plantcast-prep determines the parameters of `gp` that are NaN; NULL: none */
 };
 
 enum { PLANT_BREAKS = 16, PLANT_ISOLINES = 32 };
@@ -140,7 +140,7 @@ struct plant_group {
     /* radius in metres of the hot spots for which `show: blind` finds places that no sensor notices: the distance from a spot's centre at
        which its excess temperature has fallen by a factor exp(-1/2) */
     double hot_spot_m;
-    bool cuts_singles; /* value of the key `singles: cut`; see plant_cuts_singles() */
+    bool cuts_singles; /* true (key `singles: cut`): plantcast-prep subdivides triangles even of assets with a single sensor of the group */
     enum fill_mode fill;
     bool log;                    /* true (`scale: log`): logarithmic colour scale; requires min > 0 */
     /* ascending values at which one colour band ends and the next begins, for pictures in bands instead of continuous colours */
@@ -202,7 +202,7 @@ struct plant_source {
     /* milliseconds; poll_ms: between two readings of a value; timeout_ms: until an answer counts as missing; pause_ms: between an answer
        and the next request */
     int poll_ms, timeout_ms, pause_ms;
-    int connect_delay_ms;              /* milliseconds from connecting to the first request */
+    int connect_delay_ms;              /* pause in milliseconds between connecting to the device and the first request */
     bool close_between_polls;          /* one request per connection */
     int max_registers, max_bits;       /* maximum number of registers, or of bits, in one Modbus request */
     int max_gap; /* maximum number of unneeded registers or bits between two tags that are still read by one request */

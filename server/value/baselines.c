@@ -42,7 +42,7 @@ static struct baseline_copy *copy_create(const struct snapshot *from)
     return copy;
 }
 
-/* Gives up one use of a copy, and frees it after the last. Call with the lock held. */
+/* Gives up one use of a baseline's copy of the readings, and frees the copy after the last use. Call with the lock held. */
 static void copy_unref(struct baseline_copy *copy)
 {
     if (--copy->users > 0)

@@ -30,7 +30,7 @@ void baselines_remove(struct baselines *baselines, const char *name);
 uint32_t baselines_find(struct baselines *baselines, const char *name); /* Returns the id of the baseline with this name; 0: none. */
 /* Returns true if baselines_set() would accept this name: it is in use, or another named baseline can be added. */
 bool baselines_may_set(struct baselines *baselines, const char *name);
-/* Copies the description of a baseline to *out. Returns false if the baseline was dropped. */
+/* Copies id, name and time of a baseline to *out. Returns false if the baseline was dropped. */
 bool baselines_describe(struct baselines *baselines, uint32_t id, struct baseline *out);
 /* Lists the named baselines, oldest first. Returns their number. */
 size_t baselines_list(struct baselines *baselines, struct baseline out[BASELINES_NAMED]);

@@ -11,7 +11,8 @@ struct derived_state; /* the results that were last written, to detect changes; 
    contain it; NULL if the thread could not be started (logged). */
 struct source *derived_start(struct log *log, const struct plant *plant, struct store *store);
 
-/* The three functions below do the same without thread and clock: each call of derived_compute() computes all derived tags once. */
+/* derived_create(), derived_destroy() and derived_compute() compute derived tags without a thread and a clock of their own: each call of
+   derived_compute() computes all derived tags once. */
 struct derived_state *derived_create(const struct plant *plant);
 void derived_destroy(struct derived_state **state); /* Frees the state and sets *state to NULL. *state may be NULL. */
 void derived_compute(struct derived_state *state, struct store *store, int64_t now_mono_ns, int64_t now_utc_ns);

@@ -33,8 +33,8 @@ static void read_block(struct modbus_source *modbus, size_t index)
     int64_t now_ns = clock_mono_ns(), next_ns = block->due_ns + block->scan_ms * NS_PER_MS;
     modbus->asked_ns = now_ns;
     if (status < 0 && modbus_manners_excuse_read(modbus, status, unit->state == UNIT_UP))
-        return; /* keeps the due time of the block, so that the block is read first on the next connection */
-    /* a block that is read late skips the reads that it missed, so that these are not made up in a burst */
+        return; /* keeps the due time of the block (tags read by one request), so that the block is read first on the next connection */
+    /* a block (tags read by one request) that is late skips the reads that it missed, so that these are not made up in a burst */
     block->due_ns = next_ns > now_ns ? next_ns : now_ns + block->scan_ms * NS_PER_MS;
     counter_inc(status == 0 ? modbus->reads_ok : modbus->reads_failed, 1);
     if (status < 0) {
@@ -69,8 +69,8 @@ static int64_t ready_ns(const struct modbus_source *modbus, const struct read_pl
     return at_ns;
 }
 
-/* Returns the index of the block that may be read now and has waited longest, so that a block that always fails cannot keep others from
-   being read. Returns block_count if no block may be read yet; *wake_ns is then the time when one may. */
+/* Returns the index of the block (tags read by one request) that may be read now and has waited longest, so that a block that always fails
+   cannot keep others from being read. Returns block_count if no block may be read yet; *wake_ns is then the time when one may. */
 static size_t choose_block(const struct modbus_source *modbus, int64_t now_ns, int64_t *wake_ns)
 {
     size_t chosen = modbus->plan.block_count;

@@ -37,8 +37,8 @@ struct modbus_link {
     uint16_t number;  /* transaction identifier of the last request, for TCP frames */
     int stop_fd;
     int null_fd;
-    /* a low file descriptor that is reserved at creation; dup3() moves each connection into it. libmodbus calls select(), which cannot
-       handle descriptors from FD_SETSIZE on, and the daemon may have that many files open when it reconnects */
+    /* A low file descriptor that is reserved when the link is created. Each connection is moved into it by dup3(), because the daemon may
+       have more than FD_SETSIZE files open, and select(), which libmodbus calls, cannot handle descriptors from FD_SETSIZE on. */
     int slot_fd;
     bool open;
     /* true (RTU frames only): the device may still answer an abandoned request, so the next answer may belong to that request */

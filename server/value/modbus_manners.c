@@ -47,7 +47,8 @@ void modbus_manners_before(struct modbus_source *modbus, const struct modbus_uni
     int64_t patience_ns = manners->first_wait_ns;
     if (!modbus->link_up && manners->silent_connections > 0 && patience_ns < FIRST_ANSWER_TIMEOUT_NS)
         patience_ns = manners->silent_connections == 1 ? FIRST_ANSWER_TIMEOUT_NS : 2 * FIRST_ANSWER_TIMEOUT_NS;
-    /* waits longer for a gateway only once: after that it may be lost */
+    /* waits longer than the timeout only once for a gateway that may be busy with a silent unit: after that, the gateway itself may be
+       lost */
     bool waits = manners->timed_out && manners->timed_out != unit && modbus->fallen < GATEWAY_UNITS - 1;
     manners->first_excused = waits && unit->state == UNIT_UP && patience_ns < GATEWAY_TIMEOUT_NS;
     if (manners->first_excused)

@@ -13,7 +13,8 @@ enum {
     HEADER_BYTES = 7, /* length in bytes of the frame header: transaction identifier, protocol, length of the rest, unit */
     REFUSED = 0x80,   /* bit of the function code that marks an exception response */
     LAST_EXCEPTION = 11,
-    MAX_VALUE_BYTES = 2 * READ_PLAN_MAX_REGISTERS, /* READ_PLAN_MAX_BITS bits take as many bytes */
+    /* maximum number of bytes of values in a response: two per register; READ_PLAN_MAX_BITS bits take as many */
+    MAX_VALUE_BYTES = 2 * READ_PLAN_MAX_REGISTERS,
 };
 
 static uint8_t function_of(enum register_table table)

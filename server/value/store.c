@@ -257,7 +257,7 @@ static uint32_t vouched_quality(const struct store *store, size_t tag, int64_t n
     const struct held *word = &store->tags[by->tag];
     bool readable =
         quality_is_good(own_quality(word, now_mono_ns)) && quality_is_good(heartbeat_quality(store, (size_t)by->tag, now_mono_ns));
-    /* a double has 53 bits, so the lowest bits of a larger number are lost */
+    /* the quality tag's value is a double with 53 bits, so of a larger number the lowest bits, which the mask may select, are lost */
     if (!readable || !(fabs(word->value) <= 0x1p53))
         return QUALITY_UNCERTAIN;
     bool good = (((uint64_t)(int64_t)word->value & by->mask) == by->want) != by->negate;
@@ -349,7 +349,8 @@ static void mirror(struct store *store, const struct mirrored *reading, int64_t 
     held->received_utc_ns = reading->received_utc_ns;
     held->sampled_mono_ns = held->changed_mono_ns = now_mono_ns;
     held->lost = held->dead = false;
-    /* a core's reading never becomes stale here, because the core (the daemon that reads the devices) decides its quality */
+    /* a reading that comes from a core (the daemon that reads the devices) never becomes stale in this store: the core decides its
+       quality */
     held->stale_ns = held->flatline_ns = INT64_MAX;
     if (count_change(store, (size_t)reading->tag, value_changed, now_mono_ns))
         tell_watch(store);

@@ -39,7 +39,7 @@ void store_destroy(struct store **store);
 void store_adopt(struct store *store, struct store *before);
 /* Adds a listener for samples; a store has at most STORE_LISTENERS. */
 void store_listen(struct store *store, store_listener *listener, void *arg);
-/* Does the same as store_listen(); the listener is also called by store_tell_aged(). */
+/* Adds a listener that is called for samples and, by store_tell_aged(), when time alone changed the quality of a tag. */
 void store_listen_all(struct store *store, store_listener *listener, void *arg);
 /* Calls the listeners of store_listen_all(), because time alone changed the quality of a tag; for example, its reading became stale.
    Returns false, without a call, if a sample of the tag has arrived since event->mono_ns: that sample has told the quality. */
@@ -64,13 +64,14 @@ struct mirrored {
     bool has_value;
     int64_t received_mono_ns, received_utc_ns; /* arrival time of the value, on this machine's monotonic clock and in UTC */
 };
-/* Writes readings of a core (daemon that reads the devices) instead of samples: their quality is the core's, and their age here does not
-   change it. Listeners are not called. store_link_lost(), store_tags_lost() and store_tags_dead() apply to such readings too. */
+/* Writes readings of a core (daemon that reads the devices) instead of samples: their quality is the core's, and does not change as they
+   get older. Listeners are not called. store_link_lost(), store_tags_lost() and store_tags_dead() apply to such readings too. */
 void store_mirror(struct store *store, const struct mirrored *readings, size_t count, int64_t now_mono_ns);
 /* Records that a source cannot be read from now on. Its tags keep their last values: Uncertain_NoCommunicationLastUsableValue until
    stale_s after their arrival, then Bad_CommunicationError. Tags that never had a value are Bad_NoCommunication. */
 void store_link_lost(struct store *store, int source, int64_t now_mono_ns);
-/* Does the same as store_link_lost() for some tags only, for example when one unit behind a gateway fails while others still answer. */
+/* Records that some tags cannot be read from now on, for example because one unit behind a gateway fails while others still answer. Their
+   values and qualities change as after store_link_lost(). */
 void store_tags_lost(struct store *store, const int *tags, size_t count, int64_t now_mono_ns);
 /* Makes some tags Bad_CommunicationError immediately, even if their last values are recent, because these values may not be used any
  * more. */
@@ -85,7 +86,7 @@ void store_set_alarm(struct store *store, int tag, int alarm, int status);
 bool store_link_is_up(const struct store *store, int source);
 /* Copies all readings, with their qualities as of now, into a snapshot that was made for the same plant. */
 void store_snapshot(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns, struct snapshot *into);
-/* Does the same as store_snapshot(), for the owner of the store_watch() callback, which from now on reports later changes. Returns the
+/* Copies all readings into a snapshot, for the owner of the store_watch() callback, which from now on reports later changes. Returns the
    monotonic time at which a quality next changes because of time alone; INT64_MAX: never. */
 int64_t store_take(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns, struct snapshot *into);
 

@@ -12,6 +12,7 @@ const char *asset_size_text(const double size_m[3], char out[SIZE_TEXT_BYTES]);
    unknown). If it is, `why` names the unit with which the size would be plausible. */
 bool asset_size_doubtful(const struct plant_asset *asset, const double size_m[3], double median_m, char why[SIZE_WHY_BYTES]);
 double asset_longest_m(const double size_m[3]);               /* Returns the longest side. */
-double asset_median_m(const double *longest_m, size_t count); /* Returns the median of `count` lengths; 0 if count < 3. */
+/* Returns the median of `count` lengths, the usual size of a plant's assets; 0 (unknown) if count < 3. */
+double asset_median_m(const double *longest_m, size_t count);
 
 #endif

@@ -173,7 +173,7 @@ static void check_node(struct plant_models_check *check, const struct plant_asse
 
 /* --- assets --------------------------------------------------------------------------------------------------------------------- */
 
-/* Checks one asset. Returns false if its size is unknown. */
+/* Checks one asset against its model: size, nodes and sensors. Returns false if its size is unknown. */
 static bool check_asset(struct plant_models_check *check, size_t index, double size_m[3])
 {
     const struct plant_asset *asset = &check->plant->assets[index];

@@ -107,9 +107,9 @@ static const char *const look_extensions[] = {
 
 struct rule_check { /* the object being checked */
     json_t *root;
-    const char *list; /* name of the glTF array that contains the object; NULL: the object is the whole document */
+    const char *list; /* name of the glTF array that contains the object being checked; NULL: the object is the whole document */
     size_t number;
-    int primitive; /* index of the primitive in mesh `number`; -1: the object is no primitive */
+    int primitive; /* index of the primitive being checked in mesh `number`; -1: the object being checked is no primitive */
     char *why;
 };
 

@@ -40,8 +40,9 @@ struct notify_shift {     /* a time of day in the plant's time zone during which
 };
 
 struct notify_step {
-    double after_min; /* minutes since the alarm: 0 in the first step, ascending in the later ones */
-    uint32_t to;      /* bit mask of the recipients that this step notifies; bit n: recipient with index n */
+    /* time in minutes from the alarm to this step of the notification: 0 in a rule's first step, ascending in the later ones */
+    double after_min;
+    uint32_t to;      /* bit mask of the recipients that are notified in this step; bit n: recipient with index n */
 };
 
 struct notify_rule {

@@ -7,7 +7,7 @@
 #include "plant/plant.h"
 
 #define OPCUA_STANDARD_NAMESPACE "http://opcfoundation.org/UA/"
-enum { OPCUA_NODE_BYTES = 4096 }; /* maximum length of an identifier, according to the standard */
+enum { OPCUA_NODE_BYTES = 4096 }; /* maximum length of a node's identifier, according to the OPC UA standard */
 
 /* Sets tag->topic (the namespace URI), tag->path (the identifier, such as s=NAME) and tag->element from the tag's address and its
    source's namespace. Returns false on errors, with the expected form in `why`. */

@@ -342,7 +342,8 @@ double expression_value(const struct expression *expression, const double *value
             top--;
             stack[top - 1] = join(step->operation, stack[top - 1], stack[top]);
         }
-        /* a part without a value makes the whole expression undefined: min(), or a division by infinity, would otherwise hide it */
+        /* an intermediate result without a value makes the whole expression undefined: min(), or a division by infinity, would otherwise
+           hide it */
         if (!isfinite(stack[top - 1]))
             return NAN;
     }

@@ -56,7 +56,7 @@ static const char *cell_end(const char *at, char separator)
     return at;
 }
 
-/* Reads the next row. Returns false at the end. */
+/* Splits the next row of the tag list's text into cells. Returns false at the end of the list. */
 static bool next_row(struct tag_text *list)
 {
     struct tag_row *row = &list->row;

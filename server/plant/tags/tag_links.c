@@ -55,7 +55,7 @@ static void add_link(struct tag_links *links, struct tag_columns *columns, enum 
     };
 }
 
-/* Records one name of another tag, or three names separated by blanks, to be looked up once the whole tag list is read. */
+/* Records the names in a tag's column Direction, one (a bearing) or three (components), to be looked up once the whole tag list is read. */
 static void add_direction(struct tag_links *links, struct tag_columns *columns, size_t tag)
 {
     const char *at = cell_text(columns, COL_DIRECTION);

@@ -256,7 +256,7 @@ static void read_sentinels(struct tag_wire *wire)
     mem_free(texts);
 }
 
-/* --- what the server reports ------------------------------------------------------------------------------------------------- */
+/* --- deadbands of OPC UA nodes ------------------------------------------------------------------------------------------------ */
 
 /* Reads a deadband: 0.5 (in the node's unit) or 2% (of the node's EURange). */
 static void read_opc_deadband(struct tag_wire *wire)

@@ -23,7 +23,7 @@ static void add_item(struct wall_pane *pane, const yaml_node_t *node)
     pane->items[pane->item_count++] = mem_strdup(yaml_text(node));
 }
 
-/* Reads a key's value that is one text or a list of texts. */
+/* Reads the content of a wall display's pane from the plant file: one text or a list of texts, such as names of views. */
 static void read_items(struct yaml_reader *reader, yaml_node_t *node, struct wall_pane *pane)
 {
     const char *name = pane_kind_names[pane->kind];

@@ -32,7 +32,8 @@ struct soft_kernels {
        triangle, and its row of the colour map (brightness). */
     void (*shade_field)(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                         const struct shaded_items *out);
-    /* Shades surfaces that show the field in the glossy look. Works like shade_field, and also writes reflected light to out->gloss. */
+    /* Shades surfaces that show the field in the glossy look: writes the same as shade_field, and also the reflected light to
+       out->gloss. */
     void (*shade_gloss)(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                         const struct shaded_items *out);
     /* Shades the surfaces that show no field and writes their colours. alphas: receives their opacity, 0..1; NULL: not needed. */

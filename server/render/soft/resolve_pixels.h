@@ -67,8 +67,7 @@ SOFT_INLINE void evaluate_places(const struct visibility_buffer *buffer, const s
     }
 }
 
-/* Converts field values to colour map columns; on a logarithmic scale they stay unchanged. Works like carried_of() in
-   visibility_buffer.c. */
+/* Converts field values to colour map columns, by which pixels are coloured; on a logarithmic scale the values stay unchanged. */
 SOFT_INLINE lanes carried_of_values(const float *scale, lanes values)
 {
     const float farthest = 1e6f;

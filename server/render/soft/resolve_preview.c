@@ -198,7 +198,8 @@ SOFT_INLINE void values_at(const struct pixel_row *row, lanes x, lanes y, lanes 
     pixel_lanes_at(&row->pixels->field, row->list, at, out);
 }
 
-/* Converts field values to colour map columns; on a logarithmic scale they stay unchanged. Works like carry_field() in faces.c. */
+/* Converts field values to colour map columns, from which marks (colour codes) are made; on a logarithmic scale the values stay
+   unchanged. */
 SOFT_INLINE lanes carried_of(const struct pixel_row *row, lanes value)
 {
     const float slack = 1e-5f, columns = COLORMAP_PLACES / (1 + 2 * slack), farthest = 1e6f, *scale = row->raster->block.scale;

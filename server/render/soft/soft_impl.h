@@ -246,9 +246,10 @@ float raster_entry_depth(const struct raster *raster, float x, float y);
 /* Lists the meshes and parts (groups of triangles) that may be visible. bodies: also lists parts that bound closed bodies which a section
    plane cuts open. Returns false when out of memory. */
 bool raster_find(struct raster *raster, bool bodies);
-/* like raster_find(), but lists the parts of one asset only; their back faces are drawn, too */
+/* like raster_find(), which lists the parts (groups of triangles) that may be visible, but only those of one asset; their back faces are
+   drawn, too */
 bool raster_find_only(struct raster *raster, int asset);
-/* like raster_find(), but lists the parts (groups of triangles) of ghosted assets */
+/* like raster_find(), which lists the parts (groups of triangles) that may be visible, but only those of ghosted assets */
 bool raster_find_ghosts(struct raster *raster);
 /* draws the lines of ghosted assets into `veil` (rows of width_px): by pixel, the part that a line covers, 0..255; overwrites the pixels'
    marks (colour codes). bgr: receives the lines' colour. Returns false when out of memory */

@@ -25,8 +25,8 @@ struct sparkplug_metric {
     uint32_t quality; /* quality from the metric's property Quality; Good if it has none */
     enum sparkplug_form form;
     union {
-        uint64_t whole; /* if the form is INT, LONG or BOOLEAN */
-        double real;    /* if the form is FLOAT or DOUBLE */
+        uint64_t whole; /* value of the metric if `form` is INT, LONG or BOOLEAN */
+        double real;    /* value of the metric if `form` is FLOAT or DOUBLE */
     };
 };
 

@@ -51,7 +51,7 @@ struct opcua_exchange {
 /* Sends a request and waits for its response. Returns the codes of opcua_wait(), or -EPROTO if the server refuses the request. The
    caller must clear the response with UA_clear() in all cases. */
 int opcua_call(struct opcua_client *client, const struct opcua_exchange *exchange, int stop_fd, int64_t deadline_mono_ns, char why[200]);
-/* Does the same in two steps, for requests that functions of open62541 send: call opcua_call_begin() before the library's function, and
+/* Sends a request by a function of open62541 and waits for its response: call opcua_call_begin() before the library's function, and
    opcua_call_end() with its result. Pass opcua_on_answer as the callback, with the client as userdata. */
 void opcua_call_begin(struct opcua_client *client, void *response, const UA_DataType *type);
 int opcua_call_end(struct opcua_client *client, UA_StatusCode sent, int stop_fd, int64_t deadline_mono_ns, char why[200]);
