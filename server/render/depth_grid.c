@@ -108,7 +108,8 @@ struct coder {
     uint16_t *near, *far, *masks; /* masks: of divided cells */
     uint8_t *data;
     size_t data_bytes;
-    float low, unit; /* low: depth that has the code 1; unit: difference in depth between one code and the next */
+    /* depths are quantised to codes; low: depth with the code 1; unit: difference in depth between one code and the next */
+    float low, unit;
     int levels;
 };
 
@@ -141,8 +142,8 @@ static double middle(int cell, int px)
     return 0.5 * (begin + (end < px ? end : px));
 }
 
-/* Adds the ground to cells that show background: as the cell's far depth behind its surface, or as its only depth. Then finds the range of
-   depths of all cells. */
+/* Gives depth grid cells that show background the depth of the ground: as the far depth behind the cell's surface, or as the only depth.
+   Then finds the range of depths of all cells. */
 static void find_depths(struct coder *coder)
 {
     float low = INFINITY, high = -INFINITY;

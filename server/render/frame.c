@@ -13,7 +13,9 @@
 #include "render/frame_record.h"
 #include "value/quality.h"
 
-static const float MARK_PX = 48; /* Largest distance in pixels from a marker's position to any pixel of its drawn symbol. */
+/* Largest distance in pixels from a marker's position to any pixel of its drawn symbol, by which parts of a frame find symbols that reach
+   into them. */
+static const float MARK_PX = 48;
 
 static size_t pixel_bytes(const struct frame *frame)
 {

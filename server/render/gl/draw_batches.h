@@ -39,7 +39,9 @@ struct draw_batch {
     struct draw_batch_state state;
     /* commands of this batch: index of the first and number, in the array `sorted`; valid after draw_batches_upload() */
     size_t first, count;
-    size_t older; /* index of the previous batch of the same model; SIZE_MAX: none */
+    /* next element of a list of the model's batches, in which a batch of equal state is searched: index of the batch made before this one;
+       SIZE_MAX: none */
+    size_t older;
 };
 
 struct draw_batches { /* zero-initialise, then set log */
@@ -50,7 +52,8 @@ struct draw_batches { /* zero-initialise, then set log */
     /* commands: draw commands in the order in which they were added; sorted: the same commands, ordered by batch */
     struct draw_command *commands, *sorted;
     uint32_t *batch_of, *place_of;          /* by index in `commands`: index of the command's batch, and the command's index in `sorted` */
-    size_t *newest;                         /* by model: index of its most recently made batch */
+    /* by model: index of its most recently made batch, the first element of the list that draw_batch.older links */
+    size_t *newest;
     size_t instance_count, command_count;
     size_t capacity, instance_capacity, command_capacity, sorted_capacity, batch_of_capacity, place_capacity, newest_capacity;
     GLuint instance_buffer, command_buffer, place_buffer;

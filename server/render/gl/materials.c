@@ -31,7 +31,7 @@ static GLuint upload_texture(const struct asset_view *view, const struct asset_t
     return name;
 }
 
-/* Computes a texture's mean colour in linear light from about 10,000 evenly spaced texels. */
+/* Computes a texture's mean colour in linear light, for the colour ramps of previews, from about 10,000 evenly spaced texels. */
 static void texture_mean(const struct asset_view *view, const struct asset_texture *texture, float mean[3])
 {
     const uint8_t *texels = view->texels + texture->offset;
@@ -46,7 +46,7 @@ static void texture_mean(const struct asset_view *view, const struct asset_textu
         mean[c] = (float)(sum[c] / (double)taken);
 }
 
-/* Averages the vertex colours of the triangles that use a material. */
+/* Averages the vertex colours of the triangles that use a material, for the colour ramps of previews. */
 static void tint_mean(const struct asset_view *view, uint32_t material, float mean[3])
 {
     double sum[3] = { 0 };

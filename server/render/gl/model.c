@@ -65,7 +65,7 @@ static void make_level(struct model_level *level, const struct asset_view *view,
         }
 }
 
-/* Finds the first cluster (group of neighbouring triangles) of a level of detail in the asset file's list of clusters. */
+/* Sets level->first_cluster, the index of the first of the level's clusters (groups of neighbouring triangles) in the asset file. */
 static void find_clusters(struct model_level *level, const struct asset_view *view)
 {
     uint32_t first_index = level->primitive_count ? view->primitives[level->first_primitive].first_index : 0;

@@ -303,7 +303,7 @@ void isolines_collect(struct isolines *isolines, const struct frame_context *con
     collect_arrows(isolines, context, out);
 }
 
-/* Writes the points' eye-space positions and depth tolerances, the input of the visibility test. */
+/* Writes the eye-space positions and depth tolerances of isoline points and arrows, which the visibility test reads. */
 static void fill_places(const struct frame_context *context, const struct isoline_points *points, float (*places)[4])
 {
     for (size_t i = 0; i < points->count; i++) {

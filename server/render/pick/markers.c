@@ -165,7 +165,8 @@ void markers_get(const struct point_visibility *queries, const struct frame_cont
 
 /* --- without GL ------------------------------------------------------------------------------------------------------------- */
 
-/* Returns the farthest depth in the depth buffer among the 3x3 pixels around a pixel. */
+/* Returns the farthest depth in the depth buffer among the 3x3 pixels around a pixel: a marker is hidden only if it is behind all these
+   pixels. */
 static float farthest_near(const float *depth, size_t pitch_px, int width_px, int height_px, int x, int y)
 {
     float farthest = 1;

@@ -47,7 +47,9 @@ struct fields {
     struct fields_entry **entries;
     struct fields_entry lost; /* placeholder entry for every field for which there is no memory */
     size_t count, capacity, bytes, bound_bytes;
-    uint64_t uses, trimmed; /* uses: number of fields_get() lookups so far; trimmed: value of `uses` at the last fields_trim() */
+    /* uses: number of fields_get() lookups so far; trimmed: value of `uses` at the last fields_trim(), after which looked-up entries are
+       not evicted */
+    uint64_t uses, trimmed;
 };
 
 void fields_init(struct fields *fields, struct log *log, struct field *field);

@@ -41,7 +41,7 @@ struct soft_kernels {
     void (*shade_sky)(const struct refined *refined, int row, const uint8_t *wanted, uint32_t *colors);
     /* Draws the feature edges of a band (group of pixel rows) into the visibility buffer's `ink`: how much dark lines cover each pixel. */
     void (*ink_band)(const struct refined *refined, int band);
-    /* Colours bands of a visibility buffer: a task of workers_for(). arg: struct resolve_job */
+    /* Colours bands (groups of pixel rows) of a visibility buffer: a task of workers_for(). arg: struct resolve_job */
     void (*color_bands)(void *arg, size_t begin, size_t end);
 };
 /* the variants _wide (AVX2) and _widest (AVX-512) exist on x86 only */

@@ -24,7 +24,7 @@ struct node {
     int count;
     /* polynomials that replace the far sensors: those whose weight is smooth in the square of pixels; its member `sensors` is not set */
     struct pixel_list far;
-    float least;           /* lower bound of the sum of the weights of the far sensors */
+    float least;           /* lower bound of the sum of the weights of the far sensors, which polynomials replace */
     float left;            /* remaining error budget: fraction of the sum of all weights by which the polynomials may still deviate */
 };
 
@@ -448,7 +448,8 @@ static void make_node(const struct building *building, const struct node *from, 
 
 /* --- squares of cells ------------------------------------------------------------------------------------------------------------ */
 
-/* Computes the box that encloses cells[first] and all following cells in the same square of this level. */
+/* Computes the box that encloses the surface points of cells[first] and of all following cells in the same square of pixels. level: 0 for
+   the largest squares; each next level halves their sides. */
 static void bound_cells(const struct pixel_cell *cells, size_t count, size_t first, int level, struct box *out)
 {
     const int shift = 2 * (DEPTH - level);
@@ -467,7 +468,8 @@ static void bound_cells(const struct pixel_cell *cells, size_t count, size_t fir
     out->radius = sqrtf(square) * 1.0001f + 1e-6f;
 }
 
-/* Returns the first level at which two cells are in different squares. The cells must be neighbours in the order of pixel_cells_order(). */
+/* Returns the first level (squares of pixels, halved from level to level) at which two cells are in different squares. The cells must be
+   neighbours in the order of pixel_cells_order(). */
 static int level_apart(const struct pixel_cell *a, const struct pixel_cell *b)
 {
     uint32_t differ = pixel_cells_order(a->column, a->row) ^ pixel_cells_order(b->column, b->row);

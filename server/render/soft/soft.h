@@ -23,7 +23,7 @@ void soft_destroy(struct soft **soft); /* frees the software renderer and sets *
 /* sets the memory limit, in bytes, of the visibility buffers that a tier (preview or refined) keeps while cameras stand still */
 void soft_bound(struct soft *soft, enum tier tier, size_t bytes);
 size_t soft_kept_bytes(const struct soft *soft);  /* bytes of kept visibility buffers */
-/* returns the bytes of working memory, without that of refined frames that are still being drawn */
+/* returns the bytes of the software renderer's working memory, without that of refined frames that are still being drawn */
 size_t soft_room_bytes(const struct soft *soft);
 size_t soft_light_bytes(const struct soft *soft); /* returns the bytes that copies of baked light from the GPU take */
 void soft_drop_spare(struct soft *soft);          /* frees the working memory that finished refined frames left for reuse */

@@ -127,7 +127,7 @@ bool visibility_buffer_gloss(struct visibility_buffer *buffer, const struct soft
 /* frees the buffer and sets *buffer to NULL; accepts a pointer to NULL */
 void visibility_buffer_destroy(struct visibility_buffer **buffer);
 size_t visibility_buffer_bytes(const struct visibility_buffer *buffer);
-struct resolve_paint {        /* colours, patterns and isolines of a frame */
+struct resolve_paint {        /* colours, patterns and isolines by which a visibility buffer is coloured */
     const uint32_t *colormap; /* COLORMAP_ROWS x COLORMAP_COLUMNS texels */
     float pattern_px;         /* cell size of patterns */
     float line_px;            /* width of isolines in pixels; 0: the frame has no isolines */
