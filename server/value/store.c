@@ -506,9 +506,9 @@ static int64_t next_change_ns(const struct store *store, int64_t now_mono_ns)
     return next_ns;
 }
 
-/* Lists the monotonic times at which time alone changes a tag's quality: its reading becomes stale, its value counts as unchanged for
-   too long, the heartbeat of its source counts as stopped; INT64_MAX: never. */
-static void list_ageing(const struct store *store, size_t tag, int64_t at_ns[3])
+/* Lists the monotonic times at which time alone changes a tag's quality: its reading becomes stale, the heartbeat of its source counts as
+   stopped; INT64_MAX: never. A value counts as unchanged for too long only from its next sample on, so that is no such time. */
+static void list_ageing(const struct store *store, size_t tag, int64_t at_ns[2])
 {
     const struct held *held = &store->tags[tag];
     int index = store->plant->tags[tag].source;
@@ -516,19 +516,18 @@ static void list_ageing(const struct store *store, size_t tag, int64_t at_ns[3])
     const struct held *heart = source && source->heartbeat_s > 0 ? &store->tags[source->heartbeat_tag] : NULL;
     bool beats = heart && heart->has_value;
     at_ns[0] = held->has_value && held->stale_ns < INT64_MAX ? held->received_mono_ns + held->stale_ns : INT64_MAX;
-    at_ns[1] = held->has_value && held->flatline_ns < INT64_MAX ? held->changed_mono_ns + held->flatline_ns : INT64_MAX;
-    at_ns[2] = beats ? heart->changed_mono_ns + ns_of(source->heartbeat_s) : INT64_MAX;
+    at_ns[1] = beats ? heart->changed_mono_ns + ns_of(source->heartbeat_s) : INT64_MAX;
 }
 
 int64_t store_aged_ns(struct store *store, int tag, int64_t now_mono_ns)
 {
-    int64_t at_ns[6], found_ns = now_mono_ns;
+    int64_t at_ns[4], found_ns = now_mono_ns;
     pthread_mutex_lock(&store->lock);
     const struct plant_quality_tag *by = &store->plant->tags[tag].validity.quality;
     list_ageing(store, (size_t)tag, at_ns);
-    list_ageing(store, by->mask != 0 ? (size_t)by->tag : (size_t)tag, at_ns + 3);
+    list_ageing(store, by->mask != 0 ? (size_t)by->tag : (size_t)tag, at_ns + 2);
     uint32_t quality = quality_now(store, (size_t)tag, now_mono_ns);
-    for (int i = 0; i < 6; i++)
+    for (int i = 0; i < 4; i++)
         if (at_ns[i] > store->tags[tag].sampled_mono_ns && at_ns[i] < found_ns && quality_now(store, (size_t)tag, at_ns[i]) == quality)
             found_ns = at_ns[i];
     pthread_mutex_unlock(&store->lock);

@@ -45,8 +45,7 @@ void store_listen_all(struct store *store, store_listener *listener, void *arg);
    Returns false, without a call, if a sample of the tag has arrived since event->mono_ns: that sample has told the quality. */
 bool store_tell_aged(struct store *store, const struct sample_event *event);
 /* Returns the monotonic time since which a tag has had its present quality because of time alone: its reading, or that of its quality
-   tag, became stale or counted as unchanged for too long, or a heartbeat stopped. Returns now if there is no such time since the tag's
-   newest sample. */
+   tag, became stale, or a heartbeat stopped. Returns now if there is no such time since the tag's newest sample. */
 int64_t store_aged_ns(struct store *store, int tag, int64_t now_mono_ns);
 /* Removes a listener; the store no longer calls it once this function has returned. */
 void store_unlisten(struct store *store, store_listener *listener, void *arg);

@@ -516,6 +516,22 @@ CASE(says_since_when_a_reading_is_old)
     assert_true(found > 1000);
 }
 
+/* A heartbeat that returns makes a reading usable again at that time, not when the reading's value would have counted as unchanged. */
+CASE(a_reading_is_usable_again_when_the_heartbeat_returns)
+{
+    s->plant->sources[0].heartbeat_s = 2;
+    s->plant->sources[0].heartbeat_tag = 1;
+    s->plant->tags[0].validity.flatline_s = 3;
+    set_up_again(s);
+    write_one(s, 0, 20, QUALITY_GOOD, S);
+    write_one(s, 1, 1, QUALITY_GOOD, S);
+    assert_quality(look(s, 0, 7 * S / 2)->quality, QUALITY_BAD_DEVICE_FAILURE);
+    assert_true(store_aged_ns(s->store, 0, 7 * S / 2) == 3 * S);
+    write_one(s, 1, 2, QUALITY_GOOD, 9 * S / 2);
+    assert_quality(look(s, 0, 5 * S)->quality, QUALITY_GOOD);
+    assert_true(store_aged_ns(s->store, 0, 5 * S) == 5 * S);
+}
+
 /* Random writes, losses, alarms and pauses: every change in a snapshot was reported to listeners or predicted by the due time. */
 CASE(nothing_changes_unannounced)
 {
