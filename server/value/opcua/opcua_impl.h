@@ -23,7 +23,7 @@ struct opcua_client {
     UA_EndpointDescription endpoint; /* endpoint that was chosen, whose certificate has been checked */
     bool lost;                       /* the subscription has ended, so a new session is needed */
     bool missed;                     /* notifications were lost since all nodes were last read */
-    uint32_t max_items;              /* maximum number of items (nodes) in one request */
+    uint32_t max_items, max_reads;   /* maximum number of nodes in one request: to monitor nodes, to read them; 0: not known yet */
     UA_UInt32 subscription;
     double publishing_ms; /* the server's publishing interval in milliseconds if it is longer than the requested one; 0: it is not */
     char **namespaces;    /* namespace URIs of the server, by namespace index */

@@ -9,7 +9,8 @@
 #include "value/opcua/opcua_client.h"
 #include "value/opcua/opcua_impl.h"
 
-enum { NAMESPACE_ARRAY = 2255, MAX_ITEMS_PER_CALL = 11714 }; /* node ids in OPC UA's own namespace, which are the same on every server */
+/* node ids in OPC UA's own namespace, which are the same on every server */
+enum { NAMESPACE_ARRAY = 2255, MAX_READS_PER_CALL = 11705, MAX_ITEMS_PER_CALL = 11714 };
 enum { ITEMS_PER_CALL = 500, KEPT_ALIVE_MS = 5000, LIFETIMES = 12 };
 enum { NO_NAMESPACE = 0xffff };
 static const UA_StatusCode NO_SUCH_NODE = 0x80340000; /* Bad_NodeIdUnknown */
@@ -36,24 +37,30 @@ static UA_UInt16 number_of(const struct opcua_client *client, const char *uri)
     return NO_NAMESPACE;
 }
 
+/* Returns how many nodes one request may name, from a limit that the server states; 0, or no number: the server states none. */
+static uint32_t batch_limit(const UA_Variant *stated)
+{
+    uint32_t limit = UA_Variant_hasScalarType(stated, &UA_TYPES[UA_TYPES_UINT32]) ? *(const UA_UInt32 *)stated->data : 0;
+    return limit == 0 || limit > ITEMS_PER_CALL ? ITEMS_PER_CALL : limit;
+}
+
 int opcua_read_namespaces(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
-    UA_ReadValueId values[2] = { { .nodeId = UA_NODEID_NUMERIC(0, NAMESPACE_ARRAY), .attributeId = UA_ATTRIBUTEID_VALUE },
+    UA_ReadValueId values[3] = { { .nodeId = UA_NODEID_NUMERIC(0, NAMESPACE_ARRAY), .attributeId = UA_ATTRIBUTEID_VALUE },
+                                 { .nodeId = UA_NODEID_NUMERIC(0, MAX_READS_PER_CALL), .attributeId = UA_ATTRIBUTEID_VALUE },
                                  { .nodeId = UA_NODEID_NUMERIC(0, MAX_ITEMS_PER_CALL), .attributeId = UA_ATTRIBUTEID_VALUE } };
-    UA_ReadRequest request = { .nodesToRead = values, .nodesToReadSize = 2, .timestampsToReturn = UA_TIMESTAMPSTORETURN_NEITHER };
+    UA_ReadRequest request = { .nodesToRead = values, .nodesToReadSize = 3, .timestampsToReturn = UA_TIMESTAMPSTORETURN_NEITHER };
     UA_ReadResponse response;
     int status =
         opcua_call(client,
                    &(struct opcua_exchange){ &request, &UA_TYPES[UA_TYPES_READREQUEST], &response, &UA_TYPES[UA_TYPES_READRESPONSE] },
                    stop_fd, deadline_mono_ns, why);
-    if (status == 0 && response.resultsSize == 2) {
-        const UA_Variant *most = &response.results[1].value;
+    client->max_reads = client->max_items = ITEMS_PER_CALL;
+    if (status == 0 && response.resultsSize == 3) {
         keep_namespaces(client, &response.results[0].value);
-        if (UA_Variant_hasScalarType(most, &UA_TYPES[UA_TYPES_UINT32]))
-            client->max_items = *(const UA_UInt32 *)most->data;
+        client->max_reads = batch_limit(&response.results[1].value);
+        client->max_items = batch_limit(&response.results[2].value);
     }
-    if (client->max_items == 0 || client->max_items > ITEMS_PER_CALL)
-        client->max_items = ITEMS_PER_CALL;
     for (size_t i = 0; i < client->nodes->count; i++) {
         client->numbers[i] = number_of(client, client->nodes->at[i].name_space);
         client->refused[i] = true;
@@ -278,13 +285,13 @@ static int read_batch(struct opcua_client *client, const size_t *batch, UA_ReadV
 
 int opcua_client_read(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
-    UA_ReadValueId *values = mem_array(client->max_items, sizeof(*values));
-    size_t *batch = mem_array(client->max_items, sizeof(*batch));
+    UA_ReadValueId *values = mem_array(client->max_reads, sizeof(*values));
+    size_t *batch = mem_array(client->max_reads, sizeof(*batch));
     int status = 0;
     client->missed = false;
     for (size_t node = 0; node < client->nodes->count && status == 0;) {
         size_t count = 0;
-        for (; node < client->nodes->count && count < client->max_items; node++) {
+        for (; node < client->nodes->count && count < client->max_reads; node++) {
             UA_ReadValueId_init(&values[count]);
             values[count].attributeId = UA_ATTRIBUTEID_VALUE;
             if (!client->refused[node] && node_id(client, node, &values[count].nodeId))

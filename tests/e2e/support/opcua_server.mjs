@@ -37,7 +37,8 @@ async function serve(settings) {
         serverCertificateManager: managers[0], userCertificateManager: managers[1],
         userManager: { isValidUser: (name, password) => name === 'reader' && password === 'said & done' },
         serverInfo: { applicationUri: 'urn:test:server' },
-        serverCapabilities: { maxSessions: told.sessions ?? 10, operationLimits: { maxMonitoredItemsPerCall: told.itemsPerCall ?? 200 } },
+        serverCapabilities: { maxSessions: told.sessions ?? 10, operationLimits: {
+            maxMonitoredItemsPerCall: told.itemsPerCall ?? 200, maxNodesPerRead: told.readsPerCall ?? 0 } },
     });
     await server.initialize();
     addNodes();
