@@ -216,15 +216,27 @@ static char *beside(const struct plant *plant, const char *ending)
     return mem_printf("%s/%.*s.%s", plant->files.folder, end && end > name ? (int)(end - name) : (int)strlen(name), name, ending);
 }
 
+/* Returns the absolute path of a file that need not exist; its folder must. Free with mem_free(). */
+static char *absolute_path(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char *folder = slash ? mem_printf("%.*s", (int)(slash - path), path) : mem_strdup(".");
+    char *real = *path == '/' ? NULL : realpath(folder, NULL);
+    char *out = real ? mem_printf("%s/%s", real, slash ? slash + 1 : path) : mem_strdup(path);
+    free(real);
+    mem_free(folder);
+    return out;
+}
+
 char *plant_service_folder(const char *path, const char *name)
 {
     static const char installed[] = "/etc/plantcast/", file[] = "/plant.yaml";
-    char *real = *path == '/' ? NULL : realpath(path, NULL);
-    path = real ? real : path;
+    char *absolute = absolute_path(path);
+    path = absolute;
     size_t length = strlen(path), before = sizeof(installed) - 1, after = sizeof(file) - 1;
     bool is = length > before + after && !strncmp(path, installed, before) && !strcmp(path + length - after, file);
     char *folder = is ? mem_printf("/var/lib/plantcast/%.*s/%s", (int)(length - before - after), path + before, name) : NULL;
-    free(real);
+    mem_free(absolute);
     return folder;
 }
 

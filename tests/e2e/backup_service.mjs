@@ -118,10 +118,12 @@ test('a backup while the daemon runs has everything, its keys only encrypted', o
 test('commands find the history of a service by the path of its plant file', options, () => {
     ok(first.run(`cd ${ETC} && plantcast backup plant.yaml -o /root/plain`)); // also by a relative path
     assert.ok(readdirSync(first.path('root/plain')).some((name) => /^history-.*sqlite$/.test(name)));
-    const other = new BareRoot(folder);
-    cpSync(first.path('root/plain'), other.path('root/plain'), { recursive: true });
-    const out = ok(other.run(`mkdir -p ${ETC} ${STATE} && plantcast restore /root/plain ${ETC}/plant.yaml`));
-    assert.match(out, /the history is in \/var\/lib\/plantcast\/p1\/history$/m);
+    for (const path of [`${ETC}/plant.yaml`, 'plant.yaml', '../p1/plant.yaml']) {
+        const other = new BareRoot(folder);
+        cpSync(first.path('root/plain'), other.path('root/plain'), { recursive: true });
+        const out = ok(other.run(`mkdir -p ${ETC} ${STATE} && cd ${ETC} && plantcast restore /root/plain ${path}`));
+        assert.match(out, /the history is in \/var\/lib\/plantcast\/p1\/history$/m, path);
+    }
 });
 
 test('one command on a bare host gives the same server', options, async () => {
