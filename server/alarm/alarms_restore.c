@@ -72,8 +72,7 @@ static void adopt_seen(struct alarms *alarms, const struct alarms *before)
 
 const char *alarm_unit(const struct alarms *alarms, const struct alarm *alarm)
 {
-    const char *unit = alarm->tag < 0 ? NULL : alarms->plant->tags[alarm->tag].unit;
-    return unit ? unit : "";
+    return plant_tag_unit(alarms->plant, alarm->tag);
 }
 
 double alarm_value_in_unit(double value, const char *was, const char *is)

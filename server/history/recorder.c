@@ -38,7 +38,7 @@ struct history_tag *history_tags(const struct plant *plant)
         const struct plant_tag *tag = &plant->tags[i];
         tags[i] = (struct history_tag){
             .name = tag->name,
-            .unit = tag->unit ? tag->unit : "",
+            .unit = plant_tag_unit(plant, (int)i),
             .step = tag->signal.type == DATA_BIT,
             .within = isnan(tag->deadband) ? plant->history.deadband_percent / 100 * span_of(plant, tag) : tag->deadband,
             .stale_us = tag->validity.stale_s < PLANT_NEVER_STALE_S ? (int64_t)(tag->validity.stale_s * US_PER_S) : INT64_MAX,

@@ -107,17 +107,12 @@ static int write_into_reserve(const char *path, const struct text *text)
     return error;
 }
 
-static const char *unit_of(const struct plant *plant, int tag)
-{
-    return plant->tags[tag].unit ? plant->tags[tag].unit : "";
-}
-
 /* Appends a line of text for each row. has_unit: by tag, true once the text has the line with the tag's unit */
 static void add_rows(struct text *text, const struct plant *plant, const struct recorder_rows *rows, char kind, bool *has_unit)
 {
     for (size_t i = 0; i < rows->count; i++) {
         const struct history_row *row = &rows->at[i];
-        const char *unit = unit_of(plant, row->tag);
+        const char *unit = plant_tag_unit(plant, row->tag);
         if (!has_unit[row->tag])
             text_add(text, "u %zu %s%s\n", strlen(unit), unit, plant->tags[row->tag].name);
         has_unit[row->tag] = true;
@@ -160,7 +155,7 @@ static void take_unit(const char *text, size_t bytes, const struct plant *plant,
     char *unit = mem_printf("%.*s", (int)bytes, text);
     int tag = plant_find_tag(plant, text + bytes);
     if (tag >= 0)
-        units[tag].misfits = !history_unit_fits(unit, unit_of(plant, tag), &units[tag].change);
+        units[tag].misfits = !history_unit_fits(unit, plant_tag_unit(plant, tag), &units[tag].change);
     mem_free(unit);
 }
 

@@ -27,12 +27,6 @@ static const struct plant_asset *asset_of(const struct plant *plant, const struc
     return asset < 0 ? NULL : &plant->assets[asset];
 }
 
-static const char *unit_of(const struct plant *plant, const struct outbox_item *item)
-{
-    const struct plant_tag *tag = tag_of(plant, item);
-    return tag && tag->unit ? tag->unit : "";
-}
-
 static const char *kind_in_words(enum alarm_kind kind)
 {
     static const char *const words[ALARM_KINDS] = { [ALARM_NONE] = "", [ALARM_LL] = "low low", [ALARM_L] = "low", [ALARM_H] = "high",
@@ -117,7 +111,7 @@ static void add_name(struct text *out, const struct plant *plant, const struct o
 static void add_line(struct text *out, const struct plant *plant, const struct outbox_item *item)
 {
     const struct plant_asset *asset = asset_of(plant, item);
-    const char *unit = unit_of(plant, item), *space = *unit ? " " : "";
+    const char *unit = plant_tag_unit(plant, item->tag), *space = *unit ? " " : "";
     text_add(out, "P%d  ", item->priority);
     add_local_time(out, "%Y-%m-%d %H:%M:%S", item->raised_us);
     text_add(out, "  ");
@@ -222,7 +216,7 @@ static json_t *webhook_alarm(const struct plant *plant, const struct outbox_item
         set_time(alarm, "ended", item->ended_us);
     set_number(alarm, "value", item->value);
     set_number(alarm, "limit", item->limit);
-    set_text(alarm, "unit", unit_of(plant, item));
+    set_text(alarm, "unit", plant_tag_unit(plant, item->tag));
     set_text(alarm, "description", tag ? tag->description : NULL);
     set_text(alarm, "asset", asset ? asset->tag : NULL);
     set_text(alarm, "area", asset ? asset->area : NULL);
@@ -265,7 +259,7 @@ static json_t *alert(const struct plant *plant, const struct outbox_item *item, 
     if (isfinite(item->value)) {
         char *value = mem_printf("%.*g", READING_DIGITS, round_reading(item->value));
         set_text(annotations, "value", value);
-        set_text(annotations, "unit", unit_of(plant, item));
+        set_text(annotations, "unit", plant_tag_unit(plant, item->tag));
         mem_free(value);
     }
     json_t *one = json_pack("{s:o,s:o}", "labels", labels, "annotations", annotations);

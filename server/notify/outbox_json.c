@@ -17,19 +17,12 @@ static json_t *number_or_null(double value)
     return isfinite(value) ? json_real(value) : json_null();
 }
 
-/* Returns the unit of a tag's alarms; "": the tag has none, or the alarm is a device's. */
-static const char *unit_of(const struct outbox *outbox, int tag)
-{
-    const char *unit = tag < 0 ? NULL : outbox->plant->tags[tag].unit;
-    return unit ? unit : "";
-}
-
 static json_t *save_item(const struct outbox *outbox, const struct outbox_item *item)
 {
     return json_pack("{s:s,s:s,s:i,s:i,s:s,s:o,s:o,s:s,s:I,s:I}", "name", item->name, "kind", alarm_kind_name(item->kind), "priority",
                      item->priority, "step", item->step, "status", alarm_status_name(item->status), "value", number_or_null(item->value),
-                     "limit", number_or_null(item->limit), "unit", unit_of(outbox, item->tag), "raised", (json_int_t)item->raised_us,
-                     "ended", (json_int_t)item->ended_us);
+                     "limit", number_or_null(item->limit), "unit", plant_tag_unit(outbox->plant, item->tag), "raised",
+                     (json_int_t)item->raised_us, "ended", (json_int_t)item->ended_us);
 }
 
 static json_t *save_box(const struct outbox *outbox, const struct recipient_box *box)
@@ -56,10 +49,10 @@ static json_t *save_episode(const struct outbox *outbox, const struct episode *e
             json_object_set_new(steps, notify->rules[i].id, json_integer(episode->steps[i]));
     return json_pack("{s:s,s:s,s:i,s:s,s:o,s:o,s:s,s:I,s:I,s:I,s:I,s:I,s:o,s:o}", "name", episode->name, "kind",
                      alarm_kind_name(episode->kind), "priority", episode->priority, "status", alarm_status_name(episode->status), "value",
-                     number_or_null(episode->value), "limit", number_or_null(episode->limit), "unit", unit_of(outbox, episode->tag),
-                     "raised", (json_int_t)episode->raised_us, "began", (json_int_t)episode->began_us, "ended",
-                     (json_int_t)episode->ended_us, "cleared", (json_int_t)episode->cleared_us, "told_at",
-                     (json_int_t)episode->told_us, "told", told, "steps", steps);
+                     number_or_null(episode->value), "limit", number_or_null(episode->limit), "unit",
+                     plant_tag_unit(outbox->plant, episode->tag), "raised", (json_int_t)episode->raised_us, "began",
+                     (json_int_t)episode->began_us, "ended", (json_int_t)episode->ended_us, "cleared", (json_int_t)episode->cleared_us,
+                     "told_at", (json_int_t)episode->told_us, "told", told, "steps", steps);
 }
 
 json_t *outbox_save(const struct outbox *outbox)
@@ -86,7 +79,7 @@ static double value_of(const struct outbox *outbox, const json_t *object, const 
 {
     const json_t *value = json_object_get(object, key);
     const char *unit = json_string_value(json_object_get(object, "unit"));
-    return json_is_number(value) && unit ? alarm_value_in_unit(json_number_value(value), unit, unit_of(outbox, tag)) : NAN;
+    return json_is_number(value) && unit ? alarm_value_in_unit(json_number_value(value), unit, plant_tag_unit(outbox->plant, tag)) : NAN;
 }
 
 /* Reads the name and kind of an alarm; *tag receives its tag's index, or -1 for a device's alarm. Returns true if the plant still has

@@ -438,6 +438,8 @@ int plant_find_group(const struct plant *plant, const char *id);
 /* Returns the index of an environment by name: 0 for "sky", 1 for the plant's first panorama, and so on; -1: unknown. */
 int plant_find_environment(const struct plant *plant, const char *name);
 int plant_find_tag(const struct plant *plant, const char *name);
+/* Returns the unit of a tag's readings; "": it has none, or `tag` is -1. */
+const char *plant_tag_unit(const struct plant *plant, int tag);
 /* Returns whether readings of a tag are simulated: its source is simulated or, for a derived tag, the source of a tag in its expression. */
 bool plant_tag_simulated(const struct plant *plant, int tag);
 /* Returns a folder of the systemd service plantcastd@NAME, whose plant file is /etc/plantcast/NAME/plant.yaml; NULL: `path` is not that of

@@ -41,3 +41,9 @@ int plant_find_tag(const struct plant *plant, const char *name)
 {
     return find_sorted(plant->tags_by_name, plant->tag_count, plant->tags, sizeof(*plant->tags), name);
 }
+
+const char *plant_tag_unit(const struct plant *plant, int tag)
+{
+    const char *unit = tag < 0 ? NULL : plant->tags[tag].unit;
+    return unit ? unit : "";
+}
