@@ -206,12 +206,19 @@ const watchWarped = (page) => page.evaluate((LEAST_RUN_PX) => {
             }
         return runs;
     };
-    // pixels of the warped picture that are neither drawn nor left out, while the server's picture replaces it
+    const pixelsOf = (canvas, width, height) => {
+        const copy = new OffscreenCanvas(width, height).getContext('2d');
+        copy.imageSmoothingEnabled = false;
+        copy.drawImage(canvas, 0, 0, width, height);
+        return new Uint32Array(copy.getImageData(0, 0, width, height).data.buffer);
+    };
+    // Returns how many pixels of the canvas are none of the three that a fade may show: a pixel of the warped picture, a pixel of the
+    // server's picture, which replaces the warped one, or a transparent pixel.
+    let warpedPixels;
     const countMixed = (canvas) => {
-        const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d');
-        copy.drawImage(canvas, 0, 0);
-        const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
-        return data.filter((value, i) => i % 4 === 3 && value > 0 && value < 255).length;
+        const server = pixelsOf(viewport.canvas, canvas.width, canvas.height);
+        return pixelsOf(canvas, canvas.width, canvas.height)
+            .filter((pixel, i) => pixel !== warpedPixels[i] && pixel !== server[i] && pixel !== 0).length;
     };
     globalThis.warped = [];
     globalThis.fades = [];
@@ -221,6 +228,8 @@ const watchWarped = (page) => page.evaluate((LEAST_RUN_PX) => {
             globalThis.fades.push(countMixed(viewport.warp.canvas));
         if (!isWarped || !viewport.warp.isShown)
             return;
+        const { canvas } = viewport.warp;
+        warpedPixels = pixelsOf(canvas, canvas.width, canvas.height);
         const asked = cameras.find(({ camera }) => camera === session.picture.camera);
         const isFirst = asked && !asked.isSeen; // a newer picture is also drawn from a camera that was drawn before
         if (asked)
