@@ -116,7 +116,8 @@ struct then {
     /* wanted: the half shows differences from a baseline; distance: the half shows distances from a sensor, which are not computed from
        readings and which its markers already hold */
     bool wanted, distance;
-    const struct snapshot *snapshot; /* readings of the baseline; NULL: the baseline no longer exists */
+    /* readings of the baseline, which are subtracted from those of the view; NULL: the baseline no longer exists */
+    const struct snapshot *snapshot;
 };
 
 static struct then take_then(const struct field_params *params, struct baselines *baselines)

@@ -72,7 +72,7 @@ bool view_is_operator(const struct view *view)
     return view->field.show == SHOW_OPERATOR;
 }
 
-/* Sets all members of `scale` except the colour map. */
+/* Sets all members of `scale` except the colour map, from the settings of the view. */
 static void set_scale(const struct view *view, struct scale *scale)
 {
     if (view_is_operator(view)) {

@@ -163,8 +163,8 @@ static bool is_closed(int status)
     return status == -ECONNRESET || status == -EPIPE || status == -ECONNREFUSED || status == -ECONNABORTED;
 }
 
-/* Logs why the source reads one block per connection from now on. A device that takes long for each answer looks like one that answers
-   only once for each connection: its second answer does not come in time. */
+/* Logs why the source reads one block (tags read by one request) per connection from now on. A device that takes long for each answer looks
+   like one that answers only once for each connection: its second answer does not come in time. */
 static void log_one_per_connection(struct modbus_source *modbus, int status)
 {
     int64_t wait_ns = modbus->manners.first_wait_ns;

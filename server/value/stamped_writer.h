@@ -22,7 +22,7 @@ struct stamped_writer {
     /* samples of the present batch, which are not written yet and all have the same time; room for as many as there are tags */
     struct sample *samples;
     size_t count;
-    int64_t at_utc_ns, at_mono_ns; /* UTC and monotonic time of the batch */
+    int64_t at_utc_ns, at_mono_ns; /* time, UTC and monotonic, that all samples of the batch have */
     struct {
         int64_t utc_ns, mono_ns; /* by tag: time of the tag's last sample */
         bool is_stated;          /* the sender stated that time */
@@ -40,6 +40,7 @@ void stamped_writer_add(struct stamped_writer *writer, int tag, const struct sta
 /* Makes a tag Bad from now on. If the sender states times, the Bad quality counts from the time of the tag's last sample instead.
    Otherwise the next value from a sender whose clock is behind ours would count as older, and be ignored. */
 void stamped_writer_add_bad(struct stamped_writer *writer, int tag, uint32_t quality);
-void stamped_writer_end(struct stamped_writer *writer); /* Writes the samples of the batch to the store. */
+/* Call after all values of a message were added: writes the last batch of samples to the store. */
+void stamped_writer_end(struct stamped_writer *writer);
 
 #endif

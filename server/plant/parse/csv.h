@@ -31,7 +31,8 @@ struct csv { /* state of the CSV reader; callers may read its members but not ch
 /* Reads the file and its header row. Returns false after errors, which are added to diag; csv_close() is then not needed. The path is
    copied; diag must outlive the reader. */
 bool csv_open(struct csv *csv, const char *path, struct diag *diag);
-/* Opens a file of another program, in any encoding, like csv_open(). encoding, choice: see input_read_foreign(). */
+/* Opens a CSV file of another program, in any encoding, and reads its header row. encoding: name of the encoding, NULL: detected; *choice
+   receives the encoding. */
 bool csv_open_foreign(struct csv *csv, const char *path, const char *encoding, struct diag *diag, struct charset_choice *choice);
 void csv_close(struct csv *csv);
 /* Reads the next row that is not blank. Returns false after the last row. Rows with faulty quotes, or with another count of cells than the

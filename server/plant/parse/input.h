@@ -14,8 +14,8 @@
    reported, if the file is unreadable, empty, larger than INPUT_MAX_BYTES, UTF-16, or not text at all; `wanted` names what was expected,
    such as "a plant file (YAML)". */
 char *input_read(const char *path, const char *wanted, struct diag *diag, size_t *bytes);
-/* Reads a file of another program, in any encoding, like input_read(). `encoding`: a name that charset_resolve() knows; NULL: detected from
-   the bytes. *choice receives the encoding. */
+/* Reads a text file of another program, in any encoding, and returns its content like input_read(). `encoding`: a name that
+   charset_resolve() knows; NULL: detected from the bytes. *choice receives the encoding. */
 char *input_read_foreign(const char *path, const char *wanted, const char *encoding, struct diag *diag, size_t *bytes,
                          struct charset_choice *choice);
 

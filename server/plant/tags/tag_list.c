@@ -48,8 +48,8 @@ static bool is_lost(const struct tag_list *list)
     return *id && plant_find_asset(list->plant, id) < 0;
 }
 
-/* Reads group and asset of a tag's row. If the plant file has no groups or no assets at all, that is reported once elsewhere and not for
-   each row. */
+/* Reads group and asset of a tag's row. If the plant file has no groups or no assets at all, one error for the plant file says so, not one
+   for each row. */
 static void read_group_and_asset(struct tag_list *list)
 {
     const struct plant *plant = list->plant;

@@ -72,7 +72,7 @@ static void fill_clip(struct frame_uniforms *block, const struct frame_context *
     }
 }
 
-/* Factor of the brightness of assets without a field before a dark backdrop: there, large pale floors would glare at full brightness. */
+/* Factor of the brightness of assets without a field before a dark backdrop, on which large pale floors would glare at full brightness. */
 static const float DIM_CONTEXT = 0.55f;
 
 void frame_uniforms_fill(struct frame_uniforms *block, const struct frame_context *context)

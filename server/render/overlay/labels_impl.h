@@ -39,7 +39,7 @@ void layout_init(struct label_layout *layout, const struct label_item *items, si
 /* Returns the box of an item's label in a slot (candidate position around the marker). across, down: half the width and height of the group
    of markers around item->x, item->y; 0 for a single marker. */
 struct label_box layout_box(const struct label_item *item, int slot, double unit, double across, double down);
-/* Returns whether a box lies within the label area. */
+/* Returns whether a box lies within the area of the frame in which labels may be placed. */
 bool layout_is_inside(const struct label_layout *layout, const struct label_box *box);
 /* Returns whether a box overlaps no occupied box. Ignored are the boxes of `owner`, and boxes that `over` allows a label to cover. */
 bool layout_is_free(const struct label_layout *layout, const struct label_box *box, int owner, enum label_over over);

@@ -42,7 +42,7 @@ void isolines_finish(struct isolines *isolines)
 
 /* --- points on lines --------------------------------------------------------------------------------------------------------- */
 
-/* State while the isoline points of one asset are searched. */
+/* State while one asset is searched for points on isolines, at which labels may be placed. */
 struct isoline_search {
     const struct scene_asset *asset;
     const struct fields_entry *field;

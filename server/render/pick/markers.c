@@ -114,8 +114,7 @@ static double distance_m(const struct marker_iterator *iterator, const struct ma
         return NAN;
     if (place->tag == params->sensor)
         return 0;
-    /* distance unknown: the view uses heat distances, which are not available here, and the geodesic distances of the asset file differ
-       from them */
+    /* distance unknown: the view uses heat distances, but markers can only show the geodesic distances of the asset file, which differ */
     if (params->distance == DISTANCE_HEAT)
         return NAN;
     if (params->distance == DISTANCE_EUCLIDEAN) {

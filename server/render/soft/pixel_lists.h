@@ -66,7 +66,7 @@ static inline bool pixel_is_inverse_square(const struct pixel_field *field)
     return !field->paper && field->power == 2.0f && !(field->reach_m < INFINITY);
 }
 
-/* Returns the list of all sensors of a field. */
+/* Returns a list of all sensors of a field, for fields with so few sensors that none is replaced by a polynomial. */
 static inline struct pixel_list pixel_list_of_all(const struct pixel_field *field)
 {
     struct pixel_list all = { .count = field->count, .all_used = true };

@@ -40,7 +40,7 @@ struct refined {
     size_t mesh_capacity;
     uint8_t *caps; /* section caps: one bit per sample of each pixel, rows of pitch_px. NULL: no section plane cuts the scene */
     struct visibility_buffer *buffer;
-    /* --- members that are computed again at each step --- */
+    /* --- members that are set again at each step of drawing the refined frame --- */
     const struct frame_context *context;
     struct environment_light surroundings;
     float sun_from_pixel[4][4], sun_from_ground[4][4]; /* matrices, as columns */

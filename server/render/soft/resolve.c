@@ -239,7 +239,7 @@ SOFT_INLINE void carry(const struct coloring *coloring, const struct visibility_
     out->known &= ~(values.no_data | values.uncertain | values.no_limits);
 }
 
-/* Converts eight values on a logarithmic scale to colour map columns, as column_of() does for one. */
+/* Converts eight values on a logarithmic colour scale to colour map columns. */
 SOFT_INLINE lanes columns_of_logs(lanes values, const float *scale)
 {
     return (lanes_log2(values) - scale[0]) * scale[1] * COLUMNS_OF_RANGE + (1 + SLACK * COLUMNS_OF_RANGE);

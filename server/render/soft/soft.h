@@ -27,7 +27,8 @@ size_t soft_kept_bytes(const struct soft *soft);  /* bytes of kept visibility bu
 size_t soft_room_bytes(const struct soft *soft);
 size_t soft_light_bytes(const struct soft *soft); /* returns the bytes that copies of baked light from the GPU take */
 void soft_drop_spare(struct soft *soft);          /* frees the working memory that finished refined frames left for reuse */
-void soft_rest(struct soft *soft);                /* frees working memory, copied light and kept visibility buffers */
+/* frees working memory, copied light and kept visibility buffers, for example while no client watches */
+void soft_rest(struct soft *soft);
 
 /* Draws a whole preview frame: pixels, visibility of markers, and points for isoline labels. Returns false when out of memory; logged. */
 bool preview_draw(struct soft *soft, const struct frame_context *context, const struct light *light, const struct isoline_points *points,

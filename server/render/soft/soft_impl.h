@@ -96,7 +96,7 @@ struct soft_found {
     size_t count, capacity;
 };
 
-struct soft_light {       /* copy of a light_set, read back from the GPU */
+struct soft_light {       /* copy, in main memory, of a light set (baked light) that is on the GPU */
     uint64_t id;          /* id of the light set (baked light) that was copied; 0: the entry is empty */
     uint8_t (**baked)[4]; /* baked light, indexed by asset and then by vertex */
     /* shadow map of the sun in square tiles; a tile takes two cache lines and is stored row by row, so that neighbouring texels mostly
@@ -109,7 +109,7 @@ struct soft_light {       /* copy of a light_set, read back from the GPU */
        lower right neighbours */
     uint32_t *ground;
     uint8_t *open; /* openness of the ground to the sky, for refined frames; rows from the top */
-    int ground_px; /* width and height of `ground` and `open` */
+    int ground_px; /* width and height, in texels, of the ground's light maps `ground` and `open` */
     uint64_t used;
 };
 /* Width of a tile of the shadow map. Lookups read a texel with its right and lower neighbours, so tiles overlap by one texel: the last row
@@ -274,7 +274,7 @@ void soft_keep(struct soft *soft, const struct frame_context *context, struct vi
 struct soft_triangle {
     uint32_t id; /* id of the triangle, as in struct soft_sample or raster->ids */
     uint32_t mesh, material;
-    uint32_t vertices[3]; /* indices of the vertices in the asset file */
+    uint32_t vertices[3]; /* indices of the triangle's three vertices in the asset file */
 };
 /* Finds the triangle with this id among the found parts (groups of triangles). On entry triangle->mesh is the index of the mesh to try
    first: that of a neighbouring pixel, or 0. */

@@ -9,7 +9,7 @@
 enum { TEXTURE_LEVELS = 16 };
 
 struct soft_texture {
-    const uint8_t (*levels[TEXTURE_LEVELS])[4]; /* mipmap levels; the finest level points into the asset file */
+    const uint8_t (*levels[TEXTURE_LEVELS])[4]; /* mipmap levels of the texture; the finest level points into the asset file */
     uint8_t (*coarse)[4];                       /* memory of all mipmap levels but the finest; owned by this struct */
     const float *linear; /* table that converts a texel's byte to 0..1: to linear light for sRGB textures, to byte / 255 for others */
     int width_px, height_px, level_count;
@@ -21,7 +21,7 @@ struct soft_material {
     const struct soft_texture *maps[MODEL_MAPS]; /* NULL: none */
     bool mapped;                                 /* true: the material has at least one texture map */
     bool blended;
-    bool cut_out; /* true: the alpha of the base colour cuts holes */
+    bool cut_out; /* true: the alpha of the base colour cuts holes into surfaces of this material */
 };
 
 struct soft_materials {

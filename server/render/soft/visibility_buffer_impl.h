@@ -19,7 +19,7 @@ static inline float clamped(float x, float low, float high)
     return x < low ? low : x > high ? high : x;
 }
 
-/* Returns the colour map column of a position on the scale, as carry_field() in faces.c does. x: the value, or log2 of the value. */
+/* Returns the colour map column of a position on the scale. x: the value or, on a logarithmic scale, log2 of the value. */
 static inline float column_of(float x, const float *scale)
 {
     const float farthest = 1e6f;

@@ -13,7 +13,7 @@ struct opcua_variable {
 };
 
 /* Calls `found` for each numeric variable below the folder Objects, except the variables that every server has. The client must be
-   connected. Returns the same codes as opcua_client_connect(). */
+   connected. Returns 0; -ECANCELED if stop_fd became readable; another negative code with the reason in `why`. */
 int opcua_browse(struct opcua_client *client, void (*found)(void *arg, const struct opcua_variable *variable), void *arg, int stop_fd,
                  int64_t deadline_mono_ns, char why[200]);
 

@@ -35,7 +35,8 @@ int opcua_client_subscribe(struct opcua_client *client, int stop_fd, int64_t dea
 int opcua_client_serve(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
 /* Returns true if notifications of the subscription were lost, so that nodes may have newer values than the session has received. */
 bool opcua_client_missed(const struct opcua_client *client);
-/* Reads all subscribed nodes, after notifications were lost. Returns the same codes as opcua_client_connect(). */
+/* Reads all subscribed nodes, after notifications were lost. Returns 0; -ECANCELED if stop_fd became readable; another negative code with
+   the reason in `why`. */
 int opcua_client_read(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
 /* Returns the server's publishing interval in milliseconds if it is longer than the requested one; 0: it is not. */
 double opcua_client_publishing_ms(const struct opcua_client *client);
