@@ -52,7 +52,7 @@ void depth_lens_init(struct depth_lens *lens, const struct view_constants *const
 struct depth_grid *depth_grid_create(const struct depth_cell *cells, const struct depth_lens *lens, int width_px, int height_px);
 struct depth_grid *depth_grid_ref(struct depth_grid *grid); /* accepts NULL */
 void depth_grid_unref(struct depth_grid **grid);            /* accepts a pointer to NULL */
-/* Returns whether both depth grids are equal, so that a client that has `a` need not be sent `b`; both may be NULL. */
+/* Returns whether both depth grids are equal, so that a client that has received `a` need not be sent `b`; both may be NULL. */
 bool depth_grid_equal(const struct depth_grid *a, const struct depth_grid *b);
 
 #endif

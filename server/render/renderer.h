@@ -55,7 +55,8 @@ bool renderer_set_bake_budget(struct renderer *renderer, int64_t bake_ns);
    true when it is complete. */
 bool renderer_bake_idle(struct renderer *renderer, int64_t budget_ns);
 
-/* Chooses whether frames that are begun later get depth grids (render/depth_grid.h); initially they do not. */
+/* Chooses whether frames that are begun later get depth grids, by which clients warp pictures (render/depth_grid.h); initially they do
+   not. */
 void renderer_set_depth(struct renderer *renderer, bool gives_depth);
 bool renderer_gives_depth(const struct renderer *renderer);
 /* Sets whether GL draws all frames (true), even those that the software backend would draw on machines without a GPU. */

@@ -102,8 +102,8 @@ bool gl_backend_take_up(struct renderer *renderer, struct frame_context *context
     return true;
 }
 
-/* Prepares to continue a job after the renderer drew other frames. The job then holds a reference to its light set, so that the set is not
-   evicted. Returns false on failure, logged. */
+/* Prepares to continue a job after the renderer drew other frames. The job then holds a reference to its light set (baked light), so that
+   the set is not evicted. Returns false on failure, logged. */
 static bool take_up(struct renderer *renderer, struct render_job *job)
 {
     return renderer_light_job(renderer, job) && gl_backend_take_up(renderer, &job->context);

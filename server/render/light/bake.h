@@ -13,7 +13,7 @@ struct light_key {
     double towards[3];       /* unit vector towards the sun, in the plant frame */
     int environment;         /* number of the environment (render/light/environments.h) */
     struct visibility shown; /* assets that cast shadows */
-    bool rough;              /* true: a rough light set, whose openness is not baked but constant, which is much faster */
+    bool rough;              /* true: a rough light set (baked light), whose openness is not baked but constant, which is much faster */
 };
 
 struct light_set {
@@ -50,7 +50,7 @@ double bake_least_open(const struct gpu_scene *gpu_scene, const struct visibilit
    logged. */
 struct bake *bake_begin(const struct gpu_scene *gpu_scene, const struct bake_programs *programs, const double plant_from_ground[16],
                         const struct light_key *key, const struct light_set *from, struct openness *kept);
-/* Returns the key of the light set that is being baked. */
+/* Returns the key (sun, environment, visible assets) of the light set that is being baked. */
 const struct light_key *bake_key(const struct bake *bake);
 /* Issues GL calls for the next few milliseconds of the bake; the key's environment must be bound (render/light/environments.h). Returns
    true once all calls of the bake are issued. */

@@ -170,7 +170,7 @@ static void take_directions(struct fields *fields, struct fields_entry *entry, c
         return;
     mem_free(entry->directions);
     entry->direction_count = directions_read(scene, entry->asset, ask->params->group, ask->snapshot, &entry->directions);
-    /* the hash includes the parameters, because directions depend on them, too */
+    /* the hash includes the field parameters, because the directions of arrows depend on them, too */
     entry->directions_content = XXH3_64bits(&entry->params, sizeof(entry->params));
     for (size_t i = 0; i < entry->direction_count; i++) {
         const struct sensor_direction *d = &entry->directions[i];

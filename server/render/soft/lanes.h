@@ -30,7 +30,8 @@ typedef uint8_t lanes_bytes __attribute__((vector_size(8)));
 typedef int64_t lanes_pair __attribute__((vector_size(16)));
 
 #ifdef __AVX512VL__
-#define LANES_CHOOSE_AT_ONCE 1 /* 1: lanes_choose() compiles to a single instruction, so choosing is cheaper than branching */
+/* 1: lanes_choose() compiles to a single instruction, so computing both results and choosing is cheaper than branching */
+#define LANES_CHOOSE_AT_ONCE 1
 #else
 #define LANES_CHOOSE_AT_ONCE 0
 #endif
@@ -88,7 +89,7 @@ SOFT_INLINE int lanes_any(lanes_int mask)
 #endif
 }
 
-/* Returns one bit per lane; lane 0 is the lowest bit. */
+/* Returns one bit for each of the eight numbers of a mask; that of number 0 is the lowest. */
 SOFT_INLINE uint32_t lanes_bits(lanes_int mask)
 {
 #ifdef __AVX2__

@@ -24,9 +24,10 @@ struct pixel_list {
     const uint32_t *sensors;
     size_t first;            /* index of the list's first sensor in pixel_lists.sensors */
     int count;
-    bool all_used;  /* true: all sensors in the list have a usable reading */
+    bool all_used;  /* true: all near sensors of the list, those evaluated at each pixel, have a usable reading */
     bool has_far;   /* true: at least one sensor with a reading is not in the list; the polynomials below approximate its weight */
-    bool has_marks; /* true: at least one far sensor has a reading of quality Uncertain */
+    /* true: at least one far sensor (replaced by a polynomial) has a reading of quality Uncertain, so pixels may be marked as uncertain */
+    bool has_marks;
     /* Polynomials that replace sums over the far sensors: of their weights, of weights times values, and of the weights of those that are
        Uncertain, all times 2^-top. `unit` is 2^top. Coefficients of 1, x, y, z, xx, xy, xz, yy, yz, zz, with x, y, z in metres from
        `centre`. */

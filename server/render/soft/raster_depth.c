@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Makes the depth grid (render/depth_grid.h) of a frame that the software renderer drew. */
+/* Makes the depth grid (coarse depth for clients, render/depth_grid.h) of a frame that the software renderer drew. */
 #include "base/mem.h"
 #include "render/soft/depth_cells.h"
 #include "render/soft/soft_impl.h"

@@ -36,7 +36,7 @@ struct refined {
     } step;
     size_t at; /* number of work items (samples, bands or rows) of the current step that are done */
     bool failed;
-    float (*normals)[9]; /* by mesh: matrix that rotates normals from the file to the plant frame, column by column */
+    float (*normals)[9]; /* by mesh: matrix that rotates normals from the asset file to the plant frame, column by column */
     size_t mesh_capacity;
     uint8_t *caps; /* section caps: one bit per sample of each pixel, rows of pitch_px. NULL: no section plane cuts the scene */
     struct visibility_buffer *buffer;

@@ -20,7 +20,7 @@ struct coloring {
     const struct band_lists *lists;
 };
 
-/* Returns the index, within the band, of the cell (square of pixels) that contains a pixel. */
+/* Returns the index of the cell (square of pixels) that contains a pixel, counted within the band (group of pixel rows). */
 SOFT_INLINE int cell_at(const struct coloring *coloring, int x, int y)
 {
     return x / CELL_PX + y % coloring->buffer->band_rows / CELL_PX * coloring->lists->columns;
@@ -208,7 +208,8 @@ struct eight_shown {
 };
 
 /* Computes the field values of eight pixels: colour map columns or, on a logarithmic scale, field values. Works as field_color() in
-   shaders/field.glsl. wanted: mask of pixels; others receive arbitrary values. cells: index of each pixel's cell in the band. */
+   shaders/field.glsl. wanted: mask of pixels; others receive arbitrary values. cells: index, in the band of pixel rows, of the square of
+   pixels that contains each pixel. */
 SOFT_INLINE void carry(const struct coloring *coloring, const struct visibility_band *band, lanes_int triangles, lanes_int weights,
                        lanes_int wanted, lanes_int cells, struct eight_shown *out)
 {

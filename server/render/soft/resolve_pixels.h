@@ -44,8 +44,8 @@ SOFT_INLINE const struct pixel_list *list_of(const struct band_lists *lists, con
     return &mesh->every;
 }
 
-/* Evaluates the field at the points whose mesh is not -1, with the sensor list of the point's mesh and cell. Results of other points are
-   0. cells: index of each point's cell in the band. */
+/* Evaluates the field at the points whose mesh is not -1, with the sensor list of the point's mesh and square of pixels (cell). Results of
+   other points are 0. cells: index of each point's cell in the band. */
 SOFT_INLINE void evaluate_places(const struct visibility_buffer *buffer, const struct band_lists *lists, const struct eight_places *places,
                                  const lanes at[3], lanes_int cells, struct eight_values *out)
 {

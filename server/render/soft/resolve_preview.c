@@ -292,8 +292,8 @@ SOFT_INLINE lanes_int is_of_many(const struct many *many, lanes_int marks)
     return (marks & ~0xff) == (int32_t)many->mark;
 }
 
-/* Sets the box of *cell so that it encloses the surface points of all its pixels that show the field. Returns false if no pixel of the cell
-   shows the field. */
+/* Sets the box of *cell (a square of pixels) so that it encloses the surface points of all its pixels that show the field. Returns false if
+   no pixel of the cell shows the field. */
 SOFT_INLINE bool bound_cell(const struct many *many, int column, int top, struct pixel_cell *cell)
 {
     const struct raster *raster = many->raster;

@@ -214,7 +214,7 @@ struct soft { /* shared by all frames */
     struct refined *spare;
 };
 
-/* Returns the copy of a light set, read from the GPU if needed. NULL: out of memory, logged. */
+/* Returns the copy, in main memory, of a light set (baked light); reads it from the GPU if needed. NULL: out of memory, logged. */
 const struct soft_light *soft_get_light(struct soft *soft, const struct light_set *set);
 void soft_free_light(const struct soft *soft, struct soft_light *light);
 /* Returns the table from which pixels that show a field get their colours: colormap->texels or, if `glossy` is true, soft->glossy. */
@@ -228,9 +228,11 @@ void raster_aim(struct raster *raster, const struct light *light); /* computes t
 /* Prepares for the depth grid (coarse depth for clients, render/depth_grid.h), if the frame gets one; call it after raster_aim(). Without
    memory for the cells, the frame has no grid. */
 void raster_aim_depth(struct raster *raster, const struct light *light);
-/* Computes the depth grid's cells in a rectangle of the frame, whose top left corner must be the corner of a cell. Runs on a worker. */
+/* Computes the cells (squares of pixels) of the depth grid in a rectangle of the frame, whose top left corner must be the corner of a cell.
+   Runs on a worker. */
 void raster_find_cells(const struct raster *raster, const struct soft_rect *rect);
-/* Makes the frame's depth grid from raster->cells; the caller owns it. NULL: the frame gets no grid, or memory ran out. */
+/* Makes the frame's depth grid (coarse depth for clients) from raster->cells; the caller owns it. NULL: the frame gets no grid, or memory
+   ran out. */
 struct depth_grid *raster_depth_grid(const struct raster *raster);
 /* computes the section planes in pixel coordinates (raster->cuts); must be called before the other steps */
 void raster_aim_cuts(struct raster *raster);

@@ -101,7 +101,7 @@ struct soft_cutout {
 void soft_cutout_init(struct soft_cutout *cutout, const struct soft_tile *tile, const struct soft_face *face);
 /* returns whether the texture has a hole at the point (x, y), in pixels from the upper left corner of the frame */
 bool soft_is_hole(const struct soft_cutout *cutout, float x, float y);
-/* Appends a fragment to tile->fragments. column, row: pixel of the frame. */
+/* Appends a fragment (a transparent triangle at one sample of a pixel) to tile->fragments. column, row: pixel of the frame. */
 void soft_add_fragment(const struct soft_tile *tile, int sample, const struct soft_face *face, int column, int row, float depth);
 
 /* Counts, in place of the pixels' colour codes (marks), the closed bodies to which the triangles of a part (group of triangles) belong: +1

@@ -9,7 +9,7 @@
 #include "base/mem.h"
 
 struct tile_entry { /* entry for one part (group of triangles) in a tile's list of the parts that may be visible in the tile */
-    uint64_t order; /* sort key: depth, nearest first; parts at equal depth in the order in which they were found */
+    uint64_t order; /* sort key of the part: its depth, nearest first; parts at equal depth keep the order in which they were found */
     uint32_t mesh, item;
 };
 
@@ -207,7 +207,9 @@ static int columns_of(const struct raster *raster)
 
 static void draw_tile(const struct raster *raster, int number, enum soft_output output, struct tile_list *list)
 {
-    struct soft_tile tile; /* not zeroed as a whole, because its arrays of corners and faces are large and mostly unused */
+    /* only some members are set: zeroing the whole struct would take long, because its arrays of corners and faces are large and mostly
+       unused */
+    struct soft_tile tile;
     int left = number % columns_of(raster) * TILE_WIDTH_PX, top = number / columns_of(raster) * TILE_HEIGHT_PX;
     tile.raster = raster;
     tile.rect = (struct soft_rect){ left, top, left + TILE_WIDTH_PX - 1, top + TILE_HEIGHT_PX - 1 };

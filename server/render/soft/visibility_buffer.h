@@ -116,7 +116,7 @@ struct visibility_buffer {
     float *carried;
     float *plain;                 /* the values of `carried`, also at vertices where `carried` is NAN because a pattern is shown */
     uint32_t *flags;              /* from soft_flags() */
-    struct depth_grid *grid;      /* reference to the frame's depth grid; NULL: the frame has none */
+    struct depth_grid *grid;      /* reference to the frame's depth grid (coarse depth for clients); NULL: the frame has none */
     struct frame_marker *markers; /* positions of markers in the frame, and whether surfaces hide them */
     size_t marker_count;
 };

@@ -10,8 +10,8 @@
 struct cell_search {
     const struct visibility_buffer *buffer;
     struct visibility_band *band;
-    /* index in band->cells of the first cell at this column and row; if several meshes are visible there, each has a cell, one after the
-       other */
+    /* index in band->cells of the first cell (square of pixels) at this column and row; if several meshes are visible there, each has a
+       cell, one after the other */
     size_t first;
     uint16_t column, row;
 };

@@ -24,7 +24,8 @@ struct visibility_store { /* zero-initialise, then set bound_bytes */
     uint64_t uses;
 };
 
-/* Returns the buffer with that hash, valid until the next visibility_store_give() or visibility_store_drop(). NULL: none. */
+/* Returns the visibility buffer of frames with that hash, valid until the next visibility_store_give() or visibility_store_drop(). NULL:
+   none. */
 void *visibility_store_find(struct visibility_store *store, uint64_t shape);
 /* Takes ownership of a visibility buffer and replaces any buffer with the same hash. Destroys the buffer immediately if it exceeds the
    memory limit and keeps_newest is false. */
