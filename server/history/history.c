@@ -272,19 +272,40 @@ static int read_month(struct history_reader *reader, int month, const struct mon
     return error;
 }
 
-/* Reads a series from the files of all months in its time span. Also reads the last file before the span, because the line that enters
-   the span may begin there, and the first file after it. */
+/* Returns true if the months read so far have a point of the tag. */
+static bool has_begun(const struct gather *gather)
+{
+    return gather->out->points.count > 0 || gather->out->buckets.count > 0 || gather->rollup.open;
+}
+
+/* Returns true if the months read so far have no point of the tag after to_us, so that the first one must be searched in later months. */
+static bool lacks_end(const struct gather *gather, int level, int64_t to_us)
+{
+    const struct history_points *points = &gather->out->points;
+    if (level >= 0)
+        return gather->rollup.open && gather->rollup.last.t_us <= to_us;
+    return !points->count || points->at[points->count - 1].t_us <= to_us;
+}
+
+/* Reads a series from the files of all months in its time span. Also reads earlier months, back to the newest point before the span,
+   because the line that enters the span begins there, and later months, up to the first point after it. Both may be far away: a source
+   that sends only changes may send none for months. */
 static int read_months(struct history_reader *reader, const struct month_request *of, struct gather *gather,
                        struct history_left_out *left_out)
 {
-    size_t count;
+    size_t count, begin = 0;
     int *months = month_list(reader->folder, &count), error = 0, first = month_of(of->from_us), last = month_of(of->to_us);
-    for (size_t i = 0; i < count && !error && (left_out || !history_points_full(&gather->out->points)); i++) {
-        bool leads = i + 1 < count && months[i] < first && months[i + 1] >= first;
-        bool follows = i > 0 && months[i] > last && months[i - 1] <= last && (of->level < 0 || gather->rollup.open);
-        if ((months[i] >= first && months[i] <= last) || leads || follows)
+    while (begin < count && months[begin] < first)
+        begin++;
+    /* a month that cannot be read ends the search for a far point, but not the query */
+    for (size_t i = begin; i > 0 && !error && !has_begun(gather); i--)
+        if ((error = read_month(reader, months[i - 1], of, gather, left_out)) && i < begin) {
+            error = 0;
+            break;
+        }
+    for (size_t i = begin; i < count && !error && (months[i] <= last || lacks_end(gather, of->level, of->to_us)); i++)
+        if (left_out || !history_points_full(&gather->out->points))
             error = read_month(reader, months[i], of, gather, left_out);
-    }
     mem_free(months);
     if (!error && of->level < 0)
         drop_edges(&gather->out->points, of->from_us, of->to_us);
@@ -399,18 +420,46 @@ static int at_month(struct history_reader *reader, int month, const struct histo
     return error;
 }
 
+/* Returns true if the point before t_us was not found for some tag; with `after`, if the usable point before it has no point after it. */
+static bool lacks_point(const struct history_pair *pairs, size_t count, bool after)
+{
+    size_t i = 0;
+    while (i < count && (after ? pairs[i].after.t_us != INT64_MIN || pairs[i].before.t_us == INT64_MIN ||
+                                     !history_point_usable(&pairs[i].before)
+                               : pairs[i].before.t_us != INT64_MIN))
+        i++;
+    return i < count;
+}
+
 int history_at(struct history_reader *reader, const struct history_tag *tags, int64_t t_us, struct snapshot *into)
 {
     struct history_pair *pairs = mem_array(into->count ? into->count : 1, sizeof(*pairs));
-    int month = month_of(t_us), error = 0;
+    size_t months_count, begin = 0;
+    int *months = month_list(reader->folder, &months_count), month = month_of(t_us), error = 0;
     for (size_t i = 0; i < into->count; i++)
         pairs[i].before.t_us = pairs[i].after.t_us = INT64_MIN;
-    /* the month of t_us, the month before and the month after, because lines between points cross the ends of months */
-    for (int i = 0; i < 3 && !error; i++)
-        error = at_month(reader, month + (int[]){ 0, -1, 1 }[i], tags, t_us, into->count, pairs);
+    while (begin < months_count && months[begin] <= month)
+        begin++;
+    /* The month of t_us, then months before and after it, because a tag's points may be months apart. A far month that cannot be read ends
+       the search, but does not fail: without it, the reading is unknown. */
+    for (size_t i = begin; i > 0 && !error && (i == begin || lacks_point(pairs, into->count, false)); i--) {
+        error = at_month(reader, months[i - 1], tags, t_us, into->count, pairs);
+        if (error && months[i - 1] < month - 1) {
+            error = 0;
+            break;
+        }
+    }
+    for (size_t i = begin; i < months_count && !error && lacks_point(pairs, into->count, true); i++) {
+        error = at_month(reader, months[i], tags, t_us, into->count, pairs);
+        if (error && months[i] > month + 1) {
+            error = 0;
+            break;
+        }
+    }
     for (size_t i = 0; i < into->count; i++)
         read_pair(&pairs[i], t_us, tags[i].stale_us, &into->readings[i]);
     into->taken_utc_ns = t_us * 1000;
+    mem_free(months);
     mem_free(pairs);
     return error;
 }

@@ -141,7 +141,7 @@ struct history_pair {
     struct unit_change change; /* converts values of the file that was read last to the unit in which the plant shows the tag */
 };
 /* Finds for all tags the points around t_us. Skips points that earlier calls, for other months' files, have found: so pass the file of
-   t_us's month first, then those of the months before and after. */
+   t_us's month first, then earlier ones, the newest first, and then later ones, the oldest first. */
 int month_file_at(struct month_file *file, int64_t t_us, const struct history_tag *tags, size_t count, struct history_pair *pairs);
 
 #endif

@@ -257,14 +257,23 @@ static void take(struct history_pair *pair, const struct history_point *there, i
         pair->after = point;
 }
 
-/* Returns an array that maps a tag's id in the file to its index in `tags`; -1: not in `tags`. Returns NULL if the file has none of the
-   tags. Free with mem_free(). */
-static int *index_by_id(struct month_file *file, const struct history_tag *tags, size_t count, struct history_pair *pairs, int64_t *most)
+/* Returns true if the file may have a point that is still searched. month: month of the requested time. */
+static bool is_searched(const struct month_file *file, const struct history_pair *pair, int month)
 {
+    return (file->month <= month && pair->before.t_us == INT64_MIN) || (file->month >= month && pair->after.t_us == INT64_MIN);
+}
+
+/* Returns an array that maps a tag's id in the file to its index in `tags`; -1: not in `tags`, or no point of the tag is searched in this
+   file. Returns NULL if the file has none of the tags. Free with mem_free(). */
+static int *index_by_id(struct month_file *file, int64_t t_us, const struct history_tag *tags, size_t count, struct history_pair *pairs,
+                        int64_t *most)
+{
+    int month = month_of(t_us);
     int64_t *ids = mem_array(count ? count : 1, sizeof(*ids));
     *most = 0;
     for (size_t i = 0; i < count; i++) {
-        ids[i] = month_find_tag(file, tags[i].name, tags[i].unit, &pairs[i].step, &pairs[i].change);
+        if (is_searched(file, &pairs[i], month))
+            ids[i] = month_find_tag(file, tags[i].name, tags[i].unit, &pairs[i].step, &pairs[i].change);
         if (ids[i] > *most)
             *most = ids[i];
     }
@@ -312,10 +321,10 @@ int month_file_at(struct month_file *file, int64_t t_us, const struct history_ta
 {
     int64_t most;
     struct history_points points = { 0 };
-    int error = 0, *index = index_by_id(file, tags, count, pairs, &most);
+    int error = 0, *index = index_by_id(file, t_us, tags, count, pairs, &most);
     for (int64_t id = 1; index && id <= most && !error; id++) {
         struct history_pair *pair = index[id] >= 0 ? &pairs[index[id]] : NULL;
-        if (!pair || (pair->before.t_us != INT64_MIN && pair->after.t_us != INT64_MIN))
+        if (!pair)
             continue;
         points.count = 0;
         error = month_stored_points(file, id, t_us, t_us, &points);

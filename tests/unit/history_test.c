@@ -207,6 +207,62 @@ CASE(lines_cross_the_border_of_a_month)
     history_series_finish(&series);
 }
 
+/* Writes ascending points of a tag into the files of their months. */
+static void import_points(struct history_setup *s, int tag, const struct history_point *points, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        struct month_file *file = open_file(s, points[i].t_us);
+        assert_int_equal(month_file_import(file, tag, &points[i], 1), 0);
+        month_file_close(&file);
+    }
+}
+
+/* TT-1 and the switch have points in July and November only, and TT-1 another one in January; TT-2 has points in all months. */
+CASE(points_that_are_months_apart_are_found)
+{
+    const int64_t day = 86400 * S, july = NOVEMBER - 120 * day, january = NOVEMBER + 65 * day;
+    const struct history_point rises[] = { { july, 10, 0 }, { NOVEMBER + 10 * day, 140, 0 }, { january, 85, 0 } };
+    const struct history_point turns[] = { { july, 1, 0 }, { NOVEMBER + 10 * day, 0, 0 } };
+    struct snapshot *snapshot = test_snapshot(TAGS);
+    struct history_series series;
+    import_points(s, 0, rises, 3);
+    import_points(s, 2, turns, 2);
+    for (int i = -125; i < 70; i++)
+        import_points(s, 1, &(struct history_point){ NOVEMBER + i * day, i, 0 }, 1);
+    for (int tag = 0; tag < TAGS; tag++)
+        s->tags[tag].stale_us = INT64_MAX;
+    for (int i = -124; i < 80; i += 3) {
+        assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + i * day, snapshot), 0);
+        double rise = i < 10 ? 130 + i : i < 65 ? 150 - i : 85;
+        assert_int_equal(snapshot->readings[0].quality, i < -120 ? QUALITY_BAD_WAITING : QUALITY_GOOD);
+        assert_true(i < -120 || fabs(snapshot->readings[0].value - rise) < 1e-6);
+        assert_int_equal(snapshot->readings[2].quality, i < -120 ? QUALITY_BAD_WAITING : QUALITY_GOOD);
+        assert_true(i < -120 || snapshot->readings[2].value == (i < 10));
+        if (i < -120)
+            continue;
+        assert_int_equal(history_series(s->reader, "TT-1", NOVEMBER + i * day, NOVEMBER + (i + 1) * day, 1000, &series), 0);
+        assert_int_equal(series.points.count, i < 65 ? 2 + (i == -120) : 1);
+        assert_true(series.points.at[0].t_us <= NOVEMBER + i * day);
+        assert_true(i >= 65 || series.points.at[series.points.count - 1].t_us > NOVEMBER + (i + 1) * day);
+        history_series_finish(&series);
+        /* the line between the buckets before and after */
+        assert_int_equal(history_intervals(s->reader, "TT-1", NOVEMBER + i * day, NOVEMBER + (i + 1) * day, 24, &series), 0);
+        assert_int_equal(series.buckets.count, i < 65 ? 2 + (i == -120) : 1);
+        history_series_finish(&series);
+    }
+    /* a month between that cannot be read: the reading is unknown, all others are there */
+    char *august = temp_path(s->folder, "history-2026-08.sqlite");
+    assert_int_equal(truncate(august, 100), 0);
+    history_reader_destroy(&s->reader);
+    s->reader = history_reader_create(s->log, s->folder);
+    assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + day / 2, snapshot), 0);
+    assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_WAITING);
+    assert_float_equal(snapshot->readings[1].value, 0.5, 1e-6);
+    assert_int_equal(history_series(s->reader, "TT-1", NOVEMBER, NOVEMBER + day, 1000, &series), 0);
+    assert_int_equal(series.points.count, 1);
+    history_series_finish(&series);
+}
+
 static void set_zone(const char *zone)
 {
     assert_int_equal(zone ? setenv("TZ", zone, 1) : unsetenv("TZ"), 0);
