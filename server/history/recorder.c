@@ -11,6 +11,8 @@
 struct recorder_lane {
     struct swinging_door door;
     struct swinging_door_params params;
+    /* interval at which the tag's source looks for changes, if it sends only changes; 0: it also sends unchanged values */
+    int64_t sampling_us;
     uint32_t quality;
     bool touched; /* true: the lane's index is in recorder->touched (tags with samples since the last recorder_held()) */
 };
@@ -29,6 +31,13 @@ static double span_of(const struct plant *plant, const struct plant_tag *tag)
     if (tag->scale.has_range)
         return unit_change_span(&tag->scale.change, fabs(tag->scale.scaled_high - tag->scale.scaled_low));
     return tag->group >= 0 ? plant->groups[tag->group].max - plant->groups[tag->group].min : 0;
+}
+
+/* Returns the sampling interval of a tag whose source sends only changes; 0 for other tags. */
+static int64_t sampling_of(const struct plant *plant, const struct plant_tag *tag)
+{
+    int source_ms = tag->source >= 0 ? plant->sources[tag->source].poll_ms : 1000;
+    return tag->validity.stale_s < PLANT_NEVER_STALE_S ? 0 : (int64_t)(tag->signal.scan_ms ? tag->signal.scan_ms : source_ms) * 1000;
 }
 
 struct history_tag *history_tags(const struct plant *plant)
@@ -57,6 +66,7 @@ struct recorder *recorder_create(const struct plant *plant)
     for (size_t i = 0; i < recorder->count; i++) {
         const struct history_tag *tag = &recorder->tags[i];
         recorder->lanes[i].quality = QUALITY_BAD_WAITING;
+        recorder->lanes[i].sampling_us = sampling_of(plant, &plant->tags[i]);
         recorder->lanes[i].params = (struct swinging_door_params){
             /* the recorded line may deviate from samples by at most `within`. swinging_door.h bounds the deviation by 2 deadband +
                deviation, which is 2 within/4 + within/2 here */
@@ -87,11 +97,33 @@ static void add_points(struct recorder_rows *rows, int tag, const struct history
         rows->at[rows->count++] = (struct history_row){ tag, points[i] };
 }
 
-void recorder_put(struct recorder *recorder, int tag, const struct history_point *sample, struct recorder_rows *kept)
+bool recorder_newest(const struct recorder *recorder, int tag, struct history_point *out)
+{
+    const struct swinging_door *door = &recorder->lanes[tag].door;
+    if (!swinging_door_held(door, out))
+        *out = door->anchor;
+    return door->open;
+}
+
+static void put(struct recorder *recorder, int tag, const struct history_point *sample, struct recorder_rows *kept)
 {
     struct recorder_lane *lane = &recorder->lanes[tag];
     struct history_point points[SWINGING_DOOR_MAX_POINTS];
     add_points(kept, tag, points, swinging_door_put(&lane->door, &lane->params, sample, points));
+}
+
+void recorder_put(struct recorder *recorder, int tag, const struct history_point *sample, struct recorder_rows *kept)
+{
+    struct recorder_lane *lane = &recorder->lanes[tag];
+    struct history_point newest;
+    /* a source that sent nothing had no change, so the value held: without this point, the recorded line would lead from the old value to
+       the new one over the whole silence */
+    if (lane->sampling_us && recorder_newest(recorder, tag, &newest) && history_point_usable(&newest) &&
+        sample->t_us - newest.t_us > 2 * lane->sampling_us) {
+        newest.t_us = sample->t_us - lane->sampling_us;
+        put(recorder, tag, &newest, kept);
+    }
+    put(recorder, tag, sample, kept);
     lane->quality = sample->quality;
     if (!lane->touched)
         recorder->touched[recorder->touched_count++] = tag;
@@ -121,8 +153,7 @@ void recorder_held(struct recorder *recorder, struct recorder_rows *held)
         lane->touched = false;
         /* if the newest sample was just recorded, the recorded point becomes the tag's held row, so that after a crash it is known where
            the line ends */
-        if (!swinging_door_held(&lane->door, &point))
-            point = lane->door.anchor;
+        recorder_newest(recorder, recorder->touched[i], &point);
         add_points(held, recorder->touched[i], &point, 1);
     }
     recorder->touched_count = 0;

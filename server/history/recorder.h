@@ -13,8 +13,11 @@ struct recorder_rows { /* zero-initialise; free `at` with mem_free() */
 struct recorder;
 struct recorder *recorder_create(const struct plant *plant);
 void recorder_destroy(struct recorder **recorder); /* Frees the recorder and sets *recorder to NULL; accepts a pointer to NULL. */
-/* Passes a sample to its tag's filter, and appends to `kept` the rows that must now be recorded. */
+/* Passes a sample to its tag's filter, and appends to `kept` the rows that must now be recorded. If the readings of the tag never become
+   stale, its source sends only changes: the filter then assumes that the last value held until one sampling interval before the sample. */
 void recorder_put(struct recorder *recorder, int tag, const struct history_point *sample, struct recorder_rows *kept);
+/* *out receives a tag's newest sample. Returns false if the tag has none yet. */
+bool recorder_newest(const struct recorder *recorder, int tag, struct history_point *out);
 /* Returns the quality of a tag's newest sample; Bad_WaitingForInitialData if it has none yet. */
 uint32_t recorder_quality(const struct recorder *recorder, int tag);
 /* Appends the held rows: for each tag that had a sample since the last call, its newest sample, which may not be recorded yet. */

@@ -147,6 +147,32 @@ CASE(one_instant_is_as_it_was)
     assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_WAITING);
 }
 
+/* A source that sends only changes is silent for hours, then its value rises each second, then it is silent again. */
+CASE(a_value_that_is_not_sent_again_holds)
+{
+    const struct history_point sent[] = { { NOVEMBER, 10, 0 },           { NOVEMBER + 7200 * S, 20, 0 }, { NOVEMBER + 7201 * S, 25, 0 },
+                                          { NOVEMBER + 7202 * S, 40, 0 }, { NOVEMBER + 9999 * S, 30, 0 }, { NOVEMBER + 20000 * S, 30, 0 } };
+    struct snapshot *snapshot = test_snapshot(TAGS);
+    struct recorder_rows rows = { 0 };
+    s->plant->tags[0].validity.stale_s = PLANT_NEVER_STALE_S;
+    mem_free(s->tags);
+    s->tags = history_tags(s->plant);
+    struct recorder *recorder = recorder_create(s->plant);
+    for (size_t i = 0; i < 6; i++)
+        recorder_put(recorder, 0, &sent[i], &rows);
+    recorder_end(recorder, &rows);
+    recorder_destroy(&recorder);
+    struct month_file *file = open_file(s, NOVEMBER);
+    assert_int_equal(month_file_write(file, rows.at, rows.count, NULL, 0), 0);
+    month_file_close(&file);
+    mem_free(rows.at);
+    for (int second = 0; second <= 20000; second += second < 7190 || second > 7210 ? 10 : 1) {
+        double value = second < 7200 ? 10 : second < 7201 ? 20 : second < 7202 ? 25 : second < 9999 ? 40 : 30;
+        assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + second * S, snapshot), 0);
+        assert_true(fabs(snapshot->readings[0].value - value) <= s->tags[0].within + 1e-9);
+    }
+}
+
 /* A spike of one second and a gap are visible in queries of every length. */
 CASE(long_times_keep_spikes_and_gaps)
 {
