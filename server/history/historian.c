@@ -36,6 +36,7 @@ enum {
 };
 static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 1200 * NS_PER_S, KEEP_NS = 60 * NS_PER_S, STEP_NS = 2 * NS_PER_S,
                      LOOK_NS = 20 * NS_PER_MS;
+static const int64_t REPEAT_US = 10 * US_PER_S; /* age of a tag's newest sample from which the end of the run records the reading again */
 
 struct historian_queue {
     struct sample_event *at; /* samples in order of arrival */
@@ -144,21 +145,40 @@ static void put(struct historian *historian, int tag, const struct history_point
     counter_inc(historian->counters.points, (int64_t)(historian->waiting.count - before));
 }
 
-/* Records a change of quality that time alone causes, such as a reading that becomes stale, because the store makes no sample event for
-   it. Passes it to store_tell_aged() too, so that a standby records the same points. */
+/* Records a reading without a new sample, at a time that is not in the future. Passes it to store_tell_aged() too, so that a standby
+   records the same point. */
+static void put_reading(struct historian *historian, int tag, int64_t mono_ns, int64_t utc_ns)
+{
+    const struct reading *reading = &historian->snapshot->readings[tag];
+    const struct sample_event event = { tag, quality_is_bad(reading->quality) ? NAN : reading->value, reading->quality, mono_ns, utc_ns };
+    if (!store_tell_aged(historian->store, &event))
+        return;
+    put(historian, tag, &(struct history_point){ utc_ns / 1000, event.value, event.quality });
+    recorder_set_quality(historian->recorder, tag, utc_ns / 1000, event.quality);
+}
+
+/* Records qualities that no sample tells: a reading became stale, or a value is Good again whose source states a time before the loss of
+   the connection or before the start of this daemon. */
 static void take_qualities(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
 {
     store_snapshot(historian->store, mono_ns, utc_ns, historian->snapshot);
     for (size_t i = 0; i < historian->snapshot->count; i++) {
-        const struct reading *reading = &historian->snapshot->readings[i];
-        if (reading->quality == recorder_quality(historian->recorder, (int)i))
+        if (historian->snapshot->readings[i].quality == recorder_quality(historian->recorder, (int)i))
             continue;
-        int64_t aged_ns = store_aged_ns(historian->store, (int)i, mono_ns), aged_utc_ns = utc_ns - (mono_ns - aged_ns);
-        const struct sample_event event = { (int)i, quality_is_bad(reading->quality) ? NAN : reading->value, reading->quality, aged_ns,
-                                            aged_utc_ns };
-        if (store_tell_aged(historian->store, &event))
-            put(historian, (int)i, &(struct history_point){ aged_utc_ns / 1000, event.value, event.quality });
+        int64_t aged_ns = store_aged_ns(historian->store, (int)i, mono_ns);
+        put_reading(historian, (int)i, aged_ns, utc_ns - (mono_ns - aged_ns));
     }
+}
+
+/* Records the Good readings whose newest sample is older than before_us, at the beginning of a month and at the end of the run: each
+   month's file then has the values at its beginning, and values hold until the daemon ends. Call it after take_qualities(). */
+static void repeat_readings(struct historian *historian, int64_t before_us, int64_t mono_ns, int64_t utc_ns)
+{
+    struct history_point newest;
+    for (size_t i = 0; i < historian->snapshot->count; i++)
+        if (quality_is_good(historian->snapshot->readings[i].quality) && recorder_newest(historian->recorder, (int)i, &newest) &&
+            newest.t_us < before_us)
+            put_reading(historian, (int)i, mono_ns, utc_ns);
 }
 
 /* Ends the recorded line of every tag just after last_us with a point without a value, because values after that time are unknown. */
@@ -545,10 +565,13 @@ static void tick(struct historian *historian, bool last)
         take_qualities(historian, mono_ns, utc_ns);
     if (step_ns)
         note_step(historian, utc_ns, step_ns);
-    if (historian->file && month_file_month(historian->file) != month_of(utc_ns / 1000))
+    bool new_month = historian->file && month_file_month(historian->file) != month_of(utc_ns / 1000);
+    if (new_month)
         /* records the newest sample of every tag in the old month's file, because a recorded line that crosses the month's end must not
            depend on samples in memory */
         recorder_end(historian->recorder, &historian->waiting);
+    if (!historian->stands_by && (new_month || last))
+        repeat_readings(historian, new_month ? month_begin_us(month_of(utc_ns / 1000)) : utc_ns / 1000 - REPEAT_US, mono_ns, utc_ns);
     if (last)
         end_lines(historian, utc_ns);
     try_to_write(historian, mono_ns, utc_ns, last);
@@ -561,11 +584,14 @@ static void tick(struct historian *historian, bool last)
 static void end_spooled_lines(struct spool_rows *rows)
 {
     struct recorder_rows *kept = &rows->kept;
+    int64_t ended_us = INT64_MIN;
     mem_grow(&kept->at, &kept->capacity, kept->count + 2 * rows->held.count + 1, sizeof(*kept->at));
+    for (size_t i = 0; i < rows->held.count; i++)
+        ended_us = rows->held.at[i].point.t_us > ended_us ? rows->held.at[i].point.t_us : ended_us;
     for (size_t i = 0; i < rows->held.count; i++) {
         const struct history_row *held = &rows->held.at[i];
         kept->at[kept->count++] = *held;
-        kept->at[kept->count++] = (struct history_row){ held->tag, { held->point.t_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION } };
+        kept->at[kept->count++] = (struct history_row){ held->tag, { ended_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION } };
     }
     rows->held.count = 0;
 }
@@ -686,7 +712,7 @@ struct historian *historian_start(const struct historian_params *params)
     historian->recovered = params->follows;
     historian->stands_by = params->stands_by;
     historian->tags = history_tags(params->plant);
-    historian->recorder = recorder_create(params->plant);
+    historian->recorder = recorder_create(params->plant, clock_utc_ns() / 1000);
     historian->snapshot = snapshot_create(params->plant->tag_count);
     take_spool(historian);
     add_counters(historian, params->counters);

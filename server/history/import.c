@@ -518,7 +518,7 @@ static bool fill(const struct import_params *params, struct import_series *serie
     struct filling filling = {
         .params = params,
         .tags = history_tags(params->plant),
-        .recorder = recorder_create(params->plant),
+        .recorder = recorder_create(params->plant, INT64_MIN),
         .series = series,
         .counts = counts,
     };

@@ -517,33 +517,31 @@ int month_file_forget_gaps(struct month_file *file, int64_t from_us, int64_t to_
     return end(file, error);
 }
 
-/* Records the held points (each tag's newest sample), each followed by a point that marks a gap. Without sends_gaps the gap points are
-   not sent to PostgreSQL, where another daemon continues the lines. */
+/* Records the held points (each tag's newest sample), and after the newest held point a gap point for each tag: until then the values held.
+   Without sends_gaps the gap points are not sent to PostgreSQL, where another daemon continues the lines. */
 static int end_lines(struct month_file *file, uint32_t gap_quality, bool sends_gaps, int64_t *ended_us)
 {
     sqlite3_stmt *held = month_sql(file, SQL_ALL_HELD);
     struct month_row *rows = NULL;
     size_t capacity = 0, count = 0;
     int code, error = 0;
-    while (!error && (code = database_step(&file->db, held)) == SQLITE_ROW) {
-        struct month_row *row, newest = { .id = sqlite3_column_int64(held, 0), .point = month_point(held, 1) };
-        bool ends = newest.point.quality == gap_quality;
-        mem_grow(&rows, &capacity, count + 2, sizeof(*rows));
-        row = &rows[count++];
-        *row = newest;
-        if (!ends) {
-            rows[count] = newest;
-            rows[count++].point = (struct history_point){ .t_us = newest.point.t_us + 1, .value = NAN, .quality = gap_quality };
-        }
-        for (; row < rows + count && !error && file->has_outbox; row++)
-            if (sends_gaps || row->point.quality != gap_quality)
-                error = put(file, SQL_ADD_OUTBOX, row->id, &row->point);
-        if (newest.point.t_us > *ended_us)
-            *ended_us = newest.point.t_us;
+    while ((code = database_step(&file->db, held)) == SQLITE_ROW) {
+        mem_grow(&rows, &capacity, 2 * count + 2, sizeof(*rows));
+        rows[count++] = (struct month_row){ .id = sqlite3_column_int64(held, 0), .point = month_point(held, 1) };
+        if (rows[count - 1].point.t_us > *ended_us)
+            *ended_us = rows[count - 1].point.t_us;
     }
     sqlite3_reset(held);
     if (!error)
         error = database_fail(&file->db, code, "cannot read the newest samples");
+    for (size_t i = 0, ends = count; i < ends; i++)
+        if (rows[i].point.quality != gap_quality) {
+            rows[count] = rows[i];
+            rows[count++].point = (struct history_point){ .t_us = *ended_us + 1, .value = NAN, .quality = gap_quality };
+        }
+    for (size_t i = 0; i < count && !error && file->has_outbox; i++)
+        if (sends_gaps || rows[i].point.quality != gap_quality)
+            error = put(file, SQL_ADD_OUTBOX, rows[i].id, &rows[i].point);
     if (!error)
         error = month_seconds_write(file, rows, count, NULL, 0);
     file->waiting += error ? 0 : count;

@@ -13,6 +13,8 @@ struct recorder_lane {
     struct swinging_door_params params;
     /* interval at which the tag's source looks for changes, if it sends only changes; 0: it also sends unchanged values */
     int64_t sampling_us;
+    /* time and quality of the sample that is the latest in time, which need not have arrived last: a source may state an old time */
+    int64_t latest_us;
     uint32_t quality;
     bool touched; /* true: the lane's index is in recorder->touched (tags with samples since the last recorder_held()) */
 };
@@ -56,7 +58,7 @@ struct history_tag *history_tags(const struct plant *plant)
     return tags;
 }
 
-struct recorder *recorder_create(const struct plant *plant)
+struct recorder *recorder_create(const struct plant *plant, int64_t begin_us)
 {
     struct recorder *recorder = mem_new(sizeof(*recorder));
     recorder->count = plant->tag_count;
@@ -66,7 +68,8 @@ struct recorder *recorder_create(const struct plant *plant)
     for (size_t i = 0; i < recorder->count; i++) {
         const struct history_tag *tag = &recorder->tags[i];
         recorder->lanes[i].quality = QUALITY_BAD_WAITING;
-        recorder->lanes[i].sampling_us = sampling_of(plant, &plant->tags[i]);
+        recorder->lanes[i].latest_us = begin_us;
+        recorder->lanes[i].sampling_us = begin_us == INT64_MIN ? 0 : sampling_of(plant, &plant->tags[i]);
         recorder->lanes[i].params = (struct swinging_door_params){
             /* the recorded line may deviate from samples by at most `within`. swinging_door.h bounds the deviation by 2 deadband +
                deviation, which is 2 within/4 + within/2 here */
@@ -124,10 +127,17 @@ void recorder_put(struct recorder *recorder, int tag, const struct history_point
         put(recorder, tag, &newest, kept);
     }
     put(recorder, tag, sample, kept);
-    lane->quality = sample->quality;
+    if (sample->t_us >= lane->latest_us)
+        recorder_set_quality(recorder, tag, sample->t_us, sample->quality);
     if (!lane->touched)
         recorder->touched[recorder->touched_count++] = tag;
     lane->touched = true;
+}
+
+void recorder_set_quality(struct recorder *recorder, int tag, int64_t t_us, uint32_t quality)
+{
+    recorder->lanes[tag].latest_us = t_us;
+    recorder->lanes[tag].quality = quality;
 }
 
 uint32_t recorder_quality(const struct recorder *recorder, int tag)

@@ -136,7 +136,7 @@ static void measure_disk(struct log *log)
     char *folder = temp_folder();
     struct plant *plant = make_plant(PLANT_TAGS);
     struct history_tag *tags = history_tags(plant);
-    struct recorder *recorder = recorder_create(plant);
+    struct recorder *recorder = recorder_create(plant, INT64_MIN);
     struct recorder_rows rows = { 0 }, held = { 0 };
     int64_t begin_us = INT64_C(1795200000) * US_PER_S;
     int month = month_of(begin_us), error;

@@ -271,6 +271,96 @@ CASE(a_standby_records_what_time_alone_changes)
     core_samples_end(&link);
 }
 
+/* Writes a sample of tag 0 whose source states a time in the past. */
+static void write_old(struct historian_setup *s, double value, int64_t utc_ns)
+{
+    int64_t age_ns = clock_utc_ns() - utc_ns;
+    store_write(s->store, &(struct sample){ 0, value, QUALITY_GOOD }, 1, clock_mono_ns() - age_ns, utc_ns);
+}
+
+/* Readings never become stale, as those of OPC UA. */
+static void never_stale(struct historian_setup *s)
+{
+    for (int i = 0; i < TAGS; i++)
+        s->plant->tags[i].validity.stale_s = PLANT_NEVER_STALE_S;
+    s->store = test_store(s->plant);
+    mem_free(s->tags);
+    s->tags = history_tags(s->plant);
+}
+
+/* Waits until the newest recorded reading of tag 0 has a quality. Returns false after half a minute. */
+static bool comes_to(struct historian_setup *s, uint32_t quality)
+{
+    struct snapshot *snapshot = test_snapshot(TAGS);
+    int64_t end_ns = clock_mono_ns() + 30 * NS_PER_S;
+    do {
+        sleep_ns(50 * NS_PER_MS);
+        look(s, clock_utc_ns(), snapshot);
+    } while (snapshot->readings[0].quality != quality && clock_mono_ns() < end_ns);
+    return snapshot->readings[0].quality == quality;
+}
+
+/* A server states when a value changed. After a lost connection, or a restart of the daemon, this is before the loss. */
+CASE(a_value_with_an_old_time_is_good_again)
+{
+    struct snapshot *snapshot = test_snapshot(TAGS);
+    int64_t changed_ns = clock_utc_ns() - 3600 * NS_PER_S;
+    never_stale(s);
+    start(s);
+    write_old(s, 42, changed_ns);
+    assert_true(comes_to(s, QUALITY_GOOD));
+    store_tags_dead(s->store, &(int){ 0 }, 1, clock_mono_ns());
+    assert_true(comes_to(s, QUALITY_BAD_COMMUNICATION_ERROR));
+    int64_t lost_ns = clock_utc_ns();
+    write_old(s, 42, changed_ns);
+    assert_true(comes_to(s, QUALITY_GOOD));
+    look(s, lost_ns - NS_PER_MS, snapshot);
+    assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_COMMUNICATION_ERROR);
+    historian_stop(&s->historian);
+    int64_t ended_ns = clock_utc_ns();
+    atomic_fetch_add(&clock_off_ns, 600 * NS_PER_S);
+    s->store = test_store(s->plant);
+    start(s);
+    write_old(s, 42, changed_ns);
+    assert_true(comes_to(s, QUALITY_GOOD));
+    look(s, clock_utc_ns(), snapshot);
+    assert_true(snapshot->readings[0].value == 42);
+    look(s, ended_ns + 300 * NS_PER_S, snapshot);
+    assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_NO_COMMUNICATION);
+}
+
+/* Only tag 1 gets samples. The value of tag 0 is recorded until the daemon ends, and again in the next month. */
+CASE(a_value_without_samples_holds_until_the_end)
+{
+    struct snapshot *snapshot = test_snapshot(TAGS);
+    int64_t july_ns = month_begin_us(month_of(clock_utc_ns() / 1000) + 1) * 1000;
+    never_stale(s);
+    atomic_fetch_add(&clock_off_ns, july_ns - 3 * NS_PER_S - clock_utc_ns());
+    start(s);
+    write_old(s, 42, july_ns - 20 * NS_PER_S);
+    int64_t last_ns = 0;
+    for (int i = 0; last_ns < july_ns + 2 * NS_PER_S; i++) {
+        sleep_ns(100 * NS_PER_MS);
+        last_ns = clock_utc_ns();
+        store_write(s->store, &(struct sample){ 1, bent(i), QUALITY_GOOD }, 1, clock_mono_ns(), last_ns);
+    }
+    historian_stop(&s->historian);
+    atomic_fetch_add(&clock_off_ns, 600 * NS_PER_S);
+    s->store = test_store(s->plant);
+    start(s);
+    store_write(s->store, &(struct sample){ 1, 0, QUALITY_GOOD }, 1, clock_mono_ns(), clock_utc_ns());
+    wait_until_counted(s, "plantcast_history_good", 1);
+    historian_stop(&s->historian);
+    look(s, last_ns, snapshot);
+    assert_int_equal(snapshot->readings[0].quality, QUALITY_GOOD);
+    assert_true(snapshot->readings[0].value == 42);
+    look(s, last_ns + 300 * NS_PER_S, snapshot);
+    assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_NO_COMMUNICATION);
+    assert_int_equal(unlink(temp_path(s->folder, "history/history-2026-06.sqlite")), 0);
+    look(s, last_ns, snapshot);
+    assert_int_equal(snapshot->readings[0].quality, QUALITY_GOOD);
+}
+
 CASE(quiet_readers_see_the_last_second)
 {
     struct snapshot *snapshot = test_snapshot(TAGS);

@@ -81,7 +81,7 @@ static uint32_t quality_at(int tag, int64_t second)
 /* Records one sample per second as the historian does: swinging-door filters, one transaction per minute, rollups every ten minutes. */
 static void record(struct history_setup *s, int64_t begin_us, int seconds)
 {
-    struct recorder *recorder = recorder_create(s->plant);
+    struct recorder *recorder = recorder_create(s->plant, INT64_MIN);
     struct recorder_rows rows = { 0 }, held = { 0 };
     struct month_file *file = open_file(s, begin_us);
     for (int i = 0; i < seconds; i++) {
@@ -157,7 +157,7 @@ CASE(a_value_that_is_not_sent_again_holds)
     s->plant->tags[0].validity.stale_s = PLANT_NEVER_STALE_S;
     mem_free(s->tags);
     s->tags = history_tags(s->plant);
-    struct recorder *recorder = recorder_create(s->plant);
+    struct recorder *recorder = recorder_create(s->plant, NOVEMBER);
     for (size_t i = 0; i < 6; i++)
         recorder_put(recorder, 0, &sent[i], &rows);
     recorder_end(recorder, &rows);
