@@ -14,8 +14,10 @@ enum { MAX_SOURCES = 16 };
 static void release(void *resource)
 {
     struct plant *plant = resource;
-    for (size_t i = 0; i < plant->tag_count; i++)
+    for (size_t i = 0; i < plant->tag_count; i++) {
         mem_free(plant->tags[i].name);
+        mem_free(plant->tags[i].unit);
+    }
     for (size_t i = 0; i < plant->source_count; i++) {
         mem_free(plant->sources[i].id);
         mem_free(plant->sources[i].kind);
