@@ -252,6 +252,7 @@ back: Rückgängig
 
 [views]
 from: Blick von
+extremes: Zu einem Messwert
 projection: Projektion
 cut: Schnitt
 where: Lage des Schnitts
@@ -262,6 +263,10 @@ all: Alle zeigen
 stays: {axis} {sign} {at} m behalten
 part: {percent} % von {what}
 plant: der Anlage
+
+[extreme]
+highest: Höchster
+lowest: Niedrigster
 
 [side]
 top: Oben

@@ -251,6 +251,7 @@ back: Undo
 
 [views]
 from: View from
+extremes: Go to a reading
 projection: Projection
 cut: Section
 where: Section position
@@ -261,6 +262,10 @@ all: Show all
 stays: Keep {axis} {sign} {at} m
 part: {percent} % of {what}
 plant: the plant
+
+[extreme]
+highest: Highest
+lowest: Lowest
 
 [side]
 top: Top

@@ -247,6 +247,7 @@ back: 실행 취소
 
 [views]
 from: 보는 방향
+extremes: 측정값으로 이동
 projection: 투영
 cut: 단면
 where: 단면 위치
@@ -257,6 +258,10 @@ all: 모두 표시
 stays: {axis} {sign} {at} m 유지
 part: {what}의 {percent} %
 plant: 플랜트
+
+[extreme]
+highest: 가장 높은 값
+lowest: 가장 낮은 값
 
 [side]
 top: 위

@@ -199,3 +199,22 @@ test('the eye goes into a room; an asset close around a tag becomes a ghost, and
         await tiny.destroy();
     }
 });
+
+test('the panel of views goes to the highest and to the lowest reading, in two clicks', options, async () => {
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ clip: null, hidden: [], ghost: [], isolate: [] }));
+    for (const [name, sign] of [['highest', 1], ['lowest', -1]]) {
+        await page.locator('#views-toggle').click();
+        await page.locator(`[data-extreme=${name}]`).click();
+        await page.locator('#views').waitFor({ state: 'hidden' });
+        await arrive(() => globalThis.plantcast.selection.tag);
+        const [value, others, isThere, title] = await page.evaluate(() => {
+            const { overlay, selection, session: { model: { tag: find, readings, tags }, model, params } } = globalThis.plantcast;
+            const tag = find.call(model, selection.tag), all = tags.filter(({ group, asset, position }) =>
+                group === params.group && asset && position).map(({ index }) => readings[index]);
+            return [readings[tag.index].value, all.filter(({ quality }) => quality !== 'bad').map((one) => one.value),
+                Boolean(overlay.marker(tag)), document.querySelector('#card h3').textContent === tag.name];
+        });
+        assert.ok(others.length > 20 && others.every((other) => sign * (value - other) >= 0), `${name}: ${value} of ${others}`);
+        assert.ok(isThere && title);
+    }
+});

@@ -11,16 +11,18 @@ import { fillSegments, markSegment } from '../common/choices.js';
 import { collapsiblePanel } from '../common/collapsible.js';
 
 const choices = (kind, ...values) => values.map((value) => [value, say(`${kind}.${value}`)]);
-const STEPS = 500, LARGEST_BOX = 2;
+const STEPS = 500, LARGEST_BOX = 2, EXTREMES = [['highest', 1], ['lowest', -1]];
 
 export class Views {
-    constructor({ session, modules, viewport }) {
-        Object.assign(this, { session, viewport, modules });
+    constructor({ session, modules, viewport, showTag, flyToTag }) {
+        Object.assign(this, { session, viewport, modules, showTag, flyToTag });
         this.panel = byId('views');
         this.at = byId('cut-at');
         const sides = choices('side', 'top', 'front', 'right', 'back', 'left', 'iso');
         byId('sides').append(make('div', { class: 'buttons' }, ...sides.map(([side, text]) =>
             make('button', { type: 'button', onclick: () => this.lookFrom(side) }, text))));
+        byId('extremes').append(make('div', { class: 'buttons' }, ...EXTREMES.map(([name, sign]) =>
+            make('button', { type: 'button', 'data-extreme': name, onclick: () => this.goToExtreme(sign) }, say(`extreme.${name}`)))));
         const projections = choices('projection', 'perspective', 'parallel');
         fillSegments(byId('projection'), 'projection', projections, (projection) => this.project(projection === 'parallel'));
         const cuts = [...choices('cut', 'off'), ...AXES.map((axis) => [axis, axis.toUpperCase()]), ...choices('cut', 'box')];
@@ -63,6 +65,19 @@ export class Views {
 
     lookFrom(side) {
         askFit(this.session, { id: this.session.params.selected ?? null, side, projection: this.projection });
+    }
+
+    // Flies to the sensor with the highest (sign 1) or lowest (sign -1) usable reading of the shown quantity, and opens its card.
+    goToExtreme(sign) {
+        const { model, params } = this.session, at = ({ index }) => model.readings[index];
+        const [first, ...others] = model.tags.filter((tag) => tag.group === params.group && tag.asset && tag.position &&
+            at(tag).quality !== 'bad' && at(tag).value !== null);
+        if (!first)
+            return;
+        const tag = others.reduce((best, one) => (sign * (at(one).value - at(best).value) > 0 ? one : best), first);
+        this.close();
+        this.showTag(tag);
+        this.flyToTag(tag);
     }
 
     get projection() {
