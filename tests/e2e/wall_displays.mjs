@@ -140,7 +140,14 @@ test('an alarm comes to the pane that is for it, and leaves once it is acknowled
 });
 
 test('another display has its own panes', options, async () => {
-    const other = await openPage(`${plant.url}?wall=room&display=2&lang=ko`, { viewport: { width: 960, height: 540 } });
+    let answer; // holds back the module of trends, so that the pane stays without a trend for a while
+    const held = new Promise((done) => { answer = done; });
+    const arrange = (one) => one.route(/app\/trends\/trends\.js/, async (route) => { await held; await route.continue(); });
+    const other = await openPage(`${plant.url}?wall=room&display=2&lang=ko`, { viewport: { width: 960, height: 540 } }, null, arrange);
+    const why = other.page.locator('.pane.trend .why');
+    await why.filter({ hasText: 'TI-1, TI-2 값을 기다리는 중' }).waitFor();
+    answer();
+    await why.waitFor({ state: 'hidden' });
     await other.page.locator('.pane.text p', { hasText: 'Clean F-101' }).waitFor();
     await other.page.waitForFunction(() => document.querySelector('.pane.trend iframe').contentDocument?.documentElement.lang === 'ko');
     const breaks = await other.page.locator('.pane.text p').first().evaluate((p) => getComputedStyle(p).wordBreak);

@@ -70,7 +70,10 @@ function pageIn({ wall, theme, lang, body }, kind, place) {
         ...(lang ? { lang } : {}) });
     const frame = make('iframe', { src: `./?${query}`, tabindex: -1 });
     body.append(frame);
-    return { get page() { return frame.contentWindow?.plantcast ?? null; } };
+    return {
+        get page() { return frame.contentWindow?.plantcast ?? null; },
+        get note() { return frame.contentDocument?.getElementById('trend-note')?.textContent ?? ''; },
+    };
 }
 
 // a pane that shows views, and during an alarm the alarm's position
@@ -180,14 +183,21 @@ function ViewsPane(pane, context) {
 // --- trend panes
 
 function TrendPane(pane, context) {
-    const { session, wall, display, title } = context, inner = pageIn(context, 'trend', `${wall.id}/${display}/${pane.area}`);
-    const about = make('span', { class: 'about' });
+    const { session, wall, display, title, element } = context, inner = pageIn(context, 'trend', `${wall.id}/${display}/${pane.area}`);
+    const about = make('span', { class: 'about' }), why = make('p', { class: 'why' });
+    context.body.append(why);
     // the iframe's page in which the trend was started; a reloaded iframe has another page, in which it must be started again
     let begun = null;
     title.replaceChildren(pane.title ?? pane.items.join(', '), about);
     return { tick() {
         const { page } = inner;
         setText(about, aboutTags(session, pane.items));
+        // says why the pane is empty; once the trend has an error of its own, the page in the iframe shows it
+        const unknown = session.model ? pane.items.filter((name) => !session.model.tag(name)) : [];
+        const isEmpty = !(page?.trends?.plots.length > 0 || inner.note);
+        element.classList.toggle('unshown', isEmpty);
+        setText(why, unknown.length === pane.items.length ? say('trends.none', { text: pane.items.join(', ') })
+            : say('walls.untrended', { tags: pane.items.join(', ') }));
         if (begun === page || !page?.session.model)
             return;
         begun = page;

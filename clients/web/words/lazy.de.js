@@ -121,6 +121,7 @@ W: W
 NW: NW
 
 [walls]
+untrended: Wartet auf die Werte von {tags}
 unknown: Die Anlagendatei hat keine Videowand „{id}“. Es gibt: {known}
 display: Videowand „{id}“ hat {count} Bildschirme, aber keinen Bildschirm {n}
 lost: Keine Verbindung zur Anlage seit {time}

@@ -120,6 +120,7 @@ W: W
 NW: NW
 
 [walls]
+untrended: Waiting for the values of {tags}
 unknown: The plant file has no wall '{id}'. Its walls: {known}
 display: Wall '{id}' has {count} displays, but no display {n}
 lost: No connection to the plant since {time}
