@@ -51,7 +51,11 @@ const look = (page) => page.evaluate(() => {
     const pins = [...document.querySelectorAll('.note-pin')].map((pin) => pin.getBoundingClientRect());
     const hides = ({ x, y }) => pins.some(({ left, right, top, bottom }) => viewport.left + (x - 12) * unit < right &&
         left < viewport.left + (x + 12) * unit && viewport.top + (y - 12) * unit < bottom && top < viewport.top + (y + 12) * unit);
+    const stems = [...document.querySelectorAll('.note-stem')], follows = Node.DOCUMENT_POSITION_FOLLOWING;
+    const isBelow = (stem) => [document.getElementById('overlay'), ...document.querySelectorAll('.note-pin')]
+        .every((other) => stem.compareDocumentPosition(other) & follows) && getComputedStyle(stem).zIndex === 'auto';
     return {
+        stems: stems.length, raised: stems.filter((stem) => !isBelow(stem)).length,
         pins: pins.filter(({ width }) => width > 0).length, hidden: rings.filter(hides).length,
         rings: rings.length, without: rings.filter((ring) => !placeOf(ring)).map(({ tag }) => tag.name), over: over.length,
         callouts: new Set(rings.map((ring) => placeOf(ring)?.callout).filter((id) => id !== undefined)).size,
@@ -72,8 +76,9 @@ for (const [name, { query = '', ...screen }] of Object.entries(SCREENS))
                 await settle(page);
                 const seen = await look(page);
                 t.diagnostic(`${group}: ${seen.rings} rings, ${seen.callouts} call-outs`);
-                const { pins, hidden, without, over } = seen;
-                assert.deepEqual({ pins, hidden, without, over }, { pins: 2, hidden: 0, without: [], over: 0 });
+                const { pins, stems, hidden, without, over, raised } = seen;
+                assert.deepEqual({ pins, stems, hidden, without, over, raised },
+                    { pins: 2, stems: 2, hidden: 0, without: [], over: 0, raised: 0 });
                 assert.ok(seen.callouts > 0);
             }
             await shoot(page, `rings-${name.replace(/\W+/g, '-')}`);

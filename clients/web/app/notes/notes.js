@@ -16,11 +16,26 @@ const UNTIL = ['shift', 'day', 'week', 'ever'], HOURS = { shift: 8, day: 24, wee
 const MAY = ['operator', 'engineer'], POINTS_MS = 4000, TICK_MS = 500, LONGEST = 130;
 const RING = 13, MARK = 6; // radius of an alarm ring with its rims, and of other markers, in CSS pixels (larger on a wall)
 
+// Makes the stem of a pin, a line from the pin to its point, below everything else over the picture: labels and other pins cover it.
+function makeStem(kind = '') {
+    const stem = make('i', { class: `note-stem ${kind}`, hidden: true });
+    byId('picture').after(stem);
+    return stem;
+}
+
+function unpin({ element, stem }) {
+    element.remove();
+    stem.remove();
+}
+
+const setVariables = (element, px) => Object.entries(px).forEach(([name, value]) => setVariable(element, `--${name}`, `${value}px`));
+
 export class Notes {
     constructor({ session, selection, viewport, overlay, modules, hangs, tell, flyToTag, selectAsset }) {
         Object.assign(this, { session, selection, viewport, overlay, modules, hangs, flyToTag, selectAsset });
-        this.pins = new Map(); // pins of notes: id -> { element, position }
-        // on a wall: mark at the position at which a user at another computer points: { element, position, until }; null: nobody points
+        this.pins = new Map(); // pins of notes: id -> { element, stem, position }
+        // on a wall: mark at the position at which a user at another computer points: { element, stem, position, until }; null: nobody
+        // points
         this.pointer = null;
         this.list = make('ul', { id: 'notes-list' });
         this.ofPlant = make('ul', { id: 'plant-notes', hidden: true }); // list over the picture with the notes about the whole plant
@@ -158,14 +173,15 @@ export class Notes {
         const ofPlant = model ? notes.filter(isOfPlant) : [];
         this.ofPlant.hidden = ofPlant.length === 0;
         this.ofPlant.replaceChildren(...ofPlant.map((note) => make('li', {}, note.text, ' ', make('small', {}, this.authorOf(note)))));
-        this.pins.forEach(({ element }) => element.remove());
+        this.pins.forEach(unpin);
         this.pins.clear();
         for (const note of model ? notes : []) {
             const position = placeOf(model, note);
             if (position)
-                this.pins.set(note.id, { position, element: this.pinOf(note) });
+                this.pins.set(note.id, { position, element: this.pinOf(note), stem: makeStem() });
         }
         this.show();
+        this.overlay.dirty = true; // places the labels of sensors again, so that none covers a new pin
     }
 
     pinOf(note) {
@@ -212,7 +228,7 @@ export class Notes {
             return;
         }
         if (!this.pointer) {
-            this.pointer = { element: make('p', { class: 'note-pin pointer' }, make('span', {})) };
+            this.pointer = { element: make('p', { class: 'note-pin pointer' }, make('span', {})), stem: makeStem('pointer') };
             this.viewport.element.append(this.pointer.element);
         }
         this.pointer.position = mine.position;
@@ -223,7 +239,8 @@ export class Notes {
     }
 
     drop() {
-        this.pointer?.element.remove();
+        if (this.pointer)
+            unpin(this.pointer);
         this.pointer = null;
     }
 
@@ -240,9 +257,9 @@ export class Notes {
         const [fixed, rings, marks] = pins.length > 0 && half ? [this.overlay.boxesOver(''), ...this.markers()] : [[], [], []];
         const marked = [...rings, ...marks];
         for (const pin of pins) {
-            const { element, position } = pin, at = project?.(position);
+            const { element, stem, position } = pin, at = project?.(position);
             const x = at && ((half.left + at[0]) * wide) / picture.shownWidth, y = at && (at[1] * high) / picture.fullHeight;
-            element.hidden = !at || x < 0 || y < 0 || x > wide || y > high || at[0] > half.width;
+            element.hidden = stem.hidden = !at || x < 0 || y < 0 || x > wide || y > high || at[0] > half.width;
             if (element.hidden)
                 continue;
             if (pin.room !== `${area.right}/${high}`) { // measures the pin only if the room for it has changed
@@ -258,11 +275,9 @@ export class Notes {
             element.classList.toggle('over', marked.some((mark) => meets(mark, box)));
             fixed.push(box);
             const fromX = Math.max(box.left, Math.min(box.right, x)), fromY = Math.max(box.top, Math.min(box.bottom, y));
-            const px = { left: box.left, top: box.top, 'from-x': fromX - box.left - 1, 'from-y': fromY - box.top - 1,
-                stem: Math.hypot(x - fromX, y - fromY) };
-            for (const [name, value] of Object.entries(px))
-                setVariable(element, `--${name}`, `${value}px`);
-            setVariable(element, '--turn', `${Math.atan2(fromX - x, y - fromY)}rad`);
+            setVariables(element, { left: box.left, top: box.top });
+            setVariables(stem, { left: fromX - 1, top: fromY, long: Math.hypot(x - fromX, y - fromY) });
+            setVariable(stem, '--turn', `${Math.atan2(fromX - x, y - fromY)}rad`);
         }
     }
 
