@@ -22,6 +22,7 @@ const EXAMPLES = ['minutes', 'hours', 'today', 'yesterday', 'night'];
 const MOVES = ['earlier', 'later', 'in', 'out', 'back'];
 const MOST = LOOKS.light.lines.length, UNITS_PER_PLOT = 2, FRESH_MS = 5000, NOW_MS = 1000, SETTLED_MS = 250, PAN = 0.5, ZOOM = 2;
 const ALARM_ROWS = 2000, MATCHES = 30, MOST_BACK = 50, ALMOST_US = 2e6;
+const SHIFT_S = 8 * 3600; // range of a new trend: operators ask what has changed in their shift
 const HEAD_PX = 24, ROW_PX = 22; // heights in the table
 // true: charts fill the room that the table leaves in a wall's pane or in a phone's sheet
 const fills = () => document.body.classList.contains('pane-trend') || phone.matches;
@@ -55,7 +56,7 @@ function load() {
 
 export class Trends {
     constructor({ session, overlay, handlers }) {
-        Object.assign(this, { session, tags: [], spanS: 3600, fixed: null, before: [], plots: [], focus: null, isAsking: false });
+        Object.assign(this, { session, tags: [], spanS: SHIFT_S, fixed: null, before: [], plots: [], focus: null, isAsking: false });
         this.series = new Map(); // tag name -> its series, once the server has answered
         this.alarms = new Map(); // tag name -> its alarms in the time range
         this.element = byId('trends');

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Ten tasks of a user who opens the page for the first time, and the number of clicks that each takes. Typing a text, and the Enter that
+// ends it, are no clicks. tests/bench/notes/first_tasks.md lists the figures.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { openPage, waitForPicture } from '../support/browser.mjs';
+import { notBuilt, startTiny } from '../support/tiny_plant.mjs';
+
+const why = notBuilt();
+const options = { skip: why, timeout: 200000 };
+const MOST = 3; // clicks
+let plant, browser, page;
+
+// Counts presses, because a click on a label would also count as a click on its field.
+function countClicks() {
+    globalThis.clicks = 0;
+    window.addEventListener('pointerdown', ({ isTrusted }) => { globalThis.clicks += isTrusted; }, true);
+}
+
+before(async () => {
+    if (why)
+        return;
+    plant = await startTiny();
+    browser = await openPage(plant.url, { viewport: { width: 1440, height: 900 } }, countClicks);
+    page = browser.page;
+    await waitForPicture(page);
+    await page.waitForFunction(() => globalThis.plantcast.session.recorded);
+    await plant.ask('set TI-1 95');
+    await page.waitForFunction(() => [...globalThis.plantcast.session.model.alarms.rows.values()]
+        .some(({ state }) => state === 'unacknowledged'));
+});
+after(async () => {
+    await browser?.close();
+    await plant?.stop();
+});
+
+const click = (what, text) => page.locator(what, text ? { hasText: text } : {}).first().click();
+const until = (f) => page.waitForFunction(f);
+const type = async (text) => {
+    await page.keyboard.type(text);
+    await page.keyboard.press('Enter');
+};
+
+const TASKS = {
+    'find the hottest tag': [2, async () => {
+        await click('#views-toggle');
+        await click('[data-extreme=highest]');
+        await page.locator('#card h3', { hasText: 'TI-1' }).waitFor();
+    }],
+    'acknowledge an alarm': [2, async () => {
+        await click('#alarm-strip');
+        await click('#alarms-list [data-action=acknowledge]');
+        await until(() => [...globalThis.plantcast.session.model.alarms.rows.values()].some(({ state }) => state === 'acknowledged'));
+    }, () => click('#alarms-close')],
+    'see the moment before an alarm': [2, async () => {
+        await click('#alarm-strip');
+        await click('#alarms-list .moment-go');
+        await page.locator('#moment').waitFor();
+        await until(() => globalThis.plantcast.session.time.atUs !== null);
+    }, async () => {
+        await click('#moment button >> nth=-1');
+        await until(() => globalThis.plantcast.session.time.atUs === null);
+        await click('#alarms-close');
+        if (await page.locator('#timeline').isVisible())
+            await click('#time-toggle');
+    }],
+    'plot two tags over the last 8 hours': [3, async () => {
+        await click('#assets-list .reading', 'TI-1');
+        await click('#card .trend');
+        await click('#trend-add');
+        await type('TI-2');
+        await until(() => {
+            const { trends } = globalThis.plantcast;
+            return trends?.series.size === 2 && trends.span[1] - trends.span[0] === 8 * 3600e6;
+        });
+    }, () => click('#trend-close')],
+    'compare now with yesterday': [2, async () => {
+        await click('#time-toggle');
+        await click('#time-compare');
+        await page.locator('#compare-half').waitFor();
+    }, async () => {
+        await click('#compare-bar button');
+        await click('#time-toggle');
+    }],
+    'write a note for the shift': [2, async () => {
+        await click('#views-toggle');
+        await click('#note-text');
+        await type('Fire drill at 14:00');
+        await until(() => globalThis.plantcast.session.notes.length === 1);
+    }, () => page.keyboard.press('Escape')],
+    'share a view': [2, async () => {
+        await click('#share-open');
+        await click('#share-copy');
+        await until(() => /\/v\/\w+$/.test(document.getElementById('share-link').value));
+    }, () => page.keyboard.press('Escape')],
+    'find a tag by its name': [2, async () => {
+        await click('#assets-search');
+        await page.keyboard.type('PI-1');
+        await click('#assets-list .reading', 'PI-1');
+        await page.locator('#card h3', { hasText: 'PI-1' }).waitFor();
+    }, () => page.locator('#assets-search').fill('')],
+    'shelve an alarm with a reason': [2, async () => {
+        await click('#alarm-strip');
+        await click('#alarms-list [data-action=shelve]');
+        await page.locator('#shelve[open]').waitFor();
+        await type('transmitter is being changed');
+        await until(() => [...globalThis.plantcast.session.model.alarms.rows.values()].some(({ state }) => state === 'shelved'));
+    }, () => click('#alarms-close')],
+    'isolate equipment': [3, async () => {
+        await click('#assets-list .asset', 'E-101');
+        await click('#views-toggle');
+        await click('#shows [data-how=only]');
+        await until(() => globalThis.plantcast.session.params.isolate?.join() === 'E-101');
+    }],
+};
+
+for (const [name, [most, task, end = () => {}]] of Object.entries(TASKS))
+    test(`${name}: ${most} clicks`, options, async () => {
+        await page.evaluate(() => { globalThis.clicks = 0; });
+        await task();
+        const clicks = await page.evaluate(() => globalThis.clicks);
+        await end();
+        assert.equal(clicks, most);
+        assert.ok(clicks <= MOST);
+    });
