@@ -16,19 +16,20 @@
 enum asset_section {
     ASSET_POSITIONS,        /* section of float[3] per vertex: position in metres, Z up, minus header.origin_m */
     ASSET_NORMALS,          /* float[3] per vertex, unit length */
-    ASSET_TEXCOORDS,        /* float[2] per vertex; empty section: the asset has no textures */
-    ASSET_SECOND_TEXCOORDS, /* float[2] per vertex; empty section: no material uses the second texture coordinates */
-    ASSET_COLORS,           /* uint8[4] per vertex, linear RGBA; empty section: no vertex colours */
+    ASSET_TEXCOORDS,        /* section of float[2] per vertex: texture coordinates; empty: the asset has no textures */
+    ASSET_SECOND_TEXCOORDS, /* section of float[2] per vertex; empty: no material uses the second texture coordinates */
+    ASSET_COLORS,           /* section of uint8[4] per vertex: linear RGBA; empty: the vertices have no colours */
     ASSET_INDICES,          /* uint32 per corner */
     ASSET_PRIMITIVES,       /* struct asset_primitive */
     ASSET_LEVELS,           /* struct asset_level, finest first */
     ASSET_CLUSTERS,         /* section of struct asset_cluster, ordered by primitive */
     ASSET_MATERIALS,        /* struct asset_material */
     ASSET_TEXTURES,         /* struct asset_texture */
-    ASSET_TEXELS,           /* RGBA8 texels of all textures, rows from the top, described by struct asset_texture */
-    ASSET_SENSORS,          /* struct asset_sensor for each sensor, in the order of the asset's rows in the tag list */
-    ASSET_GEODESIC,         /* uint16[block][sensor][vertex of the block]: geodesic distances as codes (asset_distance.h) */
-    ASSET_NAMES,            /* section of strings, each ended by a 0 byte */
+    /* section of RGBA8 texels of all textures, rows from the top; struct asset_texture says where each texture is */
+    ASSET_TEXELS,
+    ASSET_SENSORS,  /* section of struct asset_sensor, in the order of the asset's rows in the tag list */
+    ASSET_GEODESIC, /* section of uint16[block][sensor][vertex of the block]: geodesic distances as codes (asset_distance.h) */
+    ASSET_NAMES,    /* section of strings, each ended by a 0 byte */
     ASSET_SECTION_COUNT
 };
 
@@ -42,7 +43,7 @@ struct asset_header {
     uint64_t file_bytes;
     uint64_t checksum; /* XXH3-64 of the file computed with this field set to 0 */
     /* XXH3-64 of everything from which the file was made: model bytes, node pattern, units, sensor positions, and the format version of
-       plantcast-prep */
+       plantcast-prep. An asset whose key is unchanged need not be prepared again */
     uint64_t key;
     double origin_m[3];                     /* in the asset frame */
     float bounds_min_m[3], bounds_max_m[3]; /* bounding box of all vertices, relative to origin_m */
@@ -97,7 +98,9 @@ struct asset_sensor {
     float surface_m[3];       /* point of the surface nearest to position_m, relative to header.origin_m */
     float surface_distance_m; /* distance between position_m and surface_m */
     uint32_t nearest_vertex;
-    uint64_t node_hash; /* hash (XXH3-64) of the name of the model node that gave the position; 0: the position was configured as X, Y, Z */
+    /* hash (XXH3-64) of the model node or of the assumed place that gave the position, by which the daemon checks that the file fits the
+       plant; 0: the position was configured as X, Y, Z */
+    uint64_t node_hash;
 };
 
 /* A checked asset file in memory. Its pointers point into the file's bytes, which must outlive the view. */
@@ -154,7 +157,7 @@ struct asset_parts {
     const struct asset_texture *textures;
     const uint8_t *texels;
     const struct asset_sensor *sensors;
-    const float *geodesic_m;                            /* [sensor * vertex_count + vertex] */
+    const float *geodesic_m; /* [sensor * vertex_count + vertex] */
     /* callback that writes the distance codes directly into the file's section; used in place of geodesic_m */
     void (*write_geodesic)(void *arg, uint16_t *codes);
     /* number of bytes that write_geodesic writes if it writes packed codes; otherwise 0 */

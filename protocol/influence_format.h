@@ -19,11 +19,12 @@ struct influence_header {
    carried along the surface from the sensor to each vertex, from the first to the second axis that vec_frame() gives for the vertex's
    normal; INFINITY where there is no path. Its precision matrix is 0. Only differences between two vertices have a meaning. */
 #define INFLUENCE_TRANSPORT 1001
-/* Entry for one group and one interpolation. Offsets of arrays are in bytes from the start of the file and multiples of 8. */
+/* Entry of an influence file: the weights of the sensors of one group for one interpolation. Offsets of arrays are in bytes from the start
+   of the file and multiples of 8. */
 struct influence_entry {
-    /* group: index in the plant file; interpolation: enum interpolation, INFLUENCE_HEAT or INFLUENCE_TRANSPORT */
+    /* group: index of the group in the plant file; interpolation: enum interpolation, INFLUENCE_HEAT or INFLUENCE_TRANSPORT */
     uint32_t group, interpolation;
-    /* number of the group's sensors with a known position; the arrays of this entry have them in the order of the asset file */
+    /* number of the group's sensors with a known position; the arrays of this struct have them in the order of the asset file */
     uint32_t sensor_count;
     uint32_t zero;
     /* offsets of the arrays double[sensor][sensor] (precision) and float[sensor][vertex] (shares: the weights) */

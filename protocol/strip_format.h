@@ -12,7 +12,8 @@
    below. */
 enum { STRIP_COLUMNS = 200, STRIP_FINDER = 9, STRIP_INNER = STRIP_COLUMNS - 2 * STRIP_FINDER };
 enum { STRIP_SHADES = 3, STRIP_SHADE_CELLS = 2, STRIP_CODE_ROWS = 3, STRIP_ROWS = 2 + STRIP_SHADES * STRIP_SHADE_CELLS + STRIP_CODE_ROWS };
-/* STRIP_BEYOND: number of columns at each end with the colour of values beyond the range; STRIP_RAMP: number of columns within the range */
+/* Columns of the legend strip between its finders. STRIP_BEYOND: number at each end with the colour of values beyond the colour scale;
+   STRIP_RAMP: number with the colours of the scale. */
 enum { STRIP_BEYOND = 4, STRIP_RAMP = STRIP_INNER - 2 * STRIP_BEYOND };
 enum { STRIP_LEAST_PX = 3 }; /* smallest size of a cell */
 /* Sizes of the strip's code in bytes: STRIP_DATA of contents, then STRIP_PARITY of Reed-Solomon parity, which can correct up to

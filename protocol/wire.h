@@ -35,7 +35,7 @@ struct wire_frame { /* header of the binary message with a frame; the members ar
     uint32_t seq;
     /* sequence numbers of the client's newest `camera` and `params` messages whose content this frame shows */
     uint32_t camera_seq, params_seq;
-    uint32_t oldest_age_ms;              /* age of the oldest reading that the frame shows; WIRE_NO_AGE: it shows no reading */
+    uint32_t oldest_age_ms; /* age of the oldest reading that the frame shows; WIRE_NO_AGE: it shows no reading */
     /* time of the readings, and time at which the frame was sent: microseconds since 1970, UTC, by the server's clock */
     uint64_t data_time_us, sent_time_us;
     /* durations in microseconds: from the client's input to the start of rendering, then of computing the field, rendering and encoding */
@@ -47,7 +47,8 @@ struct wire_frame { /* header of the binary message with a frame; the members ar
     float height_m;                     /* height of the visible area of an orthographic picture, metres; 0: perspective */
 };
 
-struct wire_depth { /* header of a depth grid; the members are in the order of the bytes in the message, after type and encoding */
+/* header of a depth grid, a message with the distances of a picture's surfaces; its bytes, after type and encoding, are in this order */
+struct wire_depth {
     uint16_t flags;
     uint32_t payload_bytes, seq;
     uint16_t x_px, y_px, width_px, height_px; /* rectangle of the picture that the grid covers */

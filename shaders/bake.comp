@@ -20,7 +20,8 @@ layout(location = 9) uniform float sky_texel_m;
 layout(location = 10) uniform ivec2 range; // range of vertices, sample points or texels to compute: first index, and one beyond the last
 #ifdef GROUND
 const int TAPS = 16;
-const float SPREAD = 0.05;  // radius of the disc of samples, relative to the width of a sky map
+// radius of the disc in which opening() samples a sky map (depth map for one direction), relative to the map's width
+const float SPREAD = 0.05;
 layout(rg8, binding = 0) uniform image2D ground; // sun, openness
 layout(location = 11) uniform vec3 ground_up;
 #else
@@ -30,12 +31,13 @@ layout(std430, binding = 2) readonly buffer Positions { float positions_m[]; };
 layout(std430, binding = 3) readonly buffer Normals { uint normals[]; }; // packed as in normal.glsl
 // four bytes per vertex: light, ambient, openness (visible part of the sky), cosine to the sun
 layout(std430, binding = 4) buffer Light { uint baked[]; };
-layout(std430, binding = 5) readonly buffer Corners { uint corners[]; }; // three corners per large triangle: render/light/bake_faces.h
+layout(std430, binding = 5) readonly buffer Corners { uint corners[]; }; // vertex indices of the corners of large triangles (bake_faces.h)
 // three sums per vertex over the samples in large triangles: weight, openness, visible sun
 layout(std430, binding = 6) buffer Sums { uint sums[]; };
 layout(location = 12) uniform float large_m;
 layout(location = 13) uniform bool has_faces;
-layout(location = 14) uniform float least_open; // lower bound of openness (0..1), which is above 0 if assets are hidden
+// lower bound of openness (0..1); above 0 if assets are hidden, so that surfaces next to them are not dark
+layout(location = 14) uniform float least_open;
 #endif
 
 const vec2 disc[16] = vec2[](vec2(0.177, 0.000), vec2(-0.226, 0.207), vec2(0.035, -0.394), vec2(0.285, 0.371), vec2(-0.522, -0.092),

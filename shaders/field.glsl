@@ -66,8 +66,8 @@ float line_part(float place, int column)
 }
 #endif
 
-// Returns the field's sRGB colour with patterns and isolines. field.x: position on the scale (RICH: the value itself); the other
-// components: shares of no data, uncertain and (RICH) no limits, each 0..1, interpolated between vertices.
+// Returns the field's sRGB colour with patterns and isolines. field.x: position on the scale; the value itself if RICH is defined
+// (frame.glsl). The other components: shares of no data, uncertain and (RICH) no limits, each 0..1, interpolated between vertices.
 vec3 field_color(FIELD_TYPE field, float light)
 {
 #ifdef RICH

@@ -11,11 +11,13 @@ layout(std140, binding = 0) uniform Frame {
     vec4 scale;
     vec4 shade;          // from the brightness of a surface to the row of the colour map: brightness * x + y, but at most z
     vec4 lines;          // x: width of isolines in pixels, 0: none; y: index of the first row of the backdrop
-    vec4 back;           // orthographic: unit vector towards the viewer; w: view_constants.depth_scale. Perspective: all 0
+    // orthographic: unit vector towards the viewer; w: distance from near to far plane / viewing distance. Perspective: all 0
+    vec4 back;
     vec4 clip[6];        // section planes in clip space
 } frame;
 
-// Type of the field's value and flags that vertex shaders pass to fragment shaders (field_color() in shaders/field.glsl).
+// Type of the field's value and flags that vertex shaders pass to fragment shaders (field_color() in shaders/field.glsl). RICH is defined
+// for isolines, a logarithmic scale and the operator's display.
 #ifdef RICH
 #define FIELD_TYPE vec4
 #else

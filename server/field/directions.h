@@ -30,7 +30,7 @@ struct direction_place { /* a point of a triangle of the asset file */
     uint32_t triangle; /* index of the triangle, for the caller's use; directions_find() ignores it */
 };
 struct direction {
-    float along[3]; /* unit tangent vector, in the axes of the asset file */
+    float along[3]; /* direction of the interpolated vector: a unit vector tangent to the surface, in the axes of the asset file */
     bool known, uncertain;
 };
 struct direction_sources { /* vectors of an asset's sensors, from which directions at other points are interpolated */

@@ -26,8 +26,9 @@ enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 /* smallest power of shepard whose errors of distances are measured; below it, they changed no value by a colour step in tests */
 #define AMPLIFYING_POWER 8
 #define STEP_OF_COLOR (1 / 255.0f)
-#define BORDER_SLACK 4  /* tolerated displacement of the border between data and no data in the picture, in steps of scalar.lacking */
-#define MARK_ALL 0.75   /* if at least this fraction of a level's area has interpolation errors, the whole level is marked */
+/* tolerated displacement in the picture of the border between data and no data, in steps of the byte scalar.lacking */
+#define BORDER_SLACK 4
+#define MARK_ALL 0.75   /* if at least this fraction of a level's area has interpolation errors, all its vertices get an error */
 #define MIN_ERROR 1e-4f /* interpolation errors smaller than this are stored as 0 */
 
 struct triangle_piece {  /* part of a triangle; the error is sampled at the middle of the piece's longest side */

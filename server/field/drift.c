@@ -14,8 +14,9 @@ enum { JUMPS = 2, COLUMNS = 3 + DRIFT_NEAREST + JUMPS, MIN_SENSORS = 3, ROUNDS =
 /* The plant's speed of change at an hour is the mean change of the prediction per hour, from CHANGE_BEFORE hours before to CHANGE_AFTER
    hours after that hour. */
 enum { CHANGE_BEFORE = 3, CHANGE_AFTER = 1 };
-static const double FAST_FACTOR = 2;  /* an hour in which the plant changes by this multiple of the usual change has half the weight */
-static const double STILL_PART = 0.1; /* a change per hour below this multiple of the noise counts as no change */
+/* an hour in which the plant changes this many times as fast as usual has half the weight in the fit */
+static const double FAST_FACTOR = 2;
+static const double STILL_PART = 0.1; /* if the plant changes per hour by less than this multiple of the noise, it counts as unchanged */
 static const double MEAN_PART = 0.25; /* noise of an hourly mean relative to the noise of one reading: 1/4 if the mean has at least 16
                                          independent readings */
 /* A jump shows in the difference between two averages of residuals. First: number of hours in each average. Second: number of hours between
@@ -28,10 +29,12 @@ static const double DEPENDENT_PART = 1. / 6; /* residuals further apart than thi
 static const double MIN_NEW_PART = 1e-3;     /* smallest part of a column's length (a column is one term of the model, by hour) that must
                                                 be independent of the other columns */
 
-struct week {                                   /* hourly data of one sensor */
-    const double *values, *predicted, *nearest; /* nearest: [nearest_count][hours]: hourly means of the nearest sensors */
+struct week { /* hourly data of one sensor */
+    /* hourly means: values: of the sensor; predicted: by the other sensors; nearest: of the nearest sensors, [nearest_count][hours] */
+    const double *values, *predicted, *nearest;
     int nearest_count, hours;
-    double noise, root[DRIFT_HOURS]; /* root: square root of each hour's weight in the fit */
+    /* noise: error and recording resolution of a reading; root: square root of each hour's weight in the fit */
+    double noise, root[DRIFT_HOURS];
 };
 
 /* The equations (rows) of the least-squares fit, one per hour in which all needed values exist. Each is multiplied by the square root of

@@ -21,9 +21,9 @@ struct layout_sensor {
 /* Points at which distances from the sensors are requested, each inside a triangle of the asset file. */
 struct layout_points {
     float (*positions_m)[3];
-    uint32_t (*corners)[3]; /* indices of the vertices at the triangle's corners */
-    float (*parts)[3];      /* barycentric coordinates */
-    float (*away_m)[3];     /* straight distances from the corners */
+    uint32_t (*corners)[3]; /* by point: vertices at the corners of its triangle */
+    float (*parts)[3];      /* by point: barycentric coordinates in its triangle */
+    float (*away_m)[3];     /* by point: straight-line distances from the corners of its triangle */
 };
 
 /* Sets all members of `points` for one point in a triangle of the asset file. */

@@ -16,7 +16,8 @@
 struct neighbours {
     struct field_layout *layout;
     const struct influence_entry *entry; /* NULL: predictions come from distances */
-    float *along_m; /* distance by [to][from]; INFINITY: no path, or unknown. NULL: not computed, because there are too many sensors */
+    /* geodesic distances between sensors, by [to][from]; INFINITY: no path, or unknown. NULL: not computed: there are too many sensors */
+    float *along_m;
 };
 
 static const struct influence_entry *entry_of(const struct field_layout *layout)
@@ -104,7 +105,7 @@ static void predict_by_distance(const struct neighbours *neighbours, const uint8
             if (j == i || !used[j] || !(away_m <= layout->group->reach_m) || !isfinite(away_m) || other->strength <= 0)
                 continue;
             away_m = fmax(away_m, AT_ONE_PLACE);
-            double near = least_m / away_m; /* relative to the least distance so far, so that its power does not overflow */
+            double near = least_m / away_m; /* weights are relative to that of the nearest sensor so far, so that powers do not overflow */
             if (away_m < least_m) {
                 double scale = isfinite(least_m) ? pow(away_m / least_m, layout->group->power) : 0;
                 sum *= scale;

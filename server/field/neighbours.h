@@ -44,7 +44,7 @@ struct neighbours_cache {
         struct neighbours *of;  /* sensors of the group; NULL: the group has no sensor with a known position on the asset */
         struct neighbour *list; /* predictions, one for each sensor of `of`, in the same order */
         size_t count;
-        int64_t taken_mono_ns, taken_utc_ns; /* time of the snapshot; 0: none yet */
+        int64_t taken_mono_ns, taken_utc_ns; /* time of the snapshot that gave the predictions; 0: none yet */
     } * kept;                                /* [asset][group]; NULL: nothing cached yet */
     size_t count;
 };

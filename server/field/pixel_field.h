@@ -18,7 +18,9 @@ struct pixel_sensor {
     uint32_t state; /* PIXEL_* bits; with neither PIXEL_USABLE nor PIXEL_NO_LIMITS the sensor is lost */
 };
 
-struct pixel_field { /* zeroed before it is filled, because fields are compared and hashed byte by byte, padding included */
+/* A field that renderers evaluate at each pixel. Zero it before filling it in, because fields are compared and hashed byte by byte, padding
+   included. */
+struct pixel_field {
     int32_t count; /* number of configured sensors; 0: the field is interpolated between vertices instead */
     int32_t paper, fill;
     enum pixel_show show;

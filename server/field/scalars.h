@@ -32,7 +32,7 @@ struct scalars {
     double travel;
     size_t count;   /* number of elements of `at`: one for each vertex in the asset file */
     size_t ready;   /* the first `ready` vertices are up to date: as many as the requested levels of detail need */
-    uint64_t grown; /* number of times that `ready` has grown */
+    uint64_t grown; /* number of times that `ready` (count of computed vertices) has grown */
     const struct scalar *at;
     /* error bound of interpolation within triangles, in the unit of values, if it exceeds 1/255 of the range on a large part of the
        surface; else 0. Vertices with such errors are marked uncertain in either case */

@@ -21,14 +21,15 @@ struct field_state {
     struct scalars scalars;  /* scalars.version 0: nothing computed yet */
     struct scalar *at;
     double *sums;            /* by vertex: numerator of the value; NULL: not stored, because few sensors are summed again as quickly */
-    size_t room;             /* number of vertices that `at` and `sums` have room for */
+    size_t room;             /* number of vertices for which `at` (scalars) and `sums` have room */
     double error_limit;      /* vertices with a larger weights->errors are marked uncertain; initially 0 */
     unsigned errors_version; /* value of weights->errors_version when the vertices were last marked by these errors */
     double error_scale;      /* factor that converts an element of weights->errors to the error of a drawn value */
-    unsigned added;          /* number of updates since the sums were last recomputed in full */
+    /* number of updates that added changes to the sums since these were last computed in full; their rounding errors add up */
+    unsigned added;
     /* by sensor of the layout. now: inputs from the newest snapshot; shown: inputs from which the scalars were computed */
     struct state_input *now, *shown;
-    uint8_t *usable;                 /* by sensor of the layout: whether the input in `now` is used (enum sensor_use) */
+    uint8_t *usable; /* by sensor of the layout: whether the input in `now` is used (enum sensor_use) */
     /* memory of the lists of sensors to sum (struct weights_terms). Element 0: sensors whose input changed; element 1: all sensors */
     struct state_list {
         uint32_t *members;

@@ -135,7 +135,7 @@ static double error_scale(const struct field_state *state)
     return unit * fmax(fabs(low), fabs(high));
 }
 
-/* Returns the width of the colour map's range. */
+/* Returns the width of the colour map's range, of which an error of a drawn value is a fraction. */
 static double error_range(const struct field_state *state)
 {
     const struct plant_group *group = state->layout->group;

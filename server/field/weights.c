@@ -143,7 +143,7 @@ static bool take_errors(struct weights *weights, const float *errors)
         for (int b = 0; b < WEIGHTS_ERRING; b++)
             erring[b] += errors[v] >= ldexpf(1, -b);
     }
-    for (int b = 0; b < WEIGHTS_ERRING; b++) /* `erring` counts in integers, because a float counter stops growing at 2^24 vertices */
+    for (int b = 0; b < WEIGHTS_ERRING; b++) /* vertices are counted in integers, because a float counter stops growing at 2^24 */
         weights->erring[b] = (float)((double)erring[b] / (double)weights->layout->vertex_count);
     weights->errors_version = 1;
     return weights->errors;
@@ -239,8 +239,8 @@ void weights_copy_known(struct weights *weights, const struct weights *from)
     if (!same_sensors(weights, from))
         return;
     unsigned shared = KNOWN_NEAR;
-    /* With equal strengths, only power and decay may differ, on which `top` does not depend. The totals of `paper` do not depend on these
-       two either. */
+    /* If the strengths are equal, only power and decay may differ. The array `top`, which scales weights, does not depend on these two.
+       Neither do the sums of weights (`total`) of the interpolation paper. */
     if (same_strengths(weights, from))
         shared |= KNOWN_TOP | (weights->interpolation == INTERPOLATION_PAPER ? KNOWN_TOTAL : 0);
     for (size_t block = 0, at = 0; at < weights->layout->vertex_count; block++, at += KERNEL_BLOCK) {

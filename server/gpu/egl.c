@@ -14,7 +14,7 @@ struct egl {
     struct gl base;
     EGLDisplay display;
     EGLContext context;
-    bool used; /* true: the context was current at least once */
+    bool used;
 };
 
 static const char *egl_error_text(void)

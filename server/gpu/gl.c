@@ -12,8 +12,8 @@
 
 struct attempt {
     const struct gl_impl *impl;
-    /* software: may use a software device if no device is requested; again: repeats an earlier attempt, but now with software devices
-       allowed */
+    /* software: this attempt to create a context may use a software device if no device is requested; again: it repeats an earlier
+       attempt, but now with software devices allowed */
     bool software, again;
 };
 static const struct attempt attempts[] = {
@@ -169,7 +169,7 @@ void gl_destroy(struct gl **gl)
     *gl = NULL;
 }
 
-static _Thread_local unsigned shortages; /* GL keeps its errors by thread, too */
+static _Thread_local unsigned shortages; /* number of GL_OUT_OF_MEMORY errors so far on this thread */
 
 static GLenum next_error(void)
 {

@@ -20,8 +20,8 @@ enum mesh_attribute {
     MESH_SECOND_TEXCOORD = 7,
     MESH_INSTANCE_PLACES
 };
-/* number of 4-float vectors per instance: 3 for the transform of normals (MESH_INSTANCE_NORMALS), then 7, of which the first are for the
-   placement (MESH_INSTANCE_PLACES) */
+/* number of 4-float vectors per instance: 3 rows of the matrix for normals (from MESH_INSTANCE_NORMALS on), and 7 rows of matrices for
+   positions (from MESH_INSTANCE_PLACES on) */
 enum { MESH_INSTANCE_VECTORS = 10 };
 
 /* Input of mesh_init(). Pointers need only be valid during the call, except positions, colours and indices: GL on a processor reads

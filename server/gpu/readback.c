@@ -6,7 +6,7 @@
 
 #include "gpu/mesh.h"
 
-/* nanoseconds, much longer than any frame takes; when this time is over, the context counts as hanging */
+/* time limit for a frame to arrive from the GPU, much longer than any frame takes; afterwards the GL context counts as hanging */
 static const GLuint64 TIMEOUT_NS = 20ull * 1000000000;
 enum { GRAIN_ROWS = 128 };
 

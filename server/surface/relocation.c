@@ -42,7 +42,7 @@ struct relocation {
     struct vertex_embedding *embedding;
     struct relocation_ask *asks; /* requests that wait or are being computed, oldest first */
     uint64_t last_ticket;
-    size_t jobs; /* number of jobs that were submitted to the workers and have not finished */
+    size_t jobs; /* number of jobs that were submitted to the workers and have not finished; relocation_destroy() waits for them */
 };
 
 static void corner(const struct relocation_shape *shape, size_t t, size_t i, double out[3])

@@ -42,7 +42,8 @@ struct surface_report {
     size_t components, components_after;     /* number of connected components, before and after gaps were bridged */
     size_t bridges;                          /* number of points that repair joined to another point of the surface */
     double longest_bridge_m;
-    int k;                  /* largest number of neighbours that was requested for a point (point_cloud.h); 0: there was no gap to bridge */
+    /* largest number of neighbours for which the search for gaps asked per point (point_cloud.h); 0: no search was needed */
+    int k;
     size_t samples;         /* points added */
     size_t hidden_vertices; /* number of model vertices inside another closed part, or covered by one */
     /* difference between the computed distances and those of the heat method: root mean square, relative to the largest distance, of the
@@ -61,8 +62,8 @@ void surface_destroy(struct surface **surface);
 /* Returns the report: counts and durations of the steps. Owned by the surface. */
 const struct surface_report *surface_report(const struct surface *surface);
 
-/* The mesh on which distances are computed, for debug views. Owned by the surface. */
 struct crack_bridge;
+/* The mesh on which distances are computed, for debug views. The surface owns the arrays. */
 struct surface_debug_mesh {
     const double (*points_m)[3];
     const uint32_t (*tris)[3]; /* visible triangles first */

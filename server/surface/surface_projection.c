@@ -13,7 +13,7 @@
 #define MAX_TRIED_PIECES 24
 /* a triangle with a fitting normal is preferred to the nearest triangle if it is at most this many times as far away */
 #define FACING_FACTOR 4.0
-#define ROUNDING 1e-9 /* relative allowance for rounding errors in a distance */
+#define ROUNDING 1e-9 /* relative amount by which search limits are enlarged, because computed distances have rounding errors */
 
 void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place)
 {

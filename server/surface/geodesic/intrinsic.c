@@ -79,7 +79,7 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
     double pq = lt[i], qr = lt[(i + 1) % 3], rp = lt[(i + 2) % 3], ps = lu[(j + 1) % 3], sq = lu[(j + 2) % 3];
     double rx = (pq * pq + rp * rp - qr * qr) / (2 * pq), ry = sqrt(max_of(rp * rp - rx * rx, 0));
     double sx = (pq * pq + ps * ps - sq * sq) / (2 * pq), sy = -sqrt(max_of(ps * ps - sx * sx, 0));
-    /* distance from p along the old edge pq at which the new edge rs crosses it; -1: they do not cross */
+    /* distance from p along edge pq, at which the edge rs that shall replace pq crosses it; -1: they do not cross */
     double cut = ry - sy > 0 ? rx + (sx - rx) * ry / (ry - sy) : -1;
     if (cut <= 0 || cut >= pq)
         return false;
@@ -91,8 +91,8 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
     memcpy(in->points[u], (const uint32_t[3]){ r, s, q }, sizeof(in->points[u]));
     memcpy(in->lengths[t], (const double[3]){ rs, rp, ps }, sizeof(in->lengths[t]));
     memcpy(in->lengths[u], (const double[3]){ rs, sq, qr }, sizeof(in->lengths[u]));
-    /* an outer side of the two triangles may be glued (marked as adjacent) to another outer side of the same two; such references get the
-       new side indices before they are written back */
+    /* The flip renumbers the four outer sides of the two triangles. If one outer side is glued (marked as adjacent) to another of these
+       four, its reference gets the new index. */
     uint32_t outer[4] = { g_rp, g_ps, g_sq, g_qr };
     const uint32_t was[4] = { 3 * t + (uint32_t)((i + 2) % 3), 3 * u + (uint32_t)((j + 1) % 3), 3 * u + (uint32_t)((j + 2) % 3),
                               3 * t + (uint32_t)((i + 1) % 3) };
@@ -115,7 +115,7 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
 }
 
 /* Lengthens all sides of all triangles by the same small amount. In each triangle, two sides together then exceed the third by at least
- * MOLLIFY mean edge lengths (Sharp & Crane 2020, section 4.5). */
+ * MOLLIFY mean edge lengths, so that no triangle is flat and its cotangents are finite (Sharp & Crane 2020, section 4.5). */
 static void mollify(struct intrinsic *in)
 {
     double sum = 0, lack = 0;

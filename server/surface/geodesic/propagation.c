@@ -13,8 +13,8 @@
 #define STEPS_PER_EDGE 512.0
 #define NEAR_EDGES 5.0
 #define MAX_BUCKETS (1u << 16)
-/* maximum number of triangles tested to find the one adjacent to the last triangle of a row around a point; if none is adjacent, the row
-   ends */
+/* The triangles around a point are lined up in rows, in which each triangle is adjacent to the next. This is the maximum number of
+   triangles tested to find the next one of a row; if none is adjacent, the row ends. */
 #define MAX_TRIED 64
 
 /* Returns the corners of triangle t: a triangle of the intrinsic triangulation, or, for indices after those, an interior (hidden) triangle.
@@ -141,8 +141,8 @@ static void add_fans(struct propagation *propagation, uint32_t point, struct ver
     }
 }
 
-/* Returns an array by point: number of triangle corners at points of lower index; one more element at the end holds the total. The caller
- * frees the array. */
+/* Returns where the triangles of each point begin in a list that is sorted by point: by point, the number of triangle corners at points of
+ * lower index. One more element at the end holds the total. The caller frees the array. */
 static uint32_t *count_corners(const struct propagation *propagation, const struct intrinsic *in)
 {
     size_t points = propagation->mesh->point_count;

@@ -107,7 +107,7 @@ static void try_tri(const struct bvh *bvh, uint32_t tri, const double p[3], doub
     memcpy(place->point, q, sizeof(q));
 }
 
-/* --- eight boxes at a time -------------------------------------------------------------------------------------------------------- */
+/* --- nodes with eight children, whose eight boxes are tested at a time ------------------------------------------------------------- */
 
 struct bvh_box {
     float low[3], high[3];

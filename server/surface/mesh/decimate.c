@@ -8,7 +8,7 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 
-#define MAX_STAR 48 /* only points with at most this many triangles around them are removed */
+#define MAX_STAR 48 /* a point is removed only if at most this many triangles (its star) are around it; size of arrays */
 /* smallest height of a triangle that a collapse creates, relative to its longest side, unless the triangle that it replaces was thinner */
 #define MIN_HEIGHT 0.02
 #define ROUNDING_OF_AREA 1e-9

@@ -9,8 +9,9 @@ struct borders {
     size_t edge_count;
     uint32_t *points; /* points on border edges */
     size_t point_count;
-    uint32_t *slot;     /* by mesh point: its index in `points`; TRIMESH_NONE: it is on no border */
-    double *shortest_m; /* by border point: length of the shortest edge of any triangle at it */
+    uint32_t *slot; /* by mesh point: its index in `points`; TRIMESH_NONE: it is on no border */
+    /* by border point: length of the shortest edge of any triangle at it, which limits the gaps that are closed there */
+    double *shortest_m;
     /* edges at the border points. The indices in `edges` of those at border point i are at[first[i]] up to, but without, at[first[i +
        1]] */
     uint32_t *first, *at;

@@ -14,7 +14,9 @@
 #include "surface/mesh/point_cloud.h"
 #include "surface/repair/repair_impl.h"
 
-#define GAP_OF_EDGE 0.45 /* two points are merged only if their distance is at most this fraction of the shortest edge at either point */
+/* two points are merged only if their distance is at most this fraction of the shortest edge at either point, so that no feature of the
+   model collapses */
+#define GAP_OF_EDGE 0.45
 #define EXACT_OF_TOLERANCE 0.01
 /* a border counts as straight if it deviates from a line by at most this, in multiples of the tolerance; welding may cause such deviations,
    and different points of a border are farther apart */
@@ -29,8 +31,8 @@ struct seams {
     const struct trimesh *mesh;
     const struct borders *borders;
     struct mesh_edit *edit;
-    /* minimum distance of a point from both ends of an edge for it to be inserted there; a nearer point is merged with the end in another
-       round */
+    /* tolerance_m: widest gap that is closed; end_m: minimum distance of a point from both ends of an edge into which it is inserted (a
+       nearer point is merged with that end in another round) */
     double tolerance_m, end_m;
     bool fits;            /* true: the current round closes exact fits only, in which the gap is nearly zero */
     struct nearest_edge { /* by border point: the nearest position on the border edges, except those that end at the point */
