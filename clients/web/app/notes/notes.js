@@ -181,7 +181,9 @@ export class Notes {
                 this.pins.set(note.id, { position, element: this.pinOf(note), stem: makeStem() });
         }
         this.show();
-        this.overlay.dirty = true; // places the labels of sensors again, so that none covers a new pin
+        // places the labels of sensors again, so that none covers a new pin
+        this.overlay.dirty = true;
+        this.viewport.invalidate();
     }
 
     pinOf(note) {
