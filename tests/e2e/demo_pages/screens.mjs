@@ -428,22 +428,24 @@ test('at 200 % zoom, the engineering panel is as high as the picture, and both f
         assert.deepEqual(heights, Array(3).fill(heights[0]));
     }));
 
-test('legends half a phone wide: the names of limits do not overlap, and the last number does not reach the arrow', options, () => withPage(
+test('legends half a phone wide: the names of limits do not overlap, and the colour bar and its numbers are whole', options, () => withPage(
     { ...PHONE, viewport: { width: 360, height: 640 } }, async (page) => {
         await page.locator('#viewport').focus();
         await page.keyboard.press('j');
-        await page.locator('#split-bar').waitFor();
+        await page.locator('#viewport.split #legend-right .ticks').waitFor();
         await page.evaluate(() => {
             const { legend, session } = globalThis.plantcast;
             session.model.group('temperature').limits = { LL: 60, L: 62, H: 64, HH: 66 };
             legend.show(true);
         });
-        const edge = await page.locator('#legend').evaluate((e) => {
-            const arrow = Number.parseFloat(getComputedStyle(e, '::after').width), { right } = e.getBoundingClientRect();
-            return right - Number.parseFloat(getComputedStyle(e).paddingRight) - arrow -
-                e.querySelector('.ticks span:last-child').getBoundingClientRect().right;
-        });
-        assert.ok(edge >= 0, `${edge} px between the last number and the arrow`);
+        for (const id of ['legend', 'legend-right']) {
+            const [title, bar, first, last, right] = await page.locator(`#${id}`).evaluate((e) => [
+                ...['h2', '.bar', '.ticks span:nth-of-type(1)', '.ticks span:last-child'].map((part) =>
+                    e.querySelector(part).getBoundingClientRect()).map(({ left, right: end, width }) => ({ left, end, width })),
+                e.getBoundingClientRect().right]);
+            assert.ok(bar.width >= 30 && first.left >= title.end && last.left > first.end && last.end <= right,
+                `${id}: ${JSON.stringify([title, bar, first, last, right])}`);
+        }
         await page.locator('#legend').tap();
         for (const width of ['', '60px']) {
             await page.locator('#legend .scale').evaluate((e, wide) => { e.style.width = wide; }, width);
