@@ -145,7 +145,7 @@ test('another display has its own panes', options, async () => {
     const arrange = (one) => one.route(/app\/trends\/trends\.js/, async (route) => { await held; await route.continue(); });
     const other = await openPage(`${plant.url}?wall=room&display=2&lang=ko`, { viewport: { width: 960, height: 540 } }, null, arrange);
     const why = other.page.locator('.pane.trend .why');
-    await why.filter({ hasText: 'TI-1, TI-2 값을 기다리는 중' }).waitFor();
+    await why.filter({ hasText: 'TI\u20111, TI\u20112 값을 기다리는 중' }).waitFor();
     answer();
     await why.waitFor({ state: 'hidden' });
     await other.page.locator('.pane.text p', { hasText: 'Clean F-101' }).waitFor();
@@ -163,6 +163,19 @@ test('another display has its own panes', options, async () => {
     await gone.page.locator('.wrong', { hasText: "no wall 'nowhere'" }).waitFor();
     assert.match(await gone.page.locator('.wrong').textContent(), /room/);
     await gone.close();
+});
+
+test('a heading names the view in the picture, not one that is still loading', options, async () => {
+    let answer;
+    const held = new Promise((done) => { answer = done; });
+    const arrange = (one) => one.route(/views\/named_views\.js/, async (route) => { await held; await route.continue(); });
+    const slow = await openPage(`${plant.url}?wall=room`, { viewport: { width: 960, height: 540 } }, null, arrange);
+    await slow.page.waitForFunction(() => document.querySelector('.pane.views iframe')?.contentWindow.plantcast?.session.picture &&
+        document.querySelector('.pane.views .about').textContent);
+    assert.equal(await slow.page.locator('.pane.views .said').textContent(), '');
+    answer();
+    await slow.page.locator('.pane.views .said', { hasText: /Whole unit|From above/ }).waitFor();
+    await slow.close();
 });
 
 // The page must show no other picture instead: people would take it for the requested view.

@@ -85,6 +85,8 @@ function ViewsPane(pane, context) {
     // the views that the display's token may show, if it is limited to some; else all saved views
     const viewsOf = ({ model, views }) => model?.plant.only ?? views;
     const titleOf = (id) => pane.title ?? viewsOf(session).find((view) => view.id === id)?.title ?? id;
+    // the heading of a view whose picture has not arrived yet: until then the heading must name the view that is still in the picture
+    let due = null, isOpened = false;
     const words = make('span', { class: 'said' }), about = make('span', { class: 'about' }), why = make('p', { class: 'why' });
     title.append(words, about);
     context.body.append(why);
@@ -99,19 +101,29 @@ function ViewsPane(pane, context) {
     // another picture would mislead.
     function showView(page, order, wrong) {
         const id = pane.items[at];
+        isOpened = Boolean(wrong || (page.session.model.plant.only && !order?.view));
         if (wrong)
             setText(why, say('named.wrong', { why: refusalText(wrong.wrong, wrong.refusal) }));
-        else if (order?.view)
-            page.modules.use('views', (views) => views.lookAt(order.view));
-        else if (page.session.model.plant.only)
+        else if (isOpened)
             page.session.post({ type: 'look', seq: 1, named: id });
         else
-            page.modules.use('views', (views) => views.openNamed(id, false));
+            page.modules.use('views', (views) => {
+                if (order?.view)
+                    views.lookAt(order.view);
+                else
+                    views.openNamed(id, false);
+                page.modules.use('namedViews', () => { isOpened = true; }, 'opened');
+            });
         const known = viewsOf(page.session).some((view) => view.id === id);
         const own = known ? titleOf(id) : say('named.unknown', { id });
         const said = !order && pane.stops?.[at].text;
-        words.replaceChildren(order?.view ? order.title : own, ...(said ? [make('span', {}, ` · ${said}`)] : []),
-            ...(order ? [' ', byWhom(order)] : []));
+        due = [order?.view ? order.title : own, ...(said ? [make('span', {}, ` · ${said}`)] : []), ...(order ? [' ', byWhom(order)] : [])];
+    }
+
+    // Returns true if the picture shows the view that was opened last.
+    function hasArrived({ session: { picture, paramsSeq, cameraSeq, cameraNews } }, now) {
+        const isNew = picture?.paramsSeq === paramsSeq && picture.cameraSeq === cameraSeq && !cameraNews;
+        return (isOpened && isNew) || now - changedAt > LATEST_MS;
     }
 
     // Returns true if the picture does not show the alarm yet: it shows another sensor group, or the alarm's tag is outside the picture.
@@ -135,6 +147,7 @@ function ViewsPane(pane, context) {
         page.session.setParams({ ...(tag.group ? { group: tag.group } : {}), clip: null, split: null, range: null });
         page.flyToTag(tag);
         setVariable(element, '--called', `var(--p${alarm.priority})`);
+        due = null;
         words.replaceChildren(badge(alarm.priority, isGone(alarm.state)), make('b', {}, ` ${say(`kind.${alarm.kind}`)} ${tag.name} `),
             make('span', { class: 'now' }));
         sayNow(alarm);
@@ -168,15 +181,16 @@ function ViewsPane(pane, context) {
             [shown, shownIn, changedAt] = [wanted, page, now];
         // hides the old picture and its legend until the alarm's picture arrives
         element.classList.toggle('coming', Boolean(alarm) && isComing(page, alarm, now));
-        if (!isNew) {
-            if (alarm)
-                sayNow(alarm);
-            return;
-        }
-        if (alarm)
+        if (!isNew && alarm)
+            sayNow(alarm);
+        else if (isNew && alarm)
             showAlarm(page, alarm);
-        else
+        else if (isNew)
             showView(page, order, unshown);
+        if (due && (unshown || hasArrived(page, now))) {
+            words.replaceChildren(...due);
+            due = null;
+        }
     } };
 }
 
@@ -194,10 +208,11 @@ function TrendPane(pane, context) {
         setText(about, aboutTags(session, pane.items));
         // says why the pane is empty; once the trend has an error of its own, the page in the iframe shows it
         const unknown = session.model ? pane.items.filter((name) => !session.model.tag(name)) : [];
+        const names = pane.items.join(', ').replaceAll('-', '\u2011'); // lines do not break within names
         const isEmpty = !(page?.trends?.plots.length > 0 || inner.note);
         element.classList.toggle('unshown', isEmpty);
-        setText(why, unknown.length === pane.items.length ? say('trends.none', { text: pane.items.join(', ') })
-            : say('walls.untrended', { tags: pane.items.join(', ') }));
+        setText(why, unknown.length === pane.items.length ? say('trends.none', { text: names })
+            : say('walls.untrended', { tags: names }));
         if (begun === page || !page?.session.model)
             return;
         begun = page;
