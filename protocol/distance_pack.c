@@ -65,7 +65,7 @@ static bool all_reached(const uint16_t *codes)
     return reached;
 }
 
-/* Writes, for SAMPLES vertices, how much the sensor's distance changes over LANES vertices. */
+/* Writes, for SAMPLES vertices, how much the sensor's distance changes over LANES vertices; sensors with like changes are similar. */
 static void sample_slopes(const uint16_t *codes, float slope_m[SAMPLES])
 {
     for (size_t i = 0; i < SAMPLES; i++) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reduces a depth buffer to the cells of a depth grid, one per invocation, as server/render/soft/depth_cells.c does.
+// Reduces a depth buffer to the cells of a depth grid, which tells clients the distances of a picture's surfaces at a coarse resolution.
+// One cell per invocation; server/render/soft/depth_cells.c gives the same cells.
 layout(local_size_x = 64) in;
 struct Cell {
     float near, far;

@@ -9,7 +9,7 @@ layout(location = 0) in vec3 position_m;
 layout(location = 0) out float light;
 layout(location = 1) out FIELD_TYPE field;
 #else
-layout(location = 0) out vec2 light; // ambient light, cosine to the sun
+layout(location = 0) out vec2 light; // baked at the vertex: ambient light, cosine to the sun
 layout(location = 1) out vec3 sun_place;
 #endif
 #ifdef CLIP

@@ -3,7 +3,7 @@
 // colours and once for depth.
 #include "frame.glsl"
 #include "section.glsl"
-layout(binding = 0) uniform sampler2D bodies; // written by section_cap_count.frag; `texels` x `texels` of its texels are one pixel
+layout(binding = 0) uniform sampler2D bodies; // counts of bodies from section_cap_count.frag; a pixel has `texels` x `texels` counts
 layout(location = 0) uniform int texels;      // number of texels of `bodies` along a pixel's side
 layout(location = 0) in vec2 clip;
 #ifdef DEPTH

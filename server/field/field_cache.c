@@ -118,7 +118,7 @@ void field_cache_keep_columns(struct field *field, struct weights *weights, cons
         return;
     if (had == 0)
         field_cache_make_room(field, bytes < field->bound ? bytes : field->bound, params, previous);
-    /* some columns are cached and there is still no room for all: keeps those */
+    /* some columns of G (a sensor's weights) are cached, and there is no room for all: keeps the cached ones */
     else if (field->bytes - had + bytes > field->bound)
         return;
     else

@@ -17,7 +17,7 @@
 /* lets the compiler evaluate both sides of a conditional expression, as SIMD code must: floating-point exceptions do not matter here */
 #pragma GCC optimize("no-trapping-math")
 #endif
-#include "field/weight_formula.h" /* after the pragma, which must hold for these functions, too */
+#include "field/weight_formula.h" /* included after the pragma, which this header needs, too, to become SIMD code */
 
 static inline void fade(const struct kernel_column *column, float *restrict weight)
 {

@@ -32,7 +32,7 @@ static const int64_t SETTLED_NS = 1500 * NS_PER_MS;
 /* TICK_NS: interval between ticks of the sessions; REST_NS: the same while no session has timed work within the next second */
 static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S;
 static const int64_t GOODBYE_NS = 500 * NS_PER_MS;       /* time for which shutdown waits until close frames and answers are sent */
-static const int64_t RECORD_INTERVAL_NS = 60 * NS_PER_S; /* minimum time between two audit entries about tokens not checked */
+static const int64_t RECORD_INTERVAL_NS = 60 * NS_PER_S; /* minimum time between two audit entries about throttled addresses */
 static const int64_t FILE_CHECK_INTERVAL_NS = NS_PER_S;  /* interval between checks of the token and certificate files */
 enum { SPARE_FILES = 256 }; /* file descriptors reserved for uses other than connections: for example models, data sources, the database */
 
@@ -557,7 +557,7 @@ void net_destroy(struct net **net_ptr)
     if (!net)
         return;
     lws_sul_cancel(&net->timer);
-    /* destroys these first, because their threads wake the event loop */
+    /* destroys the services with threads of their own first, because these threads wake the event loop */
     history_queries_destroy(&net->server.history_queries);
     picture_signer_destroy(&net->server.signing.signer);
     history_loader_destroy(&net->server.history_loader);
