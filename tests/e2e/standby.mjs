@@ -3,7 +3,7 @@
 // time, whatever is cut, stopped or killed; no operator action is lost, and no notification is sent twice.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { linkSync, renameSync, writeFileSync } from 'node:fs';
+import { linkSync, readdirSync, renameSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { PlainClient } from './support/plain_client.mjs';
@@ -75,6 +75,9 @@ test('one of two leads, the other follows and is not ready; a renderer finds who
     assert.equal(await core.node.metric('plantcast_renderers'), 1, 'a standby is no renderer');
     assert.deepEqual(await two.network.overlaps(), []);
     assert.equal(terms(two.other(core)), 0);
+    await core.program.line(/history: read \d+ points from PostgreSQL/);
+    const months = readdirSync(join(two.plant.folder, core.name, 'history')).filter((name) => /^history-[\d-]+\.sqlite$/.test(name));
+    assert.ok(months.length < 3, `no months without points: ${months}`); // two if a month has just begun
     t.diagnostic(`${core.name} leads`);
 });
 

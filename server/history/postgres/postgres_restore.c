@@ -218,19 +218,55 @@ static struct tag_there *find_tags(const struct postgres_restore *restore, struc
     return found;
 }
 
+/* *any receives whether the database has points of the plant between two times. Returns false if the query failed. */
+static bool find_points(struct postgres_tables *tables, int64_t from_us, int64_t to_us, bool *any)
+{
+    char plant[NUMBER_BYTES], from[NUMBER_BYTES], to[NUMBER_BYTES];
+    snprintf(plant, sizeof(plant), "%d", tables->plant);
+    snprintf(from, sizeof(from), "%lld", (long long)from_us);
+    snprintf(to, sizeof(to), "%lld", (long long)to_us);
+    PGresult *rows = postgres_link_ask(tables->link,
+                                       "SELECT 1 FROM tag g WHERE g.plant = $1::int AND EXISTS (SELECT FROM sample WHERE tag = g.id"
+                                       " AND t > 'epoch'::timestamptz + $2::bigint * interval '1 microsecond'"
+                                       " AND t < 'epoch'::timestamptz + $3::bigint * interval '1 microsecond') LIMIT 1",
+                                       3, (const char *[]){ plant, from, to });
+    *any = rows && PQntuples(rows);
+    PQclear(rows);
+    return rows;
+}
+
+/* Opens the file of a month. *file is NULL if there is no file and the database has no points for one. Returns false if the query or the
+   file failed. */
+static bool open_month(const struct postgres_restore *restore, struct postgres_tables *tables, int month, int64_t from_us, int64_t to_us,
+                       struct month_file **file, char why[POSTGRES_WHY_BYTES])
+{
+    char name[MONTH_NAME_BYTES];
+    month_name(month, name);
+    char *path = mem_printf("%s/%s", restore->folder, name);
+    bool wanted = access(path, F_OK) == 0;
+    mem_free(path);
+    *file = NULL;
+    if (!wanted && !find_points(tables, from_us, to_us, &wanted))
+        return false;
+    int error = 0;
+    if (wanted)
+        *file = month_file_open(restore->log, restore->folder, month, restore->tags, restore->plant->tag_count, &error);
+    return !error || fail(why, error);
+}
+
 static bool restore_month(struct postgres_restore *restore, struct postgres_tables *tables, int month, int64_t *points,
                           char why[POSTGRES_WHY_BYTES])
 {
+    int64_t from_us = month_begin_us(month) - 1, to_us = month_begin_us(month + 1);
     size_t count;
-    int error;
+    struct month_file *file;
     struct tag_there *found = find_tags(restore, tables, &count);
     if (!found)
         return false;
-    struct month_file *file = month_file_open(restore->log, restore->folder, month, restore->tags, restore->plant->tag_count, &error);
-    bool good = file ? true : fail(why, error);
-    for (size_t i = 0; i < count && good; i++)
-        good = restore_tag(tables, &found[i], file, month_begin_us(month) - 1, month_begin_us(month + 1), points, why);
-    good = good && restore_events(tables, file, why);
+    bool good = open_month(restore, tables, month, from_us, to_us, &file, why);
+    for (size_t i = 0; i < count && good && file; i++)
+        good = restore_tag(tables, &found[i], file, from_us, to_us, points, why);
+    good = good && (!file || restore_events(tables, file, why));
     month_file_close(&file);
     mem_free(found);
     return good;
@@ -256,11 +292,11 @@ bool postgres_restore_span(struct postgres_restore *restore, struct postgres_tab
     *points = 0;
     for (int month = month_of(from_us); month <= month_of(to_us) && good; month++) {
         int64_t begin_us = month_begin_us(month) - 1, end_us = month_begin_us(month + 1);
-        int error;
-        struct month_file *file = month_file_open(restore->log, restore->folder, month, restore->tags, restore->plant->tag_count, &error);
-        good = file ? restore_span_of_month(restore, tables, file, from_us > begin_us ? from_us : begin_us, to_us < end_us ? to_us : end_us,
-                                            points, why)
-                    : fail(why, error);
+        int64_t after_us = from_us > begin_us ? from_us : begin_us, until_us = to_us < end_us ? to_us : end_us;
+        struct month_file *file;
+        good = open_month(restore, tables, month, after_us, until_us, &file, why);
+        if (file)
+            good = restore_span_of_month(restore, tables, file, after_us, until_us, points, why);
         month_file_close(&file);
     }
     return good;
