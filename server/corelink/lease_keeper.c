@@ -303,15 +303,10 @@ static void tell_maintenance(struct lease_keeper *keeper, bool alone)
     keeper->told_alone = alone;
 }
 
-static void renew(struct lease_keeper *keeper)
+/* Sends a renewal that names `standby` in the row. Returns whether the database confirmed it. */
+static bool renew_for(struct lease_keeper *keeper, const char *standby)
 {
-    char standby[LEASE_NODE_BYTES];
-    bool alone = keeper->params.maintenance_path && access(keeper->params.maintenance_path, F_OK) == 0;
     pthread_mutex_lock(&keeper->thread.lock);
-    if (keeper->gone_ns && now_of_lease() - keeper->gone_ns >= STANDBY_GRACE_NS)
-        keeper->standby[0] = 0;
-    bool is_there = keeper->standby[0] && !keeper->gone_ns, follows = is_there && keeper->follows;
-    snprintf(standby, sizeof(standby), "%s", alone ? keeper->node : keeper->standby);
     lease_renew(&keeper->lease, standby);
     struct lease_row seen = keeper->lease.row;
     pthread_mutex_unlock(&keeper->thread.lock);
@@ -322,12 +317,33 @@ static void renew(struct lease_keeper *keeper)
         lease_renewed(&keeper->lease, standby, sent_ns);
         set_timer(keeper);
         pthread_mutex_unlock(&keeper->thread.lock);
-        counter_set(keeper->counters.standby, follows);
-        counter_set(keeper->counters.differs, is_there && !follows);
-        tell_maintenance(keeper, alone);
     } else if (changed == 0) {
         look(keeper);
     }
+    return changed == 1;
+}
+
+static void renew(struct lease_keeper *keeper)
+{
+    char standby[LEASE_NODE_BYTES], counts[LEASE_NODE_BYTES];
+    bool alone = keeper->params.maintenance_path && access(keeper->params.maintenance_path, F_OK) == 0;
+    pthread_mutex_lock(&keeper->thread.lock);
+    if (keeper->gone_ns && now_of_lease() - keeper->gone_ns >= STANDBY_GRACE_NS)
+        keeper->standby[0] = 0;
+    bool is_there = keeper->standby[0] && !keeper->gone_ns, follows = is_there && keeper->follows;
+    snprintf(standby, sizeof(standby), "%s", alone ? keeper->node : keeper->standby);
+    memcpy(counts, keeper->lease.counts, sizeof(counts));
+    pthread_mutex_unlock(&keeper->thread.lock);
+    /* While the database does not confirm that the row names another standby, no promise extends the lease. So names another one only if
+       the database has just confirmed a renewal: otherwise the order to leave maintenance would end a leader whose database refuses
+       changes. */
+    if (counts[0] && strcmp(counts, standby) != 0 && !renew_for(keeper, counts))
+        return;
+    if (!renew_for(keeper, standby))
+        return;
+    counter_set(keeper->counters.standby, follows);
+    counter_set(keeper->counters.differs, is_there && !follows);
+    tell_maintenance(keeper, alone);
 }
 
 /* Changes the row so that it gives the lease to another core. If that fails, the next turn reads the row and tries again, because a renewal

@@ -312,6 +312,17 @@ test('maintenance of the standby: the leader polls on without the database, and 
     standby('maintenance');
     await alone(1);
     await core.program.line(/lease: standby: maintenance: this core leads alone/);
+    // A database that answers and refuses each change, as one with a full disk: the order to leave maintenance must wait for it.
+    server.ask(`CREATE FUNCTION refuse() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN RAISE 'refused'; END $$;
+        CREATE TRIGGER refuse BEFORE UPDATE ON plantcast.lease EXECUTE FUNCTION refuse()`);
+    standby('normal');
+    await core.program.line(/lease: PostgreSQL does not answer \(.*refused/);
+    await sleep(5000); // longer than a lease
+    assert.ok(await two.ready(core), 'it leads on');
+    server.ask('DROP FUNCTION refuse CASCADE');
+    await alone(0);
+    standby('maintenance');
+    await alone(1);
     const since = two.network.now();
     await server.kill();
     await core.program.line(/lease: PostgreSQL does not answer/);
