@@ -103,7 +103,7 @@ export class PlainClient {
                 socket.off('data', greet);
                 if (!head.startsWith('HTTP/1.1 101') || !head.includes(accept))
                     return fail(new Error(head.split('\r\n')[0]));
-                if (protocol && !/^sec-websocket-protocol: *plantcast\.v1\r?$/im.test(head))
+                if (protocol && !/^sec-websocket-protocol: *plantcast(\.core)?\.v1\r?$/im.test(head))
                     return fail(new Error(`another subprotocol: ${head}`));
                 socket.on('data', (more) => client.take(more));
                 client.take(Buffer.alloc(0));
