@@ -359,6 +359,16 @@ CASE(values_that_share_some_registers_are_noticed)
           { "tags.csv", 14, 1, "Address: 'M' (int16) shares a register with 'K' (float64, line 12): check both addresses and data types" });
 }
 
+/* The source reads each tag every second, unless the tag has a Scan Rate in milliseconds. */
+CASE(readings_that_are_stale_before_the_next_are_noticed)
+{
+    plant_case_load(c, yaml_no_order,
+                    "Tag Name,Address,Scan Rate,Stale s\nA,hr:1,,0.5\nB,hr:2,,1.5\nC,hr:3,5000,5\nD,hr:4,100,0.5\nE,= [A],,0.5\n");
+    plant_case_assert_loaded(c, 2);
+    FOUND(c, { "tags.csv", 2, 9, "Stale s: 'A' is read every 1 s, so each reading is stale before the next one arrives; write at least 3" },
+          { "tags.csv", 4, 13, "Stale s: 'C' is read every 5 s, so each reading is stale before the next one arrives; write at least 15" });
+}
+
 CASE(columns_are_known)
 {
     plant_case_load(c, yaml,

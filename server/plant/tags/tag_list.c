@@ -178,6 +178,12 @@ static bool is_announced(const struct tag_list *list)
     return !strcmp(source->kind, "opcua") || (!strcmp(source->kind, "mqtt") && source->mqtt.payload == MQTT_SPARKPLUG);
 }
 
+static bool is_modbus(const struct plant *plant, const struct plant_tag *tag)
+{
+    const char *kind = tag->source >= 0 && !tag->expression ? plant->sources[tag->source].kind : NULL;
+    return kind && !strcmp(kind, "modbus");
+}
+
 static void read_timing(struct tag_list *list)
 {
     struct plant_tag *tag = list->tag;
@@ -188,6 +194,10 @@ static void read_timing(struct tag_list *list)
     int poll_ms = tag->signal.scan_ms ? tag->signal.scan_ms : tag->source >= 0 ? list->plant->sources[tag->source].poll_ms : 1000;
     tag->validity.stale_s = is_announced(list) ? PLANT_NEVER_STALE_S : fmax(5, 3 * poll_ms / 1000.0);
     tag->validity.states_stale = cell_number(&list->columns, COL_STALE, 1e-3, 1e6, &tag->validity.stale_s);
+    if (tag->validity.states_stale && is_modbus(list->plant, tag) && tag->validity.stale_s <= poll_ms / 1000.0)
+        cell_warning(&list->columns, COL_STALE,
+                     "Stale s: '%.60s' is read every %.9g s, so each reading is stale before the next one arrives; write at least %.9g",
+                     tag->name, poll_ms / 1000.0, 3 * poll_ms / 1000.0);
     cell_number(&list->columns, COL_FLATLINE, 1e-3, 1e8, &tag->validity.flatline_s);
 }
 
@@ -270,8 +280,7 @@ static void check_duplicates(const struct plant *plant, struct diag *diag)
 /* Returns the number of registers that a tag reads; 0: it reads a bit, or is not a Modbus tag. */
 static int registers_of(const struct plant *plant, const struct plant_tag *tag)
 {
-    bool modbus = tag->source >= 0 && !tag->expression && !strcmp(plant->sources[tag->source].kind, "modbus");
-    return modbus && tag->signal.type != DATA_BIT ? data_type_registers(tag->signal.type) : 0;
+    return is_modbus(plant, tag) && tag->signal.type != DATA_BIT ? data_type_registers(tag->signal.type) : 0;
 }
 
 static int by_register(const void *pa, const void *pb, void *plant_ptr)
