@@ -1,15 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cache of geodesic distances by sensor position: the file KEY.columns in the folder of prepared files. One entry ("column") holds the
- * distances of all surface points from one sensor, in 16 bits each (protocol/asset_distance.h). Computed distances are rounded to the same
- * precision, so that results do not depend on the cache. The file can be deleted at any time; damaged entries are logged and count as
- * absent. The file grows to the largest number of sensors that the asset ever had at once. */
+ * distances of all surface points from one sensor, in 16 bits each (protocol/asset_distance.h), compressed without loss. Computed distances
+ * are rounded to the same precision, so that results do not depend on the cache. The file can be deleted at any time; damaged entries are
+ * logged and count as absent. The file never shrinks; a new column replaces one that is no longer needed, if it fits there. */
 #ifndef PREPROCESS_CACHE_DISTANCE_CACHE_H
 #define PREPROCESS_CACHE_DISTANCE_CACHE_H
+#include <pthread.h>
 #include <stdatomic.h>
 #include <stdint.h>
 
 #include "base/log/log.h"
 #include "surface/surface.h"
+
+struct distance_space { /* range of the file */
+    size_t at, size;
+};
 
 struct distance_cache {
     struct log *log;
@@ -20,9 +25,13 @@ struct distance_cache {
     size_t length; /* numbers per column */
     const double (*places_m)[3];
     size_t count;
-    size_t *slots;      /* by sensor position: index of its slot (file range of one column); SIZE_MAX: it has no slot */
+    size_t *records; /* by sensor position: offset of the record with its column when the file was opened; SIZE_MAX: none */
     atomic_size_t kept; /* number of sensor positions whose column (distances) was found in the file */
     atomic_size_t damaged; /* number of sensor positions whose column in the file is damaged, or was not completely written */
+    pthread_mutex_t lock;
+    /* --- below: under lock --- */
+    struct distance_space *free; /* records that no sensor position needs */
+    size_t free_count, free_capacity, end; /* end: offset after the last record */
 };
 
 /* Opens or creates FOLDER/KEY.columns and looks up which of the `count` sensor positions places_m (asset frame, metres; must outlive the
