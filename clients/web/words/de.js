@@ -128,7 +128,7 @@ latched: {latched} zurückzusetzen
 asof: Stand {time}: {alarms}
 gone: Priorität {priority}, gegangen
 now: Jetzt: {alarms}
-value: ausgelöst bei {value}{now} (Grenzwert {limit})
+value: gekommen bei {value}{now} (Grenzwert {limit})
 present: jetzt {now}
 since: gehalten seit {time}
 priority: Priorität {priority}

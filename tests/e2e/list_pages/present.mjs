@@ -59,7 +59,7 @@ test('an alarm says at which value it was raised, and the present one', options,
     await waitForText(desk.page, '#alarm-newest', 'TI-1 High.*now 70\\.3 °C');
     await plant.tell('set TI-1 40'); // the value is normal again, and the alarm is not acknowledged
     await waitForText(desk.page, '#alarm-newest', 'raised at .* now 40\\.0 °C \\(limit');
-    await waitForText(german.page, '#alarm-newest', 'ausgelöst bei .*, jetzt 40,0 °C \\(Grenzwert');
+    await waitForText(german.page, '#alarm-newest', 'gekommen bei .*, jetzt 40,0 °C \\(Grenzwert');
     await desk.page.locator('#alarm-strip').click();
     await waitForText(desk.page, '#alarms-list td[data-col=now]', '40\\.0 °C');
     await plant.tell('set TI-1 41');
