@@ -381,9 +381,7 @@ CASE(every_point_comes_back_bit_by_bit)
 {
     struct history_point truth[TAGS][ODD_SECONDS];
     struct month_file *file = open_file(s, NOVEMBER);
-    unsigned seed = (unsigned)time(NULL);
-    printf("# seed %u\n", seed);
-    srand(seed);
+    srand((unsigned)sweep_seed());
     for (int tag = 0; tag < TAGS; tag++)
         for (int i = 0; i < ODD_SECONDS; i++)
             truth[tag][i].quality = 1;
@@ -568,7 +566,8 @@ static double line_at(const struct history_point *points, int count, bool step, 
         if ((before ? a->t_us < t_us && t_us <= b->t_us : a->t_us <= t_us && t_us < b->t_us) && history_point_usable(a))
             return history_point_joined(a, b, step) ? history_point_between(a, b, t_us) : a->value;
     }
-    return NAN;
+    const struct history_point *last = &points[count - 1];
+    return !before && last->t_us == t_us && history_point_usable(last) ? last->value : NAN;
 }
 
 static void assert_close(double got, double wanted)
@@ -655,6 +654,7 @@ static void write_points(struct history_setup *s, int tag, const struct history_
 CASE(intervals_are_those_of_the_line)
 {
     enum { MOST = 3000 };
+    srand((unsigned)sweep_seed());
     struct history_point *points = mem_array(MOST, sizeof(*points));
     for (int tag = 0; tag < TAGS; tag++) {
         bool step = s->tags[tag].step;
@@ -682,6 +682,7 @@ CASE(intervals_are_those_of_the_line)
 CASE(few_points_of_a_long_time_come_as_points)
 {
     enum { MOST = 3000, DAY = 86400 };
+    srand((unsigned)sweep_seed());
     struct history_point *points = mem_array(MOST, sizeof(*points));
     int count = make_points(points, MOST, false);
     write_points(s, 0, points, count);
