@@ -269,13 +269,16 @@ test('what is no tile is refused by name', options, async () => {
     assert.ok(client.frames[0].flags & KEY);
     const widest = Math.max(...client.frames.map(({ full_width: width }) => width));
     assert.ok(widest <= 2730, `${widest}: three of 4096 are more than a picture has`);
-    const part = () => JSON.stringify(tilesSaid(client).part), before = part(), said = client.texts.length;
+    const part = () => tilesSaid(client).part, before = part(), said = client.texts.length;
     for (let i = 0; i < 3; i++) {
         const welcomes = client.texts.filter(({ type }) => type === 'welcome').length;
         plant.daemon.child.kill('SIGHUP');
         await client.until('another plant', () => client.texts.filter(({ type }) => type === 'welcome').length > welcomes);
     }
     await client.until('its place again', () => client.texts.slice(said).some(({ type }) => type === 'tiles'));
-    assert.equal(part(), before, 'it is laid out by its display, not by what that was made to');
+    // the daemon moves the parts within their margin every three minutes, so the place may differ by the margin on both sides
+    const most = 2 * MARGIN / widest;
+    assert.ok(part().every((share, i) => Math.abs(share - before[i]) <= (i < 2 ? most : 1e-6)),
+        `laid out by another size than the display's: ${part()} instead of ${before}`);
     client.close();
 });
