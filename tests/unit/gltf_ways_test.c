@@ -513,7 +513,7 @@ CASE(heads_are_checked)
         { "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[5]}", "node 0: is not an object" },
         { "{\"asset\":{\"version\":\"2.0\"},\"scene\":3}", "scene: there is no scene 3" },
         { "{\"asset\":{\"version\":\"2.0\"},\"images\":[{}]}", "image 0 has neither a uri nor a bufferView" },
-        { "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":3}]}", "buffer 0 has no uri" },
+        { "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":3}]}", "the bytes of buffer 0 are missing" },
         { "\xEF\xBB\xBF{\"asset\":{\"version\":\"2.0\"},\"scene\":3}", "scene: there is no scene 3" },
         { "{\"asset\":{\"version\":\"2.0\"}", "JSON: line 1" },
         { "", "JSON: line 1" },
