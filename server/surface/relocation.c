@@ -36,11 +36,13 @@ struct relocation {
     pthread_cond_t idle;
     /* --- below: under lock */
     enum relocation_state state;
-    struct surface *surface; /* surface of the asset; readable without the lock once the state is ready */
-    /* positions of the shape's vertices on the surface; readable without the lock once the state is ready; NULL: not needed, because the
-       surface was built from these vertices */
+    /* surface of the asset, on which distances are computed; once it is built, it is read without the mutex */
+    struct surface *surface;
+    /* positions of the asset's vertices on the surface; once the surface is built, they are read without the mutex; NULL: not needed,
+       because the surface was built from these vertices */
     struct vertex_embedding *embedding;
-    struct relocation_ask *asks; /* requests that wait or are being computed, oldest first */
+    /* requests for the distances from a sensor's place that wait or are being computed, oldest first */
+    struct relocation_ask *asks;
     uint64_t last_ticket;
     size_t jobs; /* number of jobs that were submitted to the workers and have not finished; relocation_destroy() waits for them */
 };

@@ -22,8 +22,8 @@
 #define WELD_OF_SIZE 1e-6
 #define TOLERANCE_OF_SIZE 5e-4
 #define SAMPLES 15000.0        /* number of points that sampling should add to the model's vertices */
-#define SPACING_GROWTH 1.25    /* if sampling gives too many points, it is repeated with a spacing larger by this factor */
-#define POINTS_PER_SPACING 2.7 /* number of points that sampling by halving edges gives in a square whose side is the spacing; measured */
+#define SPACING_GROWTH 1.25    /* if sampling adds too many points, it is repeated with a maximum edge length larger by this factor */
+#define POINTS_PER_SPACING 2.7 /* number of points that halving edges adds in a square whose side is the maximum edge length; measured */
 
 static double seconds_since(int64_t *since_ns)
 {

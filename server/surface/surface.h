@@ -97,12 +97,12 @@ void surface_find_point(const struct surface *surface, const double point_m[3], 
 /* Finds the surface point nearest to point_m within limit_m, as surface_find_point() does. Returns false if no point is that near. */
 bool surface_find_point_within(const struct surface *surface, const double point_m[3], const double normal[3], double limit_m,
                                struct surface_point *hit);
-/* Finds the nearest surface point within limit_m on either of two model triangles (which may be equal). Returns false if no visible one
-   exists. */
+/* Finds the nearest visible surface point within limit_m that is on one of two model triangles (which may be the same), or on a coplanar
+   one merged with them. Returns false if there is none. */
 bool surface_find_point_on(const struct surface *surface, const double point_m[3], double limit_m, const uint32_t triangles[2],
                            struct surface_point *hit);
-/* Finds the nearest surface point within limit_m on a model triangle for which allowed(arg, triangle) returns true. Returns false if no
-   visible one exists. */
+/* Finds the nearest visible surface point within limit_m that is on a model triangle for which allowed(arg, triangle) returns true. Returns
+   false if there is none. */
 bool surface_find_point_among(const struct surface *surface, const double point_m[3], double limit_m,
                               bool (*allowed)(const void *arg, uint32_t triangle), const void *arg, struct surface_point *hit);
 

@@ -10,7 +10,7 @@
 #include "base/mem.h"
 #include "surface/surface_impl.h"
 
-/* number of sources per block; one thread computes their distances one after the other, then stores the block's results together */
+/* number of sources per block; one thread computes the distances from all sources of a block, then stores them together */
 #define BLOCK 16
 
 struct solve {
@@ -30,8 +30,8 @@ static const struct stray *stray_of(const struct surface *surface, uint32_t vert
     return at < surface->stray_count && surface->strays[at].vertex == vertex ? &surface->strays[at] : NULL;
 }
 
-/* Returns the distance at a stray vertex (its triangles have no area), from a source. distances_m: distances of the source at all points,
- * `apart` elements from one point to the next. */
+/* Returns the distance from a source to a stray vertex (its triangles have no area), interpolated between the corners of the nearest
+ * surface triangle. distances_m: distances from the source to all points, `apart` elements from one point to the next. */
 static float at_stray(const struct stray *stray, const float *distances_m, size_t apart)
 {
     double sum = 0;
@@ -64,8 +64,8 @@ struct abreast { /* up to PROPAGATION_ABREAST sources whose distances one thread
     size_t source[PROPAGATION_ABREAST], count;
 };
 
-/* Computes the distances of the waiting sources. block: buffer for the columns of the sources from index `first` on, used only if a field
- * is filled. Returns false if out of memory. */
+/* Computes the distances from the sources collected in `abreast`. block: receives the distances to all points, a column per source,
+ * beginning with source `first`; NULL: the distances to the model's vertices go to solve->out. Returns false if out of memory. */
 static bool propagate(const struct solve *solve, struct abreast *abreast, float *block, size_t first)
 {
     const struct surface *surface = solve->surface;

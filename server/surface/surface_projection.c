@@ -7,11 +7,13 @@
 #include "surface/surface_impl.h"
 
 #define SPOT_ON_SURFACE 1e-3 /* distance from a triangle below which a point counts as lying on it, in multiples of the mean edge length */
-/* the search over pieces ends when a piece is found within this distance of the point, in multiples of the mean edge length */
+/* A model triangle has pieces: the surface's triangles that lie in it. The search for the nearest piece ends when one is found within this
+   distance of the point, in multiples of the mean edge length. */
 #define ON_PIECE 1e-5
-/* if the model triangles have more pieces in the surface than this, the bounding volume hierarchy is searched instead of piece by piece */
+/* if the given model triangles are divided into more surface triangles (pieces) than this, the bounding volume hierarchy is searched
+   instead of each piece */
 #define MAX_TRIED_PIECES 24
-/* a triangle with a fitting normal is preferred to the nearest triangle if it is at most this many times as far away */
+/* a triangle whose front faces along the requested normal is preferred to the nearest triangle, up to this many times its distance */
 #define FACING_FACTOR 4.0
 #define ROUNDING 1e-9 /* relative amount by which search limits are enlarged, because computed distances have rounding errors */
 

@@ -37,7 +37,7 @@ static size_t hash_of(const struct point_table *table, const double place_m[3])
     return XXH3_64bits(place_m, 3 * sizeof(*place_m)) & table->mask;
 }
 
-/* Returns the slot of the position, or a free slot where it would be inserted. */
+/* Returns the index of the hash table's slot with the point at this position, or of the free slot where such a point would be inserted. */
 static size_t slot_of(const struct point_table *table, const double place_m[3])
 {
     size_t slot = hash_of(table, place_m);

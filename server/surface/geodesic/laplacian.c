@@ -99,7 +99,8 @@ cholmod_sparse *laplacian_assemble(const struct laplacian *laplacian, const doub
                 rows[n] = a > b ? a : b;
                 columns[n] = a > b ? b : a;
                 values[n] = stiffness * s->area * (gx[i] * gx[j] + gy[i] * gy[j]);
-                /* edge flips can create an edge from a point to itself, whose matrix element counts for both corners */
+                /* Edge flips can create an edge from a point to itself. Its element then lies on the matrix's diagonal, which is stored
+                   once, and counts twice: from each end of the edge to the other. */
                 if (i != j && a == b)
                     values[n] *= 2;
             }

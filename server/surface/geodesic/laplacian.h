@@ -27,8 +27,8 @@ struct laplacian {
 bool laplacian_init(struct laplacian *laplacian, const struct intrinsic *in);
 /* Frees the arrays. */
 void laplacian_finish(struct laplacian *laplacian);
-/* Starts CHOLMOD with settings for factoring Laplacians: no output, one ordering, and single-threaded BLAS, since the workers use all
- * cores. */
+/* Starts CHOLMOD with settings for factoring Laplacians: no printed messages, AMD as the only ordering of the rows, and single-threaded
+ * BLAS, since the workers use all cores. */
 void laplacian_start(cholmod_common *common);
 /* Returns the matrix diag(mass) + stiffness * L (L: cotangent Laplacian), stored as the lower triangle of a symmetric matrix. The caller
  * frees it. NULL: out of memory. */

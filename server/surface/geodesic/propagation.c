@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Prepares a mesh for the propagation of distances: lists the triangles around each point in order (its fan). */
+/* Prepares a mesh for the computation of geodesic distances, which pass from each point to its neighbours: lists the neighbours and
+   triangles around each point in angular order (its fans). */
 #include "surface/geodesic/propagation.h"
 
 #include <string.h>

@@ -44,7 +44,7 @@ static bool clear(const struct propagation *propagation, struct propagation_fron
         front->buckets = mem_try_array(propagation->bucket_count, sizeof(*front->buckets));
         if (!front->distance_m || !front->straight_m || !front->settled || !front->buckets)
             return false;
-        /* initialises the buckets only once, because each propagation leaves them empty */
+        /* marks the buckets of the priority queue as empty when they are allocated; each propagation leaves them empty for the next one */
         memset(front->buckets, 0xff, propagation->bucket_count * sizeof(*front->buckets));
     }
     for (size_t i = 0; i < count; i++)
@@ -79,7 +79,8 @@ static inline void offer(const struct propagation *propagation, struct propagati
         return;
     if (front->item_count == front->item_capacity)
         mem_grow(&front->items, &front->item_capacity, front->item_count + 1, sizeof(*front->items));
-    /* converts by way of int64_t, which takes a single instruction; correct, because the value is not negative */
+    /* Converts the distance to the number of a bucket by way of int64_t, for which the processor has a single instruction. Correct, because
+       the distance is not negative. */
     uint64_t number = (uint64_t)(int64_t)(distance_m * propagation->steps_per_m);
     uint32_t *bucket = &front->buckets[(number > front->at ? number : front->at) & (propagation->bucket_count - 1)];
     front->items[front->item_count] = (struct propagation_item){ point, *bucket };
@@ -175,7 +176,8 @@ SIMD_BODY bool next_point(const struct propagation *propagation, struct front_tu
         while (*bucket != TRIMESH_NONE) {
             struct propagation_item item = front->items[*bucket];
             *bucket = item.next;
-            if (front->settled[item.point]) /* skips a point that was already processed with a shorter distance */
+            /* a point is in the queue once for each time its distance was lowered; only its entry with the shortest distance counts */
+            if (front->settled[item.point])
                 continue;
             front->settled[item.point] = 1;
             turn->d = front->distance_m[item.point] - (lanes){ 0 };
@@ -254,8 +256,8 @@ static void look_through(const struct propagation *propagation, struct propagati
     lay_out_apex(window, in->lengths[t][(side + 1) % 3], in->lengths[t][(side + 2) % 3], apex);
     double distance_m = hypot(apex[0], apex[1]);
     bool after_low = cross(window->low, apex) >= 0, before_high = cross(apex, window->high) >= 0;
-    /* stops if the corner is outside of the window (visible part of an edge) on both sides: that is only so if its position is NAN, and the
-       windows would then not become narrower */
+    /* The triangle's third corner divides the window (part of an edge that the source sees) into two narrower ones. It is on neither side
+       only if its position is NAN. The windows would then stay as wide, and far too many would be followed. */
     if (!after_low && !before_high)
         return;
     if (after_low && before_high && distance_m < propagation->near_m)
@@ -277,8 +279,8 @@ struct laid {
     double corners[3][2];
 };
 
-/* Unfolds the source's triangle into the plane. given: its corners in the mesh. Returns false if one of the triangle's edges was flipped:
-   then `given` is not a triangle of the intrinsic triangulation. */
+/* Unfolds the triangle that contains the source into the plane, if the intrinsic triangulation still has this triangle. given: its corners
+   in the mesh. Returns false if one of its edges was flipped. */
 static bool lay_out_kept(const struct intrinsic *in, const uint32_t given[3], uint32_t tri, const double weights[3], struct laid *laid)
 {
     const uint32_t *v = in->points[tri];
@@ -329,9 +331,9 @@ static void place_above(double side, double to_r_m, double to_l_m, double out[2]
     intrinsic_layout((const double[3]){ side, to_l_m, to_r_m }, &out[0], &out[1]);
 }
 
-/* Places the source in the plane of the intrinsic triangles, if its own triangle `given` was flipped away. The plane is that of the
-   triangles behind a side that `given` and the intrinsic triangulation share. The intrinsic triangles cover `given` if a straight line
-   finds its third corner at the expected position. Returns false if not; then another side must be tried. */
+/* Unfolds the intrinsic triangle that contains the source into the plane, where edges of the mesh triangle around the source were flipped.
+   Starts at side `entered`, which this mesh triangle shares with the intrinsic triangulation. A straight line to the mesh triangle's third
+   corner checks that the intrinsic triangles cover the mesh triangle. Returns false if they do not; then another side must be tried. */
 static bool lay_out_beyond(const struct propagation *propagation, uint32_t entered, uint32_t third, const double source[3],
                            struct laid *laid)
 {

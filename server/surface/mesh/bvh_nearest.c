@@ -67,8 +67,8 @@ void triangle_nearest(const double p[3], const double a[3], const double b[3], c
     }
 }
 
-/* Quick test: returns true only if the triangle's plane is farther from p than the distance. It rejects most triangles in a box that
- * contains p. */
+/* Returns true only if the triangle's plane is farther from p than the square root of distance2. Saves the slower search for the triangle's
+ * nearest point in most triangles whose bounding box contains p. */
 static bool plane_is_farther(const double p[3], const double a[3], const double b[3], const double c[3], double distance2)
 {
     double ab[3], ac[3], ap[3], n[3];
@@ -209,7 +209,8 @@ static inline float in_floats(double best2)
     return most < (double)FLT_MAX ? (float)most : FLT_MAX;
 }
 
-/* Computes the squared distances of p from a node's eight boxes. Returns a bit mask: bit i is set if box i is within the limit. */
+/* Type of the functions that compute the squared distances of p from a node's eight boxes (plain C or AVX2). Return a bit mask: bit i is
+   set if the squared distance of box i is at most limit2. */
 typedef unsigned look(const struct bvh_wide *node, const float p[3], float limit2, float distance2[BVH_WIDE]);
 
 static unsigned look_plain(const struct bvh_wide *node, const float p[3], float limit2, float distance2[BVH_WIDE])

@@ -17,7 +17,8 @@ struct query { /* a box, or a ray */
     double origin[3], inverse[3]; /* inverse: 1 / direction */
 };
 
-/* Returns a bit mask: bit i is set if the query's box or ray meets box i of the node. */
+/* Type of the functions that test a node's eight boxes (for a box or a ray; plain C or AVX2). Return a bit mask: bit i is set if the
+   query's box or ray meets box i of the node. */
 typedef unsigned meet(const struct bvh_wide *node, const struct query *query);
 
 static unsigned meet_box_plain(const struct bvh_wide *node, const struct query *query)

@@ -9,7 +9,8 @@
 #include "base/mem.h"
 
 #define MAX_STAR 48 /* a point is removed only if at most this many triangles (its star) are around it; size of arrays */
-/* smallest height of a triangle that a collapse creates, relative to its longest side, unless the triangle that it replaces was thinner */
+/* A collapse moves a point onto a neighbour, to remove the point. It must not create a triangle whose height is below this fraction of its
+   longest side, unless the triangle was thinner before. */
 #define MIN_HEIGHT 0.02
 #define ROUNDING_OF_AREA 1e-9
 
@@ -89,8 +90,8 @@ static bool same_part(const struct thin *thin, uint32_t s, uint32_t t)
     return thin->params->part[s] == thin->params->part[t];
 }
 
-/* Returns whether collapsing an edge changes neither the visible nor the hidden area of any part. grown: change of the doubled area of each
-   triangle around the removed point. enough: tolerance of the sum of these changes. */
+/* Returns whether removing a point changes neither the visible nor the hidden area of any part. star: the triangles around the point;
+   grown: by triangle of the star, change of twice its area; enough: tolerance of the sum of these changes. */
 static bool keeps_areas(const struct thin *thin, const struct star *star, const double grown[MAX_STAR], double enough)
 {
     for (size_t i = 0; i < star->count; i++) {

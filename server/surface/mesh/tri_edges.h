@@ -41,8 +41,8 @@ bool tri_edges_run_alike(const struct tri_edges *e, uint32_t side, uint32_t othe
  * `first`) or -1 (opposite); all elements must be 0 before. Writes these triangles to `joined`, which has room for all. Sets *two_sided to
  * false where no consistent orientation exists, as on a Moebius strip. Returns the number of these triangles. */
 size_t tri_edges_orient(const struct tri_edges *e, uint32_t first, signed char *facing, uint32_t *joined, bool *two_sided);
-/* Orients all triangles relative to their neighbours: facing[triangle] receives 1 or -1. In each set of triangles connected by such edges,
-   the triangle with the lowest index gets 1. facing: zeroed by the caller. */
+/* Orients all triangles relative to their neighbours: facing[triangle] receives 1 or -1. In each set of triangles connected by edges of
+   exactly two triangles, the triangle with the lowest index gets 1. facing: zeroed by the caller. */
 void tri_edges_orient_all(const struct tri_edges *e, signed char *facing);
 
 #endif

@@ -35,7 +35,7 @@ void edge_table_finish(struct edge_table *table)
     *table = (struct edge_table){ 0 };
 }
 
-/* Returns the key of an edge in the hash table: (lower index + 1, higher index), so that 0 marks an empty slot. */
+/* Returns the key of an edge in the hash table: (lower index + 1, higher index). It is never 0, which marks an empty slot. */
 static uint64_t edge_key(uint32_t a, uint32_t b)
 {
     return a < b ? (uint64_t)(a + 1) << 32 | b : (uint64_t)(b + 1) << 32 | a;
@@ -150,8 +150,8 @@ void trimesh_add_tri(struct trimesh *mesh, uint32_t a, uint32_t b, uint32_t c, u
     mesh->tri_source[mesh->tri_count++] = source;
 }
 
-/* Hash grid with cells of twice the welding distance. A lookup reads the eight cells that may contain points within the welding
- * distance. */
+/* Hash grid that finds points near enough to be welded (merged). Its cells have twice the welding distance as side, so that a lookup reads
+ * only the eight cells that may contain such points. */
 struct weld_grid {
     double cell_m;
     uint32_t *heads, *next;
@@ -250,8 +250,8 @@ static void sort3(uint32_t v[3])
             }
 }
 
-/* Returns the index that a triangle has among the triangles seen so far. Triangles with the same three points, in any order, have the same
- * index. */
+/* Returns the index of a triangle's three points, counted from 0 in the order in which they first occur. Finds duplicate triangles:
+ * triangles with the same three points, in any order, get the same index. */
 static uint32_t tri_number(struct edge_table *pairs, struct edge_table *seen, const uint32_t tri[3])
 {
     uint32_t v[3] = { tri[0], tri[1], tri[2] };

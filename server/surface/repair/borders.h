@@ -5,7 +5,8 @@
 #include "surface/repair/parts.h"
 
 struct borders {
-    uint32_t (*edges)[2], *edge_tri; /* border edges: both points of each edge; edge_tri: the one triangle at each edge */
+    /* edges: the two points of each border edge (an edge with one face); edge_tri: by border edge, its one triangle */
+    uint32_t (*edges)[2], *edge_tri;
     size_t edge_count;
     uint32_t *points; /* points on border edges */
     size_t point_count;

@@ -41,7 +41,7 @@ struct solids {
     struct solid *at;
     size_t count;
     uint32_t (*tris)[3];    /* triangles of all closed parts, part after part */
-    signed char *sides;     /* orientations of all these triangles (body_parts.side), in the same order */
+    signed char *sides;     /* by element of `tris`: 1: its winding faces outwards, -1: reversed, 0: it bounds no body */
     struct solid **of_part; /* by part: the part as a struct solid; NULL: the part is not closed */
 };
 
@@ -153,8 +153,9 @@ static void count_hit(void *arg, uint32_t tri, double t)
     hits->count++;
 }
 
-/* Returns whether the ray's origin is inside the solid. Two faces at one point are a wall between two bodies, which a ray leaves and enters
- * there, so they count twice. */
+/* Returns whether the ray's origin is inside the solid: the ray then intersects the solid an odd number of times. Two faces at one point
+ * are a wall between two bodies, which a ray leaves and enters there, so they count twice. In a solid that intersects itself, the
+ * numbers of entries and exits must differ. */
 static bool says_inside(const struct hits *hits)
 {
     int bounds = hits->count > HITS ? hits->count - HITS : 0;
@@ -229,8 +230,8 @@ static char is_hidden_by(const struct interior_face *face, const struct solid *s
     double length = vec_length(n);
     for (int axis = 0; axis < 3; axis++)
         n[axis] /= length;
-    /* lies: the tested face lies on a face of the part, by their normals; flush: the same, but true also for slivers, whose normals are
-       arbitrary */
+    /* lies: the tested face is parallel to the nearest face of the part, and so lies on it; flush: the same, but true also if the tested
+       face is a sliver, whose normal is arbitrary */
     bool lies = fabs(vec_dot(n, face->normal)) > FLUSH, flush = lies || face->height_m < SLIVER * reach_m;
     if (face->own && flush && is_between(face, n, solid, face->own, BESIDE * reach_m, BARELY * reach_m))
         return INTERIOR_INSIDE;
@@ -279,8 +280,8 @@ static void search_some(void *arg, size_t begin, size_t end)
 
 /* --- regions ------------------------------------------------------------------------------------------------------------------ */
 
-/* Marks points at which triangles of several parts meet. Only at such a point can a part pass from the outside of another part to its
- * inside. */
+/* Sets mixed[point] to 1 for points at which triangles of several parts meet. Only at such a point can a part pass from the outside of
+ * another part to its inside. */
 static void mix_parts(const struct trimesh *mesh, const uint32_t *part, char *mixed)
 {
     uint32_t *of_point = mem_array(mesh->point_count, sizeof(*of_point));
@@ -294,8 +295,8 @@ static void mix_parts(const struct trimesh *mesh, const uint32_t *part, char *mi
     mem_free(of_point);
 }
 
-/* Marks points on edges with three faces or more, and points where a part crosses itself. Only at such a point can a part pass from its own
- * outside to its own inside. */
+/* Sets mixed[point] to 1 for points on edges with three faces or more, in parts that have such edges. Only there, and where a part crosses
+ * itself, can a part pass from its own outside to its own inside. */
 static void mix_branches(const struct trimesh *mesh, const uint32_t *part, const char *tangled, char *mixed)
 {
     struct edge_table edges;
@@ -330,7 +331,8 @@ static uint32_t *find_regions(const struct trimesh *mesh, const char *mixed)
     return region;
 }
 
-/* Returns the region of a triangle: that of a corner that is not marked. TRIMESH_NONE: all corners are marked. */
+/* Returns the region of a triangle: that of a corner that is not marked in `mixed`. (A region is a set of points that are connected without
+   passing a marked point.) TRIMESH_NONE: all corners are marked. */
 static uint32_t region_of(const struct trimesh *mesh, size_t t, const char *mixed, const uint32_t *region)
 {
     for (int i = 0; i < 3; i++)
@@ -350,13 +352,13 @@ static void ask(struct interior_search *search, struct workers *workers, const s
     workers_for(workers, count, 256, search_some, search);
 }
 
-/* Corrects regions (sets of connected points) in which only some triangles were tested, and a few untested ones differ from these. Wherever
-   hidden and visible triangles of a region meet at a point, tests all triangles at that point. Repeats this until all triangles at such
-   points are tested. */
+/* Completes the search for hidden triangles in regions (sets of connected points) of which only a sample was tested, as a few other
+   triangles may differ from the sample. Wherever hidden and visible triangles of a region meet at a point, tests all triangles at that
+   point. Repeats this until all triangles at such points are tested. */
 static void ask_beside(struct interior_search *search, struct workers *workers, const char *mixed, size_t *asked, char *was_asked)
 {
     const struct trimesh *mesh = search->mesh;
-    /* by point: bit 0: a visible triangle has this corner; bit 1: a hidden triangle has this corner */
+    /* by point: bit 0: the point is a corner of a visible triangle; bit 1: it is a corner of a hidden triangle */
     char *kinds = mem_array(mesh->point_count, 1);
     size_t count;
     do {

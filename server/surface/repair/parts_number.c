@@ -108,8 +108,8 @@ static bool stands(const struct open_branch *branch)
     return branch->runs_through && branch->faces == 1;
 }
 
-/* a set of patches (triangles connected by edges with two faces) that are connected at edges through which no patch continues; stored at
- * the index of its lowest triangle */
+/* sums over a set of patches (triangles connected by edges with two faces), which tell whether the set is closed; its patches are connected
+ * at edges through which no patch continues; stored at the index of its lowest triangle */
 struct core {
     double open_m, area_m2;
     bool stands;

@@ -25,7 +25,7 @@
    each other */
 #define FLUSH 0.99
 
-/* --- seams: rounds that merge points alternate with rounds that insert points into edges --- */
+/* --- seams (gaps between border edges): rounds that merge points alternate with rounds that insert points into edges --- */
 
 struct seams {
     const struct trimesh *mesh;
@@ -34,7 +34,7 @@ struct seams {
     /* tolerance_m: widest gap that is closed; end_m: minimum distance of a point from both ends of an edge into which it is inserted (a
        nearer point is merged with that end in another round) */
     double tolerance_m, end_m;
-    bool fits;            /* true: the current round closes exact fits only, in which the gap is nearly zero */
+    bool fits;            /* true: the current round joins only borders with nearly no gap between them */
     struct nearest_edge { /* by border point: the nearest position on the border edges, except those that end at the point */
         double distance_m, t;
         uint32_t edge;
@@ -97,7 +97,7 @@ static void join_near(void *arg, size_t i, size_t j, double distance_m)
         mesh_edit_merge_points(s->edit, b->points[i], b->points[j], distance_m);
 }
 
-/* Returns the other end of a border edge of which p is an end. n: position of the edge's index in the array `at`. */
+/* Returns the other end of a border edge of which p is an end. n: index in borders->at, whose element is the edge's index. */
 static uint32_t beyond(const struct seams *s, uint32_t n, uint32_t p)
 {
     const uint32_t *edge = s->borders->edges[s->borders->at[n]];

@@ -28,8 +28,8 @@ struct repair_report {
  * receives the point's new index. */
 void repair_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, struct repair_report *report);
 
-/* Merges border points with border points only, as one round of repair_seams() does, but not where this would join two faces that lie on
- * each other. target: as in repair_seams(). */
+/* Merges points on border edges (edges with one face) within tolerance_m of each other, but not where this would join two faces that lie on
+ * each other. Unlike repair_seams(), inserts no points into edges. target[point] receives the point's new index. */
 void repair_join_points(struct trimesh *mesh, double tolerance_m, uint32_t *target, struct repair_report *report);
 
 /* Joins parts in contact. Where an edge passes through a face, also one of its own part (recorded in parts->crossed), a point is inserted

@@ -21,7 +21,9 @@ struct contacts {
     const uint32_t *part, *body; /* by triangle of `mesh`: its part and its body */
     const struct bvh *bvh;
     struct mesh_edit *edit;
-    uint32_t own;   /* number of the part to which the edge being tested belongs, or of the body to which the point being tested belongs */
+    /* while edges are tested for crossings: the part of the current edge; while points are tested for contact: the body of the current
+       point */
+    uint32_t own;
     double reach_m; /* reach (distance up to which a part counts as touching) of the part of the point or rim being tested */
     uint32_t edge[2];
     uint32_t *touched; /* by point: the body that it touches, or TRIMESH_NONE */
@@ -45,8 +47,8 @@ static double reach_of(const struct contacts *c, uint32_t tri)
     return c->parts->reach_m[c->part[tri]];
 }
 
-/* Returns whether both ends of the current edge are far enough from the plane of triangle v. Otherwise the edge's face and the triangle,
- * which belong to one part, may lie on each other without crossing. */
+/* Returns whether both ends of the edge being tested (c->edge) are far enough from the plane of the triangle with the points v. Otherwise
+ * the edge's face and the triangle, which belong to one part, may lie on each other without crossing. */
 static bool stands_clear(const struct contacts *c, const uint32_t *v)
 {
     double n[3], up[3];
@@ -99,7 +101,8 @@ static void set_into_face(const struct contacts *c, uint32_t point, uint32_t tri
     mesh_edit_insert_in_tri(c->edit, point, tri, distance_m);
 }
 
-/* Calls `visit` for each triangle whose bounding box is within margin_m of that of the current edge. */
+/* Calls `visit` for each triangle near the edge being tested (c->edge): each whose bounding box is within margin_m of the edge's bounding
+   box. */
 static void look_around(struct contacts *c, void (*visit)(void *arg, uint32_t tri), double margin_m)
 {
     const double *p = c->mesh->points[c->edge[0]], *q = c->mesh->points[c->edge[1]];

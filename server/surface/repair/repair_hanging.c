@@ -21,7 +21,7 @@ struct hanging {
     const struct borders *borders;
     struct mesh_edit *edit;
     double within_m;
-    uint32_t *last; /* by border point: index of the edge into which it was inserted last */
+    uint32_t *last; /* by border point: index of the edge into which it was inserted last; prevents a second insertion there */
 };
 
 /* Returns how far along the edge a-b the point p lies, as a fraction of its length; *distance_m receives the distance of p from the edge.

@@ -10,8 +10,8 @@
 
 /* Returns whether the triangle has this point as a corner. */
 bool repair_tri_has(const struct trimesh *mesh, uint32_t tri, uint32_t point);
-/* Applies the collected edits to the mesh, counts the bridges in the report, and frees the edit. The last `crossings` points of the mesh
- * are each inserted in two places, but count as one bridge. */
+/* Applies the collected edits to the mesh, counts the bridges (pairs of joined points) in the report, and frees `edit`. The last
+ * `crossings` points of the mesh are those at which an edge passes through a face. Each is inserted into both, but counts as one bridge. */
 void repair_apply(struct mesh_edit *edit, struct trimesh *mesh, uint32_t *target, size_t target_count, size_t crossings,
                   struct repair_report *report);
 /* Inserts the points of straight borders into edges that run along the border within within_m and share one end with it. At such an edge
