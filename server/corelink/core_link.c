@@ -320,7 +320,7 @@ static void on_text(struct core_link *link)
     else if (!strcmp(type, "refused"))
         on_refused(link, message);
     else if (!strcmp(type, "standby"))
-        end(link, "this core is standby and has not yet connected to a core that leads");
+        end(link, "this core is standby and does not lead");
     else if (!strcmp(type, "core"))
         on_core(link, message);
     else if (!strcmp(type, "lease") && (link->taken || link->votes))

@@ -44,8 +44,7 @@ static int ready(struct server_context *server, struct http_exchange *request)
 {
     hear_balancer(server, request);
     if (server->params.keeper && !core_end_leads(server))
-        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE,
-                                   "this core is standby and has not yet connected to a core that leads\n");
+        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "this core is standby and does not lead\n");
     if (is_asked_as_renderer(request) && !server->params.is_core && !server->params.plant.core_link)
         return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE,
                                    "not a renderer: this daemon was started without --role render and polls the devices itself\n");
