@@ -7,11 +7,6 @@
 #include "base/mem.h"
 #include "value/quality.h"
 
-static int unit_of(const struct plant *plant, const struct plant_tag *tag)
-{
-    return tag->signal.modbus_unit >= 0 ? tag->signal.modbus_unit : plant->sources[tag->source].unit;
-}
-
 /* Returns the index of the device with that source and unit, or -1. Searches from the newest device back, because tags of one device
    mostly follow each other. */
 static int find(const struct devices *devices, int source, int unit)
@@ -52,7 +47,7 @@ struct devices *devices_create(const struct plant *plant)
     devices->statuses = mem_array(plant->tag_count ? plant->tag_count : 1, sizeof(*devices->statuses));
     for (size_t i = 0; i < plant->tag_count; i++) {
         const struct plant_tag *tag = &plant->tags[i];
-        devices->of_tag[i] = tag->source < 0 ? -1 : find_or_add(devices, tag->source, unit_of(plant, tag));
+        devices->of_tag[i] = tag->source < 0 ? -1 : find_or_add(devices, tag->source, plant_tag_modbus_unit(plant, tag));
     }
     name_all(devices, plant);
     return devices;

@@ -38,8 +38,7 @@ static double span_of(const struct plant *plant, const struct plant_tag *tag)
 /* Returns the sampling interval of a tag whose source sends only changes; 0 for other tags. */
 static int64_t sampling_of(const struct plant *plant, const struct plant_tag *tag)
 {
-    int source_ms = tag->source >= 0 ? plant->sources[tag->source].poll_ms : 1000;
-    return tag->validity.stale_s < PLANT_NEVER_STALE_S ? 0 : (int64_t)(tag->signal.scan_ms ? tag->signal.scan_ms : source_ms) * 1000;
+    return tag->validity.stale_s < PLANT_NEVER_STALE_S ? 0 : (int64_t)plant_tag_scan_ms(plant, tag) * 1000;
 }
 
 struct history_tag *history_tags(const struct plant *plant)

@@ -440,6 +440,11 @@ int plant_find_environment(const struct plant *plant, const char *name);
 int plant_find_tag(const struct plant *plant, const char *name);
 /* Returns the unit of a tag's readings; "": it has none, or `tag` is -1. */
 const char *plant_tag_unit(const struct plant *plant, int tag);
+/* Returns the interval in milliseconds at which a tag's source reads the tag: its own scan_ms, else the source's poll_ms; 1000 for a tag
+   without a source. */
+int plant_tag_scan_ms(const struct plant *plant, const struct plant_tag *tag);
+/* Returns the Modbus unit (server address) of a tag that has a source: its own, else that of the source. */
+int plant_tag_modbus_unit(const struct plant *plant, const struct plant_tag *tag);
 /* Returns whether readings of a tag are simulated: its source is simulated or, for a derived tag, the source of a tag in its expression. */
 bool plant_tag_simulated(const struct plant *plant, int tag);
 /* Returns a folder of the systemd service plantcastd@NAME, whose plant file is /etc/plantcast/NAME/plant.yaml; NULL: `path` is not that of

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds assets, groups and tags of a plant by name. */
+/* Finds assets, groups and tags of a plant by name, and what a tag inherits from its source. */
 #include <string.h>
 
 #include "base/math/search.h"
@@ -46,4 +46,15 @@ const char *plant_tag_unit(const struct plant *plant, int tag)
 {
     const char *unit = tag < 0 ? NULL : plant->tags[tag].unit;
     return unit ? unit : "";
+}
+
+int plant_tag_scan_ms(const struct plant *plant, const struct plant_tag *tag)
+{
+    int source_ms = tag->source >= 0 ? plant->sources[tag->source].poll_ms : 1000;
+    return tag->signal.scan_ms > 0 ? tag->signal.scan_ms : source_ms;
+}
+
+int plant_tag_modbus_unit(const struct plant *plant, const struct plant_tag *tag)
+{
+    return tag->signal.modbus_unit >= 0 ? tag->signal.modbus_unit : plant->sources[tag->source].unit;
 }

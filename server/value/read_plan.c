@@ -18,11 +18,10 @@ struct register_place { /* register address of a tag; tags are sorted by these m
 static struct register_place place_of(const struct plant *plant, int tag_index)
 {
     const struct plant_tag *tag = &plant->tags[tag_index];
-    const struct plant_source *source = &plant->sources[tag->source];
     return (struct register_place){
-        .unit = tag->signal.modbus_unit >= 0 ? tag->signal.modbus_unit : source->unit,
+        .unit = plant_tag_modbus_unit(plant, tag),
         .table = (int)tag->signal.table,
-        .scan_ms = tag->signal.scan_ms > 0 ? tag->signal.scan_ms : source->poll_ms,
+        .scan_ms = plant_tag_scan_ms(plant, tag),
         .first = tag->signal.register_index,
         .end = tag->signal.register_index + decode_width(tag),
         .tag = tag_index,

@@ -345,18 +345,20 @@ CASE(names_are_unique)
     FOUND(c, { "tags.csv", 1, 1, "the header has no column 'Tag Name'" }, { "tags.csv", 1, 1, "unknown column 'Name' is ignored" });
 }
 
-/* A float begins one register too early, and 16-bit values are parts of larger ones. Equal addresses, bits and other tables are good. */
+/* A float begins one register too early, and 16-bit values are parts of larger ones. An address that states the source's own unit is the
+   same device (1!hr:51). Equal addresses, bits, other tables and other units are good. */
 CASE(values_that_share_some_registers_are_noticed)
 {
     plant_case_load(c, yaml, "Tag Name,Address,Data Type\nA,hr:10,Float\nB,hr:11,Float\nC,hr:20,Float\nD,hr:21,Int16\n"
                              "E,hr:30,Float\nF,hr:30,Float\nG,hr:30,Int32\nH,hr:31.3,\nI,ir:31,Int16\nJ,hr:32,Float\n"
-                             "K,hr:40,Double\nL,hr:41,Int16\nM,hr:43,Int16\n");
-    plant_case_assert_loaded(c, 4);
+                             "K,hr:40,Double\nL,hr:41,Int16\nM,hr:43,Int16\nN,hr:50,Float\nO,1!hr:51,Int16\nP,2!hr:51,Int16\n");
+    plant_case_assert_loaded(c, 5);
     FOUND(c,
           { "tags.csv", 3, 1, "Address: 'B' (float32) shares a register with 'A' (float32, line 2): check both addresses and data types" },
           { "tags.csv", 5, 1, "Address: 'D' (int16) shares a register with 'C' (float32, line 4): check both addresses and data types" },
           { "tags.csv", 13, 1, "Address: 'L' (int16) shares a register with 'K' (float64, line 12): check both addresses and data types" },
-          { "tags.csv", 14, 1, "Address: 'M' (int16) shares a register with 'K' (float64, line 12): check both addresses and data types" });
+          { "tags.csv", 14, 1, "Address: 'M' (int16) shares a register with 'K' (float64, line 12): check both addresses and data types" },
+          { "tags.csv", 16, 1, "Address: 'O' (int16) shares a register with 'N' (float32, line 15): check both addresses and data types" });
 }
 
 /* The source reads each tag every second, unless the tag has a Scan Rate in milliseconds. */

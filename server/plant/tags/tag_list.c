@@ -191,13 +191,13 @@ static void read_timing(struct tag_list *list)
     if (strcmp(cell_text(&list->columns, COL_SCAN_RATE), "0") != 0)
         cell_number(&list->columns, COL_SCAN_RATE, 10, 86400000, &scan_ms);
     tag->signal.scan_ms = (int)ceil(scan_ms);
-    int poll_ms = tag->signal.scan_ms ? tag->signal.scan_ms : tag->source >= 0 ? list->plant->sources[tag->source].poll_ms : 1000;
-    tag->validity.stale_s = is_announced(list) ? PLANT_NEVER_STALE_S : fmax(5, 3 * poll_ms / 1000.0);
+    const double read_s = plant_tag_scan_ms(list->plant, tag) / 1000.0;
+    tag->validity.stale_s = is_announced(list) ? PLANT_NEVER_STALE_S : fmax(5, 3 * read_s);
     tag->validity.states_stale = cell_number(&list->columns, COL_STALE, 1e-3, 1e6, &tag->validity.stale_s);
-    if (tag->validity.states_stale && is_modbus(list->plant, tag) && tag->validity.stale_s <= poll_ms / 1000.0)
+    if (tag->validity.states_stale && is_modbus(list->plant, tag) && tag->validity.stale_s <= read_s)
         cell_warning(&list->columns, COL_STALE,
                      "Stale s: '%.60s' is read every %.9g s, so each reading is stale before the next one arrives; write at least %.9g",
-                     tag->name, poll_ms / 1000.0, 3 * poll_ms / 1000.0);
+                     tag->name, read_s, 3 * read_s);
     cell_number(&list->columns, COL_FLATLINE, 1e-3, 1e8, &tag->validity.flatline_s);
 }
 
@@ -288,7 +288,7 @@ static int by_register(const void *pa, const void *pb, void *plant_ptr)
     const struct plant *plant = plant_ptr;
     const struct plant_tag *a = &plant->tags[*(const int *)pa], *b = &plant->tags[*(const int *)pb];
     const int keys[][2] = { { a->source, b->source },
-                            { a->signal.modbus_unit, b->signal.modbus_unit },
+                            { plant_tag_modbus_unit(plant, a), plant_tag_modbus_unit(plant, b) },
                             { (int)a->signal.table, (int)b->signal.table },
                             { a->signal.register_index, b->signal.register_index },
                             { a->line, b->line } };
@@ -310,7 +310,7 @@ static void check_overlaps(const struct plant *plant, struct diag *diag)
     const struct plant_tag *one = NULL; /* earlier tag in the table of `two` whose registers end last */
     for (size_t i = 0; i < count; i++) {
         const struct plant_tag *two = &plant->tags[tags[i]];
-        bool same = one && one->source == two->source && one->signal.modbus_unit == two->signal.modbus_unit &&
+        bool same = one && one->source == two->source && plant_tag_modbus_unit(plant, one) == plant_tag_modbus_unit(plant, two) &&
                     one->signal.table == two->signal.table;
         int from = same ? two->signal.register_index - one->signal.register_index : 0;
         int left = same ? registers_of(plant, one) - from : 0, length = registers_of(plant, two);

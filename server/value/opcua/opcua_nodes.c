@@ -35,7 +35,7 @@ void opcua_nodes_init(struct opcua_nodes *nodes, const struct plant *plant, int 
     nodes->at = mem_array(nodes->tag_count, sizeof(*nodes->at));
     for (size_t i = 0; i < nodes->tag_count; i++) {
         const struct plant_tag *tag = &plant->tags[nodes->tags[i]];
-        int sampling_ms = tag->signal.scan_ms ? tag->signal.scan_ms : plant->sources[source].poll_ms;
+        int sampling_ms = plant_tag_scan_ms(plant, tag);
         struct opcua_node *node = nodes->count > 0 ? &nodes->at[nodes->count - 1] : NULL;
         if (!node || strcmp(node->name_space, tag->signal.topic) != 0 || strcmp(node->id, tag->signal.path) != 0) {
             node = &nodes->at[nodes->count++];
