@@ -524,7 +524,7 @@ static int end_lines(struct month_file *file, uint32_t gap_quality, bool sends_g
     sqlite3_stmt *held = month_sql(file, SQL_ALL_HELD);
     struct month_row *rows = NULL;
     size_t capacity = 0, count = 0;
-    int code, error = 0;
+    int code;
     while ((code = database_step(&file->db, held)) == SQLITE_ROW) {
         mem_grow(&rows, &capacity, 2 * count + 2, sizeof(*rows));
         rows[count++] = (struct month_row){ .id = sqlite3_column_int64(held, 0), .point = month_point(held, 1) };
@@ -532,8 +532,7 @@ static int end_lines(struct month_file *file, uint32_t gap_quality, bool sends_g
             *ended_us = rows[count - 1].point.t_us;
     }
     sqlite3_reset(held);
-    if (!error)
-        error = database_fail(&file->db, code, "cannot read the newest samples");
+    int error = database_fail(&file->db, code, "cannot read the newest samples");
     for (size_t i = 0, ends = count; i < ends; i++)
         if (rows[i].point.quality != gap_quality) {
             rows[count] = rows[i];
