@@ -14,8 +14,8 @@ const choices = (kind, ...values) => values.map((value) => [value, say(`${kind}.
 const STEPS = 500, LARGEST_BOX = 2, EXTREMES = [['highest', 1], ['lowest', -1]];
 
 export class Views {
-    constructor({ session, modules, viewport, showTag, flyToTag }) {
-        Object.assign(this, { session, viewport, modules, showTag, flyToTag });
+    constructor({ session, modules, viewport, showTag, flyToTag, tell }) {
+        Object.assign(this, { session, viewport, modules, showTag, flyToTag, tell });
         this.panel = byId('views');
         this.at = byId('cut-at');
         const sides = choices('side', 'top', 'front', 'right', 'back', 'left', 'iso');
@@ -72,8 +72,10 @@ export class Views {
         const { model, params } = this.session, at = ({ index }) => model.readings[index];
         const [first, ...others] = model.tags.filter((tag) => tag.group === params.group && tag.asset && tag.position &&
             at(tag).quality !== 'bad' && at(tag).value !== null);
-        if (!first)
+        if (!first) {
+            this.tell(say('novalue'));
             return;
+        }
         const tag = others.reduce((best, one) => (sign * (at(one).value - at(best).value) > 0 ? one : best), first);
         this.close();
         this.showTag(tag);
