@@ -114,8 +114,9 @@ test('the page of a renderer has trends and the past', options, async () => {
     await travel(page, at(900));
     await page.waitForFunction((us) => globalThis.plantcast.session.time.atUs === us, at(900));
     await settle(page);
-    // the chart shows eight hours, in which readings came for less than an hour
-    await page.waitForFunction(() => globalThis.plantcast.trends.chart.data[0].length > 10);
+    await page.locator('#trend-span label', { hasText: '1 h' }).click();
+    // the chart shows an hour with a reading each second
+    await page.waitForFunction(() => globalThis.plantcast.trends.chart.data[0].length > 100);
     assert.match(await page.locator('#clock-name').textContent(), /^Time shown/);
     await shoot(page, 'core-history');
     assert.deepEqual(errors, []);

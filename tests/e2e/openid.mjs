@@ -192,8 +192,9 @@ test('a code, a state or a whole answer once more, another browser, another issu
     const denied = await browser.begin();
     denied.searchParams.delete('code');
     denied.searchParams.set('error', 'access_denied');
-    assert.match(await (await browser.get(denied)).text(), /refused to sign this .*access_denied/);
-    await recorded('the refusal', (line) => line.result === 'refused' && /refused to sign this .*access_denied/.test(line.why ?? ''));
+    const refusal = /refused to sign this user in, with the error: access_denied/;
+    assert.match(await (await browser.get(denied)).text(), refusal);
+    await recorded('the refusal', (line) => line.result === 'refused' && refusal.test(line.why ?? ''));
     for (const to of ['//evil.example', 'https://evil.example', '/\\evil.example', '/\r\nSet-Cookie: a=b'])
         assert.equal((await new Browser().signIn(to)).headers.get('location'), '/', to);
 });
