@@ -250,8 +250,8 @@ static bool finds_memory(void)
     return opens(path, O_RDONLY);
 }
 
-/* What a confined process achieves, one bit each: reading or emptying a forbidden file, sending a signal, changing other forbidden things,
-   and all that it is allowed to do. */
+/* Bits that say which attempts of a confined process succeeded: reading a forbidden file, emptying one, sending a signal to its parent,
+   changing other forbidden files or folders, and every access that its confinement allows. */
 enum { READ_SECRET = 1, EMPTY_SECRET = 2, SIGNAL = 4, ALTER = 8, ALLOWED = 16 };
 
 static int attempt_all(void)

@@ -409,7 +409,8 @@ TEST(a_follower_waits_for_what_binds_it)
 {
     const struct lease_row free_row = { 0 }, led = { .epoch = 3, .beat = 9, .instance = 5, .leader = "a", .standby = "b" };
     struct lease b = follower("b", &free_row, S);
-    /* the row names no leader: b does not know whether the lease was given up or the database was made anew, so it waits */
+    /* The row names no leader, because the leader gave up the lease or because the database is new and empty. Core b cannot tell, so it
+       waits. */
     assert_false(lease_may_bid(&b, 4 * S - 1));
     assert_true(lease_may_bid(&b, 4 * S));
     b = follower("b", &led, 10 * S);

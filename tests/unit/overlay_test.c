@@ -196,7 +196,7 @@ TEST(halves_share_a_legend_that_says_the_same)
         right.look = way == LOOK ? LOOK_MATERIALS : right.look;
         right.field.show = way == SHOWN ? SHOW_DIFFERENCE : right.field.show;
         struct frame *frame = draw_beside(0, false, &right);
-        /* these two ways make another field but not another colour for a value, so one legend serves both halves */
+        /* The halves are the same or differ in interpolation only: a colour means the same value in both, so one legend serves both. */
         bool shared = way == SAME || way == DISTANCE;
         if ((legend_px(frame, 0) > 20) == shared || (legend_px(frame, 1) > 20) != (way != LOOK))
             fail_msg("way %d: %d pixels of the left half, %d of the right", way, legend_px(frame, 0), legend_px(frame, 1));

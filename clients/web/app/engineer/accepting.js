@@ -74,8 +74,8 @@ export class Accepting {
     }
 
     // Handles `places_accepted`, which lists the sensors that the filter chooses. The server also sends it after the user has accepted
-    // these positions: with the confirmed hash of the tag list if the server now saves the list, or with another hash if the tag list has
-    // changed since.
+    // their positions. It then has the hash of the tag list that the user has seen, and the server saves the list, or another hash,
+    // because the tag list has changed since.
     onFound(message) {
         if (message && message.seq !== this.asked)
             return;
