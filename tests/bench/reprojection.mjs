@@ -5,9 +5,10 @@
 // [processor]. processor: draws as browsers without a GPU do, by the page's own rasterizer.
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
 import { deflateSync, inflateRawSync } from 'node:zlib';
 
-const WEB = process.env.PLANTCAST_WEB ?? join(import.meta.dirname, '../../clients/web');
+const WEB = process.env.PLANTCAST_WEB ?? fileURLToPath(new URL('../../clients/web', import.meta.url));
 const { readGrid, readHeader } = await import(join(WEB, 'core/depth_grid.js'));
 const { Layers, Raster } = await import(join(WEB, 'core/warp_raster.js'));
 const { FLOATS, meshOf, warpMatrix } = await import(join(WEB, 'core/warp_mesh.js'));

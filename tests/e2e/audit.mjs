@@ -17,7 +17,8 @@ const skip = notBuilt();
 let plant, trail, tokens, syslog;
 
 const path = (name) => join(plant.folder, name);
-const lines = () => readFileSync(trail, 'utf8').trim().split('\n').map((line) => JSON.parse(line));
+// The whole lines of the trail. The daemon may just be writing another one.
+const lines = () => readFileSync(trail, 'utf8').split('\n').slice(0, -1).map((line) => JSON.parse(line));
 const verify = (...args) => runProgram('plantcast', ['audit', 'verify', trail, ...args]);
 const bearer = (token) => `Authorization: Bearer ${token}\r\n`;
 const ask = (url, token, { method = 'GET', localAddress } = {}) =>

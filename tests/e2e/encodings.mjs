@@ -7,14 +7,14 @@ import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { inFolder } from './support/folders.mjs';
+import { DATA, inFolder } from './support/folders.mjs';
 import { ifc } from './support/ifc_sample.mjs';
 import { BIN, notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 
 const there = (name) => existsSync(join(BIN, name));
 const skip = notBuilt();
 const SAMPLES = join(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/cad/step_samples');
-const FOUND = join(import.meta.dirname, '../../../shared/data/found');
+const FOUND = join(DATA, 'found');
 const plantcast = (...args) => spawnSync(join(BIN, 'plantcast'), args, { encoding: 'utf8', timeout: 120000 });
 
 // Two names and a unit per encoding; node can write none of these encodings, iconv all.

@@ -6,7 +6,7 @@ import { existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'no
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { gzipSync } from 'node:zlib';
-import { inFolder } from './support/folders.mjs';
+import { DATA, inFolder } from './support/folders.mjs';
 import { ifc } from './support/ifc_sample.mjs';
 import { dae, stl } from './support/mesh_samples.mjs';
 import { cone } from './support/step_parts.mjs';
@@ -14,7 +14,6 @@ import { BIN, missing } from './support/tiny_plant.mjs';
 import { zip } from './support/zip.mjs';
 
 const absent = missing();
-const DATA = join(import.meta.dirname, '../../../shared/data');
 const notBuilt = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
 const skip = notBuilt || (existsSync(join(DATA, 'cad')) ? false : 'no ../shared/data/cad');
 const run = (program, ...args) => spawnSync(join(BIN, program), args, { encoding: 'utf8', timeout: 120000 });

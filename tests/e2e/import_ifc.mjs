@@ -5,7 +5,7 @@ import { spawnSync } from 'node:child_process';
 import { existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { inFolder } from './support/folders.mjs';
+import { DATA, inFolder } from './support/folders.mjs';
 import { ifcOf, ifcOfAll, KINDS, point } from './support/ifc_kinds.mjs';
 import { OPENINGS, UNCUT } from './support/ifc_opening_kinds.mjs';
 import { ifc } from './support/ifc_sample.mjs';
@@ -126,7 +126,7 @@ test('every kind of opening is cut by web-ifc or Open CASCADE, or named', { skip
     assert.ok(!hasOcct || wrong.length === 0, wrong.join('\n'));
 }));
 
-const found = join(import.meta.dirname, '../../../shared/data/found');
+const found = join(DATA, 'found');
 const notThere = skip || (existsSync(join(found, 'ifc_swept')) ? false : 'no ../shared/data/found');
 test('a pipe along a curve with parameters, and a basin with round edges', { skip: notThere }, () => inFolder((folder) => {
     for (const name of ['comp_noparams_ifc4', 'comp_params_ifc4', 'comp_params_ifc2x3', 'poly_params_ifc2x3']) {

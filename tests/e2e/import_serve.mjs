@@ -10,6 +10,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { arrive, drawnAt, land, openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
+import { DATA } from './support/folders.mjs';
 import { ifcOf, KINDS } from './support/ifc_kinds.mjs';
 import { stl } from './support/mesh_samples.mjs';
 import { sweep } from './support/sweep.mjs';
@@ -20,7 +21,6 @@ import { BIN, missing, Program } from './support/tiny_plant.mjs';
 const absent = missing();
 const notBuilt = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync('/usr/bin/chromium') ? 'no chromium' : false;
 const options = { skip: notBuilt, timeout: 240000 };
-const DATA = join(import.meta.dirname, '../../../shared/data');
 const noData = notBuilt || (existsSync(join(DATA, 'cad')) ? false : 'no ../shared/data/cad');
 const DESK = { viewport: { width: 1280, height: 800 } };
 

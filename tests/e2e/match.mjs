@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `plantcast match`: tag lists made from real plants' names, matched and compared with the truth; malformed lists; manual changes and a
 // second run; and the whole way from a CAD export to a picture.
-import { inFolder } from './support/folders.mjs';
+import { DATA, inFolder } from './support/folders.mjs';
 import { seed } from './support/sweep.mjs';
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
@@ -15,7 +15,6 @@ import { promise } from './support/promise.mjs';
 import { BIN, missing, Program, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
-const DATA = join(import.meta.dirname, '../../../shared/data');
 const notBuilt = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
 const noData = notBuilt || (existsSync(join(DATA, 'cad')) ? false : 'no ../shared/data/cad');
 const run = (program, ...args) => spawnSync(join(BIN, program), args, { encoding: 'utf8', timeout: 300000 });
@@ -229,7 +228,7 @@ test('killed between two files, left over, at once, out of disk: a valid plant, 
             const args = [list, '--modbus', '127.0.0.1:502'];
             good(run('plantcast', 'match', whole, ...args));
             const replacedAt = names.map((name) => statSync(join(whole, name), { bigint: true }).ctimeNs);
-            assert.deepEqual(replacedAt, replacedAt.toSorted((a, b) => Number(a - b)), 'the order of names');
+            assert.deepEqual(replacedAt, [...replacedAt].sort((a, b) => Number(a - b)), 'the order of names');
             for (let replaced = 0; replaced <= names.length; replaced++) { // names of the files in the order in which they are renamed
                 rmSync(plant, { recursive: true, force: true });
                 cpSync(first, plant, { recursive: true });

@@ -6,10 +6,10 @@ import { existsSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from 'nod
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { DATA } from './support/folders.mjs';
 import { promise } from './support/promise.mjs';
 import { BIN, notBuilt } from './support/tiny_plant.mjs';
 
-const DATA = join(import.meta.dirname, '../../../shared/data');
 const skip = notBuilt();
 
 // Returns a model with a triangle of that size, as a data URI, in the given nodes.

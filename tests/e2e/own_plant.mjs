@@ -5,12 +5,13 @@ import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSy
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { DATA } from './support/folders.mjs';
 import { freePort } from './support/ports.mjs';
 import { sweep } from './support/sweep.mjs';
 import { formats, makeTagList } from './support/tag_lists.mjs';
 import { missing, Program, runProgram } from './support/tiny_plant.mjs';
 
-const absent = missing(), DATA = join(import.meta.dirname, '../../../shared/data'), MOST_STEPS = 10;
+const absent = missing(), MOST_STEPS = 10;
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync(join(DATA, 'cad')) ? 'no ../shared/data/cad' : false;
 const PLANTS = [
     { plant: 'plm-sample', model: 'cad/plm-sample.rvm', format: 'kepware', equipment: [] },

@@ -10,14 +10,14 @@ import {
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { inFolder } from './support/folders.mjs';
+import { DATA, inFolder } from './support/folders.mjs';
 import { copyGroup, findGroup, readRvm, writeRvm } from './support/rvm_file.mjs';
 import { sweep } from './support/sweep.mjs';
 import { BIN, missing, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
 const absent = missing();
-const SAMPLE = join(import.meta.dirname, '../../../shared/data/cad/plm-sample');
+const SAMPLE = join(DATA, 'cad/plm-sample');
 const notBuilt = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
 const noData = notBuilt || (existsSync(`${SAMPLE}.rvm`) ? false : 'no ../shared/data/cad');
 const run = (program, ...args) => spawnSync(join(BIN, program), args, { encoding: 'utf8', timeout: 120000 });

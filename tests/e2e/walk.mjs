@@ -8,14 +8,15 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { arrive, drawnAt, land, openPage, settle, shoot, waitForPicture } from './support/browser.mjs';
+import { DATA } from './support/folders.mjs';
 import { freePort } from './support/ports.mjs';
 import { long } from './support/promise.mjs';
 import { BIN, missing } from './support/tiny_plant.mjs';
 
-const absent = missing(), CAD = join(import.meta.dirname, '../../../shared/data/cad');
+const absent = missing(), CAD = join(DATA, 'cad');
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync(CAD) ? 'no ../shared/data/cad'
     : !existsSync('/usr/bin/chromium') ? 'no chromium' : false;
-const page = readFileSync(join(import.meta.dirname, '../../preprocess/YOUR_PLANT.md'), 'utf8');
+const page = readFileSync(new URL('../../preprocess/YOUR_PLANT.md', import.meta.url), 'utf8');
 const blocks = (text, kind) => [...text.matchAll(/^```(\w*)\n([^]*?)^```$/gm)].filter(([, of]) => of === kind).map(([, , code]) => code);
 
 // Returns [{ command, said: [line, ...] }] from the section with this number on.

@@ -2,5 +2,5 @@
 // Runs the tests of all modules in one program, because starting node costs more than most of them take.
 import { readdirSync } from 'node:fs';
 
-for (const name of readdirSync(import.meta.dirname).filter((file) => file.endsWith('.test.mjs')).sort())
+for (const name of readdirSync(new URL('.', import.meta.url)).filter((file) => file.endsWith('.test.mjs')).sort())
     await import(`./${name}`);

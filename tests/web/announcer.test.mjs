@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { mock, test } from 'node:test';
 import { Announcer } from '../../clients/web/app/alarms/announcer.js';
 import { learnWords, say } from '../../clients/web/core/words.js';
+import { mockTimeouts } from './older_node.mjs';
 
 test('in a flood each alarm is announced once, and no text is replaced before it can be read', async () => {
     await learnWords();
@@ -14,7 +15,7 @@ test('in a flood each alarm is announced once, and no text is replaced before it
         rows.set(row.id, row);
         return row;
     };
-    mock.timers.enable({ apis: ['setTimeout'] });
+    mockTimeouts();
     globalThis.document = { getElementById: () => region };
     try {
         const announcer = new Announcer({ session });

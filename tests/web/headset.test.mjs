@@ -146,12 +146,13 @@ test('numbers of a broken device: every search ends, and nothing is hit', () => 
     for (const one of bad)
         for (const other of bad)
             for (const i of [0, 1, 2]) {
-                const spoil = (v) => v.with(i, one), direction = [other, 1, 0.1];
+                const spoil = (v) => v.map((value, at) => (at === i ? one : value)), direction = [other, 1, 0.1];
                 const rays = [[spoil([0, 0.3, 1.2]), direction], [[0, 0.3, 1.2], spoil(direction)]];
                 for (const hit of rays.map((ray) => hitOf(grid, CAMERA, ...ray)))
                     assert.ok(hit === null || hit.point.every(Number.isFinite), `${one} ${other}: ${hit?.point}`);
                 assert.ok(floorHit([0, 0, 1], spoil(direction), [0, 0, 0], UP)?.every(Number.isFinite) ?? true);
-                const { fov, width, height } = wideView(matrix(0, [0, 0, 0]), [{ projectionMatrix: LEFT.with(0, one).with(5, other),
+                const projectionMatrix = LEFT.map((value, at) => ({ 0: one, 5: other }[at] ?? value));
+                const { fov, width, height } = wideView(matrix(0, [0, 0, 0]), [{ projectionMatrix,
                     transform: { matrix: matrix(0, [0, 0, 0]) } }], 1000);
                 const isAsked = fov >= 1 && fov <= 120 && width >= 16 && height >= 16 && width * height < 5e6;
                 assert.ok(isAsked, `${one} ${other}: ${fov} ${width}x${height}`);

@@ -10,6 +10,7 @@ import { decodeGrid, readHeader } from '../../clients/web/core/depth_grid.js';
 import { along } from '../../clients/web/core/vector.js';
 import { depthAt, FAR, FLOATS, isNear, meshOf, moveBy, NEAR, warpMatrix } from '../../clients/web/core/warp_mesh.js';
 import { Layers, Raster } from '../../clients/web/core/warp_raster.js';
+import { mockTimeouts } from './older_node.mjs';
 
 const WIDTH = 400, HEIGHT = 240, CELL = 8, SIDE = 4, LEVELS = 4095;
 const PERSPECTIVE = { eye: [6, -9, 5], target: [0, 0, 0.5], up: [0, 0, 1], fov: 45 };
@@ -78,8 +79,10 @@ function encode(camera) {
             front.forEach(({ x, y }) => { mask[Math.floor(y / bit) * SIDE + Math.floor(x / bit)]++; });
             masks.push(mask.map((count) => count > bit * bit / 2));
         }
-    const bits = (flags) => flags.reduce((bytes, flag, i) => (flag ? bytes.with(i >> 3, bytes[i >> 3] | 1 << (i & 7)) : bytes),
-        new Uint8Array(Math.ceil(flags.length / 8)));
+    const bits = (flags) => flags.reduce((bytes, flag, i) => {
+        bytes[i >> 3] |= flag << (i & 7);
+        return bytes;
+    }, new Uint8Array(Math.ceil(flags.length / 8)));
     const out = [...bits(far.map((f) => f >= 0))];
     const symbol = (value, prediction) => {
         const d = value - prediction, s = d >= 0 ? 2 * d : -2 * d - 1;
@@ -270,7 +273,7 @@ test('a reduced picture has the shape of the viewport in spite of its rounded si
 
 test('pictures wait for their depth, but not for a worker that does not answer', () => {
     let now = 0, draws = 0;
-    mock.timers.enable({ apis: ['setTimeout'] });
+    mockTimeouts();
     const { mock: calls } = mock.method(performance, 'now', () => now);
     const viewport = { invalidate: () => draws++ };
     const warp = Object.assign(Object.create(Warp.prototype), { isShown: true, waitsFrom: null, viewport, grids: [] });

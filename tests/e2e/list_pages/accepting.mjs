@@ -147,7 +147,7 @@ test('--undo takes only versions of that list which differ in Place alone, and n
     const write = (name, text) => writeFileSync(join(plant.folder, name), text);
     try {
         write('tags.csv.90', original.replace(/^(TA-001,.*),600,equipment/m, '$1,601,equipment'));
-        write('tags.csv.91', original.split('\n').toSpliced(1, 1).join('\n'));
+        write('tags.csv.91', original.split('\n').filter((line, i) => i !== 1).join('\n'));
         write('tags.csv.92', now);
         write('tags.csv.93', 'anything at all\n');
         write('other.csv.1', original);

@@ -3,6 +3,10 @@
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+// folder of models and readings that are not part of the tree; tests that need them are skipped if it is absent
+export const DATA = fileURLToPath(new URL('../../../../shared/data', import.meta.url));
 
 const make = () => mkdtempSync(join(tmpdir(), 'plantcast-test-')), remove = (folder) => rmSync(folder, { recursive: true, force: true });
 
