@@ -72,9 +72,9 @@ static void add_numbers(struct concerns *concerns, const struct prepare_asset *a
     const struct level_left *left = &r->levels[0].left[LEVEL_LIMIT_TRIANGLES];
     if (r->level_count && (double)left->steps > FIELD_SLACK)
         add_concern(concerns, asset, 1 + (double)left->steps / 255,
-                    mem_printf("in close views, values err by up to %.1f steps of colour (1/255 of the range) along %s edges, because the "
+                    mem_printf("in close views, values err by up to %.1f steps of colour (1/255 of the range) along %s edge%s, because the "
                                "asset has reached its limit of triangles",
-                               (double)left->steps, text_table_number(left->edges).text));
+                               (double)left->steps, text_table_number(left->edges).text, left->edges == 1 ? "" : "s"));
 }
 
 /* Reports the bend (interpolation error inside triangles) of the fields harmonic, fin and gp. Subdivision does not refine triangles for
