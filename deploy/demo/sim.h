@@ -18,7 +18,7 @@ struct sim {
     struct sim_values *values;
     struct sim_device *devices;
     size_t device_count;
-    struct sim_mqtt *mqtt; /* NULL: nothing is published */
+    struct sim_mqtt *mqtt; /* publisher of the tags of MQTT sources; NULL: nothing is published */
     bool mqtt_paused;
     bool quit;
 };

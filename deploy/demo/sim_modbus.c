@@ -62,7 +62,7 @@ ssize_t sim_modbus_take(void *arg, int fd, const uint8_t *bytes, size_t count)
         return 0;
     size_t length = 6 + (size_t)word_at(bytes, LENGTH_AT);
     if (word_at(bytes, 2) != 0 || length <= HEADER_BYTES || length > MODBUS_TCP_MAX_ADU_LENGTH)
-        return -1; /* not Modbus */
+        return -1; /* close the connection: the bytes are not Modbus TCP */
     if (count < length)
         return 0;
     if (!device->paused && answer(device, fd, bytes, length) < 0)

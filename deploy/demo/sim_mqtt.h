@@ -10,7 +10,7 @@ struct sim_mqtt;
 /* Connects to a broker, HOST:PORT, retrying until it is up. Returns NULL if there is nothing to publish, or `where` is not HOST:PORT
    (printed to stderr). `plant` must outlive it. */
 struct sim_mqtt *sim_mqtt_create(const struct plant *plant, const char *where);
-void sim_mqtt_destroy(struct sim_mqtt **mqtt); /* Ends the connection. &NULL is fine; leaves NULL. */
+void sim_mqtt_destroy(struct sim_mqtt **mqtt); /* Ends the connection and frees the publisher; *mqtt becomes NULL and may be NULL */
 size_t sim_mqtt_tag_count(const struct sim_mqtt *mqtt);
 /* Returns whether a tag is published. */
 bool sim_mqtt_has(const struct plant *plant, size_t tag);

@@ -18,7 +18,7 @@ struct sim_client {
 typedef ssize_t sim_take(void *arg, int fd, const uint8_t *bytes, size_t count);
 
 struct sim_port {
-    int fd; /* -1: not open */
+    int fd; /* listening socket; -1: not open */
     sim_take *take;
     void *arg;
     struct sim_client clients[SIM_PORT_CLIENTS];

@@ -25,7 +25,7 @@ struct effect {
 
 struct upset {
     const char *name;
-    double start_s, rise_s, hold_s, fall_s; /* times in seconds: start within the cycle, then durations */
+    double start_s, rise_s, hold_s, fall_s; /* times of an upset in seconds: start within the cycle, then durations */
     struct effect effects[MAX_EFFECTS];
 };
 

@@ -10,7 +10,7 @@ enum process_kind { PROCESS_TEMPERATURE, PROCESS_PRESSURE, PROCESS_VIBRATION, PR
 
 struct process_tag {
     enum process_kind kind;
-    double normal;    /* operating value */
+    double normal;    /* operating value of the tag, around which it drifts */
     double span;      /* width of the tag's range; drifts and upsets are stated as fractions of this width */
     const char *name; /* name and loop may be freed after the call */
     const char *loop; /* any word: upsets affect the loops that --help lists; others drift with a phase derived from the word */
@@ -19,7 +19,7 @@ struct process_tag {
 struct process;
 
 struct process *process_create(const struct process_tag *tags, size_t count, uint64_t seed);
-void process_destroy(struct process **process); /* Frees the process. &NULL is fine; leaves NULL. */
+void process_destroy(struct process **process); /* Frees the simulated process and sets *process to NULL. *process may be NULL. */
 void process_step(struct process *process, double dt_s);
 double process_value(const struct process *process, size_t tag);
 /* Returns the progress of the current upset, 0 to 1, and its name; 0 and "" between upsets. */

@@ -14,7 +14,7 @@
 struct tag_value {
     bool forced;
     double forced_to;
-    const struct series *series; /* recorded series; NULL: the simulated process */
+    const struct series *series; /* recorded series that the tag's value comes from; NULL: it comes from the simulated process */
     double scale, offset;
     struct unit_change change; /* unit conversion from the series to the device's value */
 };

@@ -12,7 +12,7 @@
 #include "base/log/log.h"
 #include "surface/surface.h"
 
-struct distance_space { /* range of the file */
+struct distance_space { /* byte range of the cache file that no sensor position's record uses */
     size_t at, size;
 };
 
@@ -22,7 +22,7 @@ struct distance_cache {
     int fd;
     atomic_bool may_write;
     uint64_t key;
-    size_t length; /* numbers per column */
+    size_t length; /* number of distances per sensor (column) */
     const double (*places_m)[3];
     size_t count;
     size_t *records; /* by sensor position: offset of the record with its column when the file was opened; SIZE_MAX: none */
@@ -30,8 +30,8 @@ struct distance_cache {
     atomic_size_t damaged; /* number of sensor positions whose column in the file is damaged, or was not completely written */
     pthread_mutex_t lock;
     /* --- below: under lock --- */
-    struct distance_space *free; /* records that no sensor position needs */
-    size_t free_count, free_capacity, end; /* end: offset after the last record */
+    struct distance_space *free; /* byte ranges of records that belong to no present sensor position */
+    size_t free_count, free_capacity, end; /* end: byte offset in the file after the last record */
 };
 
 /* Opens or creates FOLDER/KEY.columns and looks up which of the `count` sensor positions places_m (asset frame, metres; must outlive the

@@ -126,7 +126,7 @@ bool folder_unpack(struct folder_file *file)
 
 void folder_close(struct folder_file *file)
 {
-    free(file->codes); /* allocated with malloc() by asset_view_unpack() */
+    free(file->codes); /* free(), because asset_view_unpack() allocates with malloc() */
     if (file->bytes)
         munmap(file->bytes, file->size);
     *file = (struct folder_file){ 0 };

@@ -26,7 +26,7 @@ enum watched { OUTPUT, ERRORS, END, SIGNALS, WATCHED };
 
 struct child {
     pid_t pid;
-    int fds[WATCHED]; /* -1: closed */
+    int fds[WATCHED]; /* child's output pipes, pidfd and signalfd, by enum watched; -1: closed */
     struct text errors;
     bool interrupted, timed_out;
 };
@@ -135,8 +135,6 @@ error:
     return false;
 }
 
-/* Reads once from the child's pipe and appends the bytes to `text`, which holds at most MAX_OUTPUT bytes. Returns false at the end of the
- * stream or on an error. */
 static bool take(int fd, struct text *text)
 {
     char bytes[65536];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Collects copies of resolved paths. */
+/* Collects the files and folders that a confined child may use, with symlinks resolved. */
 #include "preprocess/child/child_paths.h"
 
 #include <dirent.h>

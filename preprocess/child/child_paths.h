@@ -4,7 +4,7 @@
 #define PREPROCESS_CHILD_CHILD_PATHS_H
 #include "base/system/confine.h"
 
-struct child_paths { /* zero-initialise */
+struct child_paths { /* list of paths and the access allowed to each; zero-initialise */
     struct confine_path *at;
     size_t count, capacity;
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Creates and removes the folder. */
+/* Creates and removes temporary work folders. */
 #include "preprocess/child/work_folder.h"
 
 #include <errno.h>
@@ -77,5 +77,5 @@ void work_folder_end(struct work_folder *work, bool keep)
     mem_free(work->target);
     sigset_t before = work->before;
     *work = (struct work_folder){ 0 };
-    sigprocmask(SIG_SETMASK, &before, NULL); /* delivers pending signals */
+    sigprocmask(SIG_SETMASK, &before, NULL); /* SIGINT or SIGTERM that arrived meanwhile takes effect now */
 }

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 
 struct work_folder {
-    char *path;      /* absolute */
+    char *path;      /* absolute path of the temporary folder */
     char *target;    /* folder that will receive the finished files; NULL: the files are not kept */
     bool created;    /* work_folder_begin() created the target */
     sigset_t before; /* signal mask before work_folder_begin() */

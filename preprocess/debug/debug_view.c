@@ -18,7 +18,7 @@
 #define LIFT 3e-4
 /* length of the cross that marks a bridge (connection over a gap), in multiples of the spacing of the surface points */
 #define MARK 0.3
-#define SENSOR 0.012 /* relative to the size */
+#define SENSOR 0.012 /* size of the mark at a sensor, relative to the asset's size */
 #define DARKEST 0.75 /* brightness of faces seen edge-on */
 static const double light[3] = { 0.36, -0.48, 0.8 };
 

@@ -8,7 +8,7 @@
 /* input of a debug view; the caller keeps ownership of all pointers */
 struct debug_view {
     const char *name;              /* name of the asset */
-    const struct surface *surface; /* Z up */
+    const struct surface *surface; /* surface of the asset; Z is up */
     const float *distances_m;      /* distance of each surface point from the chosen sensor; NULL: no sensor is chosen */
     const char *sensor;            /* name of the chosen sensor */
     const double (*sensors_m)[3];  /* positions of all sensors */

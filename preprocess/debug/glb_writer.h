@@ -14,7 +14,7 @@ struct glb_shape { /* triangles, lines or points of one node; Y is up */
     const uint16_t (*colors)[4]; /* colours of the vertices, linear, 65535 is 1; NULL: `color` applies to all vertices */
     const uint32_t *indices;     /* vertex indices; NULL: the vertices are used in order */
     size_t vertex_count, index_count;
-    uint8_t color[3]; /* sRGB */
+    uint8_t color[3]; /* sRGB colour of all vertices if `colors` is NULL */
 };
 
 struct glb_writer;

@@ -19,12 +19,12 @@ struct diff_asset {
     double moved_m;   /* largest movement of a corner of the asset's bounding box, metres */
     double turned_deg;
     double apart_m;      /* changed assets only: largest distance between both surfaces after they were aligned, metres */
-    double tolerance_m;  /* smaller changes count as none */
-    size_t triangles[2]; /* old, new */
+    double tolerance_m;  /* metres; assets and sensors that differ by less between the revisions count as unchanged */
+    size_t triangles[2]; /* number of triangles in the old [0] and in the new [1] revision */
 };
 
 struct diff_sensor {         /* a tag that is a sensor in both revisions */
-    const char *tag, *asset; /* asset: in the new revision */
+    const char *tag, *asset; /* name of the tag, and id of its asset in the new revision */
     double moved_m;          /* distance, in metres, between the surface points nearest to the sensor in the two revisions */
     double place_moved_m;    /* movement, in metres, of the position that the tag list or the sensor's node states */
     double distance_m[2];    /* distance from the sensor's position to the surface in the old [0] and in the new [1] revision, metres */

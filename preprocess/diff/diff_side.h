@@ -21,14 +21,14 @@ struct diff_side_asset {
     /* members that are set only if the plant was read from a plant file: */
     const struct plant_asset *plant;
     size_t model;
-    /* set only for a folder */
+    /* key of the asset's prepared file; set only if a folder of prepared files is compared */
     uint64_t key;
 };
 
 struct diff_side {
     const char *path;
     struct diff_side_asset *assets;
-    struct diff_side_tag *tags; /* sorted by name */
+    struct diff_side_tag *tags; /* tags of the plant, sorted by name */
     size_t asset_count, tag_count;
     struct plant *plant; /* the plant that was read; NULL: a folder of prepared files is compared */
     struct model_files models;

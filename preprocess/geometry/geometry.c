@@ -13,7 +13,7 @@
 #include "plant/models/transform.h"
 #include "preprocess/geometry/geometry_impl.h"
 
-#define MAX_TRIANGLES 50000000ull /* per asset */
+#define MAX_TRIANGLES 50000000ull /* maximum number of triangles of an asset */
 #define MAX_SIZE_M 1e7
 /* size in metres above which a model uses the median of its vertices as its origin; single-precision positions at the ends of such a model
  * are only accurate to half a millimetre */

@@ -16,7 +16,8 @@ struct hashing {
 
 static void hash_bytes(struct hashing *h, const void *bytes, size_t count)
 {
-    XXH3_64bits_update(&h->state, &count, sizeof(count)); /* the length separates consecutive fields */
+    /* hash the length too, so that bytes cannot move from one field to the next unnoticed */
+    XXH3_64bits_update(&h->state, &count, sizeof(count));
     if (count)
         XXH3_64bits_update(&h->state, bytes, count);
 }

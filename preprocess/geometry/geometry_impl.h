@@ -27,7 +27,7 @@ struct geometry_vertex {
 };
 
 struct primitive_mesh {
-    struct geometry_vertex *vertices; /* initially one per triangle corner */
+    struct geometry_vertex *vertices; /* vertices of the primitive; one per triangle corner until welding removes duplicates */
     unsigned *indices;
     size_t vertex_count, index_count;
 };

@@ -106,7 +106,7 @@ struct normals_half {
 
 struct halves {
     const struct around *around;
-    uint32_t *corners; /* corners at the position, reordered */
+    uint32_t *corners; /* triangle corners at the position, sorted into the halves of the tree */
     struct normals_half *nodes;
 };
 

@@ -51,7 +51,7 @@ static bool is_printable(const char *text)
     return is;
 }
 
-struct draft_choice {    /* choices for each outline node */
+struct draft_choice {    /* for each node of a model's outline: whether it becomes an asset, and whether its name is unique */
     bool *item, *unique; /* by node: item: the node becomes an asset; unique: no other node has the same name */
     bool typed, classed; /* typed: the model has nodes whose property for the type is ZONE; classed: it has nodes with IFC classes */
 };

@@ -22,7 +22,7 @@ enum rvm_kind { /* numbered as in RVM files */
 enum { RVM_MAX_NUMBERS = 9 };
 
 struct rvm_contour {
-    size_t first, count; /* range in rvm_shape.points */
+    size_t first, count; /* index of the contour's first point in rvm_shape.points, and number of its points */
     bool begins_polygon; /* true: this contour begins a polygon; false: it is a hole or further outline of the polygon before */
 };
 

@@ -38,7 +38,7 @@ struct cloud_heat {
     uint32_t *piece;                      /* connected component of each point */
     struct heat_link *links;
     size_t link_count, link_capacity;
-    uint32_t *first, *order; /* links grouped by point */
+    uint32_t *first, *order; /* indices of the links between neighbouring points, grouped by point */
     int k;
     cholmod_factor *diffusion, *poisson;
     cholmod_common common;

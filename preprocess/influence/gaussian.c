@@ -342,9 +342,9 @@ static void take_readings(const struct solving *solving, const double *u, struct
 }
 
 struct gaussian_samples { /* one thread's buffers for a block of samples */
-    float *missed;        /* [mesh point][sample]: field minus prediction */
-    float *readings;      /* [sample][sensor] */
-    double *levels;       /* by component */
+    float *missed;        /* simulated field minus its prediction, [mesh point][sample] */
+    float *readings;      /* simulated readings, [sample][sensor] */
+    double *levels;       /* by connected component: the current sample's value at the component's first sensor */
     struct solver solver;
 };
 

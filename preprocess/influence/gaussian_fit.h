@@ -7,7 +7,7 @@
 
 struct readings_table {     /* readings at those instants at which every sensor has a reading */
     size_t count, instants; /* count: number of sensors */
-    double *values;         /* [instant][sensor] */
+    double *values;         /* readings, [instant][sensor] */
     size_t left_out;        /* number of instants left out, because a sensor has no reading then */
 };
 

@@ -29,7 +29,7 @@ struct conduct {
     struct influence_bend *bend;
     struct laplacian laplacian;
     cholmod_factor *factor;
-    size_t block; /* right-hand sides per solve */
+    size_t block; /* number of sensors (right-hand sides) that are solved at a time */
     atomic_bool failed;
 };
 

@@ -38,7 +38,7 @@ struct finding {
     double origin[3], axes[3][3];
     double corners[3][2], size_m;
     struct extent extent;
-    size_t first; /* index of its first place */
+    size_t first; /* index of the drawn triangle's first place (corner of an overlap) */
     /* by mesh point: 1 + index of the last drawn triangle for which a place (corner of an overlap) was added at this point; 0: none */
     uint32_t *taken_by;
     /* polygons; left: area not yet covered before the current pass; cut: the part of `left` that the current pass has not covered */

@@ -37,7 +37,7 @@ struct bend_drawn { /* the triangles of the asset file, which are drawn */
 
 struct influence_bend {
     struct bend_drawn drawn;
-    struct bend_place *places; /* grouped by drawn triangle */
+    struct bend_place *places; /* points at which the bend is measured, grouped by drawn triangle */
     size_t count, capacity;
     /* by drawn triangle: its area; the area hidden inside other parts; the area where the bend (see the top) is unknown. For coarse levels:
      * counts of samples instead of areas */

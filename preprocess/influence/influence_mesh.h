@@ -21,7 +21,7 @@ struct influence_mesh {
     uint32_t *source_tris;
     size_t source_count;
     double size_m;                  /* length of the diagonal of the surface's main part (base/math/gap_split.h), metres */
-    double longest_m;               /* metres; longest edge */
+    double longest_m;               /* length of the mesh's longest edge, metres */
     uint32_t *piece_first, *pieces; /* mesh triangles grouped by tri_source */
     uint32_t *fan_first, *fans;     /* mesh triangles grouped by point */
     struct influence_disc *discs;   /* disc of each sensor */

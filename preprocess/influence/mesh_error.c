@@ -17,7 +17,7 @@
 /* Linear form whose value is the flux imbalance of an edge times the height of its lowest triangle. That is how far the field at this
  * triangle's tip (the corner opposite the edge) differs from a linear continuation of the other triangles at the edge. */
 struct edge_form {
-    uint32_t first, count; /* range of the terms */
+    uint32_t first, count; /* index of the form's first term, and number of its terms */
     float low_m, sum_m;    /* heights above the edge of the triangles at it: the smallest height, and the sum of all heights */
 };
 struct edge_term {

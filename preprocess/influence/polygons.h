@@ -10,7 +10,7 @@ enum { POLYGON_CORNERS = 24 };
 
 struct polygon {
     double at[POLYGON_CORNERS][2];
-    int count; /* 0: empty */
+    int count; /* number of corners; 0: the polygon is empty */
 };
 
 struct polygons {

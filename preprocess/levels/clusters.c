@@ -13,7 +13,7 @@
 
 struct clusters_making {
     struct workers_task *task;
-    struct level level; /* borrows the caller's arrays */
+    struct level level; /* the level of detail that is partitioned; its arrays belong to the caller */
     float (*positions_m)[3];
     uint32_t vertex_count;
     struct clusters made; /* clusters of the level of detail; their index offsets are relative to the level's first index */

@@ -178,7 +178,7 @@ struct probing {
 };
 
 #define RECENT 4
-struct near { /* cache of one thread */
+struct near { /* cache of one thread: the triangles that were nearest to recent points */
     /* indices of the triangles of part `part` of surface `to` that were nearest to recent points, latest first; TRIMESH_NONE: empty
      * entry */
     uint32_t part, tris[RECENT];

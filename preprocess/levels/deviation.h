@@ -22,7 +22,7 @@ struct deviation {       /* a triangle surface, prepared for measuring distances
 struct deviation_params {
     const float (*positions_m)[3];
     const uint32_t *first_there; /* by vertex: lowest index of a vertex of the same part (connected component) at the same position */
-    const uint32_t *part;        /* by vertex; borrowed */
+    const uint32_t *part;        /* part (connected component) of each vertex; the array belongs to the caller */
     size_t part_count;
     const char *only; /* by part (connected component): nonzero if the part will be measured; NULL: all parts are */
     bool anywhere;    /* true: build one bounding volume hierarchy over all parts, which deviation_measure_lost() needs */

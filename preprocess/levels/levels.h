@@ -30,7 +30,7 @@ struct level {
 };
 
 struct levels {
-    struct level at[LEVELS_MAX]; /* finest first */
+    struct level at[LEVELS_MAX]; /* levels of detail, finest first */
     size_t count;
     /* number of levels of detail dropped during subdivision, because they would need about as many triangles as the next finer level */
     size_t given_up;

@@ -25,7 +25,7 @@ struct bounded_face {
      * one */
     uint32_t near;
     double normal[3], length; /* normal, not of unit length; length: its length, twice the triangle's area */
-    double longest_m;         /* longest edge */
+    double longest_m;         /* length of the face's longest edge */
 };
 
 struct removal_candidate { /* heap entry: a mesh point that may be removed by merging it into the point `target` */

@@ -116,7 +116,7 @@ struct collapsing {
     uint32_t *corners;
     size_t *first_place; /* by part (connected component): index in `places` of its first vertex of the original model */
     uint32_t *places;
-    double error_m; /* allowed error */
+    double error_m; /* allowed error of the version that is being made, metres */
 };
 
 /* Counting sort: turns the count of part p at [p + 2] into its start offset at [p + 1]. Filling then advances each offset at [p + 1] to the

@@ -6,7 +6,7 @@
 #include "base/text/text.h"
 #include "preprocess/match/matcher.h"
 
-struct decision { /* one row of the file */
+struct decision { /* one row of matches.csv */
     char *tag, *asset;
     enum match_status status; /* status in matches.csv; for an edited row, the status that the edit implies */
     bool by_hand, edited;     /* by_hand: a person made the decision; edited: a person changed the row after the last run wrote it */
@@ -14,7 +14,7 @@ struct decision { /* one row of the file */
 };
 
 struct decisions {       /* zero-initialise */
-    struct decision *at; /* in file order */
+    struct decision *at; /* decisions in the order of the file */
     int *by_tag;         /* indices of decisions, sorted by tag (case-insensitive): the first decision of each tag */
     size_t count, capacity, tags;
 };

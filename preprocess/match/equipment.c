@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Turns selected nodes into assets. */
+/* Writes plant-file lines that make assets of selected model nodes. */
 #include "preprocess/match/equipment.h"
 
 #include <errno.h>

@@ -75,7 +75,7 @@ struct word_count {
         size_t letters;
     } at[256];
     int count;
-    const char *seen[NAME_MAX_TOKENS * 2]; /* distinct words counted so far */
+    const char *seen[NAME_MAX_TOKENS * 2]; /* distinct words of the tag's texts that were counted so far */
     int seen_count;
 };
 

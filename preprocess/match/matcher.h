@@ -18,7 +18,7 @@ struct match {
     enum match_status status;
     /* asset: index of the matched asset; node: index of the node of the asset to which the tag's name refers; -1: none */
     int asset, node;
-    double confidence; /* 0 to 1 */
+    double confidence; /* confidence of the match, 0 to 1 */
     char *reason;      /* reason for the match, one line of English; the caller frees it */
     /* indices of assets to which the tag may belong if the match is not sure, the likeliest first */
     int candidates[MATCH_CANDIDATES], candidate_count;
@@ -53,7 +53,7 @@ bool matcher_read_rules(struct matcher *matcher, const char *path, char why[MATC
 bool matcher_read_aliases(struct matcher *matcher, const char *path, char why[MATCH_WHY_BYTES]);
 /* Matches all tags of a list to equipment. Returns one match for each tag; the caller frees them with matches_free(). */
 struct match *matcher_run(struct matcher *matcher, const struct tag_export *list);
-void matches_free(struct match *matches, size_t count); /* NULL is fine */
+void matches_free(struct match *matches, size_t count); /* Frees the result of matcher_run(). matches may be NULL. */
 void matcher_finish(struct matcher *matcher);
 /* Returns the index of the asset whose id or tag is `name`, exactly or in another unambiguous spelling; -1: none. */
 int matcher_find_asset(const struct matcher *matcher, const char *name);

@@ -8,7 +8,7 @@
 
 enum { CANDIDATES = 8, METHOD_REASON_BYTES = 240 };
 
-struct match_candidates { /* distinct assets */
+struct match_candidates { /* list of distinct assets to which a tag may belong */
     int assets[CANDIDATES];
     /* by proposed asset: index of the node of the asset that was found; -1: the asset itself was found, or several of its nodes */
     int nodes[CANDIDATES];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds the indexes of names. */
+/* Builds the indexes that map names, numbers and words to assets and nodes. */
 #include "preprocess/match/model_index.h"
 
 #include <stdio.h>

@@ -9,7 +9,7 @@ enum { NAME_MAX_TOKENS = 48, NAME_KEY_BYTES = 256 };
 
 struct name_token {
     char text[32];  /* text of the token in upper case, for digits without leading zeros; truncated if it does not fit */
-    int raw_length; /* length before removing leading zeros */
+    int raw_length; /* number of characters of the token before leading zeros were removed */
     bool digits;
     bool apart; /* true: the token is the first, or comes after a separator or blank */
 };

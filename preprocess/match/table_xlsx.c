@@ -33,7 +33,7 @@ struct xlsx_sheet {
     /* type of the cell that is being parsed: 's' index of a shared string, 'i' text in the cell itself, 0 value stored in the cell */
     char type;
     size_t bytes; /* total size in bytes of all shared strings and cells so far */
-    int depth;    /* nested elements that are open */
+    int depth;    /* number of nested XML elements that are open */
     bool in_value, in_phonetic, too_large;
     XML_Parser parser;
 };

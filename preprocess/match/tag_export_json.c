@@ -403,7 +403,7 @@ static void add_tag(const struct scope *scope, const struct layered_node *node)
     if (tag->fields[EXPORT_SCALED_LOW])
         export_tag_set(tag, EXPORT_SCALED_HIGH, "100");
     export_tag_set(tag, EXPORT_AREA, scope->folder);
-    if (!tag->fields[EXPORT_NAME]) /* the name had only blanks */
+    if (!tag->fields[EXPORT_NAME]) /* the tag's name in the export consists only of blanks */
         export_tag_set(tag, EXPORT_NAME, "unnamed");
     scope->reader->too_many |= list->count > TABLE_MAX_ROWS;
 }

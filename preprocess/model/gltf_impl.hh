@@ -85,7 +85,7 @@ double number_in(const tinygltf::Value &value, const char *key, size_t index, do
 /* How a material's textures are mapped to texture coordinates (KHR_texture_transform). */
 struct uv_transform {
     double offset[2] = { 0, 0 }, scale[2] = { 1, 1 }, rotation = 0;
-    int set = 0;          /* n of TEXCOORD_n */
+    int set = 0;          /* number n of the attribute TEXCOORD_n that holds the coordinates */
     /* true: the mapping is valid only for coordinates in 0..1, because the texture's wrapping outside that range cannot be drawn */
     bool bounded = false;
 };

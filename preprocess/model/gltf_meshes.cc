@@ -94,7 +94,7 @@ struct attribute_reader {
     const gltf_work &w;
     const tinygltf::Primitive &primitive;
     const std::vector<uint32_t> &used;
-    size_t vertex_count; /* number of elements of POSITION */
+    size_t vertex_count; /* number of vertices (elements of the attribute POSITION) */
     const std::string &what;
 
     bool has(const std::string &name) const

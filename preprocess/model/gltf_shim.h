@@ -24,7 +24,7 @@ struct gltf_primitive { /* triangles of one material, in model units and the mes
 struct gltf_mesh {
     char *name;
     uint32_t first_primitive, primitive_count; /* range of the mesh's primitives, each of which has at least one triangle */
-    uint64_t index_count;                      /* sum over the mesh's primitives */
+    uint64_t index_count;                      /* number of indices, summed over the mesh's primitives */
     uint32_t skipped_lines, skipped_points;    /* numbers of primitives skipped because they consist of lines or points */
 };
 
@@ -56,7 +56,7 @@ struct gltf_model {
     struct gltf_texture *textures; /* textures that materials refer to, one for each use of an image by a material */
     struct gltf_image *images;
     uint32_t primitive_count, mesh_count, node_count, material_count, texture_count, image_count;
-    uint32_t skipped_lines, skipped_points; /* sums over all meshes */
+    uint32_t skipped_lines, skipped_points; /* numbers of skipped line and point primitives, summed over all meshes */
     uint32_t scaled_rotations;              /* number of nodes and instances whose rotation quaternion is not of unit length */
     char **left_out;                        /* texts for the report, one for each use of a texture and each extension that is ignored */
     uint32_t left_out_textures;

@@ -19,7 +19,7 @@ static const char *const filters[] = { "NONE", "OCTAHEDRAL", "QUATERNION", "EXPO
 
 struct meshopt_view {
     uint64_t count, stride;
-    int mode, filter; /* -1: unknown value */
+    int mode, filter; /* compression mode and filter (EXT_meshopt_compression); -1: a value unknown to this program */
     struct model_bytes from;
 };
 

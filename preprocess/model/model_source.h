@@ -22,7 +22,7 @@ struct model_source {
  * depth, and that every named file exists inside the model's folder. Returns false with the reason in why; then model_source_finish() need
  * not be called. */
 bool model_source_open(struct model_source *source, const char *path, char why[MODEL_WHY_BYTES]);
-/* Frees the bytes. */
+/* Frees the bytes of the model file. */
 void model_source_finish(struct model_source *source);
 
 #ifdef __cplusplus

@@ -172,7 +172,7 @@ struct build {
     struct build_report geometry_report;
     struct workers_task *keeping;          /* task that writes the caches */
     struct workers_task *sending;          /* task of the workers that writes the asset's file to disk */
-    void (*tasks[2])(struct build *build); /* two tasks that run concurrently */
+    void (*tasks[2])(struct build *build); /* two build steps that run at the same time */
     bool failed[2];
     int write_error; /* errno of a failed write to the asset's file; 0: no write failed */
     char *why;

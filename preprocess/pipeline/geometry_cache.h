@@ -11,7 +11,7 @@
 /* minimum number of triangles of an asset that is cached, because building a smaller one again takes about as long as reading the cache */
 #define GEOMETRY_CACHE_TRIANGLES 10000u
 
-struct geometry_cache { /* mapped and checked files */
+struct geometry_cache { /* cache files of an asset's geometry, mapped into memory and checked */
     struct cache_file parts, surface;
     struct build_report report;
 };

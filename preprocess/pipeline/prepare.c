@@ -484,7 +484,8 @@ static void share(struct prepare_run *run)
         asset->reported = first->reported;
         asset->report = first->report;
         asset->surface_distances_m = mem_array(asset->sensor_count, sizeof(*asset->surface_distances_m));
-        for (size_t s = 0; s < asset->sensor_count; s++) /* equal keys imply equal sensors */
+        /* assets with equal keys have equal sensors, so the distances of the first one apply */
+        for (size_t s = 0; s < asset->sensor_count; s++)
             asset->surface_distances_m[s] = first->surface_distances_m[s];
     }
 }

@@ -58,7 +58,7 @@ struct prepare_params {
  * it is missing. Call prepare_finish() in both cases. */
 bool prepare_run(struct prepare *prepare, struct log *log, struct workers *workers, const struct plant *plant,
                  const struct prepare_params *params, struct diag *diag);
-/* Frees the results. */
+/* Frees the results of prepare_run(). */
 void prepare_finish(struct prepare *prepare);
 
 /* Returns the parameters by which an asset is cut out of its model. */

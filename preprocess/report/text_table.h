@@ -14,7 +14,7 @@ struct text_table_column {
 struct text_table { /* initialise with zeros, then set the columns, which the caller keeps */
     const struct text_table_column *columns;
     size_t column_count;
-    char **cells; /* row by row */
+    char **cells; /* texts of the cells, row by row */
     size_t cell_count, capacity;
 };
 

@@ -11,7 +11,7 @@
 #include "plant/exact.h"
 #include "plant/singles.h"
 
-#define MAX_SLACK (1 / 255.0) /* share of the range */
+#define MAX_SLACK (1 / 255.0) /* largest change of the value that is subtracted from an error, as a share of the range */
 /* maximum number of sensors in a group for which errors of Algorithm 1 are measured; with more sensors, each has so small a weight in
  * Algorithm 1 that these errors are far below those of Shepard interpolation */
 #define MANY 64
@@ -117,7 +117,7 @@ static void room_finish(struct corner_room *room)
 
 /* Distances from a point to every sensor: one array along the surface (geodesic), one straight (Euclidean). */
 struct distances {
-    const float *of[2]; /* by enum distance_mode */
+    const float *of[2]; /* distances from the sensors: geodesic and Euclidean (enum distance_mode) */
     struct corner_room straight_m, picked_m;
 };
 

@@ -13,7 +13,7 @@
 #include "preprocess/cache/build_cache.h"
 #include "preprocess/subdivision/subdivide_impl.h"
 
-#define MAX_CHANGES 16 /* limit of sensor changes */
+#define MAX_CHANGES 16 /* with more added and removed sensors than this, the last run's findings (measured errors) are not used */
 #define FEW 16         /* findings (measured errors) of the last run are used only if fewer than one sensor in FEW has changed */
 /* largest doubt (subdiv_cache.h: weight of the sensors that changed since the measurement) of a finding that is used. Measured: with this
  * doubt, one in a thousand edges with an error of about one colour step is wrong by a tenth of a colour step or more. */
@@ -37,7 +37,8 @@ struct sensor { /* the parameters of a sensor that determine its interpolation w
 
 struct subdiv_head {
     uint64_t sensors, findings, rest; /* numbers of following records */
-    uint64_t given_up, changes_since; /* see subdiv_cache.h */
+    /* levels dropped by earlier runs (bit mask), and number of sensors added or removed since these levels were last tried */
+    uint64_t given_up, changes_since;
 };
 
 /* Flags that say which optional numbers of a finding (measured error) follow in the file, in the order of these flags. Most findings have
@@ -119,7 +120,8 @@ static bool find_changes(struct subdiv_cache *cache, const struct linear_error *
 
 /* --- the file --------------------------------------------------------------------------------------------------------------------- */
 
-#define ENTRY_BYTES (sizeof(uint64_t) + sizeof(float) + 1) /* without optional numbers */
+/* bytes of a finding (measured error) in the file, without its optional numbers */
+#define ENTRY_BYTES (sizeof(uint64_t) + sizeof(float) + 1)
 
 static size_t rest_of(unsigned kind)
 {

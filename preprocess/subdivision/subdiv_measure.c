@@ -331,7 +331,7 @@ struct measure_job {
  * edge probably shares a corner. */
 struct measure_room {
     float *points, *corners;
-    struct interp_norm *norms; /* of the last sample point */
+    struct interp_norm *norms; /* normalisations of the sensors' weights at the last sample point */
     /* by cache slot: the position whose sample is stored; the last three slots serve corners whose regular slot another corner of the same
      * edge or triangle occupies */
     uint32_t of[CORNERS + 3];
@@ -487,7 +487,7 @@ static bool jumps_inside(const struct subdiv *subdiv, const struct subdiv_tri *t
 struct inside { /* state while a triangle's interpolation error is measured at inner points */
     struct origin_sight sight;
     const struct subdiv_tri *tri;
-    const float *interp[3]; /* samples at its corners */
+    const float *interp[3]; /* samples (weights of the sensors) at the triangle's corners */
     double corners[3][3];
     float *points; /* buffer for one point */
     struct interp_norm *norms;

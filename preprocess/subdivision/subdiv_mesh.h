@@ -39,7 +39,7 @@ struct subdiv_edge { /* an edge between two positions, shared by all levels of d
 struct subdiv_list { /* a list of triangle or corner indices */
     uint32_t *at;
     size_t count, capacity;
-    bool sorted; /* ascending, without duplicates */
+    bool sorted; /* true: the indices are in ascending order, without duplicates */
 };
 
 struct subdiv_mesh {

@@ -51,7 +51,8 @@
 /* minimum length of the two parts of a split edge in a coarser level of detail, in multiples of its error_m: at most a pixel where the
  * level is drawn */
 #define SHORTEST 1.0
-#define JUMP_WIDTH 8    /* in tolerances or errors */
+/* longest edge that is not split at a jump of the distance: in multiples of the tolerance, in coarser levels of error_m */
+#define JUMP_WIDTH 8
 #define ON_SURFACE 0.25 /* distance from the surface, in multiples of the tolerance, up to which a point counts as on the surface */
 /* in multiples of the level's error_m; a coarser level of detail may show at a point the field of another point up to this distance away */
 #define SLACK 0.7
@@ -309,7 +310,7 @@ static bool aim_at_corner(struct subdiv *subdiv, const struct subdiv_tri *tri, u
 
 struct aims {
     const struct subdiv *subdiv;
-    char *flat; /* by new triangle */
+    char *flat; /* by new triangle: nonzero if it is flat */
 };
 
 static void find_flat(void *arg, size_t begin, size_t end)

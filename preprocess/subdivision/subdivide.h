@@ -28,9 +28,9 @@ struct subdiv_input {
     const struct surface_field *field; /* distances from the sensors */
     /* subdivide_levels() sets their nearest_vertex to the vertex inserted at the sensor in the finest level */
     struct asset_sensor *sensors;
-    struct workers *workers;           /* may be NULL */
+    struct workers *workers;           /* worker threads; may be NULL */
     struct subdiv_cache *cache;        /* cache of measured errors from run to run; zeroed or NULL: nothing is cached */
-    struct sample_cache *sample_cache; /* may be NULL */
+    struct sample_cache *sample_cache; /* cache of projected sample points; may be NULL */
     /* called for each finished level; may be NULL. The level's content will not change any more, but its address in `levels` may. */
     void (*level_done)(void *arg, const struct level *level);
     void *arg;

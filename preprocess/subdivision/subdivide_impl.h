@@ -18,11 +18,12 @@ struct subdiv {
     size_t sensors, samples;
     /* [position][sensor] distances along the surface in metres; [position][sample] weights, or NULL if they would be too large */
     float *geodesic_m, *interp;
-    struct interp_norm *norms;                                           /* [position][norm] */
+    /* normalisations of the sensors' weights at each position, [position][norm] */
+    struct interp_norm *norms;
     size_t geodesic_capacity, share_capacity, norm_capacity, norm_count; /* norm_count: normalisations per position */
     uint32_t *part;                                                      /* by position: its connected component */
     struct subdiv_face {
-        double normal[3]; /* not normalised */
+        double normal[3]; /* normal of the triangle, not of unit length */
         uint32_t part;
     } * faces; /* by triangle of the original model: normal and connected component */
     size_t part_capacity;
@@ -74,8 +75,8 @@ struct subdiv_finding {
     float barred;       /* interpolation error, as a share of the range, that no split may fix */
     bool jumps;
     bool is_cached;   /* true: the measurement comes from the cache of the last run, so it was not measured again */
-    float doubt, off; /* see subdiv_cache.h */
-    uint64_t key;     /* cache key */
+    float doubt, off; /* doubt: weight of the sensors that changed since the measurement; off: by how much the error may be wrong */
+    uint64_t key;     /* key of the finding in the cache of measured errors */
 };
 
 /* Writes the connected component of each vertex position to subdiv->part. Returns false if out of memory. */

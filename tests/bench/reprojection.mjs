@@ -168,7 +168,7 @@ function warped({ pixels, width, height }, shown) {
     return out;
 }
 
-const swapped = (pixel) => -0x1000000 | (pixel & 255) << 16 | pixel & 0xff00 | pixel >> 16 & 255; // between BGRX and RGBA
+const swapped = (pixel) => -0x1000000 | (pixel & 255) << 16 | pixel & 0xff00 | pixel >> 16 & 255; // converts a pixel between BGRX and RGBA
 
 // Draws as browsers without a GPU do. shown: -1 where the picture shows nothing.
 function movedByProcessor({ pixels, width, height }, part, matrix) {

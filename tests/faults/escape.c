@@ -279,7 +279,7 @@ static void on_fault(int number)
 static bool calls_as_32_bit(void)
 {
 #ifdef __x86_64__
-    long answer = 20; /* getpid */
+    long answer = 20; /* number of the system call getpid */
     signal(SIGSEGV, on_fault);
     if (sigsetjmp(back, 1) != 0)
         errno = ENOSYS;
@@ -307,7 +307,7 @@ static void try_kernel(void)
     result("io_uring", syscall(SYS_io_uring_setup, 1, &ring) >= 0);
     result("bpf", syscall(SYS_bpf, BPF_MAP_CREATE, &bpf, sizeof(bpf)) >= 0);
     result("keyctl", syscall(SYS_keyctl, 0 /* get the session's keyring */, -3, 0) >= 0);
-    result("add-key", syscall(SYS_add_key, "user", "plantcast", "x", 1, -2 /* of the process */) >= 0);
+    result("add-key", syscall(SYS_add_key, "user", "plantcast", "x", 1, -2 /* keyring of the process */) >= 0);
     result("userfaultfd", syscall(SYS_userfaultfd, 1) >= 0);
     result("perf", syscall(SYS_perf_event_open, &perf, 0, -1, -1, 0) >= 0);
     in_copy("user-namespace", new_user_namespace);
@@ -332,7 +332,7 @@ static void try_kernel(void)
     result("fanotify", syscall(SYS_fanotify_init, 0, 0) >= 0);
     result("open-terminal", terminal >= 0);
     result("type-into-terminal", terminal >= 0 ? ioctl(terminal, TIOCSTI, "x") == 0 : ioctl(STDOUT_FILENO, TIOCSTI, "x") == 0);
-    result("kernel-log", syscall(SYS_syslog, 10 /* its size */, NULL, 0) >= 0);
+    result("kernel-log", syscall(SYS_syslog, 10 /* get the size of the kernel's log */, NULL, 0) >= 0);
     result("undo-hiding", prctl(PR_SET_DUMPABLE, 1) == 0);
 }
 

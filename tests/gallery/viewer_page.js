@@ -4,7 +4,7 @@ import * as THREE from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { HDRLoader } from 'three/addons/loaders/HDRLoader.js';
 
-const SKY_LIGHT = 0.55, SUN_LIGHT = 0.78; // shaders/environment.glsl
+const SKY_LIGHT = 0.55, SUN_LIGHT = 0.78; // as in shaders/environment.glsl
 const FOV = 40, RIM_PX = 2, OPEN_RAYS = 48;
 const toThree = ([x, y, z]) => new THREE.Vector3(x, z, -y);
 const toPlant = ({ x, y, z }) => [x, -z, y];
@@ -26,7 +26,7 @@ async function load(name) {
     const { scene } = await new GLTFLoader().loadAsync(`/models/${name}.glb`);
     scene.traverse((node) => {
         if (node.isLine || node.isPoints)
-            node.visible = false; // Plantcast passes them over
+            node.visible = false; // hide lines and points, which Plantcast does not draw
         else if (node.isMesh && !node.geometry.attributes.normal)
             node.geometry.computeVertexNormals();
         node.castShadow = node.receiveShadow = true;

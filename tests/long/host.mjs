@@ -127,7 +127,7 @@ test(`a whole host for ${MINUTES} minutes, seed ${SEED}`, { skip, timeout: (MINU
     const chosen = FAULTS.filter(({ name }) => !ONLY || ONLY.includes(name));
     for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP'])
         process.on(signal, () => site.destroy().finally(() => process.exit(1)));
-    t.after(() => site.destroy()); // also after a timeout
+    t.after(() => site.destroy()); // destroy the site also after a timeout
     try {
         await site.start();
         supervise(site, ends);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Meshes to Draco. */
+/* Compresses meshes with Draco. */
 #include "tests/support/draco_encode.h"
 
 #include <cstdlib>

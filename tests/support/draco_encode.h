@@ -12,8 +12,8 @@ extern "C" {
 
 struct draco_input {
     const float (*positions)[3];
-    const float (*normals)[3];  /* NULL: none */
-    const uint8_t (*colors)[4]; /* NULL: none */
+    const float (*normals)[3];  /* vertex normals; NULL: none */
+    const uint8_t (*colors)[4]; /* vertex colours; NULL: none */
     const uint32_t *indices;
     uint32_t vertex_count, index_count;
     int bits;        /* bits of quantisation; 0: none */

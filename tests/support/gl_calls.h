@@ -8,7 +8,7 @@
 #include "gpu/gl.h"
 
 bool gl_calls_begin(const struct gl *gl); /* starts counting, permanently; returns false on other processors than x86-64 */
-uint64_t gl_calls(void);                  /* returns the number of calls since then */
-uint64_t gl_draw_calls(void);             /* returns how many of them were glDraw* and glMultiDraw* */
+uint64_t gl_calls(void);                  /* returns the number of GL calls since gl_calls_begin() */
+uint64_t gl_draw_calls(void);             /* returns the number of calls of glDraw* and glMultiDraw* since gl_calls_begin() */
 
 #endif

@@ -28,7 +28,7 @@ enum device_wire { DEVICE_TCP, DEVICE_RTU_TCP, DEVICE_LINE };
 struct modbus_device { /* members may be set before the start or while the device runs */
     _Atomic int manner, late_ms;
     _Atomic int bad_register, bad_code;  /* exception code for requests that include this register; code 0: none */
-    _Atomic int bad_times;               /* number of such exceptions; 0: unlimited */
+    _Atomic int bad_times;               /* number of requests that get bad_code; 0: all */
     _Atomic int said_length;             /* length for DEVICE_MEASURED */
     _Atomic int said_unit;               /* unit number for DEVICE_RENAMED */
     _Atomic int answers_per_connection;  /* answers before the connection is closed, or with `hushes` falls silent; 0: unlimited */
@@ -39,7 +39,7 @@ struct modbus_device { /* members may be set before the start or while the devic
     _Atomic int idle_ms;                 /* closes a connection that was idle for this long; 0: never */
     _Atomic int mute_register;           /* requests for this register are never answered; 0: none */
     _Atomic int dead_unit;               /* unit whose requests get exception 11; -1: all units; 0: none */
-    _Atomic int dead_late_ms;            /* delay of that exception, during which the device answers nobody */
+    _Atomic int dead_late_ms;            /* delay of the answer for dead_unit, during which the device answers no other request either */
     _Atomic int silent_unit;             /* unit that never answers; 0: none */
     _Atomic int requests, refused, connections;
     _Atomic int functions;               /* bit f: function code f was requested */

@@ -20,10 +20,11 @@ void maker_finish(struct model_maker *maker);
 
 /* Functions that return int return the index of what they appended. Lists in the JSON are created as needed. */
 int maker_add(struct model_maker *maker, const char *list, json_t *object);
-int maker_view(struct model_maker *maker, const void *bytes, size_t count, int stride); /* stride 0: not written */
+/* appends a buffer view over these bytes; stride 0: the view states no stride */
+int maker_view(struct model_maker *maker, const void *bytes, size_t count, int stride);
 int maker_accessor(struct model_maker *maker, int view, int component_type, size_t count, const char *type);
 int maker_numbers(struct model_maker *maker, const void *bytes, size_t size, int component_type, size_t count,
-                  const char *type); /* appends the view as well */
+                  const char *type); /* appends a buffer view over these bytes and an accessor for the view */
 int maker_mesh(struct model_maker *maker, json_t *primitive);
 int maker_node(struct model_maker *maker, const char *name, int mesh, json_t *more); /* a root node; more: further properties, or NULL */
 void maker_require(struct model_maker *maker, const char *extension);

@@ -13,7 +13,7 @@ struct snapshot;
 struct store;
 struct workers;
 
-/* Hands a resource over. release() gets it once. */
+/* Hands a resource over to the running test: release(resource) is called once, after the test's tear-down. */
 void owned_add(void (*release)(void *resource), void *resource);
 /* Returns the number of resources that are not released yet. */
 size_t owned_count(void);
@@ -23,7 +23,7 @@ void owned_release(size_t kept);
 /* Each of these functions creates a resource and hands it over with owned_add(), so that its caller never releases it. */
 json_t *test_json(json_t *json); /* hands `json` over and returns it; accepts NULL */
 char *test_printf(const char *format, ...) __attribute__((format(printf, 1, 2)));
-struct log *test_log(void); /* prints errors only */
+struct log *test_log(void); /* returns a log that prints errors only */
 struct counters *test_counters(void);
 struct snapshot *test_snapshot(size_t tag_count);
 struct store *test_store(const struct plant *plant);

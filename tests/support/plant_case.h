@@ -6,7 +6,7 @@
 
 struct plant_case {
     char *folder, *path; /* path: FOLDER/plant.yaml; FOLDER/m.glb exists, to be used as a model */
-    struct plant *plant; /* NULL: loading found errors */
+    struct plant *plant; /* the loaded plant; NULL: loading found errors */
     struct diag diag;
 };
 
@@ -18,7 +18,7 @@ void plant_case_forget(struct plant_case *c);
 void plant_case_assert_loaded(struct plant_case *c, int warnings);
 
 struct expected_finding {
-    const char *file; /* end of the file's path */
+    const char *file; /* end of the path of the file that the finding is about */
     int line, column;
     const char *words; /* part of the finding's text */
 };

@@ -34,7 +34,7 @@ int free_port(void)
         int n = (int)(chance % COUNT), lock = listen_at(LOCKS + n, INADDR_LOOPBACK);
         if (lock < 0)
             continue;
-        int probe = listen_at(FIRST + n * EACH, INADDR_ANY); /* another program may listen there */
+        int probe = listen_at(FIRST + n * EACH, INADDR_ANY); /* tries the port itself, because another program may listen there */
         if (probe >= 0) {
             close(probe);
             return FIRST + n * EACH;

@@ -31,7 +31,7 @@ void prep_case_read(struct prep_case *c, const char *name, struct text *to);
 /* Returns the path of the only prepared file with that ending; *key: the key in its name. */
 char *prep_case_file(const struct prep_case *c, const char *ending, uint64_t *key);
 void prep_case_says(const struct text *text, const char *words);
-json_t *prep_case_json(const struct text *text); /* belongs to the test */
+json_t *prep_case_json(const struct text *text); /* parses JSON; the result belongs to the running test */
 /* Returns the number at a path such as "assets.0.surface.bridges"; fails if there is none. */
 double prep_case_number(const json_t *root, const char *path);
 

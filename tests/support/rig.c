@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* GL contexts, stands and pixels for GL tests. */
+/* Makes GL contexts and plants with a renderer, and reads pixels, for GL tests. */
 #include "tests/support/rig.h"
 
 #include <errno.h>

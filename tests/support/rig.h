@@ -26,12 +26,12 @@ struct stand { /* one plant and its renderer */
     struct renderer *renderer;
     struct snapshot *snapshot;
 };
-/* Takes ownership of the toy. */
+/* Makes a renderer for the toy (a plant made in memory), and takes ownership of the toy. */
 void stand_init(struct stand *stand, struct rig *rig, struct toy *toy);
 void stand_finish(struct stand *stand);
 /* Writes the i-th camera of a tour: all around, from far away, from below and from among the pipes, where triangles pass the eye. */
 void stand_look(const struct stand *stand, int i, struct view *view);
-struct frame *stand_draw(struct stand *stand, const struct view *view); /* never returns NULL */
+struct frame *stand_draw(struct stand *stand, const struct view *view); /* draws the view; never returns NULL */
 
 const uint8_t *frame_pixel(const struct frame *frame, int x, int y); /* returns the bytes b, g, r, x of a pixel */
 /* Returns the index (0..255) of a colour that is exactly in the map, or -1. */

@@ -4,7 +4,7 @@
 #define TESTS_SUPPORT_SITE_H
 #include "tests/support/rig.h"
 
-#define SITE_DEMO "build/demo/plant.yaml" /* prepared by `make demo` */
+#define SITE_DEMO "build/demo/plant.yaml" /* plant file of the demo, which `make demo` prepares */
 
 struct site {
     struct rig *rig;

@@ -10,7 +10,7 @@ extern struct log *the_log;
 extern struct workers *workers;
 extern struct cad_random chance;
 
-/* Returns a random number from `chance`. */
+/* Returns a random number between low and high. */
 double between(double low, double high);
 
 /* Set-up and tear-down of a cmocka group. */

@@ -5,7 +5,7 @@
 #define TESTS_TEMP_H
 #include <stddef.h>
 
-char *temp_folder(void); /* removed after the test with everything in it */
+char *temp_folder(void); /* creates a folder, which is removed after the test with everything in it */
 /* Writes FOLDER/NAME, creates missing folders, and returns the path. */
 char *temp_write(const char *folder, const char *name, const void *bytes, size_t count);
 char *temp_write_text(const char *folder, const char *name, const char *text);

@@ -52,7 +52,8 @@ function distance([l1, a1, b1], [l2, a2, b2]) {
 function coloursOf(name) {
     const lines = read(`shaders/maps/${name}`).split('\n'), list = (text) => text.split(',').map(Number);
     const ends = lines.filter((line) => /^# (below|above) /.test(line)).map((line) => list(line.split(' ')[2]));
-    return [...lines.filter((line) => /^\d/.test(line)).map(list), ...name === 'operator.csv' ? [] : ends]; // that map has no ends
+    // the map "operator" has no colours for values beyond its range
+    return [...lines.filter((line) => /^\d/.test(line)).map(list), ...name === 'operator.csv' ? [] : ends];
 }
 
 const maps = Object.fromEntries(readdirSync(new URL('shaders/maps/', ROOT)).map((name) => [name.slice(0, -4), coloursOf(name)]));

@@ -172,7 +172,7 @@ test('a page that hung for longer than the limit hears first what arrived meanwh
         clock.time += DEAD_MS + 1000;
         const [[id, late]] = clock.timers;
         clock.timers.delete(id);
-        late.f(); // runs before the message that arrived meanwhile
+        late.f(); // the overdue timer runs before the message that arrived meanwhile is handled
         assert.equal(connection.state, 'open');
         if (answers)
             sockets[0].say({ type: 'pong' });

@@ -135,7 +135,7 @@ test('a ray meets the surface that the picture shows, from wherever it begins', 
     const grid = gridOf(CAMERA, 1000, 1000, 8);
     isClose(hitOf(grid, CAMERA, [0.2, 0.3, 1.2], unit([0, 1, 0])).point, [0.2, 3, 1.2], 0.03);
     isClose(hitOf(grid, CAMERA, [0.2, 0.3, 1.2], unit([1, 2, 0.1])).point, [2.55, 5, 1.435], 0.05);
-    isClose(hitOf(grid, CAMERA, [0.1, -0.5, 1.2], unit([0, 1, 0.02])).point, [0.1, 3, 1.27], 0.03); // begins behind the camera
+    isClose(hitOf(grid, CAMERA, [0.1, -0.5, 1.2], unit([0, 1, 0.02])).point, [0.1, 3, 1.27], 0.03); // this ray begins behind the camera
     assert.equal(hitOf(grid, CAMERA, [0, 0.3, 1.2], [0, -1, 0]), null);
     assert.equal(hitOf(grid, CAMERA, [0, 0.3, 1.2], [1, 0, 0]), null);
     assert.ok(hitOf(grid, CAMERA, [0, 0.3, 1.2], unit([1, -0.0001, 0])) === null, 'never an endless search');

@@ -677,7 +677,7 @@ test('alarms: those raised while the connection was lost are announced once, in 
     };
     assert.deepEqual(raised(of.kept), []);
     reconnect(welcome);
-    reconnect(welcome); // lost again before the alarms arrived
+    reconnect(welcome); // the connection is lost again before the alarms arrived
     assert.deepEqual(raised(of.kept, of.late), ['1 L']);
     assert.deepEqual(raised(of.kept, of.late), []);
     reconnect({ ...welcome, plant: { ...welcome.plant, name: 'Another' } });

@@ -9,7 +9,7 @@ import { approaches } from '../../clients/web/core/approach.js';
 const CASES = JSON.parse(readFileSync(new URL('../../protocol/vectors/wall/sights.json', import.meta.url)));
 const CAMERA = { eye: [30, 30, 20], target: [0, 0, 0], up: [0, 0, 1], fov: 45 };
 const TAG = { name: 'TI-1', asset: 'own', position: [1, 0.5, 0.5] }, OWN = { id: 'own', bounds: { min: [0, 0, 0], max: [1, 1, 1] } };
-const CLOSE = [1, 0.5, 0.55]; // everything stands so near to the tag that there is no room for an eye
+const CLOSE = [1, 0.5, 0.55]; // as in a place where everything is so near to the tag that there is no room for an eye
 const MIDDLE = [640, 360], WHOLE = { min: [0, 0, 0], max: [40, 40, 10] };
 const away = ({ eye }) => Math.hypot(...eye.map((m, i) => m - TAG.position[i]));
 const sides = approaches({ camera: CAMERA, point: TAG.position, box: OWN.bounds, aspect: 1280 / 720, whole: WHOLE, solid: true });

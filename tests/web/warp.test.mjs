@@ -15,7 +15,7 @@ import { mockTimeouts } from './older_node.mjs';
 const WIDTH = 400, HEIGHT = 240, CELL = 8, SIDE = 4, LEVELS = 4095;
 const PERSPECTIVE = { eye: [6, -9, 5], target: [0, 0, 0.5], up: [0, 0, 1], fov: 45 };
 const PARALLEL = { ...PERSPECTIVE, fov: 0, height_m: 8 };
-const BOX = { min: [-1, -1, 0], max: [1, 1, 2] }, FLOOR = 4; // half the side of the floor
+const BOX = { min: [-1, -1, 0], max: [1, 1, 2] }, FLOOR = 4; // FLOOR: half the side of the floor, metres
 
 // Returns the distance along the view to the first surface at a pixel, and the surface; null: background.
 function hit(camera, x, y) {
@@ -39,7 +39,7 @@ function hit(camera, x, y) {
 
 // Returns where a mask differs from its prediction, bit by bit from its definition.
 function unexpected(cell, { columns, near, far, masks }) {
-    const at = (x, y) => { // x, y: in bits, from the cell's top left
+    const at = (x, y) => { // x, y: position of the bit, counted from the cell's top left corner
         const [dx, dy] = [x, y].map((v) => Math.floor(v / SIDE)), other = cell + dx + dy * columns;
         if (other < 0 || cell % columns + dx < 0)
             return false;

@@ -538,12 +538,14 @@ void convert(const char *input, const char *output, const char *units, const cha
     unsigned steps = aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_ValidateDataStructure;
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true); /* otherwise children inherit GeometricTranslation */
+    /* keep FBX pivots as nodes: without them, children would inherit a node's GeometricTranslation, which applies to its own mesh only */
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true);
     text_encoding of_file;                             /* encoding of the content of text files, which is decoded before Assimp reads it */
-    importer.SetIOHandler(new files(&of_file, asked)); /* Assimp takes ownership */
+    importer.SetIOHandler(new files(&of_file, asked)); /* Assimp takes ownership of the object */
     std::map<std::string, size_t> logged;
     Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
-    Assimp::DefaultLogger::get()->attachStream(new assimp_log(logged), Assimp::Logger::Err | Assimp::Logger::Warn); /* Assimp owns it */
+    /* Assimp takes ownership of the log stream */
+    Assimp::DefaultLogger::get()->attachStream(new assimp_log(logged), Assimp::Logger::Err | Assimp::Logger::Warn);
     steps |= from.own_normals ? 0U : static_cast<unsigned>(aiProcess_RemoveComponent);
     const aiScene *scene = importer.ReadFile(input, steps);
     /* Assimp refuses a whole model because of one empty mesh: read the model again without the post-processing steps that check this */

@@ -55,10 +55,10 @@ constexpr const char *SCENE = "0"; /* id of the scene's root node in the connect
 
 /* The models of an FBX file in text form, and the connections between them. Keys are FBX ids. */
 struct fbx_graph {
-    std::map<std::string, std::string> models; /* names */
-    std::set<std::string> geometries, shown;   /* shown: models with a geometry */
+    std::map<std::string, std::string> models; /* names of the FBX models, by id */
+    std::set<std::string> geometries, shown;   /* ids of geometries, and of models that have a geometry (shown) */
     std::multimap<std::string, std::string> children;
-    std::map<std::string, size_t> parents; /* number of parents */
+    std::map<std::string, size_t> parents; /* number of parents of each FBX model, by id */
 };
 
 /* Returns the part of a line between two marks, the second of which may be missing; "" if the line lacks the first. */

@@ -11,7 +11,7 @@ import { collectErrors, findDamaged, findLosses, misplacedLines } from './ifc_lo
 import { openingLines, uncutOpenings } from './ifc_openings.mjs';
 import { readSolids, takeSolids, withPlacements } from './ifc_solids.mjs';
 
-const CORNERS = 24; // corners of a full circle
+const CORNERS = 24; // number of corners by which a full circle is approximated
 const MAX_NAMED = 20;
 const MAX_DEPTH = 400; // maximum levels of the tree of nodes; plantcast-prep reads at most 512
 const NOT_SHOWN = new Set(['IfcOpeningElement', 'IfcOpeningStandardCase', 'IfcSpace', 'IfcDistributionPort', 'IfcVirtualElement']);
@@ -155,7 +155,8 @@ function readGeometry(api, id, model) {
     const openings = [];
     model.relate(webIfc.IFCRELVOIDSELEMENT, 'RelatingBuildingElement', 'RelatedOpeningElement', (_, opening) => openings.push(opening));
     if (openings.length > 0)
-        api.StreamMeshes(id, [...new Set(openings)], take(cutters)); // StreamAllMeshes() leaves openings out
+        // stream the openings separately, because StreamAllMeshes() leaves them out
+        api.StreamMeshes(id, [...new Set(openings)], take(cutters));
     return { shown, known, cutters, geometries: { of: (geometryId) => known.get(geometryId), made: new Map() } };
 }
 
@@ -187,7 +188,7 @@ function addTree(glb, model, { shown, geometries }, root) {
     for (const id of model.ofType(webIfc.IFCPROJECT))
         add(id, root, '', 0);
     for (const id of shown.keys())
-        add(id, root, '', 0); // elements outside the spatial tree
+        add(id, root, '', 0); // add the elements that are outside the spatial tree below the root
     return { drawn, storeys };
 }
 

@@ -19,7 +19,7 @@ namespace
 {
 
 constexpr double STEP_RAD = 0.05;    /* largest turn of a curve, in radians, between two interpolated points */
-constexpr double MOST_TURN_RAD = 50; /* maximum turn of one segment */
+constexpr double MOST_TURN_RAD = 50; /* maximum turn of one alignment segment, in radians */
 constexpr double LEAST_MM = 1e-3;    /* millimetres; a segment shorter than this only marks the end of its curve */
 constexpr double JOINT_MM = 1;       /* millimetres; the grades of an alignment must begin this close to the start of its plan curve */
 

@@ -117,7 +117,7 @@ class step_writer
         char text[40];
         snprintf(text, sizeof(text), whole_numbers ? "%.0f" : "%.17G", number);
         std::string digits = text;
-        if (!whole_numbers && digits.find('.') == std::string::npos) /* such as "1.E-05" */
+        if (!whole_numbers && digits.find('.') == std::string::npos) /* STEP requires a decimal point: turn "1E-05" into "1.E-05" */
             digits.insert(std::min(digits.find('E'), digits.size()), ".");
         to << digits;
     }

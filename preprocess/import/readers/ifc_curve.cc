@@ -57,7 +57,7 @@ bool straight(const gp_Pnt &from, const gp_Pnt &to, double span, std::vector<cur
 void add_arc(const gp_Pnt &from, const gp_Pnt &through, const gp_Pnt &to, std::vector<curve_piece> *out)
 {
     GC_MakeArcOfCircle arc(from, through, to);
-    if (!arc.IsDone()) { /* the three points are collinear */
+    if (!arc.IsDone()) { /* the three points are collinear, so no arc passes through them: use a straight line */
         straight(from, to, 1, out);
         return;
     }

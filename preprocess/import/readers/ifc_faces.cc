@@ -18,7 +18,7 @@ namespace ifc
 namespace
 {
 
-constexpr size_t MAX_SEWN_FACES = 20000; /* faces; sewing more takes minutes */
+constexpr size_t MAX_SEWN_FACES = 20000; /* number of faces above which they are not sewn to a solid, because sewing would take minutes */
 constexpr double SEWN_MM = 1e-3;
 
 using polygon = std::vector<gp_Pnt>;

@@ -34,7 +34,7 @@ export function collectErrors() {
                 found.set(text, (found.get(text) ?? []).concat(id ? [Number(id)] : []));
         }
     };
-    const lines = (model, solids) => { // in the format of findings.h
+    const lines = (model, solids) => { // returns the lines to print, in the format of findings.h
         const built = found.size > 0 ? [...solids.elements.values()].flatMap(({ parts }) => parts.map(({ item }) => item)) : [];
         const instead = reached(model, built), left = [...found].map(([text, ids]) =>
             [text, ids.filter((id) => !instead.has(id)), ids.length > 0]);
@@ -106,7 +106,7 @@ export function findLosses(model, product, isShown, failed) {
 
 // Returns findings.h lines that name the elements whose place is wrong, because it depends on a grid placement that was not computed.
 export function misplacedLines(model, { product, grid }, isShown, failed) {
-    const found = new Map(); // names of elements by reason
+    const found = new Map(); // names of the misplaced elements, by reason
     for (const id of model.ofType(grid).next().done ? [] : model.ofType(product)) {
         const line = model.line(id), seen = new Set();
         let place = line?.ObjectPlacement?.value;

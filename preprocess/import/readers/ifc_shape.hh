@@ -51,7 +51,7 @@ triangles triangles_of(const ifc_model &in, const TopoDS_Shape &shape);
 double volume_of(const triangles &all);
 
 /* --- ifc_curve.cc */
-double length_of(const curve_piece &part); /* in mm */
+double length_of(const curve_piece &part); /* Returns the length of a piece of a curve, in millimetres. */
 /* Returns the length along which IFC measures distances on a piece of a curve, in mm: for an alignment its length in plan view, for any
  * other curve its length. */
 double distance_of(const curve_piece &part);

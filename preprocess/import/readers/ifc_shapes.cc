@@ -43,7 +43,7 @@ double unit_of(const file &in, const entity &unit, int depth)
 {
     if (unit.is("IFCSIUNIT"))
         return si_prefix(unit[2]);
-    entity factor = in.get(unit[3]); /* a conversion-based unit */
+    entity factor = in.get(unit[3]); /* conversion-based unit: a factor times another unit */
     if (depth > MAX_CHAIN)
         throw unsupported("units refer to each other in a circle");
     return file::number(factor[0]) * unit_of(in, in.get(factor[1]), depth + 1);
@@ -284,7 +284,7 @@ std::map<int, std::vector<int>> find_openings(const file &in)
                 openings[relation[4].id].push_back(relation[5].id);
             for (const value &part : relation[5].list)
                 consists_of[relation[4].id].push_back(part.id);
-        } catch (const unsupported &) { /* web-ifc reports damaged statements */
+        } catch (const unsupported &) { /* ignore a damaged statement, because web-ifc reports it */
         }
     });
     std::map<int, std::vector<int>> out = openings;

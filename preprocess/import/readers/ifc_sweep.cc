@@ -127,7 +127,7 @@ TopoDS_Shape disk_along(const ifc_model &in, const TopoDS_Face &face, double are
                 return out;
             if (std::fabs(volume + expected) < VOLUME_SLACK * expected)
                 return out.Reversed();
-        } catch (const Standard_Failure &) { /* try the next method */
+        } catch (const Standard_Failure &) { /* try the next method of sweeping */
         } catch (const unsupported &) {
         }
     throw unsupported("unsupported: a pipe that cannot be swept along its curve");

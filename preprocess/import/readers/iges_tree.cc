@@ -85,7 +85,7 @@ bool color_of(const entity &from, Quantity_Color *out)
     Handle(IGESGraph_Color) color = Handle(IGESGraph_Color)::DownCast(from->Color());
     if (color.IsNull())
         return false;
-    color->RGBIntensity(part[0], part[1], part[2]); /* values in per cent */
+    color->RGBIntensity(part[0], part[1], part[2]); /* the colour's components are in per cent */
     for (Standard_Real &each : part)
         each = std::isfinite(each) ? std::clamp(each / 100, 0.0, 1.0) : 0;
     out->SetValues(part[0], part[1], part[2], Quantity_TOC_sRGB);

@@ -128,7 +128,8 @@ struct occt_reader {
     double chord_mm;
     /* tessellated parts, by XCAF label and by the colour that the part inherits from its assembly */
     std::map<std::string, occt_part> parts;
-    std::map<std::string, step_external> externals; /* of STEP, as step_files.hh says */
+    /* external files of a STEP assembly, by the name that the copies use for them (step_files.hh) */
+    std::map<std::string, step_external> externals;
     size_t nodes = 0, places = 0, skipped_faces = 0;
     std::vector<std::string> lines; /* names of parts that consist only of curves or points */
 };

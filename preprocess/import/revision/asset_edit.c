@@ -12,7 +12,7 @@
 #include "preprocess/match/plant_edit.h"
 
 struct splice {
-    size_t begin, end; /* byte range in the text */
+    size_t begin, end; /* byte range of the plant file's text that is replaced */
     char *with;
 };
 

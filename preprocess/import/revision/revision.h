@@ -26,7 +26,7 @@ struct revision_row {
 
 struct revision {                 /* zero-initialise */
     char *plant_text, *tags_text; /* new texts of plant.yaml and the tag list; NULL: no change */
-    struct revision_row *rows;    /* the review, in reading order */
+    struct revision_row *rows;    /* rows of the review of changes, in the order in which they are printed */
     const char **lost;            /* names of tags whose equipment was removed; the strings belong to the plant */
     size_t row_count, row_room, lost_count, lost_room;
 };

@@ -202,7 +202,7 @@ export class Site {
         try {
             writeFileSync(join(core.disk, 'filler'), Buffer.alloc(bavail * bsize));
             appendFileSync(join(core.disk, 'filler'), Buffer.alloc(4096));
-        } catch { /* full */ }
+        } catch { /* the disk is full */ }
     }
     freeDisk(core) { spawnSync('rm', [join(core.disk, 'filler')]); }
 

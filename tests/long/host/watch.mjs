@@ -46,7 +46,7 @@ export class Alerts {
             if (!firing.has(name))
                 this.firing.delete(name);
     }
-    // Returns the names of the alerts that began to fire since then.
+    // Returns the names of the alerts that began to fire at or after the time `at`.
     since(at) { return new Set(this.fired.filter((one) => one.at >= at).map(({ name }) => name)); }
     // Returns the number of targets that Prometheus reads.
     async read() { return (await this.ask('targets')).data.activeTargets.filter(({ health }) => health === 'up').length; }
