@@ -12,7 +12,7 @@
 struct journal_params {
     struct log *log;
     struct counters *counters;
-    const char *folder; /* created if missing */
+    const char *folder; /* folder of the journal, created if missing */
     double keep_days;
 };
 

@@ -21,9 +21,9 @@ struct journal_entry {
 
 struct journal_row {
     int64_t id, t_us;
-    const char *tag, *kind, *event, *before, *after, *who, *reason; /* valid until the next row */
+    const char *tag, *kind, *event, *before, *after, *who, *reason; /* texts of the row, valid until the next row is read */
     int priority;
-    double limit, value; /* NaN: none */
+    double limit, value; /* the alarm's limit and the value of the change; NaN: none */
     const char *unit;    /* unit of limit and value when the row was written; NULL: not known, because version 1 wrote the row */
 };
 struct journal_query {

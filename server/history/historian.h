@@ -14,8 +14,8 @@ struct historian_params {
     struct log *log;
     struct counters *counters;
     const struct plant *plant;
-    struct store *store; /* must outlive the historian */
-    const char *folder;  /* created if it is missing */
+    struct store *store; /* store whose samples are recorded; must outlive the historian */
+    const char *folder;  /* folder of the history files; created if it is missing */
     /* true: samples come from the leading daemon (historian_mirror()) instead of the store, until historian_lead() is called */
     bool stands_by;
     bool follows; /* true: this historian continues one that ended with historian_end(): recorded lines go on, and no gap is recorded */

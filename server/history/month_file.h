@@ -126,7 +126,7 @@ struct history_gap {
     int64_t from_us, to_us;
 };
 struct history_gaps {
-    struct history_gap *at; /* free with mem_free() */
+    struct history_gap *at; /* array of gaps; free with mem_free() */
     size_t count, capacity;
 };
 /* Appends the gaps in recording that this file notes, unordered. */

@@ -124,7 +124,7 @@ static void add_rows(struct month_seconds *seconds, const uint64_t *packed, size
         t[held] += at[1];
         struct month_row row = { (int64_t)tag[held], seconds->count, { (int64_t)t[held], columns_to_double(at[2]), (uint32_t)at[3] } };
         if (row.id < 1 || row.id > ID_MAX)
-            continue; /* the row is damaged */
+            continue; /* skip a damaged row */
         if (held)
             add_held(seconds, &row);
         else

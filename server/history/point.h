@@ -7,8 +7,8 @@
 #include <stdint.h>
 
 struct history_point {
-    int64_t t_us;     /* UTC, since 1970 */
-    double value;     /* engineering units; NaN: no value */
+    int64_t t_us;     /* time of the point, UTC since 1970 */
+    double value;     /* value in the tag's unit; NaN: no value */
     uint32_t quality; /* OPC UA quality that holds from this point until the next */
 };
 

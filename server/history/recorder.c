@@ -16,7 +16,7 @@ struct recorder_lane {
     /* time and quality of the sample that is the latest in time, which need not have arrived last: a source may state an old time */
     int64_t latest_us;
     uint32_t quality;
-    bool touched; /* true: the lane's index is in recorder->touched (tags with samples since the last recorder_held()) */
+    bool touched; /* true: recorder->touched lists the tag, because it had samples since the last recorder_held() */
 };
 
 struct recorder {

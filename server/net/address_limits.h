@@ -6,8 +6,8 @@
 #include "session/pacing/admission.h"
 
 struct address_usage {
-    uint8_t address[16]; /* IPv4 addresses as ::ffff:a.b.c.d */
-    bool local;          /* loopback: 127.x or ::1 */
+    uint8_t address[16]; /* address of the client; an IPv4 address has the form ::ffff:a.b.c.d */
+    bool local;          /* true: the address is loopback: 127.x or ::1 */
     int refs, connections, sessions;
     int named;               /* number of connections from a reverse proxy whose last request named this client address */
     int pictures, questions; /* numbers of HTTP requests of the address that are being answered: requests for pictures, and for history */

@@ -208,7 +208,8 @@ bool net_settle_answers(struct net *net)
 {
     struct server_context *server = &net->server;
     struct kept_answers *answers = &server->kept_answers;
-    bool changed = file_writer_collect(server->params.file_writer); /* lists that clients are sent */
+    /* writing a file may change views, notes and other lists that clients are sent */
+    bool changed = file_writer_collect(server->params.file_writer);
     if (answers->waiting) {
         answers->waiting = false;
         session_settle_gone(answers);

@@ -23,7 +23,7 @@ struct net {
     struct cpu_meter cpu;
     int64_t cpu_ns; /* monotonic time when the processors' load was last read */
     _Atomic bool stopping, look, drain, readings_changed, lead_ended;
-    struct { /* hand_over.c */
+    struct { /* state of handing the lead to the standby (hand_over.c) */
         enum hand_over_step step;
         int64_t until_ns; /* monotonic time at which the current step of handing the lead to the standby is given up */
     } hand_over;

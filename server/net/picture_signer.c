@@ -165,7 +165,7 @@ void picture_signer_settle(struct picture_signer *signer)
     signer->waiting = NULL;
     while (signer->busy)
         pthread_cond_wait(&signer->settled, &signer->thread.lock);
-    forget_last(signer); /* safe: the loop above waited until the signing thread was idle */
+    forget_last(signer); /* safe, because the signing thread is idle now */
     free_all(signer->done);
     signer->done = NULL;
     pthread_mutex_unlock(&signer->thread.lock);

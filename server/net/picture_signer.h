@@ -13,7 +13,7 @@ struct signing {
     bool good;                     /* true: the frame's packet is now the signed file; false: it could not be signed */
     struct signing *next;
 };
-void signing_free(struct signing **signing); /* sets *signing to NULL */
+void signing_free(struct signing **signing); /* frees the picture and sets *signing to NULL */
 
 struct picture_signer;
 /* Starts the thread; it calls notify(arg) when a picture is signed. Returns NULL if it cannot start, already logged. `key` must outlive the

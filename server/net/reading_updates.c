@@ -66,7 +66,8 @@ int64_t net_update_readings(struct net *net, int64_t now_ns)
         net->readings_ns = later(now_ns + GATHER_NS, server->session_context.changed_ns + READINGS_INTERVAL_NS);
     if (server->streams.count == 0 && !server->core.renderers)
         return INT64_MAX;
-    if (server->readings.data_changed || server->readings.links_changed) { /* a request took a snapshot */
+    /* a request has taken a snapshot whose changes were not told yet */
+    if (server->readings.data_changed || server->readings.links_changed) {
         int64_t due_ns = next_ns(server);
         tell_changes(server);
         net->readings_ns = due_ns < net->readings_ns ? due_ns : net->readings_ns;

@@ -22,9 +22,9 @@
 
 enum { SLICE_BYTES = 32 * 1024 };
 
-struct stream;        /* stream.h */
-struct http_exchange; /* http_impl.h */
-struct web_site;      /* site.h */
+struct stream;        /* defined in stream.h */
+struct http_exchange; /* defined in http_impl.h */
+struct web_site;      /* defined in site.h */
 
 /* Wall displays that have connected since the start (wall_displays.c). */
 enum { WALL_DISPLAYS_SEEN = 256 };
@@ -55,7 +55,7 @@ struct server_context {
     struct net_params params;
     struct session_context session_context; /* state that all sessions read */
     struct lws_context *lws;
-    struct { /* readings.c */
+    struct { /* newest snapshot of the readings, and connections to their sources (readings.c) */
         struct snapshot *snapshot;
         uint32_t *changes;      /* by tag: the change counter (reading.changes) of the reading in the last snapshot */
         int64_t data_ns;        /* monotonic time when the oldest of the readings arrived that changed in the last snapshot */
@@ -72,7 +72,7 @@ struct server_context {
         char key_id[SIGNING_KEY_ID_BYTES];
     } signing;
     struct {                   /* connections to /stream */
-        struct stream *first;  /* linked list of all */
+        struct stream *first;  /* linked list of all connections to /stream */
         struct stream **by_client; /* array of all connections to /stream, sorted by session id, ascending */
         size_t by_client_capacity;
         int count;
@@ -108,7 +108,7 @@ struct server_context {
         int connections, unanswered; /* unanswered: number of connections that wait for an answer or have not sent a request yet */
     } room;
     struct {
-        struct tokens *tokens;           /* NULL: none are configured */
+        struct tokens *tokens;           /* access tokens; NULL: none are configured */
         struct openid *openid;           /* service for signing in with OpenID Connect; NULL: off */
         struct login_throttle *throttle;
         char *notice;      /* text that the page shows before users sign in; NULL: none */

@@ -23,7 +23,7 @@ struct tls {
     char *cert_path, *key_path;
     struct file_watch cert_watch, key_watch;
     SSL_CTX *checked; /* newest certificate that passed the checks; NULL: none yet */
-    SSL_CTX *served;  /* the context of libwebsockets */
+    SSL_CTX *served;  /* OpenSSL context with which libwebsockets serves the certificate */
     time_t warned_s;  /* time when the last warning about the certificate's expiry was logged, in seconds of UTC; 0: none yet */
 };
 

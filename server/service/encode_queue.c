@@ -36,7 +36,7 @@ struct encode_queue {
 struct encode_job {
     struct encode_queue *queue;
     struct encode_stream *stream;
-    struct frame *frame;        /* NULL: nothing needs encoding */
+    struct frame *frame;        /* frame to encode; NULL: nothing needs encoding */
     struct request_group group; /* requests with equal codec and quality, which are all answered with one encoded frame */
     struct encoder_params quality;
     bool again;

@@ -37,7 +37,7 @@ struct encode_stream_member {
 
 struct encode_streams { /* zero-initialise */
     struct encode_stream *first;
-    struct encode_stream_member *links; /* sorted by client id, ascending */
+    struct encode_stream_member *links; /* clients and their positions in a stream, sorted by client id */
     size_t link_count, link_capacity;
 };
 

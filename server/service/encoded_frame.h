@@ -18,7 +18,7 @@ struct encoded_frame { /* encoded frame; the code that collected it owns it, and
     struct packet *packet; /* NULL: none; `absence` says why */
     struct packet **earlier; /* packets of a shared stream that the client missed and must decode first, oldest first */
     int earlier_count;
-    enum frame_absence absence; /* only if packet is NULL */
+    enum frame_absence absence; /* reason why there is no packet; set only if packet is NULL */
     struct frame_request request;
     int64_t wait_ns; /* nanoseconds from the user's input to the start of drawing */
     int64_t made_ns; /* monotonic: when encoding ended */

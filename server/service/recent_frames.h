@@ -8,7 +8,7 @@
 enum { RECENT_FRAMES = 4 };
 struct recent_frames { /* zero-initialise; free with recent_frames_finish() */
     struct {
-        struct frame *frame; /* a reference; NULL: empty entry */
+        struct frame *frame; /* reference to the cached frame; NULL: the entry is empty */
         int64_t drawn_ns;
         int64_t read_ns; /* monotonic time when the readings in the frame were taken */
     } kept[RECENT_FRAMES];

@@ -20,7 +20,6 @@ struct render_client *render_service_find(struct render_service *service, uint64
     return place < service->client_count && service->clients[place]->id == id ? service->clients[place] : NULL;
 }
 
-/* The caller holds the lock. */
 struct render_client *render_service_add_client(struct render_service *service, uint64_t id, uint64_t account)
 {
     size_t place = place_of(service, id);

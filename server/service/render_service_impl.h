@@ -42,7 +42,7 @@ struct render_service {
     bool lost;                             /* true: the GL context is lost and being rebuilt */
     int64_t asked_ns; /* monotonic time since when a check waits for the render thread's answer; 0: none waits */
     bool lose;        /* true: a test wants the GL context to be destroyed in the middle of the next frame */
-    struct render_client **clients;        /* sorted by id, ascending */
+    struct render_client **clients;        /* clients of the service, sorted by id */
     size_t client_count, client_capacity;
     struct time_accounts accounts;
     /* by kind of frame (scheduler_share()): drawing time that had been charged to the client served last, before it was served; clients

@@ -25,7 +25,7 @@ struct long_job {                                 /* long job: a frame that is d
     enum urgency urgency;
     int64_t asked_ns;
     int64_t px, spent_ns;     /* px: number of pixels of the frame; spent_ns: drawing time so far */
-    uint64_t account;         /* time account that is charged */
+    uint64_t account;         /* id of the time account that is charged for drawing */
     int64_t account_spent_ns; /* drawing time that had been charged to the address's account before the job began */
     /* true: what the job has drawn so far is reused by later frames of the same view, so the job continues even if readings change */
     bool keeps;

@@ -10,7 +10,7 @@
 struct time_account {
     uint64_t id; /* id of the account: each client address has one */
     int clients;
-    int64_t spent_ns[SCHEDULER_SHARES]; /* by scheduler_share() */
+    int64_t spent_ns[SCHEDULER_SHARES]; /* drawing time charged so far, by kind of frame (scheduler_share()) */
 };
 
 struct time_accounts { /* zero-initialise; free with time_accounts_finish() */

@@ -11,7 +11,7 @@ struct plant_services {
     struct baselines *baselines;
     /* cache of readings of past instants; the event loop's copy of this struct has NULL here if nothing is recorded */
     struct snapshot_cache *snapshot_cache;
-    struct alarm_service *alarm_service; /* NULL: no alarms */
+    struct alarm_service *alarm_service; /* service that evaluates alarms; NULL: there are no alarms */
     struct placing *placing;             /* NULL: sensors cannot be placed */
     struct named_views *named_views;
     struct short_links *short_links;

@@ -337,7 +337,7 @@ static bool in_order(const struct session *session, const struct message *messag
         message_fail(error, "hello_first", "the first message must be hello");
         return false;
     }
-    /* the message hello is not checked here: session_hello() checks its token, which decides what the client may do */
+    /* hello is not checked, because its token, which decides what the client may do, is checked by session_hello() */
     return message->type == MESSAGE_HELLO ||
            (role_may_send(session->identity.role, message, error) && session_scope_allows(session, message, error));
 }
@@ -411,7 +411,7 @@ void session_on_message(struct session *session, const char *text, size_t count,
     struct message message;
     struct message_error error;
     count_message(session, now_ns);
-    if (!login_is_good(session->identity.login)) /* the connection is being closed */
+    if (!login_is_good(session->identity.login)) /* the client's token was refused, so the connection is being closed */
         return;
     bool good = parse(session, text, count, &message, &error);
     if (good)

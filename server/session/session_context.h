@@ -60,7 +60,7 @@ struct session_context {
     struct file_writer *file_writer;
     /* list of answers that wait for the disk, shared by all sessions; NULL: session_destroy() drops such answers */
     struct kept_answers *kept_answers;
-    struct resumes *resumes;           /* changed by hello */
+    struct resumes *resumes;           /* views of lost connections, which returning clients can resume; the message hello changes them */
     struct admission *admission;       /* shared limit on the pixels of all sessions; hello, resize and visible change its counts */
     struct tag_text_cache *tag_texts;  /* cache of `tags` messages; NULL: no caching */
     /* By enum audience_lists: cached JSON lists of groups, assets and so on for `welcome`. Clients with names, open viewers (without a

@@ -18,7 +18,8 @@ static const int64_t MAX_POSTPONE_NS = 10 * NS_PER_S;
 /* limit on the expected transfer time of a refined frame; above it the frame is sent twice: first a draft of low quality, then full
    quality */
 static const int64_t SLOW_STILL_NS = 500 * NS_PER_MS;
-static const int64_t FULL_QUALITY_DELAY_NS = 1000 * NS_PER_MS; /* delay before the second stage */
+/* delay after a draft (refined frame in low quality) before the same frame is sent in full quality */
+static const int64_t FULL_QUALITY_DELAY_NS = 1000 * NS_PER_MS;
 /* maximum time for which the first frame waits for the first bandwidth measurement */
 static const int64_t MAX_START_WAIT_NS = 1000 * NS_PER_MS;
 /* limit on the time to send the rest of a refined frame whose view has changed; if it would take longer, the rest is not sent */

@@ -21,7 +21,7 @@ enum { SESSION_MAX_REPLIES = 64 };
 struct session_identity {
     uint64_t number; /* random number by which other clients refer to this session; a resumed session keeps its number */
     enum role role;
-    uint8_t address[16];        /* address of the client, as in struct address_usage */
+    uint8_t address[16];        /* address of the client; an IPv4 address has the form ::ffff:a.b.c.d */
     char from[64];              /* the same address as text; "": not known */
     enum login login;           /* result of checking the token in the client's hello */
     struct token_holder holder; /* holder of the token; role ROLE_NOBODY: no token was given, or it was not accepted */
@@ -198,7 +198,7 @@ struct session_tile {
 };
 
 struct message_rate {
-    int64_t begin_ns; /* monotonic time at which the counted second began */
+    int64_t begin_ns; /* monotonic start of the second for which messages are counted */
     int count;
     /* true: the client has sent as many messages as it may in the counted second: the event loop reads none until that second is over */
     bool exceeded;
@@ -216,7 +216,7 @@ struct session_scope {
 };
 
 struct session {
-    uint64_t id; /* unique within this process */
+    uint64_t id; /* id of the session, unique within this process */
     const struct session_context *context;
     struct session_identity identity;
     int64_t opened_ns;

@@ -36,9 +36,10 @@ static const char *const why_names[] = { [WHY_NONE] = "",
 
 struct other {
     const struct other_plant *plant;
-    struct http_request request;        /* its `answer` receives the picture */
+    struct http_request request;        /* request for the picture; its `answer` receives the picture */
     char header[HEADER_BYTES];          /* header Plantcast-Frame of the answer */
-    int64_t due_ns, begun_ns, begun_us; /* begun_us: the plant's time */
+    /* times of the next request (due) and of the newest one (begun): monotonic (ns), by the clock of the plant (us) */
+    int64_t due_ns, begun_ns, begun_us;
     bool running, failing;
     /* --- below: under `lock` */
     int64_t wanted_ns; /* monotonic time when a client last requested this plant's picture; 0: never */
@@ -50,7 +51,7 @@ struct other {
     /* time, by the clock of the plant shown here, of the request that returned the last good picture. Before there is one: time since when
        displays have wanted the picture */
     int64_t since_us;
-    enum why why; /* WHY_NONE: there is a picture */
+    enum why why; /* reason why there is no picture; WHY_NONE: there is one */
 };
 
 struct other_plants {

@@ -15,8 +15,9 @@ enum { WALL_DESK_BYTES = 121, WALL_AREA_BYTES = 61, WALL_POINTERS = 8 };
 #define WALL_REMOTE_FILE "walls.json"
 
 struct wall_place {
-    char wall[NAMED_VIEW_ID_BYTES], area[WALL_AREA_BYTES]; /* area "": the whole display */
-    int display;                                           /* number from 1; 0: none */
+    /* id of the wall, and area of the pane on its display; area "": the whole display */
+    char wall[NAMED_VIEW_ID_BYTES], area[WALL_AREA_BYTES];
+    int display;                                           /* number of the display, from 1; 0: none */
 };
 
 struct wall_order {

@@ -20,7 +20,7 @@ struct colormap {
 };
 
 enum { COLORMAPS_BUILT_IN = 6 };
-extern const struct colormap colormaps_built_in[COLORMAPS_BUILT_IN]; /* the first one is the default */
+extern const struct colormap colormaps_built_in[COLORMAPS_BUILT_IN]; /* the built-in maps; the first one is the default */
 /* The map of the operator's view, which shows where a reading is between its alarm limits: -3 to 3 (field/limits.h). */
 extern const struct colormap colormap_operator;
 

@@ -6,7 +6,8 @@
 #include "base/color/colormap.h"
 #include "base/color/lab.h"
 
-static const double MAX_MISREAD = 0.03 * 256; /* tolerance in colours */
+/* largest accepted error of a value that is read off a colour: 3 % of the map's 256 colours */
+static const double MAX_MISREAD = 0.03 * 256;
 /* fraction of samples that must be read correctly; stricter than the 0.95 promised for frames (struct colormap: safe), because frames
    contain extreme light more often than these samples */
 static const double MIN_RIGHT_PART = 0.974;
@@ -33,7 +34,8 @@ static int nearest(const double labs[256][3], const double lab[3])
 
 static void add_noise(const uint8_t rgb[3], int noise, double out[3])
 {
-    static const double axes[3][3] = { { 1, 1, 1 }, { 0, -0.344136, 1.772 }, { 1.402, -0.714136, 0 } }; /* axes of Y, Cb, Cr */
+    /* directions of luma Y and chroma Cb, Cr in RGB */
+    static const double axes[3][3] = { { 1, 1, 1 }, { 0, -0.344136, 1.772 }, { 1.402, -0.714136, 0 } };
     for (int c = 0; c < 3; c++)
         out[c] = fmin(fmax(rgb[c] + (noise % 2 ? -NOISE_AMPLITUDE : NOISE_AMPLITUDE) * axes[noise / 2][c], 0), 255);
 }

@@ -37,7 +37,7 @@ static bool read_all(struct jpeg_reader *reader, struct image *image, size_t siz
     *cmyk = codec->jpeg_color_space == JCS_CMYK || codec->jpeg_color_space == JCS_YCCK;
     if (*cmyk || !image_allocate(image, codec->image_width, codec->image_height, codec->num_components, size, why))
         return false;
-    codec->out_color_space = JCS_EXT_RGBA; /* alpha is 255 */
+    codec->out_color_space = JCS_EXT_RGBA; /* libjpeg fills the alpha channel with 255 */
     jpeg_start_decompress(codec);
     while (codec->output_scanline < codec->output_height)
         jpeg_read_scanlines(codec, &(JSAMPROW){ image->rgba + 4 * (size_t)codec->output_scanline * image->width_px }, 1);

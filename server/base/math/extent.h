@@ -8,7 +8,7 @@ struct extent {
     double low[3], high[3];
 };
 
-/* Returns the empty extent. */
+/* Returns a box without any point; extent_add() makes it grow. */
 static inline struct extent extent_empty(void)
 {
     return (struct extent){ { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };

@@ -89,7 +89,7 @@ char *charset_describe(const struct charset_choice *choice)
 
 /* --- conversion ------------------------------------------------------------------------------------------------------------- */
 
-/* Appends what iconv has written. Drops zero bytes, which would end the text, and adds their number to *damaged. */
+/* Appends text that iconv has converted. Drops zero bytes, which would end the text, and adds their number to *damaged. */
 static void take_converted(struct text *out, const char *from, const char *to, size_t *damaged)
 {
     for (; from < to; from++)

@@ -361,7 +361,7 @@ static size_t take_sample(const char *bytes, size_t count, char sample[SAMPLE_BY
             continue;
         length = end - first < MAX_LINE - 2 ? end - first : MAX_LINE - 2;
         if (first > at) {
-            first--; /* includes the letter before */
+            first--; /* the sample includes the letter before the high bytes */
             length++;
         }
         memcpy(sample + taken, bytes + first, length);

@@ -40,7 +40,7 @@ static int by_place(const void *pa, const void *pb)
     if (order == 0)
         order = (a->column > b->column) - (a->column < b->column);
     if (order == 0)
-        order = (a > b) - (a < b); /* keeps the order of insertion */
+        order = (a > b) - (a < b); /* equal positions: keep the order in which the findings were added */
     return order;
 }
 
@@ -87,7 +87,7 @@ static void print_item(const struct diag_item *item, FILE *out)
     fprintf(out, ": %s: %s", item->severity == DIAG_ERROR ? "error" : "warning", item->text);
 }
 
-struct finding_group { /* similar findings */
+struct finding_group { /* findings in one file with the same format string, printed together */
     size_t first, count, shown;
 };
 

@@ -57,7 +57,7 @@ struct postgres {
     int64_t sent_ns; /* monotonic time T: all points recorded before T are in the database; INT64_MIN: unknown */
     struct postgres_owed owed;
     /* --- below: used by the sending thread only */
-    struct postgres_link *link; /* connection; NULL: none */
+    struct postgres_link *link; /* connection to PostgreSQL; NULL: none */
     struct postgres_tables tables;
     struct postgres_restore restore;
     struct backoff backoff;

@@ -37,8 +37,8 @@ bool postgres_copy_begin(struct postgres_link *link, const char *table);
 void postgres_copy_row(struct postgres_link *link, int columns);
 void postgres_copy_int32(struct postgres_link *link, int32_t value);
 void postgres_copy_int64(struct postgres_link *link, int64_t value);
-void postgres_copy_time(struct postgres_link *link, int64_t t_us);   /* t_us: microseconds UTC since 1970 */
-void postgres_copy_double(struct postgres_link *link, double value); /* NaN is sent as NULL */
+void postgres_copy_time(struct postgres_link *link, int64_t t_us);   /* adds a column with a time; t_us: microseconds UTC since 1970 */
+void postgres_copy_double(struct postgres_link *link, double value); /* adds a column with a number; NaN is sent as NULL */
 void postgres_copy_text(struct postgres_link *link, const char *text);
 void postgres_copy_bool(struct postgres_link *link, bool value);
 bool postgres_copy_end(struct postgres_link *link); /* Sends all rows of the COPY. Returns false on failure. */
@@ -47,6 +47,6 @@ bool postgres_copy_end(struct postgres_link *link); /* Sends all rows of the COP
 int32_t postgres_int32(const PGresult *result, int row, int column);
 int64_t postgres_int64(const PGresult *result, int row, int column);
 int64_t postgres_time(const PGresult *result, int row, int column);
-double postgres_double(const PGresult *result, int row, int column); /* NULL becomes NaN */
+double postgres_double(const PGresult *result, int row, int column); /* returns a number; NULL becomes NaN */
 
 #endif

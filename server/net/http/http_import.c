@@ -279,7 +279,7 @@ int import_take_body(struct server_context *server, struct http_exchange *reques
     (void)server;
     struct upload_body *body = request->body_in;
     if (!body)
-        return 0; /* the upload was refused */
+        return 0; /* ignore the body of an upload that was refused */
     body->left -= (int64_t)count;
     int error = body->left < 0 ? -EFBIG : export_upload_write(body->upload, bytes, count);
     bool slow = drips(body);

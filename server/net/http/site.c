@@ -108,7 +108,7 @@ static size_t drop_comments(char *bytes, size_t count)
 
 struct web_site {
     char *folder;
-    struct site_file *files; /* sorted by path, ascending */
+    struct site_file *files; /* files of the web client, sorted by path */
     size_t count, capacity;
 };
 

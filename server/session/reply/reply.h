@@ -32,7 +32,7 @@ char *reply_views_text(const struct session_context *context, const char *id);
 /* Adds an error to the JSON of a named view whose address is not valid in this plant, for example because it names an unknown tag: the
    member `wrong` has the error's text, `refusal` its code. */
 void reply_add_wrong(const struct session_context *context, json_t *view, const char *address);
-/* Answers the message `fit`. */
+/* Returns the answer to the message `fit`: the camera that shows the requested object as a whole. */
 char *reply_camera_text(const struct camera *camera, uint32_t seq);
 /* Returns the answer to a pick (a click on the picture): what is at that pixel. query.seq 0: the answer has no member `seq`. */
 char *reply_picked_text(const struct plant *plant, const struct pick_answer *answer);
