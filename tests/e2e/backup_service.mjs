@@ -40,7 +40,7 @@ async function serve(root) {
 async function stop() {
     if (daemon && daemon.exitCode === null) {
         const inner = readFileSync(`/proc/${daemon.pid}/task/${daemon.pid}/children`, 'utf8').trim().split(' ')[0];
-        process.kill(Number(inner), 'SIGTERM'); // unshare passes no signal on; this is the daemon, which every program before it became
+        process.kill(Number(inner), 'SIGTERM'); // unshare passes no signal on, so the daemon itself is signalled
         await daemon.ended;
     }
 }
@@ -98,7 +98,7 @@ test('backup needs a word about keys, and an instance', options, () => {
 });
 
 test('a backup while the daemon runs has everything, its keys only encrypted', options, () => {
-    // with the capabilities that the nightly unit leaves
+    // run the backup with only the capabilities that the nightly systemd unit leaves
     const [, unit] = readFileSync('deploy/systemd/plantcast-backup@.service', 'utf8').match(/^CapabilityBoundingSet=(.*)$/m);
     const set = unit.split(' ').map((name) => name.replace('CAP_', '+').toLowerCase());
     const { code, err, out } = first.run(`setpriv --no-new-privs --bounding-set=-all,${set.join(',')} ` +
@@ -116,7 +116,7 @@ test('a backup while the daemon runs has everything, its keys only encrypted', o
 });
 
 test('commands find the history of a service by the path of its plant file', options, () => {
-    ok(first.run(`cd ${ETC} && plantcast backup plant.yaml -o /root/plain`)); // also by a relative path
+    ok(first.run(`cd ${ETC} && plantcast backup plant.yaml -o /root/plain`)); // the plant file is named by a relative path
     assert.ok(readdirSync(first.path('root/plain')).some((name) => /^history-.*sqlite$/.test(name)));
     for (const path of [`${ETC}/plant.yaml`, 'plant.yaml', '../p1/plant.yaml']) {
         const other = new BareRoot(folder);
@@ -243,7 +243,7 @@ test('a backup goes to another host by SFTP, and comes back from there',
         assert.equal(pruned.code, 0, pruned.err);
         const [newest] = readdirSync(host.path('var/backups/plantcast/p1'));
         assert.deepEqual(readdirSync(kept).sort(), [mine + newest, `${mine}b`, ...stay].sort());
-        mkdirSync(join(kept, `${mine}2026-01-01T000000Z/folder`), { recursive: true }); // which `rm` does not delete
+        mkdirSync(join(kept, `${mine}2026-01-01T000000Z/folder`), { recursive: true }); // a folder, which `rm` does not delete
         const kept2 = host.run(`plantcast backup p1 --without-secrets --to ${there} --keep 2`);
         assert.deepEqual([kept2.code, /older backups were not deleted there/.test(kept2.err)], [0, true], kept2.err);
         assert.ok(readdirSync(kept).includes(`${mine}2026-01-01T000000Z.part`), 'no copy looks complete');

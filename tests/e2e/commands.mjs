@@ -91,7 +91,7 @@ test('snapshot --view: views of the plant file and of the page, by id or title, 
         const tokens = join(plant.folder, 'view_tokens'), token = (name) => join(plant.folder, `${name}.token`);
         for (const [name, ...more] of [['all', '--role', 'operator'], ['some', '--role', 'viewer', '--views', 'boxes']])
             writeFileSync(token(name), (await run('token', 'add', tokens, '--name', name, ...more)).out);
-        appendFileSync(plant.file, // the power is for engineers only
+        appendFileSync(plant.file, // only engineers may set the power
             'views: [{ id: boxes, title: Both boxes, view: "group=temperature&power=3&camera=0,-8,0,0,0,0,0,0,1,30" }]\n');
         await plant.startDaemon('--tokens', tokens);
         const bearer = `Authorization: Bearer ${readFileSync(token('all'), 'utf8').trim()}`;

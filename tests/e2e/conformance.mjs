@@ -7,7 +7,7 @@ import { FLAG, http, PlainClient } from './support/plain_client.mjs';
 import { notBuilt, sleep, TinyPlant } from './support/tiny_plant.mjs';
 
 const skip = notBuilt();
-const JPEG = 1, PNG = 2; // codecs
+const JPEG = 1, PNG = 2; // numbers of codecs in PROTOCOL.md
 const CAMERA = { eye: [5, -6, 4], target: [1, 0, 0] };
 let plant;
 
@@ -78,7 +78,8 @@ test('pictures are whole, in order, of the size asked for, and say when and when
     const still = await client.frameWhere('refined', (p) => p.camera_seq === 1 && p.flags & FLAG.still);
     assert.deepEqual([still.full_width, still.full_height], [320, 180]);
     let last = 0, isPart = false;
-    for (const { seq, flags, x, y, width, height, full_width, full_height, payload } of client.frames) { // a picture in parts has several
+    // parts of a picture are frames with one seq
+    for (const { seq, flags, x, y, width, height, full_width, full_height, payload } of client.frames) {
         assert.ok(seq > last || (isPart && seq === last), 'seq counts up');
         [last, isPart] = [seq, Boolean(flags & FLAG.more)];
         assert.deepEqual([payload.readUInt16BE(0), payload.readUInt16BE(payload.length - 2)], [0xffd8, 0xffd9], 'whole JPEGs');
@@ -143,7 +144,7 @@ test('who comes back has the view that it left', { skip }, async () => {
     const { resume } = await client.hello({ width: 256, height: 144, camera: { seq: 9, ...CAMERA } });
     client.say({ type: 'params', seq: 1, group: 'pressure', sensors: { 'PI-1': { strength: 2 } } });
     await client.text('params');
-    client.socket.destroy(); // no closing handshake
+    client.socket.destroy(); // break the connection without a closing handshake
     const again = await PlainClient.open(plant.port);
     again.say({ type: 'hello', resume });
     const welcome = await again.text('welcome');

@@ -186,7 +186,7 @@ test('another version, and another plant of the same tags, are named by both; th
         await renderer.ready();
         await renderer.program.line(new RegExp(`no readings: .*${ours}`));
         await until('its refusal', () => core.program.said.includes(`renderer ${name}: refused: ${theirs}`));
-        await sleep(2500); // the peer retries several times
+        await sleep(2500); // wait until the peer has retried several times
         assert.equal(core.program.said.split(`renderer ${name}: refused`).length, 2, 'it is said once');
         assert.ok(Object.values(await renderer.tags()).every(({ value }) => value === null));
         assert.equal(await renderer.metric(`plantcast_core_up{core="${core.url}"}`), 0);

@@ -143,7 +143,7 @@ async function wander(port, random, end) {
             client.frames.length = client.texts.length = 0;
             await sleep(30);
         }
-        client.close(); // whatever it is doing
+        client.close(); // the client is cut off at a random moment
     }
 }
 

@@ -50,7 +50,7 @@ function aim(client, eye) {
 // Sets the readings; returns the time from which frames show them.
 async function setWarm(plant, value) {
     await plant.tell(`set TI-1 ${value}`);
-    await sleep(350); // three polls
+    await sleep(350); // wait for three polls
     return Date.now() * 1000 - 50000;
 }
 
@@ -86,7 +86,7 @@ function move(client) {
 const strange = (seen, known) =>
     seen.filter(([eye, bytes]) => !known.some(([other, usual]) => other === eye && Math.abs(bytes / usual - 1) < 0.04)).length;
 
-// The first takes most of a minute: make test-long runs it.
+// The test that acts as on a GPU takes most of a minute, so only make test-long runs it.
 for (const hardware of [true, false]) {
     const where = hardware ? 'as on a GPU' : 'without a GPU', options = { skip: skip || (hardware && long) };
     test(`a context that is lost ${LOSSES} times under load is made again each time, ${where}`, options, async () => {

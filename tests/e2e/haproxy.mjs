@@ -79,7 +79,7 @@ class Viewer {
                 await this.come();
                 this.returns++;
                 return;
-            } catch { /* retries */ }
+            } catch { /* try again */ }
         }
     }
 
@@ -189,7 +189,7 @@ test('a drained node sends its sessions elsewhere, one after the other, and is a
 });
 
 test('a token that was changed, or is another person\'s, restores nothing; as it was made it does', options, async () => {
-    await renderers[1].stop(); // a new process has no views of its own
+    await renderers[1].stop(); // restart this renderer, so that it keeps no views of former sessions
     renderers[1] = await start('r2', 1);
     const { resume } = viewers[0], [secret, body, mac] = resume.split('.');
     const cases = [[`${secret}.${body}.${mac.replace(/.$/, (c) => (c === '0' ? '1' : '0'))}`, 'operator', false],

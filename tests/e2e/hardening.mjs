@@ -84,7 +84,8 @@ test('with the system calls that the unit leaves it, the daemon draws on llvmpip
         assert.deepEqual([frame.full_width, frame.full_height], [320, 180]);
         client.say({ type: 'params', seq: 1, baseline: 'now' });
         await client.text('params');
-        client.say({ type: 'prove', seq: 1, tag: 'TI-1', expected: 1, tolerance: 1, fail: true }); // written and synced to disk
+        // the result of this loop check is written and synced to disk
+        client.say({ type: 'prove', seq: 1, tag: 'TI-1', expected: 1, tolerance: 1, fail: true });
         const proved = await client.text('proved');
         assert.equal(proved.kept, true, plant.daemon.said);
         client.close();

@@ -135,7 +135,7 @@ test('hands: the floor, equipment, a sensor, the wrist, and a grip', options, ()
     await pull(page);
     await page.waitForFunction(() => globalThis.plantcast.modules.there('enterVr').headset.hands.card?.picked.sensor === 'TI-2');
     await keep(page, 'headset-sensor');
-    await aimAt(page, [0.1, -0.2, 0.5]); // the top of the box
+    await aimAt(page, [0.1, -0.2, 0.5]); // aim at the top of the box
     await pull(page);
     await page.waitForFunction(() => Math.abs(globalThis.plantcast.modules.there('enterVr').headset.rig.at[2] - 0.5) < 0.02);
     await lookFrom(page, [0, -2.5, 0.8], [0, 1, 0], true);
@@ -154,7 +154,7 @@ test('hands: the floor, equipment, a sensor, the wrist, and a grip', options, ()
         device.controllers.right.updateButtonValue('squeeze', 1);
         await frame();
         await frame();
-        device.controllers.right.position.set(0.2, 1.3, 0.1); // a pull towards the body
+        device.controllers.right.position.set(0.2, 1.3, 0.1); // the hand pulls towards the body
         await frame();
         await frame();
         device.controllers.right.updateButtonValue('squeeze', 0);

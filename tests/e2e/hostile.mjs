@@ -51,7 +51,7 @@ const descriptors = () => {
     const path = (fd) => {
         try {
             return readlinkSync(join(folder, fd));
-        } catch { // closed meanwhile
+        } catch { // the descriptor was closed meanwhile
             return plant.folder;
         }
     };
@@ -124,7 +124,7 @@ test('ten thousand messages a second are read at the pace allowed, and all of th
 
 test('all at once: nobody else is slowed, and each has its answer', { skip }, async (t) => {
     const { port } = plant;
-    await reaches(async () => await metric('plantcast_connections') <= 1); // earlier clients have gone
+    await reaches(async () => await metric('plantcast_connections') <= 1); // wait until earlier clients have gone
     const filesBefore = descriptors();
     const began = performance.now();
 

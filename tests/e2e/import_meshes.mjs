@@ -99,7 +99,7 @@ test('FBX: a geometric transform moves its own mesh and no child', { skip }, () 
     const { list } = boxed(folder, 'a.fbx', bytes);
     assert.deepEqual(list.map(({ path }) => path), ['a', 'a/Feed pump', 'a/Feed pump/Child']);
     assert.ok(near(list[2].centre, [1 + 5.08, 0.5 + 2.54, 0.25]), JSON.stringify(list[2]));
-    assert.ok(near(list[1].size, [4.54, 3.54, 0.5]), JSON.stringify(list[1])); /* from 2.54 to 7.08 */
+    assert.ok(near(list[1].size, [4.54, 3.54, 0.5]), JSON.stringify(list[1])); /* x from 2.54 m to 7.08 m */
 }));
 
 // A triangle as a glTF file, or as a GLB file with these chunks.

@@ -237,7 +237,8 @@ test('what goes wrong is one line, and the plant before stays', options, async (
 
 test('an import that fails or is cancelled once the new models are in place: the models before come back, too', options, async () => {
     const served = await Served.start();
-    const files = () => Object.fromEntries(readdirSync(served.folder, { withFileTypes: true }) // without kept versions
+    // without kept versions of replaced files (NAME.1, ...)
+    const files = () => Object.fromEntries(readdirSync(served.folder, { withFileTypes: true })
         .filter((entry) => entry.isFile() && !/\.\d+$/.test(entry.name))
         .map(({ name }) => [name, createHash('md5').update(readFileSync(join(served.folder, name))).digest('hex')]));
     const bring = async (names, how = '') => {
@@ -321,7 +322,7 @@ test('40 % of the rows are there twice, and one tag with control characters', op
     const [model, list] = ['plant.gltf', 't.csv'].map((name) => join(given, name));
     writeFileSync(model, boxes(NAMES));
     writeFileSync(list, [...TAGS.trim().split('\n'), ...lines.slice(0, 5), '"P-201B\u0007_TT",0,1,degC,x'].join('\n'));
-    const served = await Served.start(model, list); // same as dropping the files
+    const served = await Served.start(model, list); // files on the command line are imported like files that are dropped on the page
     try {
         const state = await served.idle();
         assert.equal(state.failed, null, state.failed);

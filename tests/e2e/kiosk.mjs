@@ -168,7 +168,8 @@ test('it shows a server whose certificate another authority signed than before',
         (request, response) => server.emit('request', request, response));
     await new Promise((done) => secure.listen(0, '127.0.0.1', done));
     try {
-        for (const pem of [former.ca, present.ca, former.ca + present.ca]) { // as one authority follows the other
+        // a host trusts its former authority, then the new one, then both
+        for (const pem of [former.ca, present.ca, former.ca + present.ca]) {
             writeFileSync(file, pem);
             const env = { ...display.env, HOME: state };
             const { status, stderr } = spawnSync('deploy/systemd/kiosk', ['--trust', file], { env, encoding: 'utf8' });

@@ -235,7 +235,7 @@ test('killed between two files, left over, at once, out of disk: a valid plant, 
                 for (const name of names.slice(0, replaced))
                     copyFileSync(join(whole, name), join(plant, name));
                 for (const left of ['tags.csv.4194304.new', 'matches.csv.4194304.3.new', '.trial.4194304.yaml'])
-                    writeFileSync(join(plant, left), 'half of a li'); // no process has this number
+                    writeFileSync(join(plant, left), 'half of a li'); // left by a process that has ended: no process has the number 4194304
                 const others = [`tags.csv.${process.pid}.new`, 'tags.csv.4194304.7.new'], hourAgo = Date.now() / 1000 - 3600;
                 for (const name of others) // files that another process is writing, on this machine or in another container
                     writeFileSync(join(plant, name), 'half of a li');

@@ -51,7 +51,7 @@ test('numbers come to the tags of their topics, scaled, and as old as they are',
     await until('TI-2', { ...good, value: -30 });
     await until('PI-1', { ...good, value: 5 });
     await until('XS-1', { ...good, value: 1 });
-    await until('TI-2', { quality_name: 'Bad_CommunicationError' }); // stale after 2 s
+    await until('TI-2', { quality_name: 'Bad_CommunicationError' }); // the reading becomes stale after 2 s
     await until('TI-1', good);
     const counts = [['messages_total{source="broker",result="ok"}', 4], ['messages_total{source="broker",result="refused"}', 0],
         ['samples_total{source="broker"}', 4], ['connects_total{source="broker"}', 1], ['up{source="broker"}', 1]];
@@ -107,14 +107,14 @@ test('JSON: by path, with the time and the quality that it states', options, asy
     await publisher.tell('line/temps', { right: 18, meta: at(0, 0x40930000) }); // this message does not contain the left tag
     await until('TI-2', { quality_name: 'Uncertain_SensorNotAccurate', value: 18 });
     await until('TI-1', { ...good, value: 40.5 });
-    await publisher.tell('line/temps', { right: 99, meta: at(-60000) }); // older than the present value
+    await publisher.tell('line/temps', { right: 99, meta: at(-60000) }); // this message is older than the present value
     await publisher.tell('line/temps', { left: { v: [1, null] }, right: 19, meta: at(0) });
     await until('TI-1', { quality_name: 'Bad_SensorFailure' });
     await until('TI-2', { ...good, value: 19 });
     await publisher.tell('line/temps', { left: { v: [1, 5] }, right: 'broken', meta: at(0) });
     await until('TI-2', { quality_name: 'Bad_ConfigurationError' });
     await until('TI-1', { ...good, value: 5 });
-    await publisher.tell('line/temps', { left: { v: [1, 5] }, right: 21 }); // without a timestamp
+    await publisher.tell('line/temps', { left: { v: [1, 5] }, right: 21 }); // this message has no timestamp
     await until('TI-1', { quality_name: 'Bad_ConfigurationError' });
     await publisher.tell('line/temps', { left: { v: [1, 5] }, right: 21, meta: at(3600000) });
     await plant.daemon.line(/line\/temps: the timestamps of the messages are \d+\.\d s ahead of this machine's clock/);
@@ -143,7 +143,7 @@ test('a gateway that publishes what has changed: no tag gets the value of anothe
     await until('F1', { quality_name: 'Bad' }); // the quality of the tag's own item in the message
     tags = await plant.tags();
     assert.equal(tags.A1.quality_name, 'Bad_NoMatch');
-    assert.equal(tags.F2.value, 23); // no message mentioned it
+    assert.equal(tags.F2.value, 23); // F2 keeps its value, because no message mentioned it
     await tell(['G.A1', 41], ['G.A1', 42]);
     await until('F1', { quality_name: 'Bad_TooManyMatches', value: null });
     await tell(['G.A1', 51]);

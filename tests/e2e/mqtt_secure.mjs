@@ -61,7 +61,7 @@ test('TLS: the broker has to be who it should be, and so have we', options, asyn
     publisher = await broker.client({ ca: pem('ca.crt'), cert: pem('ca-client.crt'), key: pem('ca-client.key') });
     await publisher.tell('plant/ti1', 21.5);
     await plant.until('TI-1', { ...good, value: 21.5 });
-    await publisher.tell('plant/ti1', '5'.repeat(3 << 20)); // larger than one TLS record
+    await publisher.tell('plant/ti1', '5'.repeat(3 << 20)); // send a message larger than one TLS record
     await plant.until('TI-1', { quality_name: 'Bad_ConfigurationError' });
     await publisher.tell('plant/ti1', 22);
     await plant.until('TI-1', { ...good, value: 22 });

@@ -68,7 +68,7 @@ notify:
             await mail.listen(port);
             await calm(plant);
             await plant.startDaemon();
-            await set(plant, 'PI-1', limits.high); // a tag of another area
+            await set(plant, 'PI-1', limits.high); // PI-1 is in another area
             await set(plant, 'TI-1', limits.high);
             const [first] = await until('a mail', () => mail.mails.length > 0 && mail.mails);
             assert.deepEqual(first.to, ['ops@p.example', 'night@p.example']);

@@ -380,7 +380,8 @@ test('what people cost the loop: a log-in, a request by cookie, and their rights
     const PEOPLE = 32, REQUESTS = 100;
     t.after(() => { provider.sub = 's1'; provider.claims.groups = ['operators']; });
     const { pid } = plant.daemon.child;
-    const loop = () => Number(readFileSync(`/proc/${pid}/task/${pid}/schedstat`, 'utf8').split(' ')[0]) / 1e6; // in milliseconds
+    // processor time of the loop's thread, in milliseconds
+    const loop = () => Number(readFileSync(`/proc/${pid}/task/${pid}/schedstat`, 'utf8').split(' ')[0]) / 1e6;
     const cost = async (times, act) => {
         const before_ = loop();
         for (let i = 0; i < times; i++)

@@ -116,7 +116,7 @@ test('gaps: what is far from every sensor, and what has no data', options, async
     assert.deepEqual(before.far, []);
     const [box] = before.assets;
     assert.ok(box.far_share > 0.2 && box.far_share <= 1 && box.lost_share === 0, JSON.stringify(box));
-    assert.ok(Math.abs(box.next_m - 2) < 0.1, 'from one side to the other over an edge'); // 0.5 + 1 + 0.5
+    assert.ok(Math.abs(box.next_m - 2) < 0.1, 'from one side to the other over an edge'); // path along the surface: 0.5 + 1 + 0.5 m
     assert.deepEqual(box.next.sort(), ['TI-1', 'TI-2']);
 
     place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0, 0.8, 0] }]);
@@ -143,7 +143,7 @@ test('a list is saved: the difference first, then active for all, with the old o
     ]);
     assert.equal(readFileSync(tagsFile, 'utf8'), old, 'nothing is written before it is confirmed');
 
-    engineer.say({ type: 'save_tags', seq: ++seq, confirm: '0123456789abcdef' }); // the hash of another change
+    engineer.say({ type: 'save_tags', seq: ++seq, confirm: '0123456789abcdef' }); // refused, because this is the hash of another change
     await engineer.text('tags_diff');
     assert.equal(readFileSync(tagsFile, 'utf8'), old);
 
@@ -299,7 +299,8 @@ test('proofs are exported, outlive the daemon, and end where the tag is another'
     assert.match(first, /^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ,"TI-1",pass,42,"°C",42\.3,0\.5,"local","calibrator 7",[0-9a-f]{16}$/);
     assert.ok(existsSync(join(plant.folder, 'plant.history', 'proofs.csv')));
     await plant.daemon.stop();
-    appendFileSync(join(plant.folder, 'plant.history', 'proofs.csv'), '2026-01-01T00:00:00Z,"TI-1",fa'); // as after a power failure
+    // the last line is incomplete, as after a power failure
+    appendFileSync(join(plant.folder, 'plant.history', 'proofs.csv'), '2026-01-01T00:00:00Z,"TI-1",fa');
     writeFileSync(tagsFile, readFileSync(tagsFile, 'utf8').replace('TI-2,400003', 'TI-2,400011'));
     await plant.startDaemon();
     const engineer = await enter(), { begun, tags } = await engineer.text('proofs');

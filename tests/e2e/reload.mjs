@@ -190,7 +190,7 @@ test('who waits too long for an answer is told so, and can ask again', options, 
             try {
                 closeSync(openSync(pipe, constants.O_WRONLY | constants.O_NONBLOCK)); // releases the reload that waits for the pipe
             } catch (error) {
-                assert.equal(error.code, 'ENXIO'); // no reload waits for it
+                assert.equal(error.code, 'ENXIO'); // no reload waits for the pipe
             }
             again = await ask();
         }

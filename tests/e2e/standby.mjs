@@ -77,7 +77,7 @@ test('one of two leads, the other follows and is not ready; a renderer finds who
     assert.equal(terms(two.other(core)), 0);
     await core.program.line(/history: read \d+ points from PostgreSQL/);
     const months = readdirSync(join(two.plant.folder, core.name, 'history')).filter((name) => /^history-[\d-]+\.sqlite$/.test(name));
-    assert.ok(months.length < 3, `no months without points: ${months}`); // two if a month has just begun
+    assert.ok(months.length < 3, `no months without points: ${months}`); // two months if a month has just begun
     t.diagnostic(`${core.name} leads`);
 });
 
@@ -320,7 +320,7 @@ test('maintenance of the standby: the leader polls on without the database, and 
         CREATE TRIGGER refuse BEFORE UPDATE ON plantcast.lease EXECUTE FUNCTION refuse()`);
     standby('normal');
     await core.program.line(/lease: PostgreSQL does not answer \(.*refused/);
-    await sleep(5000); // longer than a lease
+    await sleep(5000); // wait longer than a lease lasts
     assert.ok(await two.ready(core), 'it leads on');
     server.ask('DROP FUNCTION refuse CASCADE');
     await alone(0);
@@ -329,7 +329,7 @@ test('maintenance of the standby: the leader polls on without the database, and 
     const since = two.network.now();
     await server.kill();
     await core.program.line(/lease: PostgreSQL does not answer/);
-    await sleep(5000); // longer than a lease
+    await sleep(5000); // wait longer than a lease lasts
     assert.ok(await two.ready(core));
     const pause_ms = await two.network.longestPause(since);
     t.diagnostic(`${pause_ms.toFixed(0)} ms without a poller`);

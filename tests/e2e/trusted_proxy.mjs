@@ -88,7 +88,8 @@ test('one client with wrong tokens is slowed down, and nobody else; also where i
     const [liar, user] = ['127.0.0.40', '127.0.0.41'];
     for (const page of ['/api/v1/tags', '/api/v1/history?tags=TI-1']) { // renderers answer the first page, the core the second
         const answers = [], forged = `X-Forwarded-For: ${user}\r\nForwarded: for=${user}\r\nX-Real-IP: ${user}\r\n`;
-        const isSlowed = () => answers.length >= 6 && answers.slice(-6).every((status) => status === 429); // at both nodes
+        // the last six answers, of both nodes, are "too many requests"
+        const isSlowed = () => answers.length >= 6 && answers.slice(-6).every((status) => status === 429);
         while (!isSlowed() && answers.length < 200)
             answers.push(await ask(liar, bearer(WRONG, forged), page));
         assert.ok(answers.includes(401) && isSlowed(), answers.join(' '));

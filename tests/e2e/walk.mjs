@@ -132,14 +132,14 @@ test('what the page says is clicked, and what it shows comes', { skip: skip || l
         await settle(room);
         await shoot(room, 'page-1-empty');
 
-        // 1. The files.
+        // Step 1 of the page: the files.
         await said(named('Drop a model and a tag list here, or choose files'));
         const files = ['plm-sample.rvm', 'plm-sample.att', 'kepware.csv'].map((name) => join(folder, read(`\`${name}\``).slice(1, -1)));
         await panel.locator('input[type=file]').setInputFiles(files);
         await room.waitForFunction(() => globalThis.plantcast.session.model.assets.length === 19, null, { timeout: 200000 });
         await said(named('The plant is live'));
 
-        // 2. Its size.
+        // Step 2 of the page: the size of the model.
         await said(read('12.5 × 6.45 × 8.00 m'));
         await panel.locator('summary', { hasText: named('Size') }).click();
         assert.ok(await panel.getByLabel(named('Show a person of 1.8 m next to it')).isChecked());
@@ -147,7 +147,7 @@ test('what the page says is clicked, and what it shows comes', { skip: skip || l
         await shoot(room, 'page-2-plant');
         await panel.locator('summary', { hasText: 'Size' }).click();
 
-        // 3. Its tags.
+        // Step 3 of the page: the tags.
         for (const name of ['Matched', 'Doubtful', 'Unmatched', 'Unplaced'])
             read(`${await filter(name).locator('b').textContent()} ${name}`);
         await filter(named('Doubtful')).click();
@@ -160,7 +160,7 @@ test('what the page says is clicked, and what it shows comes', { skip: skip || l
         await idle();
         await room.waitForFunction(() => globalThis.plantcast.session.model.tag('TT-1111')?.asset === '-ART1111PO-');
 
-        // 4. A place.
+        // Step 4 of the page: the place of a sensor.
         await filter(named('Unplaced')).click();
         await row(read('ART1105BA_TT01')).click();
         await arrive(room);
@@ -189,7 +189,7 @@ test('what the page says is clicked, and what it shows comes', { skip: skip || l
         await arrive(room);
         await shoot(room, 'page-4c-saved');
 
-        // 5. Its values.
+        // Step 5 of the page: the source of the values.
         await room.locator('#import-toggle').click();
         await panel.locator('summary', { hasText: named('Values') }).click();
         for (const [label, value] of [['Modbus TCP device', '127.0.0.1'], ['Port', '5020']])

@@ -136,7 +136,7 @@ test('an alarm comes before what was sent, which then comes back', options, asyn
     await plant.ask('set TI-1 95');
     await wall.page.locator('.pane.views.called h2', { hasText: 'TI-1' }).waitFor();
     await plant.ask(`set TI-1 ${usual}`);
-    await wall.page.locator('.pane.views.called h2 .priority.hollow').waitFor(); // returned, not acknowledged
+    await wall.page.locator('.pane.views.called h2 .priority.hollow').waitFor(); // the alarm has returned, but nobody has acknowledged it
     await wall.page.evaluate(() => {
         const { session } = globalThis.wall, alarms = [...session.model.alarms.rows.values()].filter(({ state }) => ['unacknowledged',
             'returned'].includes(state))

@@ -130,7 +130,7 @@ static void compare_pixel(const struct drawn_error_case *site, const struct view
     double truth = truth_at(site, view, &pick);
     if (isnan(truth) || pick.state == PICK_NO_DATA) {
         tally->no_data++;
-        tally->other += isnan(truth) != (pick.state == PICK_NO_DATA); /* counts disagreements, which occur at the rim of the data */
+        tally->other += isnan(truth) != (pick.state == PICK_NO_DATA);
         return;
     }
     compare_evaluated(site, view, &pick, tally);

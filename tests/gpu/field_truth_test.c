@@ -191,7 +191,7 @@ TEST_WITH(test_beyond_the_range, set_up, tear_down)
         struct frame *frame = stand_draw(&stand, &view);
         assert_true(is_rgb(pixel_at(frame, 2.02, 2.02), colormap_at(NULL, 0)->above));
         frame_unref(&frame);
-        view.field.interpolation = INTERPOLATION_PAPER; /* clamps */
+        view.field.interpolation = INTERPOLATION_PAPER; /* Algorithm 1 clamps values to the range */
         assert_true(shown_at(&view, 2.02, 2.02) >= 0);
     }
 }

@@ -50,7 +50,7 @@ static void look(int i, struct view *at_near, struct view *at_far)
     move(at_far->camera.target_m, FAR_OFF_M);
 }
 
-/* Pixels whose centre lies exactly on an edge may fall to either side. */
+/* Asserts that both frames are equal, except for pixels whose centre lies exactly on an edge. */
 static void assert_same(const struct view *at_near, const struct view *at_far)
 {
     struct frame *a = stand_draw(&near, at_near), *b = stand_draw(&far, at_far);
@@ -119,7 +119,7 @@ TEST(test_orthographic_and_cut)
         at_near.tier = at_far.tier = TIER_REFINED;
         at_near.camera.height_m = at_far.camera.height_m = 6;
         assert_same(&at_near, &at_far);
-        at_near.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { 1, 0, 0, 0.3 } } }; /* x >= -0.3 */
+        at_near.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { 1, 0, 0, 0.3 } } }; /* keeps only x >= -0.3 */
         at_far.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { 1, 0, 0, 0.3 - FAR_OFF_M[0] } } };
         assert_same(&at_near, &at_far);
     }

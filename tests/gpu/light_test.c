@@ -154,7 +154,7 @@ TEST(test_large_faces_are_lit_within)
     toy_destroy(&toy);
 }
 
-/* Folder of one baked sky shared by the tests that do not examine sky light. */
+/* Folder with the cached openness of one sky, shared by the tests that do not examine sky light. */
 static char *openness_folder;
 
 static int keep_openness(void **state)
@@ -230,7 +230,7 @@ TEST_WITH(test_one_light_stays, keep_openness, forget_openness)
         light_drop(&light, &usual);
         assert_true(light.bytes == bake_bytes(&gpu_scene));
         assert_true((light_near(&light, &usual)->key.towards[0] == usual.towards[0]) == cached);
-        light_drop(&light, &others[0]); /* the usual one goes */
+        light_drop(&light, &others[0]); /* drops all lights but this one, also the default light */
         light_get(&light, &others[0]);
         light_drop(&light, &others[0]);
     }

@@ -5,7 +5,7 @@
 
 #include "tests/support/rig.h"
 
-enum { STEPS = 5, SPHERES = STEPS * STEPS, SIDE_PX = 64, /* steps: at most */
+enum { STEPS = 5, SPHERES = STEPS * STEPS, SIDE_PX = 64, /* STEPS: largest value of `steps` */
         WIDTH = 256, HEIGHT = 128, SAMPLES = 400 };
 /* as in shaders/environment.glsl; SPACE_M: distance between the spheres */
 static const double SKY_LIGHT = 0.55, SUN_LIGHT = 0.78, SPACE_M = 8;

@@ -115,7 +115,7 @@ static void add_cube(struct toy *toy, const char *id, const double at[3])
     struct test_shape shape = { 0 };
     for (int face = 0; face < 6; face++) {
         double corner[3] = { 0 }, u[3] = { 0 }, v[3] = { 0 };
-        int axis = face / 2, far = face % 2; /* u x v points out */
+        int axis = face / 2, far = face % 2; /* u x v points out of the cube */
         corner[axis] = far;
         u[(axis + (far ? 1 : 2)) % 3] = 1;
         v[(axis + (far ? 2 : 1)) % 3] = 1;

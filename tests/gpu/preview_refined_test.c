@@ -80,7 +80,7 @@ TEST(test_the_unit_does_not_flash)
 
 /* --- real plants -------------------------------------------------------------------------------------------------------------------- */
 
-enum { BLOCK = 4 }; /* pixels per side; averaging over blocks ignores antialiased edges */
+enum { BLOCK = 4 }; /* side of a block in pixels; the mean over a block hides antialiased edges */
 struct flash {      /* delta E (CIE 1976) between the blocks' mean colours in preview and refined */
     double mean, p95;
 };

@@ -241,7 +241,7 @@ static void say(const struct reference_display *way, const struct reference_tall
 static const double FINEST_OVER = 0.0005, FINEST_WORST = 2.0 / 255;
 
 struct bounds {           /* bounds for previews on the levels that are drawn */
-    double drawn, beyond; /* shares of pixels; beyond: compared with the finest level within a pixel */
+    double drawn, beyond; /* largest shares of pixels that err: at their own point; against the finest level within a pixel */
     double worst;
 };
 

@@ -360,7 +360,7 @@ TEST(test_withdrawn_requests_are_not_drawn)
     ask(MOVER, URGENCY_REFINE, 71);
     render_service_withdraw(service, MOVER);
     render_service_withdraw(service, REFINER);
-    render_service_withdraw(service, PICKER); /* has no request */
+    render_service_withdraw(service, PICKER); /* no-op, because this client has no request */
     for (int i = 0; i < 2; i++) {
         struct encoded_frame *encoded = next();
         if (encoded->client == MOVER)
@@ -754,7 +754,8 @@ static bool refined_comes(enum look look, int64_t waited_ns)
     return count_of("plantcast_renders_abandoned_total") == abandoned;
 }
 
-/* And it stays. */
+/* Asserts that the refined frame comes although readings change, and that from then on each change gives a refined frame without further
+   steps. */
 static void assert_refined_comes(enum look look, int64_t waited_ns)
 {
     assert_true(refined_comes(look, waited_ns));

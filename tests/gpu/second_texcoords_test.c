@@ -167,7 +167,7 @@ static struct frame *picture_of(struct prep_case *c, enum way way)
 }
 
 struct difference {
-    int most;            /* levels of 255 */
+    int most;            /* largest difference of a channel, in levels of 255 */
     double mean, beyond; /* mean in levels of 255; share of pixels that differ by more than 8 */
 };
 

@@ -42,7 +42,7 @@ static const struct delivery_path ways[] = {
     { "JPEG q80 4:2:0", 80, false, false, false },
     { "deuteranope", 0, false, true, false },
     { "JPEG, deuteranope", 80, false, true, false },
-    { "refined, as sent, deuteranope", 92, true, true, false }, /* server/session/session_frames.c */
+    { "refined, as sent, deuteranope", 92, true, true, false }, /* quality and chroma of a refined frame as session_frames.c requests it */
     { "JPEG by another", 80, false, false, true },
     { "that, deuteranope", 80, false, true, true },
 };

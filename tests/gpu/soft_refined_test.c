@@ -70,7 +70,7 @@ static struct frame *draw_box_over_floor(uint32_t strips, const double light[3])
 TEST(test_nothing_in_sight)
 {
     struct view view = soft_view(&stand, TIER_REFINED, 320, 180);
-    for (int c = 0; c < 3; c++) /* the sky behind */
+    for (int c = 0; c < 3; c++)
         view.camera.target_m[c] = 2 * view.camera.eye_m[c] - view.camera.target_m[c];
     struct render_job *first = planned_begin(stand.renderer, &view, stand.snapshot);
     assert_non_null(first);
@@ -226,7 +226,7 @@ TEST(test_lines_again)
     view.color_scale.line_count = 0;
     assert_same_anew(&view);
     soft_lines_every(&view, 20);
-    assert_false(is_quick(&view)); /* that last picture had none */
+    assert_false(is_quick(&view)); /* not quick, because the last frame had no isolines */
     toy_fill(stand.snapshot, 0);
 }
 

@@ -143,7 +143,7 @@ static void test_plant(const char *path, const char *name)
                       tally.unreadable, tally.rims, tally.rims_off);
         assert_true(tally.within > sweep(PIXELS / 40, PIXELS / 80));
         assert_true(tally.off <= (refined ? 0.005 : 0.0003) * tally.within);
-        assert_true(tally.unreadable <= (refined ? 0.1 : 0.0003) * tally.within); /* edges are drawn in ink */
+        assert_true(tally.unreadable <= (refined ? 0.1 : 0.0003) * tally.within); /* dark edges have no colour of the map */
         assert_true(refined || tally.rims_off <= 0.002 * tally.rims);
     }
     site_finish(&site);

@@ -23,7 +23,7 @@ TEST(test_home)
 
 TEST(test_sizes)
 {
-    enum { ONE_ROW_MORE = 185 }; /* a picture one row higher than a tile */
+    enum { ONE_ROW_MORE = 185 }; /* height in pixels, one row more than a tile */
     static const int sizes[][2] = { { 16, 16 }, { 17, 33 }, { 333, 217 }, { 64, 500 }, { 1001, 31 }, { 200, ONE_ROW_MORE } };
     EACH_TIER(tier)
         for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
@@ -340,7 +340,7 @@ TEST(test_sky)
         double lean = i / 16 * 0.7;
         view = soft_view(&stand, TIER_PREVIEW, sizes_px[i % 4][0], sizes_px[i % 4][1]);
         view.camera.fov_deg = fovs_deg[i / 4 % 4];
-        for (int c = 0; c < 3; c++) { /* turns the camera away from the plant and upwards */
+        for (int c = 0; c < 3; c++) {
             view.camera.eye_m[c] = stand.toy->scene.bounds_max_m[c] + 5;
             view.camera.target_m[c] = view.camera.eye_m[c] + (c < 2 ? 1 : 1.2);
             view.camera.up[c] = c < 2 ? sin(lean) * (c ? 1 : -1) : cos(lean);

@@ -297,7 +297,7 @@ TEST_WITH(test_a_cut_closes_bodies, reset, NULL)
             assert_int_equal(pick.inside, way == 0);
             assert_float_equal(pick.position_m[1], way == 0 ? -0.701 : -0.5, 1e-6);
             cut_through(&own, tier, true, box, &first_m, &last_m, &pick);
-            assert_true(first_m == 0 && pick.inside); /* the core is a solid of its own */
+            assert_true(first_m == 0 && pick.inside); /* the core is a closed body of its own, so it gets a cap */
         }
         stand_finish(&own);
     }

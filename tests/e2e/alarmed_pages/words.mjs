@@ -84,7 +84,6 @@ for (const [lang, decimal, date] of READERS.slice(sweep(0, 1))) {
             assert.ok((await page.locator('.reading .value').allTextContents()).some((text) => number.test(text)));
             for (const [name, { viewport }] of [['tablet', TABLET], ['phone', PHONE]]) {
                 await page.setViewportSize(viewport);
-                // a page that is narrow from the start has this style sheet at once
                 await page.waitForFunction(() => innerWidth > 1023 ||
                     [...document.styleSheets].some(({ href }) => href?.endsWith('/narrow.css')));
                 await settle(page);
@@ -115,7 +114,7 @@ test('titles and present values of the alarm list and the journal are whole, als
                     }).map(({ textContent }) => textContent), tab);
                     assert.deepEqual(cut, [], `${lang}, ${tab}, ${width}`);
                     const [needed, room] = await page.locator(`#${tab}-list td[data-col=now]`).first().evaluate((cell) => {
-                        cell.firstChild.data = '200.00'; // wider than the other values; the unit is as wide as a velocity's
+                        cell.firstChild.data = '200.00';
                         cell.querySelector('small').textContent = 'mm/s';
                         return [cell.scrollWidth, cell.clientWidth];
                     });

@@ -138,7 +138,8 @@ test('desktop: two sets of parameters side by side, each with legend and markers
     await page.locator('#groups label', { hasText: 'Temperature' }).click();
     await page.locator('#viewport').focus();
     await page.keyboard.press('j');
-    await page.waitForFunction(() => document.getElementById('right-group').value === 'vibration'); // the quantity shown before
+    // the right half shows the quantity that it showed before
+    await page.waitForFunction(() => document.getElementById('right-group').value === 'vibration');
     await page.keyboard.press('j');
     await page.locator('#split-bar').waitFor({ state: 'hidden' });
     await page.locator('#picture-toggle').click();

@@ -27,7 +27,7 @@ before(async () => {
     plant = await TinyPlant.create();
     tagsFile = join(plant.folder, 'tags.csv');
     const head = readFileSync(tagsFile, 'utf8').replace('Stale s\n', 'Stale s,Place\n');
-    const middle = { 'E-101': 0, 'P-101A': 3 }; // boxes of a metre
+    const middle = { 'E-101': 0, 'P-101A': 3 }; // x of the middle of each box, which is 1 m wide
     writeFileSync(tagsFile, head + Array.from({ length: ASSUMED }, (_, i) => {
         const x = middle[assetOf(i)] - 0.45 + 0.9 * ((i * 37 % 100) / 100), z = -0.45 + 0.9 * ((i * 61 % 100) / 100);
         const place = isNowhere(i) ? ',,' : `${x.toFixed(3)},${isOff(i) ? -0.5 - OFF_M : -0.5},${z.toFixed(3)}`;

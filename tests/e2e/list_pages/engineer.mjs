@@ -201,7 +201,7 @@ test('on a tablet: a tap places, a finger drags', options, async () => {
     await ready(on);
     await on.locator('#engineer-toggle').tap();
     await on.locator('#engineer .tags button', { hasText: 'TI-1' }).tap();
-    await on.waitForTimeout(800); // the camera may fly there
+    await on.waitForTimeout(800); // wait, because the camera may fly to the tag
     await look(on, [2.6, -2.2, 1.6]);
     const { x, y } = await at([0.1, -0.5, 0.1], on);
     await on.touchscreen.tap(x, y);

@@ -150,7 +150,7 @@ test('the pins of notes cover neither each other nor a legend nor the right half
     const texts = ['Manhole open', 'Seal drips, the tray is emptied each hour by the outside operator of the shift', 'Hot'];
     await page.evaluate((all) => {
         const { session } = globalThis.plantcast, target = session.model.tag('TI-1').position, [x, y, z] = target;
-        session.setCamera({ ...session.camera, eye: [x + 6, y - 6, z + 4], target }); // in the middle of each half
+        session.setCamera({ ...session.camera, eye: [x + 6, y - 6, z + 4], target }); // the tag is in the middle of each half
         all.forEach((text) => session.post({ type: 'note', seq: ++session.toldSeq, text, tag: 'TI-1' }));
     }, texts);
     // Returns pins that overlap another pin or a legend, leave the left half, or are cut. On a phone, the list of notes has the whole

@@ -104,7 +104,7 @@ test('a tablet that slept knows that its picture is old, until the server speaks
         await settle(page);
         await page.evaluate(() => {
             const { session } = globalThis.plantcast, real = Date.now;
-            session.connection.socket.onmessage = null; // like a dead line
+            session.connection.socket.onmessage = null; // the page receives nothing, like over a dead line
             Date.now = () => real() + 7 * 3600e3;
         });
         await page.waitForFunction(() => { // this notice is visible only until the page has reached the server again
@@ -215,7 +215,7 @@ test('legend and markers are of the picture that is seen, however late the one c
         relay.child.kill('SIGSTOP');
         try {
             await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure', split: { group: 'temperature' } }));
-            await page.waitForTimeout(300); // some animation frames
+            await page.waitForTimeout(300); // wait for some animation frames
             assert.deepEqual(await said(), ['pressure', legend, markers]);
         } finally {
             relay.child.kill('SIGCONT');

@@ -58,7 +58,8 @@ for (const [name, language, screen] of PAGES)
         try {
             await waitForPicture(page);
             await waitForHealth(page, 'live');
-            await page.locator('canvas.watchdog.watches').waitFor({ state: 'attached' }); // comes 5 s after the start
+            // the watchdog's canvas appears 5 s after the start
+            await page.locator('canvas.watchdog.watches').waitFor({ state: 'attached' });
             await calm(page, browser);
             const files = await browser.fetched(), requests = browser.answers.map((answer) => `${answer.status()} ${answer.url()}`);
             assert.deepEqual(requests.filter((text) => !text.startsWith('200')), []);
@@ -93,7 +94,7 @@ const press = async (page, key) => {
 const isSaid = (page) => page.locator('#toast', { hasText: 'could not be loaded' }).waitFor();
 
 test('a part that cannot be loaded says so, and comes by itself once it can be', options, async () => {
-    // some parts later in this list load this file, too
+    // a key that opens a part, and a file that the part loads; parts later in this list may load the same file
     const parts = [['m', 'app/help/timings.css', '#timings'], ['y', 'core/history.js', '#timeline'],
         ['p', 'app/picture/picture.html', '#picture-panel.open'], ['v', 'app/views/views.js', '#views.open']];
     const words = [['v', 'words/lazy.en.js', '#views.open']]; // file with the words of all lazily loaded parts
@@ -112,8 +113,7 @@ test('a part that cannot be loaded says so, and comes by itself once it can be',
                 await page.locator(opened).waitFor();
                 await page.waitForFunction(() => globalThis.plantcast.session.picture); // the page still works
             }
-        }, (page) => all === words && away(page, all[0][1])); // blocks the file before the page opens, because a ring of an
-        // alarm would load it
+        }, (page) => all === words && away(page, all[0][1])); // block the file before the page opens, because an alarm's ring loads it
 });
 
 test('no part says anything before the words of parts are there', options, () => {
@@ -168,7 +168,7 @@ test('what hands and keys do first is done, though what steers by them is still 
     const firsts = [
         async (page) => drag(page),
         async (page) => press(page, 'ArrowLeft'),
-        async (page) => page.locator('#home').click(), // the camera is elsewhere before
+        async (page) => page.locator('#home').click(), // the camera is not at home when the button is clicked
         async (page) => page.locator('#assets-list .asset').first().click(),
     ];
     for (const act of firsts)
@@ -192,7 +192,7 @@ test('a drag that began before what steers was there is followed, however long t
     const { x, y, width, height } = await page.locator('#viewport').boundingBox(), [left, top] = [x + width / 2, y + height / 2];
     await page.mouse.move(left, top);
     await page.mouse.down();
-    await page.waitForTimeout(2500); // longer than the page delays a click
+    await page.waitForTimeout(2500); // wait longer than the page delays a click
     await page.mouse.move(left + 90, top, { steps: 3 });
     assert.equal(await isCameraControllerThere(page), false);
     assert.deepEqual(await eye(page), ELSEWHERE.eye);

@@ -43,7 +43,7 @@ async function meet(before = 0) {
 test('what lies about sizes is left, named, and costs nothing', options, async () => {
     const real = server.port;
     server.port = await freePort();
-    const before = await meet(); // nothing listens
+    const before = await meet(); // memory while nothing listens at the server's port
     await plant.daemon.stop();
     for (const [name, lies] of Object.entries(LIES)) {
         const liar = await tellLies(server.port, lies);
@@ -123,7 +123,7 @@ for (const [off_s, word] of [[3600, 'ahead of'], [-3600, 'behind']])
     test(`a server whose clock is an hour ${word} ours is believed in all but that`, clocks, async () => {
         const day = (days) => `${new Date(Date.now() + days * 86400e3).toISOString().replace(/[-:T]/g, '').slice(0, 14)}Z`;
         for (const name of ['yesterday', 'client2'])
-            makeCertificate(server.folder, name, { dates: [day(-1), day(1)] }); // valid by both clocks
+            makeCertificate(server.folder, name, { dates: [day(-1), day(1)] }); // valid by the clocks of both daemon and server
         server.trust('yesterday');
         await server.restart({ ahead_s: off_s, certificate: 'yesterday' });
         const stale = ROWS[0].replace('TI-1', 'OLD').replace('s=TI-1', 's=TI-2').replace(/0\.5,0,0,,/, '0.5,0,0,60,');

@@ -50,7 +50,7 @@ test('values, status codes and times come as they are, and nothing is ever writt
         await server.set('TI-1', 42, { status });
         await until('TI-1', { quality_name: name, value: status >= 0x80000000 ? null : 42 });
     }
-    await sleep(Math.max(0, first + 1600 - performance.now())); // a value that is older than the tag's last one would be ignored
+    await sleep(Math.max(0, first + 1600 - performance.now())); // wait, because a value older than the tag's last one would be ignored
     await server.set('TI-2', 43, { at: Date.now() - 1500 });
     const old = await until('TI-2', { ...good, value: 43 });
     assert.ok(old.age_ms >= 1500 && old.age_ms < 9000, `${old.age_ms} ms`);
@@ -87,7 +87,7 @@ test('all tags are Bad as soon as the server is gone; all is subscribed again, w
 });
 
 test('a notification that is lost is noticed, and all nodes are read', options, async () => {
-    await server.reset({ readsPerCall: 3 }); // fewer than the plant has nodes
+    await server.reset({ readsPerCall: 3 }); // one request may read fewer nodes than the plant has
     await plant.run(server.security(), ROWS);
     await until('TI-1', { ...good, value: 20 });
     await until('TI-2', { ...good, value: 21.5 });
@@ -117,7 +117,7 @@ test('a tag may have a deadband of its own; one that the server refuses is logge
     await server.reset();
     const rows = ROWS.map((row) => `${row},${{ 'TI-1': '5', 'TI-2': '10%', 'PI-1': '0' }[row.split(',')[0]] ?? ''}`);
     await plant.run(`${server.security()}, deadband: 20`, [...rows, `B,${NODE}Bounded,,,,,,,,,,,,,,20 %`], ',OPC Deadband');
-    await said(/s=TI-2: the server refuses the OPC Deadband 10% \(Bad\w+\) and reports every change/); // a node without EURange
+    await said(/s=TI-2: the server refuses the OPC Deadband 10% \(Bad\w+\) and reports every change/); // TI-2 is a node without EURange
     assert.doesNotMatch(plant.daemon.said, /s=XS-1: the server refuses/, 'the deadband of the source is for nodes that support it');
     await until('B', { ...good, value: 50 });
     await until('TI-1', { ...good, value: 20 });

@@ -138,7 +138,7 @@ test('strokes follow the wind round the tank, each to the right where it is seen
         for (const [i, [x, y, toX, toY]] of points.slice(1).entries()) {
             const [px, py, fromX, fromY] = points[i], dx = (fromX + toX) / 2, dy = (fromY + toY) / 2, long = Math.hypot(x - px, y - py);
             if (long < 4 || Math.hypot(dx, dy) < 0.3)
-                continue; // points towards the eye
+                continue; // skip an arrow that points towards the eye
             const along = ((x - px) * dx + (y - py) * dy) / long / Math.hypot(dx, dy);
             assert.ok(along > 0.8, `goes where its direction says: ${along} at ${px}, ${py}`);
             if (Math.abs(px - width / 2) < height / 8 && Math.abs(py - height / 2) < height / 8) {
@@ -159,7 +159,7 @@ test('strokes follow the wind round the tank, each to the right where it is seen
         assert.ok(Date.now() < end, 'dashes run');
     for (const points of strokes.values())
         assert.ok(points.length > 1, 'a head alone is no stroke');
-    await browser.page.waitForFunction(() => !document.querySelector('.arrow-key canvas')); // strokes have no length scale
+    await browser.page.waitForFunction(() => !document.querySelector('.arrow-key canvas')); // the legend has no length scale for strokes
     await shoot(browser.page, 'strokes');
     const answer = await fetch(`http://127.0.0.1:${plant.port}/snapshot.png?width=960&height=540&arrows=strokes`);
     const png = Buffer.from(await answer.arrayBuffer());

@@ -8,7 +8,7 @@ import { notBuilt, startTiny } from '../support/tiny_plant.mjs';
 
 const why = notBuilt();
 const options = { skip: why, timeout: 200000 };
-const MOST = 3; // clicks
+const MOST = 3; // largest number of clicks that a task may take
 let plant, browser, page, clicks = 0;
 
 before(async () => {

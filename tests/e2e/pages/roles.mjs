@@ -177,11 +177,11 @@ test('a viewer keeps a saved view after a reload of the page and a restart of th
     });
     await viewer.evaluate(async () => (await globalThis.plantcast.modules.get('views')).openNamed('strong', false));
     await viewer.waitForFunction(() => globalThis.plantcast.session.confirmed.strength === 2);
-    await viewer.evaluate(() => globalThis.plantcast.session.setParams({ look: 'flat' })); // a change of the viewer's own stays, too
+    await viewer.evaluate(() => globalThis.plantcast.session.setParams({ look: 'flat' })); // the viewer's own change is kept, too
     await viewer.waitForFunction(() => /named=strong/.test(location.hash) && /look=flat/.test(location.hash));
     await viewer.reload();
     await isStrong();
-    const resume = await viewer.evaluate(() => globalThis.plantcast.session.resume); // each start of the daemon gives another
+    const resume = await viewer.evaluate(() => globalThis.plantcast.session.resume); // each start of the daemon gives another resume secret
     await plant.daemon.stop();
     await plant.startDaemon(...flags, '--port', String(plant.port));
     await viewer.waitForFunction((old) => globalThis.plantcast.session.welcomed && globalThis.plantcast.session.resume !== old, resume);

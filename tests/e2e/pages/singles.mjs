@@ -47,7 +47,7 @@ test('paper and distances of a single sensor are refused, until the plant file h
         await page.getByText('“paper” (Kim & Suh) cannot be drawn accurately where pressure has one sensor').waitFor();
         await shown('pressure', 'shepard');
         assert.equal(await page.evaluate(() => globalThis.plantcast.session.params.interpolation), 'shepard');
-        await ask({ group: 'temperature', interpolation: 'paper' }); // two sensors, on the only asset that has sensors of this group
+        await ask({ group: 'temperature', interpolation: 'paper' });
         await shown('temperature', 'paper');
 
         // Refined, the view is shown; unrefined again, viewers return to the former view.

@@ -93,7 +93,7 @@ test('its trend, and the instant before it began', options, async () => {
     const slider = page.locator('#time-slider');
     await slider.focus();
     await page.locator('#time-span').selectOption('900');
-    await slider.fill('846'); // seconds of the 900
+    await slider.fill('846'); // 846 s into a span of 900 s
     await waitForHealth(page, 'past');
     await page.waitForFunction(() => globalThis.plantcast.session.picture.past);
     assert.match(await page.locator('#banner').textContent(), /History/);

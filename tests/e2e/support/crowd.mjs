@@ -15,7 +15,7 @@ export function openFiles(pid) {
     for (const fd of readdirSync(folder)) {
         try {
             list.push(readlinkSync(`${folder}/${fd}`));
-        } catch { /* closed meanwhile */ }
+        } catch { /* the file was closed meanwhile */ }
     }
     return list.sort();
 }

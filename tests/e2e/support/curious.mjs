@@ -113,7 +113,7 @@ const looks = (one) => one.any([{ colormap: one.any(one.welcome.colormaps).name 
 const LOOKS = ['default', 'glossy', 'flat', 'materials'];
 const snapshot = (one, more) => get(one.port, `/snapshot.png?width=1280&height=720&look=${one.any(LOOKS)}` +
     `&group=${one.any(one.welcome.groups).id}${more}`);
-const ago = (one) => Math.round(one.between(one.from, Date.now() * 1000)); // since the client connected
+const ago = (one) => Math.round(one.between(one.from, Date.now() * 1000)); // seconds since the client connected
 
 const PLAIN = { split: null, clip: null, hidden: [], ghost: [], isolate: [], look: 'default' };
 

@@ -28,7 +28,7 @@ export class Haproxy {
         return Haproxy.run(text, own ?? await freePort());
     }
 
-    // In front of two cores without renderers and without TLS. cores: [{ port }, { port }]
+    // Starts HAProxy in front of two cores, without renderers and without TLS. cores: [{ port }, { port }]
     static async startCores(cores) {
         let text = shipped('haproxy-cores.cfg').replace(/ ssl verify required ca-file \S+/, '').replaceAll(/ verifyhost \S+/g, '');
         cores.forEach(({ port }, i) => {

@@ -103,7 +103,8 @@ export async function seen(page, yaw = null) {
             all.copy(rgba, 4 * y * width, 4 * ((height - 1 - y) * 2 * width + left), 4 * ((height - 1 - y) * 2 * width + left + width));
         let undrawn = 0;
         for (let i = 0; i < rgba.length; i += 4)
-            undrawn += [140, 120].includes(rgba[i]) && rgba[i + 1] === rgba[i] && rgba[i + 2] === rgba[i] ? 1 : 0; // Painter's lattice
+            // one of the two greys that the page draws where no picture reaches
+            undrawn += [140, 120].includes(rgba[i]) && rgba[i + 1] === rgba[i] && rgba[i + 2] === rgba[i] ? 1 : 0;
         return { width, rgba, undrawn: undrawn / (width * height) };
     };
     return { left: eye(0), right: eye(width), seq };

@@ -80,7 +80,8 @@ function copyPlant(folder, modbusPort, more) {
     }
     const text = readFileSync(join(DEMO, 'plant.yaml'), 'utf8');
     // Removes `simulated`, so that its values count as measured; other tests cover simulated values.
-    const bare = /^(views|walls):/m.test(more) ? text.replace(/\nviews:\n[^]*$/, '\n') : text; // `more` has its own
+    // `more` may have views and walls in place of the demo's
+    const bare = /^(views|walls):/m.test(more) ? text.replace(/\nviews:\n[^]*$/, '\n') : text;
     const moved = bare.replace(/^(\s+port:\s*)\d+/m, `$1${modbusPort}`).replace(/^\s+simulated: yes\n/m, '');
     if (moved === bare)
         throw new Error('the demo plant has no source with a port');

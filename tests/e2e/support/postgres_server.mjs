@@ -63,7 +63,7 @@ export class PostgresServer {
     async kill() {
         if (this.child && this.child.exitCode === null && this.child.signalCode === null) {
             this.child.kill('SIGQUIT');
-            this.child.kill('SIGCONT'); // after freeze()
+            this.child.kill('SIGCONT'); // continue processes that freeze() has stopped
             await this.ended;
         }
     }

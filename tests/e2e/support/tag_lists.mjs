@@ -77,10 +77,10 @@ export function makeTagList(equipment, { seed, count = 5000, foreign = 0.15, rep
         const variable = pick(VARIABLES), letters = variable[0] + pick(FUNCTIONS), end = pick(ENDS), style = random();
         const sequence = String(1 + Math.floor(random() * 12)).padStart(2, '0'), suffix = chance(0.3) ? pick(['A', 'B', 'C']) : '';
         const attribute = chance(0.12) ? pick(ATTRIBUTES) : '', name = spoken(id), number = numberOf(id);
-        if (style < 0.45)        // equipment, then instrument
+        if (style < 0.45)        // the tag's name is the equipment, then the instrument's letters
             return [`${slips(name)}${pick(['_', '-', '.', '/'])}${letters}${separator()}${sequence}${attribute}`,
                 { variable, end, named: chance(0.6) ? id : null }];
-        if (style < 0.6)         // instrument, then equipment
+        if (style < 0.6)         // the tag's name is the instrument's letters, then the equipment
             return [`${letters}${pick(['_', '-'])}${slips(name)}${attribute}`, { variable, end, named: chance(0.5) ? id : null }];
         if (style < 0.8 && number.length > 1) // the equipment's number, and a description that names the equipment
             return [`${letters}${separator()}${number}${suffix}${attribute}`, { variable, end, named: chance(0.85) ? id : null }];

@@ -357,7 +357,7 @@ const followsHand = (painter, ...script) => async (t) => {
         let rest;
         do
             rest = await still(page);
-        while (rest.news > 0); // for example a reading that a busy machine read late
+        while (rest.news > 0); // repeat if a message came, for example of a reading that a busy machine read late
         assert.deepEqual(rest, { frames: 0, draws: 0, timers: [], news: 0 }, 'a still view costs nothing');
         if (painter === 'GlPainter')
             await loseContext(page);

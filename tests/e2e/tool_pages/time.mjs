@@ -143,7 +143,7 @@ const drawn = ([from, to]) => page.waitForFunction((span) => { // the values of 
 test('a drag zooms, the wheel zooms about the pointer, a drag of the axis pans, and each is undone', options, async () => {
     await page.waitForFunction(() => globalThis.plantcast.trends.series.size === 3 && globalThis.plantcast.trends.chart);
     await drawn(await rangeOf());
-    await settle(page); // the axes of all three tags have their widths
+    await settle(page); // wait until the axes of all three tags have their final widths
     const box = await page.locator('#trend-chart .u-over').boundingBox(), y = box.y + box.height / 2;
     const [from, to] = await rangeOf(), at = (x) => from + ((to - from) * (x - box.x)) / box.width;
     const [a, b] = [0.3, 0.7].map((part) => Math.round(box.x + part * box.width));
