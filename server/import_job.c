@@ -36,7 +36,7 @@ struct import_job {
 };
 
 struct arguments { /* zero-initialise */
-    const char **at; /* ends with NULL */
+    const char **at; /* the program's arguments; NULL ends the list */
     char **own;      /* arguments that are freed with the list */
     size_t count, capacity, owned, own_capacity;
 };

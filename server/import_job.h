@@ -29,6 +29,6 @@ char *import_job_run(struct import_job *job, const struct import_order *order, c
 char *import_job_undo(struct import_job *job);
 /* Returns true if plantcast-prep, which prepares the models, was started. */
 bool import_job_prepares(const struct import_job *job);
-void import_job_end(struct import_job **job); /* sets *job to NULL */
+void import_job_end(struct import_job **job); /* frees the job and sets *job to NULL */
 
 #endif

@@ -326,7 +326,7 @@ static int take_access_option(int option, struct access_params *access)
         return add_origin(access, optarg) ? -1 : usage_error("--origin: expected SCHEME://HOST[:PORT] (at most 16), found", optarg);
     case OPTION_LIMIT:
         return quotas_parse(&access->quotas, optarg) ? -1 : usage_error("--limit: unknown limit, or value out of range:", optarg);
-    default: /* getopt has printed the error */ print_usage(stderr); return USAGE;
+    default: /* unknown option, for which getopt has already printed an error */ print_usage(stderr); return USAGE;
     }
 }
 

@@ -33,7 +33,7 @@ struct plant_runtime {
     const struct plant_runtime_context *context;
     struct plant *plant;
     struct plant_services services; /* services of the plant; on a daemon that follows a core, core_link takes the place of `sources` */
-    struct publisher *publisher;    /* NULL: nothing is published */
+    struct publisher *publisher;    /* publishes readings over MQTT; NULL: nothing is published */
     struct source **sources;        /* sources by index in plant->sources */
     struct source *derived;         /* pseudo-source that computes derived tags; NULL: there are none */
     /* time spans whose points must still be read from PostgreSQL when a reload replaces the plant; the next runtime's historian reads

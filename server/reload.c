@@ -32,10 +32,10 @@ struct reload {
     struct plant_runtime **runtime;
     struct net *net;
     struct supervision *supervision;
-    struct plant_import *import;   /* NULL: import is off */
+    struct plant_import *import;   /* importer of plants; NULL: import is off */
     int64_t begun_ns;              /* monotonic time when the running reload was begun */
-    uint64_t following;            /* `follows` of the running reload */
-    char expected[17];             /* `expects` of the running reload */
+    uint64_t following;            /* value of `follows` with which the running reload was requested */
+    char expected[17];             /* value of `expects` with which the running reload was requested */
     char by[TOKEN_NAME_BYTES];     /* user who asked for the running reload */
     const struct tag_save *saving; /* tag list that the running reload saves; NULL: none */
     const char *kept;              /* path under which the previous version of the tag list is kept */
@@ -163,7 +163,7 @@ struct swap {
     size_t first_count;
 };
 
-/* Runs in the event loop. */
+/* Collects the sessions' views, for which the new plant draws its first frames. Runs in the event loop. */
 static void look_at_views(void *arg)
 {
     struct swap *swap = arg;
@@ -178,13 +178,13 @@ static bool start_render_service(struct reload *reload, struct plant_runtime *af
     return net_call(reload->net, look_at_views, &swap) && plant_runtime_start_render_service(after, swap.first, swap.first_count);
 }
 
-/* Runs in the event loop. */
+/* Drops the pointers to the historian and the notifier, which are about to be destroyed. Runs in the event loop. */
 static void release_recording(void *arg)
 {
     net_release_recording(arg);
 }
 
-/* Runs in the event loop. */
+/* Switches the sessions from the old plant's services to the new plant's. Runs in the event loop. */
 static void swap(void *arg)
 {
     struct swap *swap = arg;
@@ -261,7 +261,7 @@ static int lock_folder(const struct reload *reload, char **why)
     return lock;
 }
 
-/* Runs in the event loop. */
+/* Tells the renderers that a reload begins. Runs in the event loop. */
 static void announce(void *arg)
 {
     net_announce_reload(arg);
@@ -485,7 +485,7 @@ static void import_now(struct reload *reload, struct import_order *order)
 
 /* --- taking the lead from another core --------------------------------------------------------------------------------- */
 
-/* Runs in the event loop. */
+/* Tells the network part which services the plant has while this core takes the lead. Runs in the event loop. */
 static void lead_in_loop(void *arg)
 {
     struct reload *reload = arg;
@@ -509,7 +509,7 @@ static void lead_now(struct reload *reload, int64_t begun_ns)
     }
 }
 
-/* Runs in the event loop. */
+/* Drops the pointer to the historian, which is about to be destroyed. Runs in the event loop. */
 static void release_historian(void *arg)
 {
     net_release_historian(arg);

@@ -54,10 +54,10 @@ struct server {
     bool divided;                /* true: child processes that read files run in cgroups (resource limits) of their own */
     struct supervision *supervision;
     struct agent *agent;             /* answers load balancers; NULL: off */
-    struct signing_key *signing_key; /* NULL: pictures are not signed */
-    struct audit *audit;             /* NULL: nothing is recorded */
+    struct signing_key *signing_key; /* key with which pictures are signed; NULL: they are not signed */
+    struct audit *audit;             /* writer of the audit trail; NULL: nothing is recorded */
     struct file_writer *file_writer;
-    struct plant_import *import;     /* NULL: import is off */
+    struct plant_import *import;     /* importer of plants; NULL: import is off */
     pthread_mutex_t wake_lock; /* locked while the render thread wakes the event loop, so that `net` is not destroyed in the meantime */
     struct net *net;
     char *web;        /* folder of the web client's files; NULL: no page is served */

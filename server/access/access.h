@@ -10,7 +10,7 @@
 enum { ACCESS_MAX_NAMES = 16 };
 
 struct access_network {
-    uint8_t address[16]; /* IPv4 addresses as ::ffff:a.b.c.d */
+    uint8_t address[16]; /* address of the network; an IPv4 address has the form ::ffff:a.b.c.d */
     int bits;            /* number of leading bits that all addresses of the network share, 1..128 */
 };
 

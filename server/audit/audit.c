@@ -26,9 +26,9 @@ struct queued_entry {
 struct audit {
     struct audit_params params;
     char *path;
-    struct audit_file file; /* used only by the thread */
+    struct audit_file file; /* the open audit file; used only by the audit thread */
     struct audit_syslog *syslog;
-    bool failing; /* used only by the thread */
+    bool failing; /* true: the last write to the audit file failed; used only by the audit thread */
     counter *good, *lines, *lost;
     struct thread thread;
     /* --- below: protected by thread.lock */

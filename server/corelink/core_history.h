@@ -13,7 +13,7 @@ struct core_history;
 /* Creates a client for queries to the core. Returns NULL if out of memory (logged). `link` must outlive it. stop: flag; once it is true,
    waiting queries end soon. */
 struct core_history *core_history_create(struct log *log, struct core_link *link, const _Atomic bool *stop);
-void core_history_destroy(struct core_history **history); /* &NULL is fine; leaves NULL */
+void core_history_destroy(struct core_history **history); /* frees the history and sets *history to NULL; accepts a pointer to NULL */
 /* Appends `name=value` to a path, preceded by `?` or `&`, with the value URL-encoded. */
 void core_history_add(struct text *path, const char *name, const char *value);
 /* Appends the core's answer to the query `path` to *out. Returns false on failure, which is logged unless the last logged failure had the

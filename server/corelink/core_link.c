@@ -37,7 +37,7 @@ static const int64_t STEP_NS = 500 * NS_PER_MS;
 static const int64_t QUICK_NS = 100 * NS_PER_MS;
 
 struct pending_request {
-    uint64_t id, client; /* id 0: free slot */
+    uint64_t id, client; /* ids of a forwarded act and of the client that sent it; id 0: the entry is free */
 };
 
 struct core_link {
@@ -66,7 +66,7 @@ struct core_link {
     char why[WHY_BYTES]; /* why this connection ended */
     struct thread thread;
     /* --- below: under thread.lock */
-    struct lws_context *context; /* NULL: not connected */
+    struct lws_context *context; /* libwebsockets context of the connection to the core; NULL: not connected */
     bool is_up;
     uint64_t session; /* number of the connection over which readings arrive, unique among all links of this process */
     int up_index;     /* index in params.urls of the core that sends readings */
@@ -129,7 +129,7 @@ static void queue(struct core_link *link, char *text)
     struct text *out = &link->out[link->out_count++];
     const char room[LWS_PRE] = { 0 };
     *out = (struct text){ 0 };
-    text_add_bytes(out, room, sizeof(room)); /* lws writes its framing here */
+    text_add_bytes(out, room, sizeof(room)); /* libwebsockets writes the frame header into this room, before the text */
     text_add_bytes(out, text, strlen(text));
     mem_free(text);
 }
@@ -566,7 +566,7 @@ bool core_link_peer(struct core_link *link, struct core_peer *out)
     pthread_mutex_unlock(&link->thread.lock);
     if (!up || !parse_url(link->params.urls[index], &url))
         return false;
-    bool address = strchr(url.host, ':'); /* an IPv6 address */
+    bool address = strchr(url.host, ':'); /* true: the host is an IPv6 address, which a URL encloses in brackets */
     snprintf(out->url, sizeof(out->url), "http%s://%s%s%s:%d", url.tls ? "s" : "", address ? "[" : "", url.host, address ? "]" : "",
              url.port);
     out->authorization = link->authorization;

@@ -30,7 +30,7 @@ struct core_link_params {
     /* standby core only: promises not to take the lead when the leader asks. NULL: this node is a renderer */
     struct lease_keeper *keeper;
     struct historian *historian;      /* standby core only: records the samples that the leader sends. NULL: nothing is recorded */
-    /* standby core only: folder in which which alarms the leader has announced is stored. NULL: not stored */
+    /* standby core only: folder of the file that says which alarms the leader has announced. NULL: not stored */
     const char *folder;
     void (*notify)(void *arg);        /* called by the link's thread when core_link_collect() has new messages */
     void *notify_arg;

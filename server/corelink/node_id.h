@@ -5,7 +5,7 @@
 #define CORELINK_NODE_ID_H
 
 struct node_id {
-    int fd; /* locked until it is closed */
+    int fd; /* descriptor of the identity's file, which stays locked until the descriptor is closed */
     char id[9];
 };
 

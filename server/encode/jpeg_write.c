@@ -27,7 +27,7 @@ static void fail(j_common_ptr codec)
     longjmp(writer->failed, 1);
 }
 
-static void start(j_compress_ptr codec) /* requires that `to` is set */
+static void start(j_compress_ptr codec) /* does nothing; set_room() has already set the output buffer */
 {
     (void)codec;
 }

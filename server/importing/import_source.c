@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const orders[] = { "", "ABCD", "CDAB", "BADC", "DCBA" }; /* indexed by enum byte_order */
+static const char *const orders[] = { "", "ABCD", "CDAB", "BADC", "DCBA" }; /* texts of the byte orders, indexed by enum byte_order */
 
 static bool is_number(const char *text, int least, int most)
 {

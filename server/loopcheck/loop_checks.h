@@ -21,8 +21,8 @@ extern const char *const loop_check_state_names[]; /* names of the states of a l
 
 struct loop_check {
     enum loop_check_state state;
-    int64_t time_us;                  /* UTC */
-    double value, expected, tolerance; /* in the tag's unit; NaN: none */
+    int64_t time_us;                  /* time of the check, microseconds UTC */
+    double value, expected, tolerance; /* values in the tag's unit; NaN: none */
     char who[LOOP_CHECK_NAME_BYTES], remark[LOOP_CHECK_REMARK_BYTES];
 };
 

@@ -25,7 +25,8 @@ struct alarm_query {
     int limit;                         /* maximum number of rows */
     int64_t offset;                    /* for /api/v1/alarms: number of alarms to skip */
     char tag[256];                     /* name of a tag or a device whose alarms are wanted; empty: all alarms */
-    int64_t from_us, to_us, before_id; /* for the journal */
+    /* for /api/v1/alarms/journal: time range in microseconds UTC, and the id below which the rows' ids must be */
+    int64_t from_us, to_us, before_id;
 };
 /* Parses the arguments of an HTTP query, percent-decoded, such as `limit=100`, `format=csv`. journal true: also accepts the arguments of
    /api/v1/alarms/journal. Returns false with *error saying what is wrong. */

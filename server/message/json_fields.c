@@ -14,7 +14,7 @@ const char *quoted(const char *text, char out[48])
     while (at < left) {
         const unsigned char *c = (const unsigned char *)text + at;
         size_t step = utf8_length(text + at, left - at);
-        bool control = c[0] < 32 || c[0] == 127 || (c[0] == 0xC2 && c[1] < 0xA0); /* C0, DEL, C1 */
+        bool control = c[0] < 32 || c[0] == 127 || (c[0] == 0xC2 && c[1] < 0xA0); /* control characters (C0, DEL and C1) */
         if (n + (step && !control ? step : 1) > MOST_BYTES)
             break;
         if (step && !control)
@@ -142,7 +142,7 @@ bool has_controls(const char *text)
 {
     static const char *const overrides[] = { "\u202a", "\u202b", "\u202c", "\u202d", "\u202e", "\u2066", "\u2067", "\u2068", "\u2069" };
     for (const unsigned char *c = (const unsigned char *)text; *c; c++)
-        if (*c < 32 || *c == 127 || (*c == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0)) /* C0 and C1 controls */
+        if (*c < 32 || *c == 127 || (*c == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0)) /* control characters (C0 and C1) */
             return true;
     for (size_t i = 0; i < sizeof(overrides) / sizeof(overrides[0]); i++)
         if (strstr(text, overrides[i]))

@@ -139,7 +139,7 @@ struct pick_request {
 
 enum { ALARM_REQUEST_MOST = 256 };
 struct alarm_request {
-    int action;                          /* enum alarm_event */
+    int action;                          /* action of the user on the alarms (enum alarm_event) */
     /* tags whose alarms the request names, as indices; for alarms of kind ALARM_LINK, indices of devices (alarm/devices.h) */
     int tags[ALARM_REQUEST_MOST], count;
     uint8_t kinds[ALARM_REQUEST_MOST]; /* kind of each alarm (enum alarm_kind), in the order of `tags` */
@@ -200,7 +200,8 @@ struct pair_request {
 };
 
 struct hello_request {
-    char token[TOKEN_MAX_CHARS + 1], resume[RESUME_MOST_CHARS + 1]; /* "": none */
+    /* access token, and the resume token of an earlier session; empty: none */
+    char token[TOKEN_MAX_CHARS + 1], resume[RESUME_MOST_CHARS + 1];
     double idle_ms; /* milliseconds since the user was last active; negative: not stated */
     bool tokens;    /* true: the server shall send the view as a token whenever it changes */
     bool depth;     /* true: the client wants depth grids with its frames */
@@ -217,34 +218,34 @@ struct message {
     struct codec_list codecs;        /* messages hello and codecs: codecs that the client can decode; empty: as in the resumed session */
     double pixel_ratio;              /* messages hello and resize: device pixels per CSS pixel of the page; 0: not stated */
     char named[NAMED_VIEW_ID_BYTES]; /* messages hello, look and params: id of a named view; empty: no view (only in hello and params) */
-    struct camera camera;            /* camera, hello */
+    struct camera camera;            /* messages camera and hello: the new camera */
     /* sequence number that the client gave its message camera, ack, fit, pick or look; message hello: sequence number of its camera */
     uint32_t seq;
-    struct params_change params;     /* params, hello */
+    struct params_change params;     /* messages params and hello: parameters of the view to change */
     struct split_change split;       /* messages params and hello: change of the right half of a split view, applied after `params` */
     struct fit_message fit;
     struct pick_request pick;
     bool visible;
     double decode_ms; /* message ack: milliseconds that the client needed to decode the frame; negative: not stated */
-    double t;         /* ping */
+    double t;         /* message ping: time stamp of the client, which the server returns in its answer */
     bool active;      /* message ping: true: the user was active since the last ping */
     uint64_t follow;  /* messages follow and lead: number of another session; 0: no session */
     struct alarm_request alarm;
-    struct time_request time; /* time, hello */
+    struct time_request time; /* messages time and hello: the time that the view shows */
     struct place_request place;
     struct coverage_request coverage;
     /* messages save_tags, accept_places and restore_tags: hash of the tag list that the user saw and confirms; empty: not confirmed yet */
     char confirm[17];
-    struct assumed_filter accept; /* accept_places */
+    struct assumed_filter accept; /* message accept_places: which assumed positions are accepted */
     char kept[65];                /* message restore_tags: name of the earlier version of the tag list to restore */
     struct loop_check_request loop_check;
     /* messages that edit or share a named view. save_view sets all members, remove_view only the id, share_view only the address,
        send_to_wall only view and title */
     struct named_view_edit view_edit;
-    struct note_request note;         /* note, remove_note */
+    struct note_request note;         /* messages note and remove_note: the note */
     struct wall_request wall;         /* messages display, send_to_wall and point: the pane or display of a wall that is meant */
-    struct pair_request pair;         /* pair, unpair */
-    enum signed_frames signed_frames; /* hello, sign */
+    struct pair_request pair;         /* messages pair and unpair: the display to be paired */
+    enum signed_frames signed_frames; /* messages hello and sign: frames that the server shall sign */
 };
 
 /* Reads a timestamp (timestamp.h) from the text of the argument `name`; *out receives microseconds UTC. Returns false, with *error set,
@@ -256,7 +257,7 @@ bool message_take_time(const char *name, const char *text, int64_t now_us, int64
 bool params_parse(const struct plant *plant, const json_t *object, struct params_change *out, struct message_error *error);
 struct params_context {
     const struct scene *scene;
-    struct baselines *baselines;     /* NULL: no baselines here */
+    struct baselines *baselines;     /* stored baselines of the plant; NULL: there are none */
     const struct snapshot *snapshot; /* readings from which a change of parameters may store a baseline; NULL: there are none */
     int64_t now_us;                  /* UTC time in microseconds against which times in the arguments of a query are checked */
     bool bare;                       /* true (only in queries): the picture has no legend and no clock */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Refusals. */
+/* Error texts for messages that the server refuses. */
 #include "message/message_error.h"
 
 #include <stdarg.h>

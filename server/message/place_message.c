@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Messages about positions of sensors. */
+/* Parses messages about the positions of sensors and formats the answers. */
 #include "message/place_message.h"
 
 #include <limits.h>

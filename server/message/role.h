@@ -6,10 +6,10 @@
 #include "message/names.h"
 
 enum role {
-    ROLE_NOBODY,   /* not authenticated yet */
+    ROLE_NOBODY,   /* a client that has not authenticated yet */
     ROLE_RENDERER, /* a renderer daemon: may only open /core and request history */
     ROLE_STANDBY,  /* a standby core: has the rights of a renderer */
-    ROLE_OPEN,     /* anyone, under --open-viewers */
+    ROLE_OPEN,     /* any client without a token, if the daemon runs with --open-viewers */
     ROLE_VIEWER,
     ROLE_OPERATOR,
     ROLE_ENGINEER, /* role of engineers, and of every user on the daemon's own machine */
@@ -21,7 +21,7 @@ static inline bool role_is_node(enum role role)
     return role == ROLE_RENDERER || role == ROLE_STANDBY;
 }
 
-extern const struct name names_role[]; /* ends with a NULL text */
+extern const struct name names_role[]; /* names of the roles; the last entry's text is NULL */
 
 /* Returns true if a client of that role may send the message. If not, *error says why. */
 bool role_may_send(enum role role, const struct message *message, struct message_error *error);

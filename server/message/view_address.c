@@ -62,7 +62,7 @@ static int hex_of(char c)
     return !at ? -1 : at - digits < 16 ? (int)(at - digits) : (int)(at - digits) - 6;
 }
 
-/* Decodes in place. */
+/* Replaces percent-escapes and plus signs by the characters that they encode, in place. */
 static void decode(char *text)
 {
     char *to = text;

@@ -89,7 +89,7 @@ static json_t *numbers(const char *text)
     return NULL;
 }
 
-/* Reads `2`, `2:0.5` or `:0.5`. */
+/* Reads a sensor's strength and decay: `2`, `2:0.5` or `:0.5`. */
 static json_t *sensor(const char *text)
 {
     json_t *object = json_object();
@@ -108,7 +108,7 @@ static json_t *sensor(const char *text)
     return NULL;
 }
 
-/* Reads TAG=STRENGTH[:DECAY],... */
+/* Reads strength and decay of several sensors: TAG=STRENGTH[:DECAY],... */
 static json_t *sensors(const char *text)
 {
     json_t *all = json_object();
@@ -128,7 +128,7 @@ static json_t *sensors(const char *text)
     return NULL;
 }
 
-/* Reads a name, or numbers. */
+/* Reads the breaks of a colour scale: a name, or numbers. */
 static json_t *breaks(const char *text)
 {
     if (!strcmp(text, "none"))
@@ -136,7 +136,7 @@ static json_t *breaks(const char *text)
     return !strcmp(text, "group") || !strcmp(text, "limits") ? json_string(text) : numbers(text);
 }
 
-/* Reads numbers, or `every:STEP`. */
+/* Reads the values of isolines: numbers, or `every:STEP`. */
 static json_t *lines(const char *text)
 {
     const char *end = "";
@@ -153,7 +153,7 @@ static json_t *lines(const char *text)
 
 static bool add_argument(json_t *o, const char *arg, struct message_error *error);
 
-/* Reads NAME=VALUE;... */
+/* Reads the arguments of the right half of a split view: NAME=VALUE;... */
 static json_t *split(const char *text, struct message_error *error)
 {
     json_t *all = json_object();

@@ -28,7 +28,7 @@ struct delivery {
     struct log *log;
     const struct plant_notify *notify;
     CURLM *multi;
-    struct transfer *transfers; /* by index of the recipient */
+    struct transfer *transfers; /* by index of the recipient: its transfer */
 };
 
 struct delivery *delivery_create(struct log *log, const struct plant_notify *notify)

@@ -34,7 +34,7 @@ struct notifier {
     struct delivery *delivery;
     /* --- below: used by the notifier's thread only */
     struct outbox *outbox;
-    struct recipient_counters *counters; /* by index of the recipient */
+    struct recipient_counters *counters; /* by index of the recipient: its counters */
     counter *lost, *spool_good;
     bool *failing;   /* by index of the recipient: true if the last attempt to send to the recipient failed */
     uint64_t number; /* change number of the last alarm change that the notifier has processed */

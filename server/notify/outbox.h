@@ -56,7 +56,7 @@ void outbox_sent(struct outbox *outbox, int recipient, int64_t now_us);
 void outbox_failed(struct outbox *outbox, int recipient, int64_t now_us);
 
 struct outbox_counts {
-    int64_t waiting; /* queued alarms for one recipient */
+    int64_t waiting; /* number of alarms queued for one recipient */
     /* number of notifications lost since the start, of all recipients: the queue was full, or the message was dropped for its age */
     int64_t lost;
 };

@@ -54,7 +54,7 @@ struct outbox {
     struct episode *episodes;
     size_t count, capacity;
     int *by_alarm;               /* by tag and alarm kind: 1 + index of the alarm's episode in `episodes`; 0: the alarm has none */
-    struct recipient_box *boxes; /* by index of the recipient */
+    struct recipient_box *boxes; /* by index of the recipient: its queue */
     size_t items;                /* number of queued alarms of all recipients */
     int64_t lost, made;
     bool dirty;

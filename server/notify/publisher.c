@@ -41,7 +41,7 @@ struct publisher {
     /* --- below: used by the publisher's thread only */
     struct mqtt_client *client;
     struct snapshot *snapshot;
-    struct topic *topics; /* by index of the tag */
+    struct topic *topics; /* by index of the tag: its MQTT topic */
     uint64_t alarm_number;
     bool connected, alarms_published;
     char said[200]; /* text of the last problem that was logged; empty: no problem */

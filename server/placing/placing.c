@@ -42,7 +42,7 @@ struct place_set {
 };
 
 struct warm {
-    struct relocation *relocation; /* NULL: the asset has none in memory */
+    struct relocation *relocation; /* data for computing distances of moved sensors on the asset; NULL: not in memory */
     uint64_t used;
 };
 
@@ -50,7 +50,7 @@ struct placing {
     struct placing_params params;
     char *folder;
     struct trials *trials;
-    struct warm *warm; /* by index of the asset */
+    struct warm *warm; /* by index of the asset: its relocation, if that is in memory */
     struct place_set *sets;
     uint64_t uses, asked;
     pthread_mutex_t lock;

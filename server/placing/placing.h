@@ -31,8 +31,8 @@ struct trials *placing_trials(struct placing *placing);
 
 enum { PLACING_MOVES = TRIAL_SENSORS };
 struct place_move {
-    int tag, asset;       /* indices in the plant */
-    double position_m[3]; /* in plant coordinates, metres */
+    int tag, asset;       /* indices of the tag and the asset in the plant */
+    double position_m[3]; /* position to which the sensor is moved, in plant coordinates, metres */
 };
 enum placed_state {
     PLACED_WAITING, /* geodesic distances are still being computed; straight-line distances are used meanwhile */

@@ -124,7 +124,7 @@ static bool find_place(const struct strip_picture *picture, struct strip_found *
 /* --- cells -------------------------------------------------------------------------------------------------------------------- */
 
 struct color_patch {
-    double rgb[3]; /* mean of the pixels */
+    double rgb[3]; /* mean colour of the patch's pixels */
     int count;
 };
 

@@ -11,7 +11,7 @@
 
 struct camera {
     double eye_m[3], target_m[3], up[3];
-    double fov_deg;  /* vertical */
+    double fov_deg;  /* vertical angle of view, degrees */
     double height_m; /* height of an orthographic picture in metres; 0: perspective camera */
 };
 

@@ -15,7 +15,7 @@ struct manifest {
         char *surface;            /* file name of the asset's stored surface (surface_store.h); NULL: none */
         char *missing;            /* reason why the asset could not be prepared and has no file; NULL: it was prepared */
         uint64_t recipe;          /* hash of all inputs from which plantcast-prep prepared the asset (plant/recipe.h) */
-        uint64_t resolved_levels; /* as in struct asset */
+        uint64_t resolved_levels; /* bit mask of levels of detail, as in struct asset (scene/asset.h) */
         char **left_out; /* textures and extensions of the asset's model that are not drawn; only at the first asset of a model */
         size_t left_out_count;
     } * entries;
@@ -25,6 +25,6 @@ struct manifest {
 /* Reads the manifest. Returns false on failure; logged, with advice. */
 bool manifest_read(struct log *log, const char *folder, struct manifest *manifest);
 void manifest_finish(struct manifest *manifest);
-const struct manifest_entry *manifest_find(const struct manifest *manifest, const char *id); /* NULL: not found */
+const struct manifest_entry *manifest_find(const struct manifest *manifest, const char *id); /* returns NULL if no asset has that id */
 
 #endif

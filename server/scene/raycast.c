@@ -47,7 +47,7 @@ static bool cross_box(const double origin[3], const double direction[3], const d
 
 struct raycast_search { /* search in one asset */
     const struct asset_view *view;
-    double origin[3], direction[3], low; /* in the file's coordinates */
+    double origin[3], direction[3], low; /* the ray in coordinates of the asset file; low: smallest t of interest */
     bool cut;
     double limit; /* largest t of interest */
     struct raycast_hit *hit;

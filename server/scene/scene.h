@@ -10,10 +10,10 @@
 #include "scene/camera.h"
 
 struct scene_sensor {
-    int tag;              /* index in plant->tags */
+    int tag;              /* index of the sensor's tag in plant->tags */
     int column;           /* index of the sensor among the sensors of the asset file */
-    double position_m[3]; /* plant frame, as configured */
-    double surface_m[3];  /* plant frame, on the surface */
+    double position_m[3]; /* position of the sensor as configured, in the plant frame */
+    double surface_m[3];  /* nearest point on the asset's surface, in the plant frame */
     double surface_distance_m;
 };
 
@@ -21,7 +21,7 @@ struct scene_asset {
     const struct plant_asset *plant;
     struct asset *file;                      /* prepared file, shared by all assets that use the same file */
     double placement[16];                    /* matrix from file coordinates to the plant frame (includes origin_m), column-major */
-    double bounds_min_m[3], bounds_max_m[3]; /* plant frame, axis-aligned */
+    double bounds_min_m[3], bounds_max_m[3]; /* axis-aligned bounding box in the plant frame */
     struct scene_sensor *sensors;            /* sensors of all groups, in the order of the tag list */
     size_t sensor_count;
     bool stray; /* true if a piece of the asset is far from the main part (scene/main_part.h) */

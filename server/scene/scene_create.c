@@ -224,7 +224,7 @@ static bool create_asset(struct log *log, struct scene *scene, int index)
 struct file_use {
     const char *name; /* name of the asset's file in the prepared folder */
     int asset;
-    uint64_t resolved_levels; /* as in struct asset */
+    uint64_t resolved_levels; /* bit mask of levels of detail, as in struct asset (scene/asset.h) */
 };
 
 struct file_uses {

@@ -11,7 +11,7 @@ struct asset_set { /* set of assets, by index in scene->assets; zero: empty */
     uint64_t words[ASSET_SET_MAX / 64];
     int count;
 };
-void asset_set_add(struct asset_set *set, int asset); /* 0..ASSET_SET_MAX - 1 */
+void asset_set_add(struct asset_set *set, int asset); /* asset: 0..ASSET_SET_MAX - 1 */
 bool asset_set_has(const struct asset_set *set, int asset);
 
 struct clip { /* section planes; the space on the inner side of all planes is kept */
@@ -39,7 +39,7 @@ struct visibility {
 };
 enum asset_look {
     ASSET_SHOWN,
-    ASSET_GHOST, /* transparent, without a field */
+    ASSET_GHOST, /* the asset is drawn transparent, without a field */
     ASSET_HIDDEN /* true: the asset is not shown: the user has hidden it, or has isolated other assets without ghosting this one */
 };
 enum asset_look visibility_of(const struct visibility *visibility, int asset);

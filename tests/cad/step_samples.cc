@@ -146,7 +146,7 @@ struct iges_drawing {
         what->InitTransf(matrix);
         return what;
     }
-    entity colored(const entity &what, double red, double green, double blue) /* per cent */
+    entity colored(const entity &what, double red, double green, double blue) /* colour components in per cent */
     {
         Handle(IGESGraph_Color) color = new IGESGraph_Color;
         color->Init(red, green, blue, new TCollection_HAsciiString("a colour"));

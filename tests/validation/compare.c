@@ -23,11 +23,11 @@ enum { WORDS = 64, LINE_BYTES = 4096 };
 
 struct solution {
     struct trimesh skin;
-    double *values; /* solution by point of the skin */
-    bool *outside;  /* by triangle of the skin */
+    double *values; /* solution at each point of the skin */
+    bool *outside;  /* by triangle of the skin: true if the triangle is on the outside */
 };
 
-struct heat_truth { /* solution by vertex of the asset file */
+struct heat_truth { /* the simulated solution, carried over to the vertices of the asset file */
     double *values, *area_m2, *outside_m2;
     size_t count;
 };
@@ -251,7 +251,7 @@ static bool draw(struct offline_renderer *offline, char *plant, const struct sol
     int count = 2 + split(line, words + 2);
     const char *paint = words[2];
     words[2] = "-o";
-    optind = 0; /* getopt starts from the first word again */
+    optind = 0; /* makes getopt start from the first word again */
     bool first = !offline->gl, good = count > 3 && snapshot_parse(count, words, false, &options) < 0;
     if (!good)
         return false;

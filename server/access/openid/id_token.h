@@ -15,7 +15,7 @@ struct id_token_expected {
     const json_t *jwks; /* the identity provider's public keys */
     const char *nonce;  /* nonce that the token must contain; NULL: not checked, because a token from a refresh need not contain one */
     const char *sub;    /* subject (user id at the provider) that the token must contain; NULL: not known yet */
-    int64_t now_s;      /* UTC */
+    int64_t now_s;      /* present time, seconds UTC */
     int64_t patience_s; /* seconds for which a token is still accepted after its expiry (claim `exp`) */
 };
 

@@ -8,7 +8,7 @@
 
 struct openid_group {
     char *group;
-    int role; /* enum role */
+    int role; /* role of the group's members (enum role) */
 };
 
 struct openid_config {
