@@ -27,7 +27,7 @@ static bool glb_good(struct model_bytes file, struct model_bytes *json, struct m
         return wrong(why, "GLB: the first chunk is not JSON, or is truncated");
     *json = (struct model_bytes){ b + 20, json_bytes };
     size_t at = 20 + (size_t)json_bytes;
-    while (!binary->at && size - at >= 8) { /* skip chunks of other types */
+    while (!binary->at && size - at >= 8) {
         uint32_t bytes = read_u32(b + at);
         if (bytes > size - at - 8)
             return wrong(why, "GLB: the chunk at byte %zu has %u bytes, but only %zu are left", at, bytes, size - at - 8);

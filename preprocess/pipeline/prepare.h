@@ -11,7 +11,8 @@
 #include "preprocess/model/model_files.h"
 #include "preprocess/pipeline/geometry_cache.h"
 
-enum prepare_state { PREPARE_LEFT /* not started: interrupted */, PREPARE_FAILED, PREPARE_UNCHANGED, PREPARE_SHARED, PREPARE_BUILT };
+/* PREPARE_LEFT: preparation was interrupted before this asset began */
+enum prepare_state { PREPARE_LEFT, PREPARE_FAILED, PREPARE_UNCHANGED, PREPARE_SHARED, PREPARE_BUILT };
 
 struct prepare_asset {
     const struct plant_asset *plant;

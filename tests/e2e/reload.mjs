@@ -77,7 +77,7 @@ test('what changed is said; sessions, alarms and readings go on', options, async
     assert.equal(again.session, welcome.session, 'the same session');
     assert.equal(again.view.ramp_interval, 10, 'and the same view');
     assert.deepEqual(again.tags.map(({ name }) => name), ['TI-1', 'TI-2', 'PI-1', 'XX-9']);
-    await client.until('a picture of the new plant', () => client.frames.length > shown); // pictures continue
+    await client.until('a picture of the new plant', () => client.frames.length > shown);
     assert.ok((await active()).includes('TI-1/H acknowledged'), 'nobody has to acknowledge it again');
     assert.match(await metric(`plantcast_configuration_info{hash="${first}"}`), / 0$/);
     const tags = (await (await fetch(url('/api/v1/tags'))).json()).tags;

@@ -188,7 +188,7 @@ test('its secret reads nothing but its display, before it has said a word', opti
     const mine = ['TI-1', 'TI-2'].map((name) => tags.findIndex((tag) => tag.name === name));
     const read = new Set();
     for (let n = 0; n < 5; n++) {
-        for (const tag of ['TI-1', 'TI-2', 'PI-1']) // all tags change
+        for (const tag of ['TI-1', 'TI-2', 'PI-1'])
             await plant.ask(`set ${tag} ${30 + n}`);
         const { values } = await tiles.text('tags', 20000);
         values.forEach(([tag]) => read.add(tag));

@@ -32,7 +32,6 @@ const arrive = async (is, what) => {
     await page.waitForFunction(() => !globalThis.plantcast.cameraController.fly);
     await settle(page);
 };
-// Waits until f holds in the page.
 const waitFor = (f, what) => page.waitForFunction(f, what);
 
 // Returns a position on the page that shows equipment with a field, and no marker.

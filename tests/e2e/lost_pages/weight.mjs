@@ -75,7 +75,6 @@ for (const [name, language, screen] of PAGES)
     });
 
 const DESK = { viewport: { width: 1024, height: 640 } };
-// Runs f on a new page that shows the plant.
 async function withPage(f, arrange) {
     const browser = await openPage(`${url}?lang=en`, DESK, null, arrange);
     try {
