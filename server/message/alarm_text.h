@@ -22,9 +22,9 @@ char *alarms_text(struct alarm_text_cache *cache, struct alarm_service *alarm_se
 /* A query of /api/v1/alarms or /api/v1/alarms/journal over HTTP. */
 struct alarm_query {
     bool csv;
-    int limit;                         /* maximum number of rows */
-    int64_t offset;                    /* for /api/v1/alarms: number of alarms to skip */
-    char tag[256];                     /* name of a tag or a device whose alarms are wanted; empty: all alarms */
+    int limit;      /* maximum number of rows */
+    int64_t offset; /* for /api/v1/alarms: number of alarms to skip */
+    char tag[256];  /* name of a tag or a device whose alarms are wanted; empty: all alarms */
     /* for /api/v1/alarms/journal: time range in microseconds UTC, and the id below which the rows' ids must be */
     int64_t from_us, to_us, before_id;
 };

@@ -36,8 +36,8 @@ static const char *const why_names[] = { [WHY_NONE] = "",
 
 struct other {
     const struct other_plant *plant;
-    struct http_request request;        /* request for the picture; its `answer` receives the picture */
-    char header[HEADER_BYTES];          /* header Plantcast-Frame of the answer */
+    struct http_request request; /* request for the picture; its `answer` receives the picture */
+    char header[HEADER_BYTES];   /* header Plantcast-Frame of the answer */
     /* times of the next request (due) and of the newest one (begun): monotonic (ns), by the clock of the plant (us) */
     int64_t due_ns, begun_ns, begun_us;
     bool running, failing;

@@ -17,7 +17,7 @@ enum { WALL_DESK_BYTES = 121, WALL_AREA_BYTES = 61, WALL_POINTERS = 8 };
 struct wall_place {
     /* id of the wall, and area of the pane on its display; area "": the whole display */
     char wall[NAMED_VIEW_ID_BYTES], area[WALL_AREA_BYTES];
-    int display;                                           /* number of the display, from 1; 0: none */
+    int display; /* number of the display, from 1; 0: none */
 };
 
 struct wall_order {
