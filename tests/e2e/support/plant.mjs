@@ -6,6 +6,7 @@ import { connect } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { faultOf } from './fault.mjs';
+import './fetch.mjs';
 import { freePort } from './ports.mjs';
 
 export const BIN = resolve(process.env.PLANTCAST_BIN ?? 'build');
