@@ -9,6 +9,7 @@ import { networkInterfaces } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Haproxy, missingHaproxy } from './support/haproxy.mjs';
+import { linesOf } from './support/lines.mjs';
 import { Nodes, until } from './support/nodes.mjs';
 import { get, PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
@@ -24,7 +25,7 @@ const path = (name) => join(nodes.plant.folder, name);
 const served = (name) => ['--listen', '0.0.0.0', '--tls-cert', path('cert.pem'), '--tls-key', path('key.pem'), '--host', 'plant.example',
     '--audit', path(`${name}.audit`)];
 // Returns the complete lines of a daemon's audit trail.
-const audited = (name) => readFileSync(path(`${name}.audit`), 'utf8').split('\n').slice(0, -1).map((line) => JSON.parse(line));
+const audited = (name) => linesOf(path(`${name}.audit`)).map((line) => JSON.parse(line));
 // The trail is written by another thread: waits for a line. Returns the first one.
 const recorded = (name, is) => until(`a line in the trail of ${name}`, () => audited(name).find(is));
 const isRefused = ({ event, result, from }) => event === 'login' && result === 'refused' && from;

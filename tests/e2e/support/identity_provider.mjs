@@ -14,6 +14,7 @@ export class IdentityProvider {
         this.refreshes = true;  // whether refresh tokens are issued and accepted
         this.status = 200;      // HTTP status of refresh requests
         this.delay_ms = 0;      // delay of the token endpoint
+        this.codesWait = null;  // a promise: codes are answered that long after it is fulfilled
         this.keysStatus = 200;
         this.fault = null;      // [status, JSON] of all answers of the token endpoint; null: normal answers
         this.live = new Map();  // valid refresh tokens and their users
@@ -108,7 +109,8 @@ export class IdentityProvider {
                     if (!response.writableFinished)
                         this.live.delete(json.refresh_token);
                 });
-                setTimeout(say, request.url === '/token' ? this.delay_ms : 0);
+                const isCode = new URLSearchParams(body).get('grant_type') === 'authorization_code';
+                Promise.resolve(isCode && this.codesWait).then(() => setTimeout(say, request.url === '/token' ? this.delay_ms : 0));
             });
         });
         return new Promise((done) => this.server.listen(port, '127.0.0.1', () => {
