@@ -9,7 +9,7 @@
 
 struct agent_state {
     int busy_percent; /* percentage of the render thread's time that is used */
-    bool has_core;    /* true: readings arrive */
+    bool has_core;    /* true: readings arrive; false only on a renderer that has lost its core */
     bool drains;      /* true: the daemon is being drained (it sends its sessions to other daemons) */
 };
 

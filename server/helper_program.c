@@ -29,7 +29,7 @@ struct helper {
     const struct helper_params *params;
     pid_t child;
     int ends[PIPES][2];  /* descriptors of the pipes; -1: closed */
-    struct text written; /* output of the program on stderr */
+    struct text written; /* text that the program has printed on stderr */
     char *cgroup;        /* path of the program's cgroup; NULL: none */
     int64_t until_ns, kill_ns;
     /* told: the caller told the program to end; timed_out: the program was told to end because its time limit was over */

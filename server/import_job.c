@@ -37,7 +37,7 @@ struct import_job {
 
 struct arguments { /* zero-initialise */
     const char **at; /* the program's arguments; NULL ends the list */
-    char **own;      /* arguments that are freed with the list */
+    char **own;      /* arguments that the list owns and frees */
     size_t count, capacity, owned, own_capacity;
 };
 

@@ -15,12 +15,12 @@
 #include "value/source.h"
 #include "views/other_plants.h"
 
-struct plant_runtime_context { /* parts that a reload keeps */
+struct plant_runtime_context { /* objects that a reload keeps */
     const struct server_params *params;
     struct log *log;
     struct counters *counters;
     struct audit *audit;             /* writer of the audit trail; NULL: nothing is recorded */
-    struct file_writer *file_writer; /* writes what users change */
+    struct file_writer *file_writer; /* thread that writes to disk what users change */
     struct workers *workers;
     struct plant_clock *clock;   /* the plant's clock */
     struct lease_keeper *keeper; /* lease keeper of a core in a pair (leader or standby); NULL: there is no pair */

@@ -51,7 +51,7 @@ struct reload {
     bool asked, imports;
     /* connection that this daemon's core ends once the core has loaded the plant, too; 0: the reload does not wait for the core */
     uint64_t follows;
-    char expects[17];           /* hash that the configuration must have; "": any */
+    char expects[17];           /* hash that the new configuration must have; empty: any */
     char who[TOKEN_NAME_BYTES]; /* user who asked for the next reload */
     struct tag_save *save;      /* tag list that the next reload saves; NULL: none */
 };

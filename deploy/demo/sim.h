@@ -8,7 +8,7 @@
 
 struct sim_device {
     struct sim_modbus modbus;
-    int port;        /* number of the port in the plant file */
+    int port;        /* TCP port of the device as the plant file states it */
     int listen_port; /* port on which the simulator listens for this device */
     size_t tag_count;
 };

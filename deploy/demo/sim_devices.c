@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Assigns tags to simulated devices. */
+/* Assigns the plant's tags to simulated devices. */
 #include "sim.h"
 
 #include <stdio.h>

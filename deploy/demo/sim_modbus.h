@@ -8,7 +8,7 @@
 struct sim_modbus {
     struct sim_image image;
     modbus_t *modbus; /* libmodbus context that makes the replies */
-    bool paused;      /* requests are received but not answered */
+    bool paused;      /* true: the device receives requests but does not answer them */
     long reads, refusals, writes_refused;
 };
 

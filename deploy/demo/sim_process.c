@@ -49,7 +49,7 @@ static const struct upset upsets[UPSETS] = {
 
 static const struct {
     const char *word;
-    double lag; /* factor by which the loop is slower than others */
+    double lag; /* factor by which such a control loop is slower than others */
 } slow_loops[] = { { "storage", 60 }, { "weather", 60 }, { "steam", 20 } };
 
 struct process_state {
@@ -57,7 +57,7 @@ struct process_state {
     double normal, span;
     double shares[UPSETS], dead_s[UPSETS];
     uint32_t loop; /* hash of the name of the tag's loop; sets the phase of the drift */
-    int machine;   /* number of the tag's machine, or -1 */
+    int machine;   /* number of the machine to which the tag belongs; -1: none */
     double dead_own_s, lag_s;
     double lagged, drift, noise, value;
     uint64_t random;

@@ -21,7 +21,7 @@
 #define RECORD_STEP 4096 /* sizes of records are multiples of this, so that another sensor's column usually fits a free record */
 
 struct distance_record { /* header of a record; the compressed column follows */
-    double place_m[3];   /* position of the sensor; NaN: free */
+    double place_m[3];   /* position of the record's sensor; NaN: the record is free */
     /* XXH3-64 of the file's key, the sensor's position and the compressed column; wrong if the record was only partially written or belongs
      * to another key */
     uint64_t checksum;

@@ -13,12 +13,12 @@
 /* The geometry hash (geometry_hash()) of a recipe. A recipe is the hash of a model and of the parameters that cut an asset out of the model
  * (build_recipe()). */
 struct model_cache_geometry {
-    uint64_t recipe;   /* result of build_recipe() */
-    uint64_t geometry; /* result of geometry_hash() */
+    uint64_t recipe;   /* hash of a model and of the parameters with which an asset is cut out (build_recipe()) */
+    uint64_t geometry; /* hash of the geometry that is cut out of the model (geometry_hash()) */
 };
 struct model_cache_node {
     uint64_t recipe, node_hash;
-    double place_m[3]; /* asset frame */
+    double place_m[3]; /* position of the node in the asset frame, metres */
 };
 struct model_cache {
     struct model_cache_geometry *at;

@@ -9,7 +9,7 @@
 struct work_folder {
     char *path;      /* absolute path of the temporary folder */
     char *target;    /* folder that will receive the finished files; NULL: the files are not kept */
-    bool created;    /* work_folder_begin() created the target */
+    bool created;    /* true: work_folder_begin() created the folder `target` */
     sigset_t before; /* signal mask before work_folder_begin() */
 };
 

@@ -13,7 +13,7 @@
 #include "surface/repair/repair.h"
 #include "surface/mesh/trimesh.h"
 
-#define ISOLINES 20 /* maximum number of isolines */
+#define ISOLINES 20 /* maximum number of isolines in one picture */
 /* offset of isolines and open edges above and below the surface, so that the surface does not hide them; relative to the asset's size */
 #define LIFT 3e-4
 /* length of the cross that marks a bridge (connection over a gap), in multiples of the spacing of the surface points */

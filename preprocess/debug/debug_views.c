@@ -21,7 +21,7 @@ struct views {
     bool failed;
 };
 
-struct subject { /* the current asset */
+struct subject { /* the asset whose pictures are being drawn */
     const struct plant_asset *asset;
     const struct gltf_model *model;
     struct geometry_params params;

@@ -32,7 +32,7 @@ struct diff_side {
     size_t asset_count, tag_count;
     struct plant *plant; /* the plant that was read; NULL: a folder of prepared files is compared */
     struct model_files models;
-    struct model_file *parsed; /* the model currently in memory */
+    struct model_file *parsed; /* parsed model file that is in memory now */
     char *manifest;            /* text of the manifest; the strings of the assets and tags belong to `root`, the parsed manifest */
     void *root;
 };

@@ -4,7 +4,7 @@
 #define PREPROCESS_GEOMETRY_IMPL_H
 #include "preprocess/geometry/geometry.h"
 
-struct node_primitive { /* one primitive of one node */
+struct node_primitive { /* a primitive of a model, at one of the nodes that use it */
     const struct gltf_node *node;
     const struct gltf_primitive *primitive;
     uint32_t order;

@@ -38,7 +38,7 @@ struct around {      /* by position: the triangle corners that are at the positi
     unsigned *place; /* by vertex: lowest index of a vertex at the same position */
     uint32_t *first, *corners;
     double (*faces)[3];
-    double *angles; /* by corner: its angle */
+    double *angles; /* by triangle corner: angle of the triangle at that corner */
 };
 
 static void around_finish(struct around *a)

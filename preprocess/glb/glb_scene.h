@@ -15,11 +15,11 @@ struct glb_scene;
 
 struct glb_scene_triangles {
     const float (*positions)[3];
-    const float (*normals)[3]; /* NULL: no normals */
+    const float (*normals)[3]; /* vertex normals; NULL: the triangles have none */
     size_t vertex_count;
-    const uint32_t *corners; /* three vertex indices per triangle */
+    const uint32_t *corners; /* indices of the vertices, three per triangle */
     size_t corner_count;
-    int material; /* index of the material; -1: none */
+    int material; /* index of the triangles' material; -1: none */
 };
 
 /* Creates an empty scene. `generator` is the program's name written into the file. The caller frees it with glb_scene_destroy(). */

@@ -13,7 +13,7 @@ struct cad_vertex {
 };
 
 struct cad_attribute {
-    char *name, *value; /* UTF-8 */
+    char *name, *value; /* name and value of an attribute, UTF-8 */
 };
 
 struct cad_node {
@@ -29,7 +29,7 @@ struct cad_node {
 
 struct cad_color {
     uint32_t material;
-    uint8_t rgb[3]; /* sRGB */
+    uint8_t rgb[3]; /* red, green and blue, sRGB */
 };
 
 struct cad_model {

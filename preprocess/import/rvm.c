@@ -401,7 +401,7 @@ static void leave_out_covered_faces(struct rvm_reader *r)
 
 static void tessellate(struct rvm_reader *r, const struct rvm_params *params)
 {
-    size_t *primitives = mem_array(r->model->node_count + 1, sizeof(*primitives)); /* by node: count of primitives */
+    size_t *primitives = mem_array(r->model->node_count + 1, sizeof(*primitives)); /* by node: number of its primitives */
     for (size_t i = 0; i < r->losses.count; i++)
         if (r->losses.at[i].why)
             primitives[r->losses.at[i].node]++;

@@ -35,7 +35,7 @@ struct cloud_heat {
     size_t count, capacity;
     /* points: positions of the sample points; across: two unit vectors that span the tangent plane at each point */
     double (*points)[3], (*across)[2][3];
-    uint32_t *piece;                      /* connected component of each point */
+    uint32_t *piece;                      /* by sample point: number of its connected component */
     struct heat_link *links;
     size_t link_count, link_capacity;
     uint32_t *first, *order; /* indices of the links between neighbouring points, grouped by point */

@@ -32,7 +32,7 @@ struct solving {
     struct laplacian laplacian;
     cholmod_factor *factor;
     struct gaussian_bodies bodies;
-    double *covariance;  /* [sensor][sensor]; unscaled */
+    double *covariance;  /* covariance between the sensors before scaling, [sensor][sensor] */
     double *root_mass_m; /* by row of the sparse system: square root of the area of its mesh point */
     double *root_scale;  /* by connected component: square root of its factor `scale` */
     /* by connected component: factor from the variance in the sparse system to the variance that the plant file states; 0: the component

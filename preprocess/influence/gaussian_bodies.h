@@ -6,9 +6,9 @@
 #include "surface/geodesic/laplacian.h"
 
 struct gaussian_bodies {
-    uint32_t *component; /* component index of each point */
-    double *area_m2;     /* area of each component */
-    uint32_t *of_sensor; /* component index of each sensor */
+    uint32_t *component; /* by mesh point: index of its connected component */
+    double *area_m2;     /* by connected component: its area */
+    uint32_t *of_sensor; /* by sensor: index of its connected component */
 };
 
 /* Finds the connected bodies of the mesh. The caller frees the arrays with gaussian_bodies_finish(). */

@@ -18,7 +18,7 @@
 
 #define RANGES 9  /* number of correlation ranges in the search grid, evenly spaced in logarithms */
 #define FEW 96    /* maximum number of sensors in the grid search of the correlation range */
-#define CLOSER 3  /* number of parabola steps */
+#define CLOSER 3  /* number of parabola steps that refine the best correlation range of the grid */
 #define SHARES 13 /* number of noise shares (noise / deviation) in the search grid, from GAUSSIAN_LEAST_NOISE to MAX_SHARE */
 #define MAX_SHARE 3.0
 /* correlation ranges whose logarithms differ by less than this count as equal, because readings cannot distinguish them */
@@ -187,7 +187,7 @@ static double logarithm(double x) /* log(), callable where a parameter named `lo
     return log(x);
 }
 
-struct range_trial { /* result of one range */
+struct range_trial { /* likelihood that was found for one correlation range */
     double log_range, likelihood;
 };
 

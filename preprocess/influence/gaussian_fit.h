@@ -6,7 +6,7 @@
 #include "preprocess/influence/gaussian.h"
 
 struct readings_table {     /* readings at those instants at which every sensor has a reading */
-    size_t count, instants; /* count: number of sensors */
+    size_t count, instants; /* count: number of sensors; instants: number of instants */
     double *values;         /* readings, [instant][sensor] */
     size_t left_out;        /* number of instants left out, because a sensor has no reading then */
 };

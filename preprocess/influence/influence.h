@@ -17,7 +17,7 @@
 struct influence {
     size_t count, vertex_count;
     float *shares;     /* H: weight of each sensor at each vertex, stored as [sensor][vertex] */
-    double *precision; /* P: precision matrix, [sensor][sensor] */
+    double *precision; /* precision matrix P of the sensors, [sensor][sensor] */
     /* by vertex: standard error while all sensors are good (gaussian.h), then by vertex: standard error without any sensor; NULL: not
      * computed. The array has one more element, 0, so that the file can be padded to 8 bytes */
     float *deviations;

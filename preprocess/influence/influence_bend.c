@@ -43,7 +43,7 @@ struct finding {
     uint32_t *taken_by;
     /* polygons; left: area not yet covered before the current pass; cut: the part of `left` that the current pass has not covered */
     struct polygons left, cut;
-    /* State of the current pass: */
+    /* The following members are the state of the current pass: */
     const struct trimesh *mesh;
     double off_m;
     bool full;

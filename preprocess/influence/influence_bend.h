@@ -13,9 +13,9 @@
 #include "preprocess/influence/mesh_error.h"
 
 struct bend_place {
-    uint32_t tri;                   /* index of the drawn triangle */
+    uint32_t tri;                   /* index of the drawn triangle that contains the place */
     float weights[3];               /* barycentric weights of the place (point at which the error is measured) in the drawn triangle */
-    struct influence_anchor anchor; /* position on the mesh */
+    struct influence_anchor anchor; /* position of the place on the finite-element mesh */
 };
 
 struct bend_level { /* one level of detail */
@@ -28,7 +28,7 @@ struct bend_drawn { /* the triangles of the asset file, which are drawn */
     /* vertex indices of the drawn triangles (triangles of the asset file), 3 each; levels of detail one after the other, finest first */
     const uint32_t *triangles;
     size_t vertex_count, triangle_count;
-    const struct influence_anchor *anchors; /* by vertex: its position on the mesh */
+    const struct influence_anchor *anchors; /* by drawn vertex: its position on the finite-element mesh */
     /* All overlap corners are found for the finest level of detail. Triangles of coarser levels do not lie on the surface: the bend is
      * measured at a few points of each. */
     const struct bend_level *levels;

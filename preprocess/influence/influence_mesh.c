@@ -33,7 +33,7 @@ struct halving {
     /* radius_m: radius of a sensor's disc; edge_m: maximum edge length everywhere; near_m: by mesh point, distance to the nearest sensor */
     double radius_m, edge_m, *near_m;
     size_t near_capacity, limit;
-    struct edge_table edges; /* edges to split */
+    struct edge_table edges; /* edges of the mesh that must be split */
     uint32_t *middle;        /* by edge to split: index of the mesh point that divides it */
     size_t middle_capacity;
 };

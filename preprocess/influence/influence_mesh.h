@@ -22,8 +22,8 @@ struct influence_mesh {
     size_t source_count;
     double size_m;                  /* length of the diagonal of the surface's main part (base/math/gap_split.h), metres */
     double longest_m;               /* length of the mesh's longest edge, metres */
-    uint32_t *piece_first, *pieces; /* mesh triangles grouped by tri_source */
-    uint32_t *fan_first, *fans;     /* mesh triangles grouped by point */
+    uint32_t *piece_first, *pieces; /* triangles of the mesh, grouped by the visible triangle that contains them (tri_source) */
+    uint32_t *fan_first, *fans;     /* triangles of the mesh, grouped by their points */
     struct influence_disc *discs;   /* disc of each sensor */
 };
 

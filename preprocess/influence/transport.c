@@ -23,7 +23,7 @@ struct vector_heat {
     const struct influence_mesh *mesh;
     const struct influence_anchor *anchors;
     const float (*vertex_normals)[3];
-    double (*normals)[3]; /* unit normal of each point */
+    double (*normals)[3]; /* by point of the mesh: unit normal */
     struct laplacian laplacian;
     cholmod_factor *factor;
     atomic_bool failed;

@@ -9,7 +9,7 @@
 #define CLUSTERS_MAX_TRIANGLES 256 /* triangles per cluster */
 
 struct clusters {
-    struct asset_cluster *at; /* clusters, sorted by primitive */
+    struct asset_cluster *at; /* clusters of all primitives, sorted by primitive */
     uint32_t count;
     size_t capacity;
 };

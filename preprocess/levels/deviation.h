@@ -7,13 +7,13 @@
 
 struct deviation_part;
 struct deviation {       /* a triangle surface, prepared for measuring distances to it and from it */
-    struct trimesh mesh; /* triangles grouped by part */
+    struct trimesh mesh; /* triangles of the surface, grouped by part (connected component) */
     struct bvh *whole;   /* bounding volume hierarchy over the triangles of all parts; NULL: each part has a hierarchy of its own */
     struct deviation_part *parts;
     size_t part_count;
-    const uint32_t *part; /* part of each vertex */
+    const uint32_t *part; /* by vertex: part (connected component) that contains it */
     uint32_t *index;      /* by vertex: lowest index of a vertex at its position; the mesh has one point per position, with this index */
-    size_t highest;       /* largest value in index[] */
+    size_t highest;       /* largest value in the array `index` */
     char *has;            /* by vertex: nonzero if a triangle of this surface uses it */
     uint64_t *known;      /* hash set of the surface's triangles, which finds duplicates and triangles that two surfaces share */
     size_t known_mask;

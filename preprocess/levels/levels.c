@@ -37,8 +37,8 @@ struct levels_making {
     struct versions versions;
     struct omission *omissions;
     char *used;     /* by vertex: nonzero if the previous level of detail uses the vertex */
-    char *contrary; /* by part: see levels_find_contrary() */
-    /* Current state: */
+    char *contrary; /* by part (connected component): nonzero if the winding of a face contradicts its normals (levels_find_contrary()) */
+    /* The following members are the current state of the choice: */
     /* by part (connected component): index of its version (simplification step) in the level being chosen; ABSENT: the part is omitted */
     uint32_t *version;
     /* by part (connected component): index of its version (simplification step) in the last level added; ABSENT: the part is omitted */

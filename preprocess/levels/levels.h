@@ -19,11 +19,11 @@ struct level_left {
 };
 
 struct level {
-    uint32_t *indices; /* vertex indices of the geometry */
+    uint32_t *indices; /* the level's triangles as indices of the geometry's vertices */
     /* the level's triangles, grouped by material; first_index is relative to this level; primitives without triangles are omitted */
     struct asset_primitive *primitives;
     uint32_t index_count, primitive_count;
-    uint32_t whole_count; /* index_count before subdivision added triangles */
+    uint32_t whole_count; /* number of the level's indices before subdivision added triangles */
     /* metres; largest distance between the surface of this level of detail and the finest level's, in either direction; 0 for the finest */
     float error_m;
     struct level_left left[LEVEL_LIMITS];

@@ -85,7 +85,7 @@ static struct removal_candidate pop(struct bounded *b)
 
 /* --- ring: triangles around a point ---------------------------------------------------------------------------------------------- */
 
-struct ring_wedge {               /* one triangle around a point */
+struct ring_wedge {               /* one of the triangles around a point of the mesh */
     uint32_t face, at;            /* at: index (0 to 2) of the face's corner that is at the point */
     uint32_t weld;                /* weld (group of equal vertices) of the face's corner at the point */
     uint32_t points[2], welds[2]; /* points and welds (groups of equal vertices) of the face's other two corners, in winding order */
@@ -100,7 +100,7 @@ struct point_ring {
     uint32_t ends[2 * RING], weld_here[2 * RING], weld_there[2 * RING];
     bool is_feature[2 * RING]; /* by edge from the ring's point: whether it is an open border or a seam of material or texture */
     int end_count, feature_count;
-    double longest_m; /* longest edge of all triangles */
+    double longest_m; /* length of the longest edge of the triangles around the point */
 };
 
 static struct ring_wedge wedge_of(const struct bounded *b, uint32_t corner)
@@ -268,7 +268,7 @@ static double raise(const struct bounded *b, const double point[3], double error
     return max_of(error_m, place.distance_m);
 }
 
-struct moved { /* a triangle after the collapse */
+struct moved { /* a triangle as it is after the collapse of an edge */
     const double *at[3];
     const struct ring_wedge *wedge;
 };

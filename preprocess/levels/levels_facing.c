@@ -18,7 +18,7 @@
 
 struct corner_need { /* a face corner to repair: it needs a vertex whose normal points to the front of the face */
     size_t corner;
-    float normal[3]; /* normal of the corner's face */
+    float normal[3]; /* normal of the face to which the corner belongs */
     float score;     /* score of the best replacement so far: 2 - distance / maximum distance */
     uint32_t weld;   /* weld (group of equal vertices) that is the best replacement so far; NONE: none yet */
     size_t next;     /* index in `needs` of the next corner with the same weld (group of equal vertices); SIZE_MAX: none */

@@ -22,9 +22,9 @@ struct welds {
     size_t count, part_count;
     uint32_t *of_vertex;
     float (*positions_m)[3];
-    uint32_t *primitive;                      /* primitive of each weld */
-    uint32_t *first, *vertices;               /* vertices grouped by weld */
-    uint32_t *part;                           /* part of each weld */
+    uint32_t *primitive;                      /* by weld (group of equal vertices): its primitive */
+    uint32_t *first, *vertices;               /* indices of vertices, grouped by weld (group of equal vertices) */
+    uint32_t *part;                           /* by weld (group of equal vertices): part (connected component) that contains it */
     uint32_t *first_there;                    /* by weld (group of equal vertices): lowest index of a weld at the same position */
     float (*low_m)[3], (*high_m)[3], *size_m; /* by part (connected component): its bounding box, and the length of the box's diagonal */
     double whole_m;                           /* size of the asset's main part (base/math/gap_split.h), metres */
@@ -40,19 +40,19 @@ void welds_finish(struct welds *welds);
 
 /* A version: the asset's triangles after some steps of simplification. Each version is made from the version before. */
 struct version {
-    uint32_t *welds; /* three weld indices per triangle */
+    uint32_t *welds; /* by triangle corner: index of its weld (group of equal vertices) */
     size_t count;    /* number of elements of `welds`; three per triangle */
     /* by part (connected component): largest distance between this version and the first one, in either direction, metres; INFINITY: the
      * part has no triangle left */
     float *error_m;
-    uint32_t *tris; /* by part: number of triangles */
+    uint32_t *tris; /* by part (connected component): number of its triangles */
 };
 
 #define VERSIONS_MAX 24
 struct versions {
     struct version at[VERSIONS_MAX]; /* versions (simplification steps), each coarser than the one before; at[0] is the original model */
     size_t count;
-    struct deviation first; /* surface of the first version */
+    struct deviation first; /* surface of the original model, from which errors are measured */
 };
 
 /* Makes the versions (simplification steps), each by simplifying the version before, and measures the error of each part in each version.

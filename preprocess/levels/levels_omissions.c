@@ -32,10 +32,10 @@ struct size_class {
 struct omission_search {
     const struct welds *welds;
     struct trimesh mesh;
-    struct size_class classes[CLASSES_MAX]; /* by increasing than_m */
+    struct size_class classes[CLASSES_MAX]; /* size classes, by increasing than_m */
     size_t class_count;
-    uint32_t *part;         /* part of each triangle */
-    uint32_t *first, *tris; /* triangles grouped by part */
+    uint32_t *part;         /* by triangle: part (connected component) that contains it */
+    uint32_t *first, *tris; /* indices of triangles, grouped by part (connected component) */
     struct omission *omissions;
 };
 

@@ -4,7 +4,7 @@
 #ifndef PREPROCESS_LEVELS_VERTEX_ORDER_H
 #define PREPROCESS_LEVELS_VERTEX_ORDER_H
 #include "preprocess/levels/levels.h"
-#include "surface/mesh/trimesh.h" /* TRIMESH_NONE */
+#include "surface/mesh/trimesh.h" /* declares TRIMESH_NONE */
 
 /* Renumbers the geometry's vertices, drops unused vertices with index first_added or higher, and replaces the geometry's indices and
  * primitives by those of all levels, finest first. The levels themselves keep the old numbers. Fills out[level]. *new_of receives the new

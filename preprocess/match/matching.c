@@ -38,7 +38,7 @@ struct matching_run {
     struct place_proposal *places;
     struct tag_rows rows;
     struct tag_source source;
-    char *result;                                      /* output lines for people */
+    char *result;                                      /* text that is printed for the user after matching */
     char *plant_text, *new_text;                       /* texts of the plant file. plant_text: current text; new_text: text to write */
     /* texts of the plant file, the tag list and matches.csv at the start of the run; NULL: the file does not exist */
     char *plant_before, *tags_before, *matches_before;

@@ -19,7 +19,7 @@ struct matching_params {
     const char *modbus;
     int unit;               /* Modbus unit identifier of the source to add; -1: not stated */
     const char *byte_order; /* byte order of the Modbus source to add; NULL: not stated */
-    int address_base;       /* address base of that source */
+    int address_base;       /* address base of the Modbus source to add */
     int lent;               /* descriptor of a folder lock held by the parent process (plant_folder.h); 0: none */
     int timeout_s;          /* time limit of the confined child for reading and matching, seconds */
     size_t memory_bytes;    /* memory limit of the confined child, bytes */

@@ -24,7 +24,7 @@ struct model_index { /* zero-initialise */
     struct indexed_asset *assets; /* data about each asset, in the order of the plant's assets */
     int **asset_of;               /* asset_of[model][node]: index of the asset to which the node belongs, the first of several; -1: none */
     struct key_map names;         /* assets by id, tag and the names of their nodes; nodes by name */
-    struct key_map folded;        /* index of assets by name_tokens_folded() */
+    struct key_map folded;        /* assets by the folded key of their names: 0 in place of O, 1 in place of I and L */
     struct key_map digits;        /* assets by the digits of their names (name_tokens_split()) */
     /* assets by the last part of their name, after a separator, if that part has letters and digits */
     struct key_map endings;

@@ -17,13 +17,13 @@ struct tree_node {
     double from_node[16]; /* column-major transform from the node's frame to the scene's frame */
     struct tree_attribute *attributes;
     size_t attribute_count;
-    int mesh; /* mesh index; -1: none */
+    int mesh; /* index of the node's mesh; -1: the node has none */
 };
 
 struct model_tree { /* zero-initialise */
     char *path;
-    struct model_node *nodes; /* depth first (plant/models/nodes.h) */
-    struct tree_node *more;   /* by node: further data */
+    struct model_node *nodes; /* nodes of the model, depth first (plant/models/nodes.h) */
+    struct tree_node *more;   /* by node: its attributes and its mesh */
     size_t count, capacity, more_capacity;
     json_t *json;
     char *bytes;        /* content of the whole file */

@@ -11,7 +11,7 @@ enum place_kind { PLACE_NONE, PLACE_OWN_NODE, PLACE_AT_NODE, PLACE_SPREAD };
 
 struct place_proposal {
     enum place_kind kind;
-    int node; /* index of the node of the asset's model; -1: none */
+    int node; /* index, in the asset's model, of the node at which the sensor is proposed; -1: none */
     bool has_position;
     double position_m[3]; /* position in the frame that the asset's sensor_frame states */
 };

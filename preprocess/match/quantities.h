@@ -16,7 +16,7 @@ struct quantity { /* a group of tags: an existing one, or one to be added to the
 struct quantities { /* zero-initialise */
     struct quantity *at;
     size_t count, capacity;
-    int *of_tag; /* by tag: index of its group; -1: none */
+    int *of_tag; /* by tag: index of its group, which states what it measures; -1: none */
 };
 
 /* Assigns each matched tag that measures something to a group: an existing one with a compatible unit, or a new one. unused: id of the

@@ -12,13 +12,13 @@
 
 struct export_tag {
     char *fields[EXPORT_FIELDS]; /* texts of the tag's fields: UTF-8; "": the field is empty; NULL only while a reader fills the tag */
-    int line;                    /* line number of the tag in the file; 0 for JSON */
+    int line;                    /* line number of the tag in the exported file; 0 for JSON */
 };
 
 struct tag_export {                 /* zero-initialise */
     const char *format;             /* name of the detected format (static) */
     struct charset_choice encoding; /* encoding of the exported file; name "": a spreadsheet */
-    char separator;                 /* column separator; 0: none */
+    char separator;                 /* character that separates the columns of the exported file; 0: none */
     struct export_tag *tags;        /* tags in the order of the exported file; their names are unique (case-insensitive) */
     size_t count, capacity;
     size_t rows; /* number of rows that describe a tag, before duplicates were merged */
@@ -28,7 +28,7 @@ struct tag_export {                 /* zero-initialise */
     /* nameless: number of rows left out because they have no name; control: number of control characters; damaged: number of undecodable
      * characters */
     size_t nameless, control, damaged;
-    struct text remarks; /* further remarks for people, one a line */
+    struct text remarks; /* further remarks about the exported file for the user, one a line */
     /* number of tags that got their folder path as a prefix, because tags of other folders have the same name */
     size_t renamed;
 };

@@ -68,7 +68,7 @@ struct instance_frame { /* an instance of a user-defined type (UDT) that enclose
 struct scope { /* context in which a reference to a parameter is resolved: the tag, its folder and the UDT instances that enclose it */
     struct tag_json_reader *reader;
     const struct instance_frame *frame;
-    const char *folder, *name; /* path of the tag's folder; name of the tag */
+    const char *folder, *name; /* path of the folder that contains the tag; name of the tag */
 };
 
 static const char *text_of(json_t *object, const char *key)

@@ -31,7 +31,7 @@ struct tag_row_input {
     const struct match *match;
     const struct decision *before; /* decision about the tag in the previous run; NULL: none */
     const struct place_proposal *place;
-    const char *group; /* group id; "": none */
+    const char *group; /* id of the tag's group; empty: none */
     const struct tag_source *source;
 };
 /* Adds a tag to the list, or updates its row except for cells that people changed. Returns the id of the row's asset ("": no asset), valid

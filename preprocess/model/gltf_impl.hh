@@ -32,7 +32,7 @@ template <typename T> T *new_array(size_t count)
     return array;
 }
 
-struct gltf_work { /* a model being read */
+struct gltf_work { /* state while a model is read */
     const model_document *document;
     tinygltf::Model parsed;
     gltf_model *model;

@@ -18,7 +18,7 @@ struct gltf_primitive { /* triangles of one material, in model units and the mes
     float (*second_texcoords)[2];
     uint8_t (*colors)[4];         /* vertex colours; NULL: none */
     uint32_t *indices;            /* triangle list, converted from strips and fans */
-    int material;                 /* index of the material; -1: none */
+    int material;                 /* index of the primitive's material; -1: none */
 };
 
 struct gltf_mesh {
@@ -30,7 +30,7 @@ struct gltf_mesh {
 
 struct gltf_node {    /* nodes are in depth-first order: the subtree of node i is the range [i, end) */
     char *name;       /* name of the node; "": it has none */
-    int parent, mesh; /* indices; -1: none */
+    int parent, mesh; /* indices of the parent node and of the node's mesh; -1: none */
     uint32_t end;
     uint32_t number;  /* index in the file's list of nodes; an instance (EXT_mesh_gpu_instancing) has the index of its node */
     double world[16]; /* column-major transform from the node's frame to the scene's frame */

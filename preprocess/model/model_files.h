@@ -7,12 +7,12 @@
 #include "preprocess/model/gltf_shim.h"
 
 struct model_file {
-    const char *path; /* path; belongs to the plant */
+    const char *path; /* path of the model file; the string belongs to the plant */
     int line;         /* line in the plant file of the first asset that uses this model */
     bool good;        /* true: the file can be read; false: `why` has the reason */
     char why[MODEL_WHY_BYTES];
     uint64_t hash;            /* hash of the file and of the files that its URIs name */
-    uint64_t file_hash;       /* hash of the file alone */
+    uint64_t file_hash;       /* hash of the model file itself, without the files to which it refers */
     struct gltf_model parsed; /* valid between model_file_parse() and model_file_release() */
     bool is_parsed, was_parsed;
     double parse_s;

@@ -170,7 +170,7 @@ struct build {
     struct subdiv_cache findings;
     struct sample_cache sample_cache;
     struct build_report geometry_report;
-    struct workers_task *keeping;          /* task that writes the caches */
+    struct workers_task *keeping;          /* task of the workers that writes the asset's caches */
     struct workers_task *sending;          /* task of the workers that writes the asset's file to disk */
     void (*tasks[2])(struct build *build); /* two build steps that run at the same time */
     bool failed[2];

@@ -23,8 +23,8 @@ struct build_input {
 };
 
 struct build_level {
-    uint32_t triangles;       /* triangles after simplification */
-    uint32_t split_triangles; /* triangles after subdivision */
+    uint32_t triangles;       /* number of the level's triangles after simplification */
+    uint32_t split_triangles; /* number of the level's triangles after subdivision */
     uint32_t vertices;        /* number of vertices that the level of detail uses: the first ones of the asset's array */
     float error_m;
     struct level_left left[LEVEL_LIMITS]; /* edges that still have an interpolation error after subdivision, by reason */

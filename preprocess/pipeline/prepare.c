@@ -38,7 +38,7 @@ struct prepare_run {
     struct log *log;
     struct workers *workers;
     const struct prepare_params *params;
-    size_t *todo; /* indices of the assets to build, grouped by model */
+    size_t *todo; /* indices of the assets that must be built, grouped by model */
     size_t todo_count, batch_begin, batch_end;
     struct model_cache known, cuts; /* known: model cache of the last run; cuts: model cache that this run writes */
     /* number of triangles of the models that were parsed to compute keys, and stay in memory until their assets are built */

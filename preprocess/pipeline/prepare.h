@@ -17,13 +17,14 @@ enum prepare_state { PREPARE_LEFT, PREPARE_FAILED, PREPARE_UNCHANGED, PREPARE_SH
 struct prepare_asset {
     const struct plant_asset *plant;
     bool wanted;  /* true: the asset is to be prepared; false: no other member of this struct is set */
-    size_t model; /* index in prepare.models */
+    size_t model; /* index of the asset's model in prepare.models */
     struct plant_sensor *sensors;
     size_t sensor_count;
     float *surface_distances_m; /* by sensor: its distance from the surface, metres; NULL: the asset could not be prepared */
     double size_m[3];           /* size of the asset in its own frame, metres; size_m[2] is the height; 0: unknown */
     double far_m;               /* distance between a sensor and the surface, metres, above which a warning is printed */
-    uint64_t recipe, key, geometry_key, distances_key; /* recipe: result of build_recipe() */
+    /* recipe: hash of the model and of the parameters with which the asset is cut out (build_recipe()) */
+    uint64_t recipe, key, geometry_key, distances_key;
     char *missing;               /* reason why the model, or the node of a sensor, cannot be used; NULL: no such failure */
     struct geometry_cache cache; /* cached geometry of the asset, open while the asset is built; parts.bytes NULL: not open */
     size_t same_as;              /* index of the first asset with the same key; both use that asset's file */

@@ -19,7 +19,7 @@ struct order { /* an asset's place in the order of the tables: assets with probl
 
 struct text_report {
     const struct prepare *prepare;
-    struct order *order; /* the assets to show */
+    struct order *order; /* the assets that the report lists */
     size_t count, rows;
     FILE *out;
 };

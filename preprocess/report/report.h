@@ -21,7 +21,7 @@ void report_text(const struct prepare *prepare, bool all, FILE *out);
 /* Prints the report as one JSON object. Returns false if out of memory. */
 bool report_json(const struct prepare *prepare, FILE *out);
 
-extern const char *const report_states[]; /* name of each enum prepare_state */
+extern const char *const report_states[]; /* by enum prepare_state: its name in reports */
 /* Returns the number of vertices that preparation added to the model's vertices. */
 uint32_t report_added(const struct prepare_asset *asset);
 

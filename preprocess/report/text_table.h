@@ -8,7 +8,7 @@
 
 struct text_table_column {
     const char *title;
-    bool right; /* right-aligned, for numbers */
+    bool right; /* true: the column is right-aligned, as is usual for numbers */
 };
 
 struct text_table { /* initialise with zeros, then set the columns, which the caller keeps */

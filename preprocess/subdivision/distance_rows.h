@@ -11,8 +11,8 @@
 #include "base/workers.h"
 
 struct distance_rows {
-    float *distances_m; /* [position][sensor], metres */
-    uint32_t *place_of; /* position index of each vertex */
+    float *distances_m; /* by position and sensor: distance in metres, [position][sensor] */
+    uint32_t *place_of; /* by vertex: index of its position */
     size_t sensor_count;
     uint32_t vertex_count;
     /* set by distance_rows_pack(): packed blocks of vertices, and the offset of each block in the asset file's section of distances */

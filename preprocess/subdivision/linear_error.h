@@ -15,7 +15,7 @@
 
 struct linear_error_group {
     uint32_t *columns; /* indices of the group's sensors in the list of the asset's sensors (columns) */
-    bool in_a_row;     /* the columns are consecutive */
+    bool in_a_row;     /* true: `columns` are consecutive numbers */
     bool papers;       /* true: errors of Algorithm 1 (Kim & Suh) are included */
     size_t count;
     double radius_m[2];     /* radius R of Algorithm 1, by enum distance_mode (geodesic, Euclidean) */

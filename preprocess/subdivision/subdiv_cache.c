@@ -36,7 +36,7 @@ struct sensor { /* the parameters of a sensor that determine its interpolation w
 };
 
 struct subdiv_head {
-    uint64_t sensors, findings, rest; /* numbers of following records */
+    uint64_t sensors, findings, rest; /* numbers of records of each kind that follow in the file */
     /* levels dropped by earlier runs (bit mask), and number of sensors added or removed since these levels were last tried */
     uint64_t given_up, changes_since;
 };

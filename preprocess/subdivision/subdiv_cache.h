@@ -26,7 +26,7 @@ struct subdiv_cache {
     size_t mask, finding_count;
     struct subdiv_sensor_change { /* a sensor that was added or removed */
         float place_m[3], power;
-        uint32_t group;  /* index of the sensor's group in struct linear_error */
+        uint32_t group;  /* index in struct linear_error of the group to which the sensor belongs */
         uint32_t column; /* index of the added sensor on the asset; UINT32_MAX: the sensor was removed */
     } * changes;
     size_t change_count;

@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "preprocess/subdivision/subdivide_impl.h"
 
-#define MAX_FLIP_ROUNDS 4  /* maximum consecutive rounds of flips */
+#define MAX_FLIP_ROUNDS 4  /* maximum number of rounds of edge flips in a row */
 #define FLAT_OF_ERROR 0.02 /* maximum distance by which a flip may move the surface, as a share of error_m of the level of detail */
 #define GAIN 0.7           /* maximum ratio of the interpolation error after a flip to the error before it */
 #define CROSSING 0.02      /* share of an edge's length; the old and the new diagonal must cross at least this far from the ends of both */

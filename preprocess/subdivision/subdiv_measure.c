@@ -19,8 +19,8 @@
  * up */
 #define WIDE 0.3
 #define GRAIN 256  /* minimum number of edges, triangles or positions per unit of work of a thread: takes half a millisecond */
-#define POINTS 16  /* maximum number of points sampled on an edge */
-#define CORNERS 61 /* number of cached corner samples */
+#define POINTS 16  /* maximum number of points at which the error along one edge is measured */
+#define CORNERS 61 /* number of triangle corners whose samples are cached */
 #define STEPS 2    /* number of refinement steps in the search for the best split point of an edge */
 /* share of the edge's error that remains after the best split; if more remains, the edge is checked for a jump. A smooth bend leaves a
  * quarter, a kink nothing. */
@@ -74,7 +74,7 @@ struct origin_sight { /* which triangles of the original model a sample point ma
      * `normal` */
     uint32_t part;
     double normal[3];
-    struct sample_cache_notes *notes; /* notes of the calling thread */
+    struct sample_cache_notes *notes; /* notes for the sample cache, one set for each thread */
 };
 
 static bool is_in_sight(const void *arg, uint32_t triangle)
@@ -217,7 +217,7 @@ struct line { /* sample points along a mesh edge, in order from its end a to its
     double t[POINTS];
     const float *interp[POINTS], *geodesic_m[POINTS];
     int count;
-    float *room; /* buffer for further points */
+    float *room; /* buffer for the samples of further points */
     struct interp_norm *norms;
 };
 
@@ -489,7 +489,7 @@ struct inside { /* state while a triangle's interpolation error is measured at i
     const struct subdiv_tri *tri;
     const float *interp[3]; /* samples (weights of the sensors) at the triangle's corners */
     double corners[3][3];
-    float *points; /* buffer for one point */
+    float *points; /* buffer for the samples of one inner point */
     struct interp_norm *norms;
 };
 

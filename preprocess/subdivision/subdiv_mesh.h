@@ -52,7 +52,7 @@ struct subdiv_mesh {
     uint32_t *vertex_middles; /* by index in vertex_edges: the vertex at the edge's split point */
     size_t cut_capacity, middle_capacity;
     uint32_t loads;          /* number of levels of detail loaded so far */
-    struct subdiv_tri *tris; /* triangles of the current level */
+    struct subdiv_tri *tris; /* triangles of the level that is being subdivided */
     size_t tri_count, tri_capacity;
     uint32_t *next; /* by corner (3 * triangle + i): the next corner at which the same edge begins; TRIMESH_NONE: none */
     size_t next_capacity;

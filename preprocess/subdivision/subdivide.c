@@ -116,7 +116,7 @@ static bool is_too_short(const struct subdiv *subdiv, const struct subdiv_edge *
 
 struct sides {
     const struct subdiv *subdiv;
-    unsigned char *of; /* flags, by new triangle */
+    unsigned char *of; /* by triangle of the last round of splits: flags of its edges (SIDE_*) */
 };
 
 static void look_at_sides(void *arg, size_t begin, size_t end)

@@ -20,8 +20,8 @@ struct subdiv {
     float *geodesic_m, *interp;
     /* normalisations of the sensors' weights at each position, [position][norm] */
     struct interp_norm *norms;
-    size_t geodesic_capacity, share_capacity, norm_capacity, norm_count; /* norm_count: normalisations per position */
-    uint32_t *part;                                                      /* by position: its connected component */
+    size_t geodesic_capacity, share_capacity, norm_capacity, norm_count; /* norm_count: number of normalisations at each position */
+    uint32_t *part;                                                      /* by position: connected component that contains it */
     struct subdiv_face {
         double normal[3]; /* normal of the triangle, not of unit length */
         uint32_t part;
@@ -29,7 +29,7 @@ struct subdiv {
     size_t part_capacity;
     double size_m;
     /* State of the current level: */
-    uint32_t level; /* index of the level */
+    uint32_t level; /* index of the level of detail that is being subdivided */
     bool finest;
     double on_surface_m; /* a point farther than this from the surface counts as hidden inside another part */
     double error_m, shortest_m, slack_m;

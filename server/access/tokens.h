@@ -15,7 +15,7 @@ struct token_holder {
     enum role role;
     char name[TOKEN_NAME_BYTES];
     uint8_t hash[TOKEN_HASH_BYTES]; /* SHA-256 of the token; all 0: no token */
-    int64_t until_utc_ns;           /* end of validity (UTC); INT64_MAX: never */
+    int64_t until_utc_ns;           /* time when the token's validity ends (UTC); INT64_MAX: never */
     char plant[TOKEN_PLANT_BYTES];  /* name of the only plant for which the token is valid; empty: any plant */
     /* comma-separated ids of saved views: the token grants pictures of these only; empty: not restricted */
     char views[TOKEN_VIEWS_BYTES];

@@ -44,7 +44,7 @@ struct alarm_service {
     struct journal_entry *rows; /* ring buffer of the newest journal rows; NULL: there is no journal */
     uint64_t row_count;         /* number of journal rows since the start, including those no longer in the ring buffer */
     bool ending, lost;          /* ending: the journal is being closed; lost: it was closed although some rows are not on disk */
-    void (*changed)(void *arg); /* called after alarms changed; NULL: nobody listens */
+    void (*changed)(void *arg); /* callback after alarms have changed; NULL: nobody listens */
     void *changed_arg;
 };
 

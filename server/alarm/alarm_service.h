@@ -13,7 +13,7 @@ struct alarm_service_params {
     struct log *log;
     struct counters *counters;
     const struct plant *plant;
-    struct store *store; /* plant and store must outlive the service */
+    struct store *store; /* memory of the newest samples; must outlive the service, like the plant */
     const struct plant_clock *clock; /* clock of the readings */
     const char *folder;  /* folder of the journal; NULL: no journal, so alarm states are lost when the daemon ends */
     double keep_days;

@@ -25,7 +25,7 @@ enum alarm_event {
 
 enum { ALARM_ASIDE_SHELVED = 1, ALARM_ASIDE_SUPPRESSED = 2, ALARM_ASIDE_OUT = 4, ALARM_ASIDE_CARRIED = 8, ALARM_ASIDE_ALL = 15 };
 
-struct alarm_state {     /* zero-initialised: a normal alarm */
+struct alarm_state {     /* state of one alarm; all zero: normal */
     bool active;         /* true: the alarm's cause is present */
     bool unacknowledged; /* true: an operator must still acknowledge the alarm */
     bool latched;

@@ -23,7 +23,7 @@ struct alarm {
     const char *name; /* name of the alarm's tag or, for a LINK alarm, of its device (alarm/devices.h) */
     int tag;          /* index of the alarm's tag; -1: the alarm belongs to a device, and kind is ALARM_LINK */
     enum alarm_kind kind;
-    int priority; /* 1 is the most urgent */
+    int priority; /* priority of the alarm; 1 is the most urgent */
     double limit; /* limit beyond which the tag's value raises the alarm; NaN: the alarm has no limit */
     struct alarm_rule rule;
     struct alarm_state state;

@@ -13,7 +13,7 @@ struct condition { /* zero-initialised: an inactive condition without a running 
     bool active;
     /* which delay is running: none, the on delay (before the condition becomes active), the off delay */
     enum { CONDITION_RESTS, CONDITION_COMES, CONDITION_GOES } pending;
-    int64_t since_ns; /* monotonic: when the delay began */
+    int64_t since_ns; /* monotonic time when the delay of the condition began */
 };
 
 struct condition_delays {

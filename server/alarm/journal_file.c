@@ -9,7 +9,7 @@
 #include "base/files/database.h"
 #include "base/mem.h"
 
-enum { APPLICATION_ID = 0x5043414A /* "PCAJ" */ };
+enum { APPLICATION_ID = 0x5043414A /* the letters PCAJ, which identify a journal among SQLite files */ };
 
 static const char schema_1[] =
     "CREATE TABLE event(id INTEGER PRIMARY KEY AUTOINCREMENT, t INTEGER NOT NULL, tag TEXT NOT NULL, kind TEXT NOT NULL,"

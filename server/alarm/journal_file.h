@@ -29,7 +29,7 @@ struct journal_row {
 struct journal_query {
     int64_t from_us, to_us;
     int64_t before_id; /* only rows with a smaller id than this (the page of rows before); INT64_MAX: all rows */
-    const char *tag;   /* only rows of this tag; NULL: of all tags */
+    const char *tag;   /* name of the tag whose rows are wanted; NULL: all tags */
     int limit;         /* maximum number of rows to return, newest first */
 };
 

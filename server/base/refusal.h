@@ -14,7 +14,7 @@ enum refusal_code { REFUSAL_NONE, REFUSED_WORDS(REFUSAL_MEMBER) REFUSALS };
 enum { REFUSAL_ARGS_BYTES = 240, REFUSAL_TEXT_BYTES = 400 };
 struct refusal {
     enum refusal_code code;
-    char args[REFUSAL_ARGS_BYTES]; /* lines of NAME=VALUE; empty: no arguments */
+    char args[REFUSAL_ARGS_BYTES]; /* arguments of the refusal, one NAME=VALUE a line; empty: none */
 };
 
 /* Sets the refusal's code and arguments. `args`: a format for lines of NAME=VALUE, one for each {name} in the code's sentence. Values

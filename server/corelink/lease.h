@@ -22,8 +22,8 @@
 #define LEASE_LOOK_NS (250 * INT64_C(1000000))  /* interval at which a core that does not lead reads the row in the database */
 enum { LEASE_NODE_BYTES = 64 };
 
-struct lease_row {    /* the row in the database */
-    int64_t epoch;    /* increases with each new leader */
+struct lease_row {    /* row of the lease in the database */
+    int64_t epoch;    /* number that increases with each new leader */
     int64_t beat;     /* number of the row's version; increases with each change of the row */
     int64_t instance; /* random number of the leader's process, by which a restarted core differs from its former process */
     /* unique names of the cores. leader empty: the last leader gave the lease, to `standby` if that is not empty. standby empty: there is

@@ -16,7 +16,7 @@
 struct lease_keeper_params {
     struct log *log;
     struct counters *counters;
-    const struct plant_postgres *postgres; /* database with the row; copied */
+    const struct plant_postgres *postgres; /* database that contains the row of the lease; copied */
     const char *plant, *node;              /* plant: name of the plant; node: unique name of this node (lease_name()). Both are copied */
     /* while this file exists, the leader names itself as standby, so that no other core may bid (copied; NULL: never) */
     const char *maintenance_path;

@@ -55,7 +55,7 @@ struct jpeg_writer *jpeg_writer_create(void)
         mem_free(writer);
         return NULL;
     }
-    jpeg_create_compress(&writer->codec); /* err and client_data are kept */
+    jpeg_create_compress(&writer->codec); /* jpeg_create_compress() keeps the members err and client_data */
     writer->to = (struct jpeg_destination_mgr){ .init_destination = start, .empty_output_buffer = need_room, .term_destination = start };
     writer->codec.dest = &writer->to;
     return writer;

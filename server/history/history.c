@@ -102,7 +102,7 @@ static int64_t bucket_length(int64_t stretch_us, int level)
 /* State of merging a series' short buckets into longer ones, which are appended to `out`. */
 struct gather {
     struct history_series *out;
-    int64_t length_us; /* length of the short buckets */
+    int64_t length_us; /* length in microseconds of the short time intervals (buckets) that are joined */
     /* rollup: computes buckets from points that are in no bucket of a file yet; continues from one month to the next. done_us: its
        buckets that begin before this time are left out, because a file has them */
     struct rollup rollup;

@@ -19,7 +19,7 @@ struct import_params {
 };
 
 struct import_counts {
-    long long samples, points; /* samples read; points recorded */
+    long long samples, points; /* samples: number of samples read; points: number of points recorded */
     /* bad: samples without a usable value; duplicates: samples that a later row with the same time replaced; gaps: times without
        samples, in which lines are interrupted */
     long long bad, duplicates, gaps;

@@ -113,7 +113,7 @@ int month_file_points(struct month_file *file, const char *tag, int64_t from_us,
 /* Points of one tag that are left out, because their unit cannot be converted to the one that the plant shows; zero-initialise. */
 struct history_left_out {
     size_t count;
-    char unit[32]; /* unit of the first of these points */
+    char unit[32]; /* unit of measurement of the first point that was left out */
 };
 /* Counts the points of a tag between two times that are left out because of their unit, and adds them to *out. */
 int month_file_left_out(struct month_file *file, const char *tag, int64_t from_us, int64_t to_us, struct history_left_out *out);

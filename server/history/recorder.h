@@ -5,7 +5,7 @@
 #include "history/month_file.h"
 #include "plant/plant.h"
 
-struct recorder_rows { /* zero-initialise; free `at` with mem_free() */
+struct recorder_rows { /* rows to be recorded; zero-initialise; free `at` with mem_free() */
     struct history_row *at;
     size_t count, capacity;
 };
@@ -33,6 +33,7 @@ void recorder_hold_again(struct recorder *recorder);
 /* Records the newest sample of a tag if the filter has not recorded it yet, as if the override period (longest time between two recorded
    points) were over. */
 void recorder_end_tag(struct recorder *recorder, int tag, struct recorder_rows *kept);
-void recorder_end(struct recorder *recorder, struct recorder_rows *kept); /* calls recorder_end_tag() for all tags */
+/* ends the recording of all tags; calls recorder_end_tag() for each */
+void recorder_end(struct recorder *recorder, struct recorder_rows *kept);
 
 #endif

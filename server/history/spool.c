@@ -143,7 +143,7 @@ int spool_write(const char *path, const struct plant *plant, const struct spool_
     return error;
 }
 
-struct spool_unit { /* units of one tag: in the spool file and now */
+struct spool_unit { /* unit of measurement of a tag: in the spool file and in the plant now */
     bool misfits;              /* true: the unit in the spool file cannot be converted to the tag's present unit */
     struct unit_change change; /* conversion from the unit in the spool file to the tag's present unit */
 };

@@ -97,7 +97,7 @@ enum baseline_change { BASELINE_STAYS, BASELINE_NONE, BASELINE_NAMED, BASELINE_N
 
 struct params_change {
     uint32_t seq;
-    unsigned given;            /* bit mask of enum params_given */
+    unsigned given;            /* bit mask of the members that the message states (enum params_given) */
     struct field_params field; /* this member and all below are new values of parameters, each valid only if its bit is set in `given` */
     int colormap;
     double ramp_interval;

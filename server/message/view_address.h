@@ -11,7 +11,7 @@
 enum { VIEW_ADDRESS_ARGS = 40 };
 
 struct view_address {
-    char *args[VIEW_ADDRESS_ARGS]; /* decoded texts NAME=VALUE */
+    char *args[VIEW_ADDRESS_ARGS]; /* arguments of the address as decoded texts NAME=VALUE */
     size_t count;
 };
 

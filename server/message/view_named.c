@@ -10,7 +10,7 @@
 /* picture size and time used while checking the address of a named view. Any size will do, since the address does not depend on it; the
    time only must be later than the instant in the address. */
 enum { CHECKED_WIDTH_PX = 1280, CHECKED_HEIGHT_PX = 720 };
-static const int64_t CHECKED_US = INT64_C(4000000000000000); /* a time in 2096 */
+static const int64_t CHECKED_US = INT64_C(4000000000000000); /* an instant in the year 2096, microseconds UTC */
 
 bool view_named_read(const struct params_context *context, const char *address, int width_px, int height_px, struct view *view,
                      struct message_error *error)

@@ -34,7 +34,7 @@ struct net {
         /* --- below: protected by `lock` */
         void (*what)(void *arg); /* function that net_call() wants called; NULL: no call waits */
         void *arg;
-        bool closed; /* the event loop has ended */
+        bool closed; /* true: the event loop has ended */
     } call;
 };
 

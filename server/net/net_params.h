@@ -43,7 +43,7 @@ struct net_params {
     int socket_fd;       /* socket that already listens, opened by systemd (net/handed_socket.h); -1: none */
     int64_t begun_ns;    /* monotonic time when the daemon began to start */
     struct access_params access;
-    const struct signing_key *signing_key; /* NULL: pictures are not signed */
+    const struct signing_key *signing_key; /* key with which pictures are signed; NULL: they are not signed */
     unsigned codecs;                       /* bit mask of the codecs that work here (1 << enum wire_codec) */
     const char *web_folder;                /* folder of the web client's files; NULL: no page is served */
     const char *version;

@@ -68,7 +68,7 @@ struct server_context {
     struct history_queries *history_queries; /* NULL: nothing is recorded */
     struct history_loader *history_loader;   /* service that loads the readings of past instants; NULL: nothing is recorded */
     struct {
-        struct picture_signer *signer; /* NULL: pictures are not signed */
+        struct picture_signer *signer; /* signs pictures; NULL: pictures are not signed */
         char key_id[SIGNING_KEY_ID_BYTES];
     } signing;
     struct {                   /* connections to /stream */
@@ -130,7 +130,7 @@ struct server_context {
         struct core_loss core_loss;
         int start_s; /* seconds that the daemon took to start, rounded up; 0: it is still starting */
     } life;
-    struct { /* texts that several sessions get */
+    struct { /* texts that are made once and sent to several sessions */
         struct tag_text_cache tags;
         char *lists[LISTS];
         struct alarm_text_cache alarms;
@@ -146,11 +146,11 @@ struct server_context {
     struct {
         struct log_pace pace; /* rate limit of log lines about stream requests that came without the header Upgrade */
         struct upgrade_refusal {
-            char address[64]; /* the client's address */
-            int64_t at_ns;    /* monotonic time of the refusal */
+            char address[64]; /* address of the client whose handshake was refused */
+            int64_t at_ns;    /* monotonic time when the handshake was refused */
             char why[120];
         } refused[UPGRADE_REFUSALS]; /* ring buffer of refused handshakes */
-        unsigned count;              /* number of all refused handshakes */
+        unsigned count;              /* number of all handshakes refused so far */
     } upgrade;
     struct latency_stages latency;
     struct wall_displays displays;

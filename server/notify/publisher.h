@@ -8,7 +8,7 @@
 struct publisher_params {
     struct log *log;
     struct counters *counters;
-    const struct plant *plant; /* must have a `publish` */
+    const struct plant *plant; /* plant to publish; its plant file must have the key `publish` */
     struct store *store;
     struct alarm_service *alarm_service; /* plant, store of readings and alarm service must outlive the publisher */
 };

@@ -236,7 +236,7 @@ static void depth_range(const struct camera *camera, const struct basis *basis, 
     /* a box entirely behind the camera is not visible, so any valid range of depths will do */
     *far_m = fmax(farthest * 1.001, 2 * LEAST_NEAR_M);
     *near_m = fmax(fmax(nearest * 0.999, *far_m * CAMERA_NEAR_TO_FAR), LEAST_NEAR_M);
-    if (*near_m >= *far_m) /* a box without depth */
+    if (*near_m >= *far_m) /* the box has no depth */
         *near_m = *far_m / 2;
 }
 

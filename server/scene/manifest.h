@@ -14,7 +14,7 @@ struct manifest {
         char *id, *file;          /* file: name of the asset's prepared file, which is in the manifest's folder */
         char *surface;            /* file name of the asset's stored surface (surface_store.h); NULL: none */
         char *missing;            /* reason why the asset could not be prepared and has no file; NULL: it was prepared */
-        uint64_t recipe;          /* hash of all inputs from which plantcast-prep prepared the asset (plant/recipe.h) */
+        uint64_t recipe;          /* hash of all inputs of the asset except its sensors (plant/recipe.h) */
         uint64_t resolved_levels; /* bit mask of levels of detail, as in struct asset (scene/asset.h) */
         char **left_out; /* textures and extensions of the asset's model that are not drawn; only at the first asset of a model */
         size_t left_out_count;

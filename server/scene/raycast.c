@@ -45,11 +45,11 @@ static bool cross_box(const double origin[3], const double direction[3], const d
     return *low <= *high;
 }
 
-struct raycast_search { /* search in one asset */
+struct raycast_search { /* state of a search for the first hit in one asset */
     const struct asset_view *view;
     double origin[3], direction[3], low; /* the ray in coordinates of the asset file; low: smallest t of interest */
     bool cut;
-    double limit; /* largest t of interest */
+    double limit; /* largest value of the ray's parameter t that is of interest */
     struct raycast_hit *hit;
     int asset;
 };

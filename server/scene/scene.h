@@ -36,7 +36,7 @@ struct scene_asset {
 struct scene {
     const struct plant *plant;
     char *folder;               /* folder of the prepared files; NULL: the scene was made in memory */
-    struct scene_asset *assets; /* by index in plant->assets */
+    struct scene_asset *assets; /* assets of the plant, by index in plant->assets */
     size_t asset_count;
     double bounds_min_m[3], bounds_max_m[3]; /* bounding box of the main part (scene/main_part.h), in the plant frame */
     /* box of all assets including stray pieces (scene/main_part.h); min equal to max: the same box as bounds_min_m, bounds_max_m */

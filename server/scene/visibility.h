@@ -44,7 +44,7 @@ enum asset_look {
 };
 enum asset_look visibility_of(const struct visibility *visibility, int asset);
 struct plant;
-void visibility_start(const struct plant *plant, struct visibility *out); /* initial visibility of the plant */
+void visibility_start(const struct plant *plant, struct visibility *out); /* sets the visibility with which a view of the plant begins */
 bool visibility_equal(const struct visibility *a, const struct visibility *b);
 
 #endif

@@ -15,13 +15,13 @@ enum frame_absence {
 struct encoded_frame { /* encoded frame; the code that collected it owns it, and frees it with encoded_frame_destroy() */
     uint64_t client;
     uint64_t number;       /* sequence number of the client's request, assigned when drawing begins: a larger number shows a newer state */
-    struct packet *packet; /* NULL: none; `absence` says why */
+    struct packet *packet; /* encoded frame; NULL: there is none, and `absence` says why */
     struct packet **earlier; /* packets of a shared stream that the client missed and must decode first, oldest first */
     int earlier_count;
     enum frame_absence absence; /* reason why there is no packet; set only if packet is NULL */
     struct frame_request request;
     int64_t wait_ns; /* nanoseconds from the user's input to the start of drawing */
-    int64_t made_ns; /* monotonic: when encoding ended */
+    int64_t made_ns; /* monotonic time when encoding ended */
     struct encoded_frame *next;
 };
 

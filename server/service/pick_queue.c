@@ -10,7 +10,7 @@
 struct pick_queue {
     pthread_mutex_t lock;
     /* --- below: protected by `lock` */
-    struct pick_query *queries; /* oldest first */
+    struct pick_query *queries; /* waiting pick queries, oldest first */
     size_t count, capacity;
     struct pick_answer *answers, **last;
 };

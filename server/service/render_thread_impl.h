@@ -36,7 +36,7 @@ struct render_thread {
     struct gl *gl;
     struct field *field;
     struct renderer *renderer;
-    struct snapshot *snapshot; /* the newest readings taken */
+    struct snapshot *snapshot; /* readings that the render thread took last */
     bool stale; /* true: `snapshot` was handed over with a submitted frame, so a new snapshot must be taken before it is used again */
     struct request_group same; /* scratch memory for a group of requests that are answered without drawing a frame */
     struct recent_frames recent;

@@ -6,7 +6,7 @@
 #include "service/render_thread_impl.h"
 #include "render/frame_pool.h"
 
-static const int64_t MEASURE_INTERVAL_NS = 1 * NS_PER_S; /* interval between measurements */
+static const int64_t MEASURE_INTERVAL_NS = 1 * NS_PER_S; /* interval between measurements of memory use */
 static const int64_t IDLE_TIMEOUT_NS = 10 * NS_PER_S;    /* time without clients after which the renderer's caches are released */
 static const double FIELD_SHARE = 0.3; /* part of the caches' memory that interpolated values and weights of all fields together may take */
 /* Minimum reserved for memory other than models and caches: shaders, threads, the plant, and temporary memory for drawing a frame or baking

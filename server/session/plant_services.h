@@ -12,7 +12,7 @@ struct plant_services {
     /* cache of readings of past instants; the event loop's copy of this struct has NULL here if nothing is recorded */
     struct snapshot_cache *snapshot_cache;
     struct alarm_service *alarm_service; /* service that evaluates alarms; NULL: there are no alarms */
-    struct placing *placing;             /* NULL: sensors cannot be placed */
+    struct placing *placing;             /* computes distances of sensors that users move; NULL: sensors cannot be placed */
     struct named_views *named_views;
     struct short_links *short_links;
     struct notes *notes;
@@ -21,11 +21,11 @@ struct plant_services {
     struct other_plants *other_plants; /* pictures of other plants; NULL: the plant file names no other plants */
     /* on a renderer (daemon that draws for a core) or a standby core: link to the core; NULL: this daemon reads its devices itself */
     struct core_link *core_link;
-    struct historian *historian;     /* NULL: nothing is recorded */
+    struct historian *historian;     /* records history; NULL: nothing is recorded */
     struct notifier *notifier;       /* service that sends alarm notifications; NULL: none are sent */
-    struct loop_checks *loop_checks; /* NULL: loops cannot be checked */
+    struct loop_checks *loop_checks; /* results of loop checks; NULL: loops cannot be checked */
     char *tag_list;                  /* text of the active tag list; NULL: it could not be read */
-    char *history_folder;            /* NULL: nothing is recorded */
+    char *history_folder;            /* folder of the recorded history; NULL: nothing is recorded */
 };
 
 #endif

@@ -38,7 +38,7 @@ struct session_context {
     /* keys that sign view tokens, with which clients restore their view at another daemon; NULL: clients get no view tokens */
     const struct view_token_keys *token_keys;
     const bool *links_up;                     /* connection state of each data source, by source index */
-    bool imports;                             /* engineers may import plants */
+    bool imports;                             /* true: engineers may import plants */
     const char *signing_key;                  /* id of the key that signs pictures; NULL: pictures are not signed */
     bool live;                                /* true: at least one data source is connected */
     struct clock_state clock;                 /* state of the wall clock: whether it is set, and its estimated error */

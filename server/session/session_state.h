@@ -22,7 +22,7 @@ struct session_identity {
     uint64_t number; /* random number by which other clients refer to this session; a resumed session keeps its number */
     enum role role;
     uint8_t address[16];        /* address of the client; an IPv4 address has the form ::ffff:a.b.c.d */
-    char from[64];              /* the same address as text; "": not known */
+    char from[64];              /* address of the client as text; empty: not known */
     enum login login;           /* result of checking the token in the client's hello */
     struct token_holder holder; /* holder of the token; role ROLE_NOBODY: no token was given, or it was not accepted */
     /* on a renderer (daemon that draws for a core): the client's token, to be forwarded to the core; "": none, or not forwarded */
@@ -42,17 +42,17 @@ struct session_identity {
 struct session_client {
     uint64_t number; /* number of the session, as in struct session_identity */
     const uint8_t *address;
-    const char *from; /* the address as text */
+    const char *from; /* address of the client as text */
     enum role role;
     const struct token_holder *holder;
-    const char *token; /* the holder's token; "": none */
+    const char *token; /* access token of the client; empty: none */
     struct address_share *share;
 };
 
 /* Reason and code with which the connection is to be closed once all queued texts are sent. */
 struct session_close {
     int code;         /* WebSocket close code; 0: the connection stays open */
-    const char *text; /* reason, static text */
+    const char *text; /* reason why the connection is closed; static text */
 };
 
 /* The pixels that the session's view takes from the admission budget (session_admission.c). */
@@ -97,7 +97,7 @@ struct frame_demand {
 struct frame_delivery {
     struct pacer pacer;
     uint64_t newest_number;          /* sequence number of the newest frame received from the render service */
-    bool newest_refined;             /* the frame newest_number is refined */
+    bool newest_refined;             /* true: the frame with the number newest_number is refined */
     struct encoded_frame *ready;     /* frames to be sent next, oldest first; a frame that decodes on its own replaces all before it */
     bool measured;                   /* true: the client acknowledged frame pacer.acked, and session_take_shown() has not returned it yet */
     struct depth_grid *depth[2];     /* newest depth grids sent to the client, of a frame or of both halves of a split view; NULL: none */
@@ -118,7 +118,7 @@ struct follow_request {
 struct session_following {
     struct session *leader;   /* session whose view is shown; NULL: its own view. The event loop keeps it valid */
     bool asked;               /* true: the client asked to follow session `wanted`, or nobody */
-    uint64_t wanted;          /* a session's number; 0: nobody */
+    uint64_t wanted;          /* number of the session that the client asked to follow; 0: nobody */
     uint64_t left;            /* number of a leader who has gone and whose last view is still shown; 0: none */
     struct view own_view;     /* the session's own view while it follows a leader */
     uint64_t heir_wanted;     /* number of the session to which the client wants to hand the lead; 0: the lead stays */
@@ -135,7 +135,7 @@ struct travel {
     /* readings of the shown instant (a reference); NULL: the session shows the present */
     const struct historical_snapshot *historical;
     int64_t wanted_us;        /* instant to which the session is moving, UTC microseconds; 0: the session has arrived */
-    bool asked;               /* true: the readings of wanted_us are being loaded */
+    bool asked;               /* true: the readings of the instant wanted_us are being loaded */
     bool first;               /* true: the session began at a past instant, and nothing is drawn until its readings are loaded */
     double speed;             /* playback speed in seconds of recorded history per second; 0: paused */
     int64_t from_us, from_ns; /* reference point of playback: the instant from_us was shown when the monotonic clock was at from_ns */
@@ -180,7 +180,7 @@ struct session_tile {
     /* layout of the wall's picture, computed from the size of this session's display; only the leading session's layout is used */
     struct tile_layout layout;
     struct tile_held {
-        uint64_t picture; /* number of the wall's picture */
+        uint64_t picture; /* number of a picture of the wall */
         uint32_t seq;     /* sequence number of this session's frame that shows the picture */
     } held[TILE_HELD];    /* frames sent and not yet shown at the wall's common instant, oldest first */
     int held_count;

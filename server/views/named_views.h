@@ -12,7 +12,7 @@
 #include "plant/plant.h"
 #include "plant/walls/wall.h"
 
-enum { NAMED_VIEW_VERSIONS = 10 /* number of earlier versions stored per view */ };
+enum { NAMED_VIEW_VERSIONS = 10 /* number of earlier versions that are stored of each named view */ };
 #define NAMED_VIEWS_FILE "views.json"
 
 struct named_view_edit {

@@ -11,7 +11,7 @@ enum { OTHER_NAME_BYTES = 257 };
 struct other_picture {
     /* age of the oldest reading in the picture at the time when the picture was drawn; -1: the picture shows no readings */
     int64_t oldest_age_ms;
-    char name[OTHER_NAME_BYTES]; /* name of the plant; "": not stated by its server */
+    char name[OTHER_NAME_BYTES]; /* name of the other plant; empty: its server states none */
 };
 
 /* Parses the header `Plantcast-Frame` of an answer. Returns false if the header is invalid; the answer then does not come from a Plantcast

@@ -44,7 +44,7 @@ struct other {
     /* --- below: under `lock` */
     int64_t wanted_ns; /* monotonic time when a client last requested this plant's picture; 0: never */
     struct other_picture about;
-    char *png; /* picture; NULL: none */
+    char *png; /* picture of the other plant as PNG; NULL: none */
     size_t bytes;
     /* time of the request that returned the last picture; asked_us also serves as the picture's id; 0: no picture has arrived */
     int64_t asked_ns, asked_us;

@@ -35,7 +35,7 @@ static const double LONGEST_BRUTE_MS = 20e3;
 static const double SWING_RAD = 6 * M_PI / 180, FOV_DEG = 15, WANTED_COVERAGE = 0.6;
 
 struct paper_model {
-    const char *path, *nodes, *up, *suffix; /* suffix: ending of the rows' names */
+    const char *path, *nodes, *up, *suffix; /* suffix: ending of the names of the printed rows */
     const char *keys;                       /* keys of the group in the plant file: interpolation and distance; NULL: defaults */
 };
 static const struct paper_model models[] = {
@@ -55,7 +55,7 @@ struct paper_bench {
     struct renderer *renderer;
     double hull_m[HULL_POINTS][3];
     struct camera cameras[CAMERAS];
-    double coverage; /* smallest coverage of any camera */
+    double coverage; /* smallest share of a picture's pixels that show a field, of all cameras */
     double brute_ms; /* time of the previous brute-force row; brute_sensors is its number of sensors, 0: no such row */
     int brute_sensors;
     double few_ms; /* milliseconds with the fewest sensors of a series; 0: not measured */
@@ -111,7 +111,7 @@ static void find_extremes(const struct paper_bench *bench, const double eye_m[3]
 static void fit(const struct paper_bench *bench, double azimuth, double elevation, struct camera *camera)
 {
     const struct scene *scene = bench->crowd.scene;
-    double axes[3][3] = { { -sin(azimuth), cos(azimuth), 0 }, /* directions to the right, up and ahead */
+    double axes[3][3] = { { -sin(azimuth), cos(azimuth), 0 }, /* unit vectors to the camera's right, up and ahead */
                           { -cos(azimuth) * sin(elevation), -sin(azimuth) * sin(elevation), cos(elevation) },
                           { -cos(azimuth) * cos(elevation), -sin(azimuth) * cos(elevation), -sin(elevation) } };
     double half = tan(FOV_DEG * M_PI / 360), distance_m = 0;
@@ -420,7 +420,7 @@ static void measure(struct paper_bench *bench, const struct paper_model *model, 
     mem_free(series);
 }
 
-struct goal { /* goals of a row; 0: none */
+struct goal { /* goals of one printed row; 0: no goal */
     int count;
     double cpu_ms[2], gpu_ms; /* goals in milliseconds: on two cores, by model; on a GPU, ten times as fast as the paper */
 };

@@ -16,7 +16,7 @@ const { FLOATS, meshOf, warpMatrix } = await import(join(WEB, 'core/warp_mesh.js
 const folder = process.argv[2], isByProcessor = process.argv[3] === 'processor';
 const CASES = ['orbit_1', 'orbit_3', 'orbit_6', 'nearer_5', 'nearer_10', 'nearer_20'];
 const OFF = 16;          // difference of a colour channel, of 255, from which a pixel counts as different
-const NEAREST = 0.05;    // as in app/picture/warp.js
+const NEAREST = 0.05;    // same value as in app/picture/warp.js
 const MOST_ERROR = 0.03; // largest error of a value, as a share of the range
 const REDUCED = 4, LATTICE_PX = 14, MARK = 0.08 * 255; // as in app/picture/warp.js
 

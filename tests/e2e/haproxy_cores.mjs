@@ -11,7 +11,7 @@ import { promise } from './support/promise.mjs';
 import { kill, missingTwoCores, TAKE_OVER_MS, TwoCores, until } from './support/two_cores.mjs';
 
 const skip = missingTwoCores() || (missingHaproxy() ?? false), options = { skip, timeout: 240000 };
-const CHECKS_MS = 1500; // the proxy checks once a second
+const CHECKS_MS = 1500; // the proxy checks its servers once a second
 const HOST = ['--behind-proxy', '--host', 'plant.example', '--host', '127.0.0.1'];
 let server, two, renderer, proxy, plain; // plain: the proxy in front of the cores alone
 

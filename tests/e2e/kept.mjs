@@ -73,7 +73,7 @@ const inForce = async () => (await fetched('/api/v1/notes')).list.filter(({ ende
 const listed = async (where) => (await ask(where)).text();
 const trail = () => readFileSync(path('audit.log'), 'utf8').trim().split('\n').map((line) => JSON.parse(line));
 
-// Another program fills the disk.
+// Fills the disk, as another program might.
 const fill = () => assert.notEqual(spawnSync('dd', ['if=/dev/zero', `of=${path('full')}`, 'bs=4k']).status, 0);
 const free = () => rmSync(path('full'), { force: true });
 

@@ -69,13 +69,13 @@ before(async () => {
     [beats, answer] = [[], ''];
     await serve();
 });
-// Kills all processes, like systemd ends a service.
+// Kills all processes, as systemd does when a service ends.
 function endAll(pids) {
     for (const pid of pids) {
         try {
             process.kill(pid, 'SIGKILL');
         } catch {
-            // the process has ended
+            // the process has ended already
         }
     }
 }

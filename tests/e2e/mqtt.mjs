@@ -136,11 +136,11 @@ test('a gateway that publishes what has changed: no tag gets the value of anothe
     let tags = await plant.tags();
     for (const name of ['A1', 'A2', 'A3', 'F1', 'F9'])
         assert.deepEqual([tags[name].quality_name, tags[name].value], ['Bad_NoMatch', null], name);
-    await tell(['G.A1', 21], ['G.A2', 23], ['G.A3', 24]); // all three tags, each at its own index of the array
+    await tell(['G.A1', 21], ['G.A2', 23], ['G.A3', 24]); // one message with all three tags, each at its own index of the array
     for (const [name, value] of [['A3', 24], ['A1', 21], ['F1', 21], ['F2', 23]])
         await until(name, { ...good, value });
     await tell(['G.A3', 34], ['G.A1', 31, false]);
-    await until('F1', { quality_name: 'Bad' }); // the quality of the tag's own item in the message
+    await until('F1', { quality_name: 'Bad' }); // F1 has the quality of its own item in the message
     tags = await plant.tags();
     assert.equal(tags.A1.quality_name, 'Bad_NoMatch');
     assert.equal(tags.F2.value, 23); // F2 keeps its value, because no message mentioned it
@@ -224,7 +224,7 @@ test('payloads that are none are refused by name, and nothing else suffers', opt
     const seconds = Math.ceil((performance.now() - begun) / 1000);
     const lines = plant.daemon.said.match(/refused/g).length;
     assert.ok(lines <= 1 + Math.floor(seconds / 60), `one line a minute at most:\n${plant.daemon.said}`);
-    await publisher.tell('plant/xs1', 0); // the first value may be stale by now
+    await publisher.tell('plant/xs1', 0); // publishes again, because the first value may be stale by now
     await until('XS-1', { ...good, value: 0 });
 });
 

@@ -216,7 +216,7 @@ ${hooks.map(({ port }, i) => `    - { id: h${i}, webhook: "http://127.0.0.1:${po
     try {
         await calm(plant);
         await plant.startDaemon();
-        hooks[0].status = 503; // the first attempts fail
+        hooks[0].status = 503; // the first attempts to send fail
         await set(plant, 'TI-1', limits.high);
         await until('a try', () => hooks[0].posts.length > 0);
         hooks[0].status = 200;

@@ -448,10 +448,10 @@ test('who leaves all pages alone is signed out; a notice is there before', {
         await shoot(page, 'sign-in-notice');
         await page.locator('#token .sign-in').click();
         await waitForPicture(page);
-        for (let i = 0; i < 14; i++, await sleep(1000)) // simulates activity
+        for (let i = 0; i < 14; i++, await sleep(1000)) // simulates activity of the user
             await page.mouse.move(400 + i, 300);
         assert.equal(await page.locator('#token').evaluate((dialog) => dialog.open), false);
-        await page.locator('#token .sign-in').waitFor(); // the activity has ended
+        await page.locator('#token .sign-in').waitFor(); // the activity has ended, so the user is signed out
         assert.equal(await page.locator('.stage').evaluate((stage) => getComputedStyle(stage).visibility), 'hidden');
         await shoot(page, 'locked');
         await page.reload();

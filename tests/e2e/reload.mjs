@@ -22,7 +22,7 @@ before(async () => {
     tagsFile = join(plant.folder, 'tags.csv');
     // On a busy machine a late reading or poll must not look like a gap caused by the reload.
     firstTags = readFileSync(tagsFile, 'utf8').replace('Stale s', 'Stale s,H').replace(/,1$/gm, ',60,');
-    writeFileSync(tagsFile, firstTags.replace('E-101,0.5,0,0,60,', 'E-101,0.5,0,0,60,-1')); // TI-1 is beyond H
+    writeFileSync(tagsFile, firstTags.replace('E-101,0.5,0,0,60,', 'E-101,0.5,0,0,60,-1')); // a limit H of -1, which TI-1 exceeds
     writeFileSync(plant.file, `${readFileSync(plant.file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 10000')}alarms: local\n`);
     await plant.start();
 });

@@ -233,7 +233,7 @@ test('under a daemon that runs: readings, history and alarms keep their tags', {
         await until('a reading', async () => (await value('TT-1101')).value === 77);
         const before = await api('/api/v1/plant');
         good(run('plantcast', 'import', revise(outside), '-o', plant));
-        assert.equal((await value('TT-1101')).value, 77); // nothing has changed for connected users
+        assert.equal((await value('TT-1101')).value, 77); // users who stayed connected see the same values as before
         assert.equal(tiny.prepare().code, 0);
         const reload = async () => {
             const answer = await fetch(`http://127.0.0.1:${tiny.port}/api/v1/reload`, { method: 'POST' }), said = await answer.json();

@@ -273,7 +273,7 @@ test('a session says what it wants signed, and is told why something is not', { 
     client.say({ type: 'camera', seq: 2, eye: [4, -3, 2], target: [1, 0, 0], up: [0.2, 0.1, 1], fov: 40 });
     client.say({ type: 'sign', frames: 'refined' });
     const signed = await client.frameWhere('a signed frame', (one) => one.flags & FLAG.signed && one.camera_seq === 2);
-    const { code, out, err } = redraw(signed.payload); // the view was split, clipped and tilted
+    const { code, out, err } = redraw(signed.payload); // the signed view was split, clipped and tilted
     assert.equal(code, 0, out + err);
     client.say({ type: 'params', seq: 3, split: null, show: 'difference', baseline: 'now' });
     assert.match((await client.text('error')).text, /has no name/);
@@ -310,7 +310,8 @@ test('the page saves what is on its screen, signed, and a picture with legend an
         assert.match(again.out, new RegExp(`  ${statement.width * statement.height} of ${statement.width * statement.height} pixels`));
         assert.equal(await page.evaluate(() => globalThis.signedPixels), statement.pixels_sha256, 'the pixels that were on the screen');
         await plant.tell('set TI-1 70');
-        await page.waitForFunction(() => !(globalThis.plantcast.session.picture.flags & 64)); // the session continues as before
+        // the session continues as before, with unsigned frames
+        await page.waitForFunction(() => !(globalThis.plantcast.session.picture.flags & 64));
         await plant.tell('set TI-1 80');
         const whole = await save('again'), { code, out, err } = redraw(whole);
         assert.equal(code, 0, out + err);

@@ -40,7 +40,7 @@ function soak(t, bin = BIN) {
     t.after(() => {
         try {
             process.kill(-child.pid, 'SIGKILL');
-        } catch { /* it has ended */ }
+        } catch { /* the process has ended already */ }
         rmSync(folder, { recursive: true, force: true });
     });
     return run;

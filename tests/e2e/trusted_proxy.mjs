@@ -33,7 +33,7 @@ const bearer = (token, more = '') => `Authorization: Bearer ${token}\r\n${more}`
 // Asks through HAProxy, as a client with that address.
 const ask = async (localAddress, headers, page = '/api/v1/tags') => (await get(proxy.port, page, 'GET', headers, { localAddress })).status;
 
-// Asks a daemon itself: { status, body }.
+// Asks a daemon directly, without the proxy: { status, body }.
 const secure = ({ port }, headers, { host = HOST, page = '/api/v1/tags', localAddress } = {}) => new Promise((done, fail) => {
     request({ host, port, path: page, rejectUnauthorized: false, localAddress,
         headers: { Host: 'plant.example', 'X-Forwarded-For': '127.0.0.44', ...headers } }, (response) => {

@@ -42,7 +42,8 @@ class Reader {
         this.frames = [];
         this.said = '';
         let rest = Buffer.alloc(0);
-        const row = `format=gray,crop=iw:1:0:ih-3,scale=${BLOCKS}:1:flags=neighbor`; // the middle of each block
+        // video filter that takes the pixel in the middle of each block
+        const row = `format=gray,crop=iw:1:0:ih-3,scale=${BLOCKS}:1:flags=neighbor`;
         this.child = spawn('ffmpeg', ['-v', 'error', '-fflags', 'nobuffer', ...args, '-i', url, '-vf', row, '-fps_mode', 'passthrough',
             '-f', 'rawvideo', 'pipe:1'], { stdio: ['ignore', 'pipe', 'pipe'] });
         this.ended = new Promise((done) => this.child.once('exit', done));

@@ -92,7 +92,7 @@ test('what the page says is clicked, and what it shows comes', { skip: skip || l
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-walk-')), device = await freePort(), running = [];
     const section = page.slice(page.indexOf('## On a page'), page.indexOf('## 1. The model'));
     const written = section.slice(section.indexOf('1. ')).replace(/\s+/g, ' ');
-    let at = 0; // how far into the section the test has read
+    let at = 0; // position up to which the test has read the section
     const read = (text) => {
         const found = written.indexOf(text, at);
         assert.ok(found >= 0, `not on the page, or before what was done last: ${text}`);

@@ -183,7 +183,7 @@ test('its picture, its name and the age of its readings; a server that is gone a
     assert.doesNotMatch(await title(), /old/);
     await shoot(page, 'wall-other-plant-gone');
 
-    writeFileSync(join(plant.folder, 'other.token'), 'pc_nonsense\n'); // the token file is read for each request
+    writeFileSync(join(plant.folder, 'other.token'), 'pc_nonsense\n'); // the server reads the token file for each request
     await other.startDaemon(...otherArgs);
     await card.filter({ hasText: 'Its server rejects the token' }).waitFor();
     writeFileSync(join(plant.folder, 'other.token'), `${tokens.other}\n`);

@@ -49,7 +49,7 @@ class Display {
     constructor() {
         this.tries = [];
         this.waits = [];
-        this.liveAt = 0; // time of this connection's first picture
+        this.liveAt = 0; // time when the first picture of this connection arrived
         this.connection = new Connection({ url: '', clock, open: () => {
             this.tries.push(clock.now());
             return new Socket(plant.port);

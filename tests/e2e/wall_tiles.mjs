@@ -31,7 +31,7 @@ before(async () => {
     appendFileSync(plant.file, WALLS);
     plant.keepFresh();
     await plant.start();
-    const values = { 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 }; // from now on nothing changes by itself
+    const values = { 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 }; // from now on no reading changes by itself
     for (const [tag, value] of Object.entries(values))
         await plant.tell(`set ${tag} ${value}`);
     for (let read = []; read.length === 0 || read.some(({ name, value }) => value !== values[name]); await sleep(20))

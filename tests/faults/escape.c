@@ -178,7 +178,7 @@ static void try_process(void)
     result("renice-daemon", setpriority(PRIO_PROCESS, (id_t)pid, 0) == 0);
     result("ionice-daemon", syscall(SYS_ioprio_set, 1, pid, 0) == 0);
     result("advise-daemon", syscall(SYS_process_madvise, process, &(struct iovec){ (void *)4096, 4096 }, 1, MADV_COLD, 0) >= 0);
-    result("compare-files", syscall(SYS_kcmp, pid, getpid(), 2 /* KCMP_FILES */, 0, 0) >= 0);
+    result("compare-files", syscall(SYS_kcmp, pid, getpid(), 2 /* KCMP_FILES: compares the tables of open files */, 0, 0) >= 0);
 }
 
 /* --- the network ------------------------------------------------------------------------------------------------------------ */

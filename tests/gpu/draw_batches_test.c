@@ -219,7 +219,7 @@ TEST(test_a_picture_under_way_keeps_its_readings)
     stand_finish(&stand);
 }
 
-/* Sets up a row of balls, all in view. */
+/* Sets up a plant of balls in a row, all in view. */
 static void stand_row(struct stand *stand, int assets)
 {
     static const double sensor[1][3] = { { 0.5, 0, 0 } };

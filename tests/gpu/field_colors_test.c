@@ -167,7 +167,7 @@ TEST_WITH(test_isolines_run_where_the_value_is, set_up, tear_down)
         assert_true(dark > near / 12 && dark < near / 2); /* an isoline covers one or two of five pixels across */
         frame_unref(&frame);
     }
-    view.color_scale.lines[0] = 300; /* a line beyond the range is not drawn */
+    view.color_scale.lines[0] = 300; /* an isoline beyond the range of the colour scale is not drawn */
     view.color_scale.line_count = 1;
     assert_int_equal(count_wrong(&view), 0);
 }
@@ -387,7 +387,7 @@ TEST_WITH(test_operator_sees_limits, set_up, tear_down)
     for (int i = 0; i < LIMIT_COUNT; i++)
         stand.toy->plant.tags[2].alarms.limits[i] = NAN;
     toy_set(stand.snapshot, 0, 45, QUALITY_GOOD);
-    toy_set(stand.snapshot, 1, 80, QUALITY_GOOD); /* this reading is beyond H */
+    toy_set(stand.snapshot, 1, 80, QUALITY_GOOD); /* this reading is beyond the alarm limit H */
     view.field.show = SHOW_OPERATOR;
     view_default_scale(&stand.toy->scene, &view);
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
@@ -468,7 +468,7 @@ TEST_WITH(test_unproven_tags_are_marked, set_up, tear_down)
     struct frame *plain = stand_draw(&stand, &view), *before = stand_draw(&stand, &view), *begun = stand_draw(&stand, &view);
     overlay_draw(plain, &stand.toy->scene, stand.snapshot, NULL);
     overlay_draw(before, &stand.toy->scene, stand.snapshot, loop_checks);
-    /* no loop check has begun, so none is drawn */
+    /* no loop check has begun, so no marker shows whether its sensor was checked */
     assert_memory_equal(plain->bgrx, before->bgrx, (size_t)WIDE_PX * (size_t)plain->stride_bytes);
     assert_null(
         loop_checks_add(loop_checks, 0, &(struct loop_check){ .state = LOOP_CHECK_PASSED, .value = 10, .expected = 10, .tolerance = 1 }));

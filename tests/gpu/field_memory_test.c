@@ -109,7 +109,7 @@ TEST_WITH(test_without_memory_there_is_no_data, set_up, tear_down)
     for (int kind = NO_SUMS; kind <= NO_BUFFER; kind++)
         for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
             view.tier = (enum tier)tier;
-            view.field.power = 1 + kind + 0.25 * tier; /* a power that no earlier frame had */
+            view.field.power = 1 + kind + 0.25 * tier; /* a power (exponent of distance) that no earlier frame had */
             fault = kind;
             uint64_t content = planned_content(stand.renderer, &view, stand.snapshot);
             assert_hatched(&view);
@@ -164,7 +164,7 @@ TEST_WITH(test_with_little_room_many_are_shown_alike, set_up_many, tear_down)
             const uint8_t *a = frame_pixel(want, i % SIDE_PX, i / SIDE_PX), *b = frame_pixel(got, i % SIDE_PX, i / SIDE_PX);
             shown += a[0] != a[1] || a[1] != a[2];
             for (int c = 0; c < 3; c++)
-                assert_true(abs(a[c] - b[c]) <= 2); /* recomputed sums are rounded differently */
+                assert_true(abs(a[c] - b[c]) <= 2); /* sums that are computed again are rounded differently */
         }
         assert_true(shown > SIDE_PX * SIDE_PX / 10);
         frame_unref(&want);

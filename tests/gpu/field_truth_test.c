@@ -160,7 +160,7 @@ TEST_WITH(test_a_part_that_nobody_reaches, set_up, tear_down)
     struct view view;
     for_each_tier(&view)
     {
-        assert_true(is_hatched(&view, 1.5 * side_m, 2, 1.8)); /* no path leads to the second plate */
+        assert_true(is_hatched(&view, 1.5 * side_m, 2, 1.8)); /* no path along the surface leads to the second plate */
         assert_true(shown_at(&view, 3.5, 2) >= 0);
         view.field.distance = DISTANCE_EUCLIDEAN; /* straight lines reach the second plate */
         assert_false(is_hatched(&view, 1.5 * side_m, 2, 1.8));

@@ -8,7 +8,7 @@
 #include "tests/support/synthetic.h"
 
 enum { COUNT = 20000 };
-static const double MOST_DEG = 0.005; /* as server/gpu/mesh.h promises */
+static const double MOST_DEG = 0.005; /* largest error of a normal, as server/gpu/mesh.h promises */
 static struct rig rig;
 static uint64_t seed = 71;
 static float positions_m[COUNT][3], normals[COUNT][3], texcoords[COUNT][2];

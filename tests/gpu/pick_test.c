@@ -253,7 +253,7 @@ TEST(test_sensors)
     for (size_t i = 0; i < frame->marker_count; i++) {
         const struct frame_marker *marker = &frame->markers[i];
         pick_at(site.scene, site.field, &view, site.snapshot, (double)marker->x_px, (double)marker->y_px, &pick);
-        if (pick.sensor != marker->tag) /* another sensor stands before this one */
+        if (pick.sensor != marker->tag) /* another sensor is in front of this one */
             continue;
         assert_int_equal(pick.sensor_occluded, marker->occluded);
         if (marker->occluded)

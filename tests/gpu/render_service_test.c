@@ -413,7 +413,7 @@ static void assert_same_bytes(const struct packet *a, const struct packet *b)
     assert_memory_equal(a->bytes, b->bytes, a->count);
 }
 
-/* Returns the frame for this client and camera. */
+/* Returns the frame that a client gets for a camera turned by `turn`. */
 static struct encoded_frame *picture_of(uint64_t client, enum urgency urgency, double turn)
 {
     ask(client, urgency, turn);
@@ -520,7 +520,7 @@ TEST(test_no_memory_fails_that_picture_alone)
 /* A frame that failed to encode was not shown: repeating the request must not be answered with "unchanged". */
 TEST(test_what_could_not_be_encoded_is_drawn_again)
 {
-    const enum wire_codec codecs[] = { WIRE_CODEC_H264, WIRE_CODEC_JPEG }; /* H.264 has no encoder here */
+    const enum wire_codec codecs[] = { WIRE_CODEC_H264, WIRE_CODEC_JPEG }; /* H.264 has no encoder in this test */
     for (int i = 0; i < 2; i++) {
         struct frame_request request = {
             .codec = codecs[i], .quality = { .quality = 80 }, .urgency = URGENCY_INPUT, .asked_ns = clock_mono_ns()
@@ -887,7 +887,7 @@ TEST(test_readings_change_pictures_that_are_not_quick)
     assert_int_equal(count_of("plantcast_renders_abandoned_total"), abandoned);
 }
 
-/* The daemon stops during a refinement. */
+/* Stopping the service does not wait for the end of a refinement. */
 TEST(test_stop_waits_for_no_refinement)
 {
     if (hardware)

@@ -66,11 +66,11 @@ static void add_quad(struct cad *cad, struct cad_random *random, uint32_t a, uin
 /* --- grids ------------------------------------------------------------------------------------------------------------------ */
 
 struct cad_grid {
-    int across, up; /* number of cells in each direction */
+    int across, up; /* number of the grid's cells in each direction */
     bool round_u, round_v;
     double jitter;
     int hole_first, hole_wide, hole_high;
-    double size[3]; /* parameters that `surface` receives */
+    double size[3]; /* dimensions of the shape, which the callback `surface` receives */
     void (*surface)(const double size[3], double u, double v, double out[3]);
 };
 

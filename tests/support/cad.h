@@ -7,7 +7,7 @@
 
 struct cad {
     float (*positions)[3];
-    uint32_t *triangles; /* three vertex indices each */
+    uint32_t *triangles; /* indices of the vertices, three per triangle */
     size_t vertex_count, triangle_count, position_capacity, index_capacity;
 };
 

@@ -29,8 +29,8 @@ struct modbus_device { /* members may be set before the start or while the devic
     _Atomic int manner, late_ms;
     _Atomic int bad_register, bad_code;  /* exception code for requests that include this register; code 0: none */
     _Atomic int bad_times;               /* number of requests that get bad_code; 0: all */
-    _Atomic int said_length;             /* length for DEVICE_MEASURED */
-    _Atomic int said_unit;               /* unit number for DEVICE_RENAMED */
+    _Atomic int said_length;             /* length that the answers of DEVICE_MEASURED state */
+    _Atomic int said_unit;               /* unit number that the answers of DEVICE_RENAMED state */
     _Atomic int answers_per_connection;  /* answers before the connection is closed, or with `hushes` falls silent; 0: unlimited */
     _Atomic bool hushes, resets;         /* resets: resets connections instead of closing them */
     _Atomic int deaf_ms;                 /* ignores requests that arrive sooner after connecting */

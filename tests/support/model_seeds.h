@@ -18,10 +18,10 @@ void sheet_finish(struct wavy_sheet *sheet);
 enum { SEED_COUNT = 19 };
 
 struct seed {
-    const char *name;   /* file name */
+    const char *name;   /* file name of the model */
     uint32_t triangles; /* number of triangles in all nodes together */
-    double tolerance_m; /* tolerance of the positions in metres */
-    char *bytes;        /* free with mem_free */
+    double tolerance_m; /* tolerance in metres when positions are compared */
+    char *bytes;        /* content of the file; freed with mem_free() */
     size_t size;
 };
 

@@ -27,6 +27,6 @@ struct log *test_log(void); /* returns a log that prints errors only */
 struct counters *test_counters(void);
 struct snapshot *test_snapshot(size_t tag_count);
 struct store *test_store(const struct plant *plant);
-struct workers *test_workers(int threads); /* 0: one thread per core */
+struct workers *test_workers(int threads); /* creates a pool of workers; threads 0: one thread per core */
 
 #endif

@@ -20,7 +20,7 @@ void plant_case_assert_loaded(struct plant_case *c, int warnings);
 struct expected_finding {
     const char *file; /* end of the path of the file that the finding is about */
     int line, column;
-    const char *words; /* part of the finding's text */
+    const char *words; /* words that the text of the finding contains */
 };
 /* Asserts that exactly these findings were reported. */
 void plant_case_assert_found(const struct plant_case *c, const struct expected_finding *expected, size_t count);

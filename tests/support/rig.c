@@ -192,7 +192,7 @@ int map_index_nearest(const struct colormap *map, const uint8_t *bgrx, bool deut
     static bool known_deuteranope;
     static double labs[256][3];
     static struct {
-        uint32_t color; /* colour, with a bit that marks the entry as used */
+        uint32_t color; /* colour of a pixel, with a further bit that marks the entry as used */
         int nearest;
     } found[1 << 16];
     double lab[3], least = INFINITY;

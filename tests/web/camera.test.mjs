@@ -212,7 +212,7 @@ test('the first view: what there is fills what the legend leaves free, on any sc
 });
 
 test('a view of the plant file stays as it is where all it was made for is seen, and steps back where a legend is in the way', () => {
-    // the last point was not visible in the given view
+    // the last point of the outline is not visible in the given view
     const outline = [[-10, -10, 0], [10, -10, 0], [-10, 10, 0], [10, 10, 6], [0, 0, 9], [400, 0, 0]];
     const given = { eye: [-20, -30, 15], target: [0, 0, 2], up: [0, 0, 1], fov: 50, given: true }, { given: _, ...view } = given;
     const plant = { home: given, outline };

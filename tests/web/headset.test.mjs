@@ -49,7 +49,7 @@ test('a rig is level, right-handed, and looks where it should', () => {
     isClose(y, UP);
     isClose(z, [0, -1, 0]);
     isClose(pointOf({ at, axes: [x, y, z] }, [0.5, 1.6, -2]), [1.5, 4, 4.6]);
-    const upright = rigAt([0, 0, 0], UP, UP); // looks straight up
+    const upright = rigAt([0, 0, 0], UP, UP); // the user looks straight up
     assert.ok(upright.axes.every((axis) => Math.abs(length(axis) - 1) < 1e-9) && Math.abs(dot(upright.axes[0], UP)) < 1e-9);
 });
 

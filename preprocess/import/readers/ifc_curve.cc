@@ -321,7 +321,7 @@ gp_GTrsf operator_of(const ifc_model &in, const entity &from)
     gp_Dir x = direction_of(in, from[0], gp::DX()), z = flat ? gp::DZ() : direction_of(in, from[4], gp::DZ());
     if (!flat && from[0].absent() && !from[4].absent())
         x = gp_Ax3(gp::Origin(), z).XDirection();
-    if (!flat && !z.IsParallel(x, 1e-9)) /* make X perpendicular to Z */
+    if (!flat && !z.IsParallel(x, 1e-9)) /* makes the X axis perpendicular to the Z axis */
         x = gp_Ax3(gp::Origin(), z, x).XDirection();
     gp_Dir square = z.Crossed(x);
     double side = square.Dot(direction_of(in, from[1], square)) >= 0 ? 1 : -1; /* -1: the transform mirrors */

@@ -13,7 +13,7 @@ namespace ifc
 namespace
 {
 
-constexpr int MAX_NESTING = 64; /* nesting depth of lists */
+constexpr int MAX_NESTING = 64; /* largest nesting depth of lists in an IFC file */
 
 /* Returns the offset after the string, the comment or the single character of an IFC file that begins at `at`. */
 size_t skip_one(const std::string &bytes, size_t at)

@@ -22,7 +22,7 @@ struct value {
     int id = 0;              /* kind REFERENCE: id of the statement to which the value refers */
     /* kind TEXT: the text, still escaped; NAME: the name, such as ".T."; LIST with a type: the type, such as "IFCLABEL" */
     std::string text;
-    std::vector<value> list; /* LIST: the elements */
+    std::vector<value> list; /* elements, if the value is a LIST */
 
     bool absent() const { return kind == ABSENT; }
     bool is(const char *name) const { return kind == NAME && text == name; }

@@ -83,7 +83,7 @@ struct ifc_part {
 struct ifc_writer {
     const ifc_model &in;
     struct glb_scene *scene;
-    std::map<int, ifc_part> parts; /* built items, by statement id */
+    std::map<int, ifc_part> parts; /* shapes that were built, by id of their statement in the IFC file */
     /* by statement id of an item or element that could not be built, and so is left to web-ifc: the reason */
     std::map<int, std::string> failed;
     std::map<int, std::vector<int>> openings; /* by element from which openings are cut: ids of these openings */

@@ -114,7 +114,7 @@ struct occt_part { /* a tessellated shape */
     double origin[3];
 };
 
-struct color_group { /* the triangles of one colour */
+struct color_group { /* the triangles of a shape that have one colour */
     std::vector<gp_Pnt> points;
     std::vector<gp_Dir> normals;
     std::vector<uint32_t> corners;

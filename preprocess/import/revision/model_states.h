@@ -31,7 +31,7 @@ enum states_change {
 };
 struct states_motion {
     enum states_change change;
-    bool known; /* the motion could be determined */
+    bool known; /* true: the asset's motion between the two models could be determined */
     double motion[16], moved;
     /* parts: number of the asset's nodes with geometry; different: number of those that are missing from the new model or have another
      * shape there */

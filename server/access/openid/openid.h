@@ -59,7 +59,7 @@ struct openid_answer {
     uint64_t request;
     uint8_t address[16]; /* address from which the log-in was begun */
     enum openid_result result;
-    char cookie[SIGN_IN_SECRET_CHARS + 1]; /* value of the cookie of the new session */
+    char cookie[SIGN_IN_SECRET_CHARS + 1]; /* value of the cookie that identifies the new session */
     char path[SIGN_IN_PATH_BYTES];         /* path of the page to which the browser is redirected */
     char *why;                             /* reason of the refusal; NULL: the user is signed in */
     struct openid_answer *next;

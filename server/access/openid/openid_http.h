@@ -8,7 +8,7 @@
 #include "access/openid/openid_config.h"
 
 struct openid_reply {
-    int status;    /* HTTP status; 0: no answer */
+    int status;    /* HTTP status of the provider's answer; 0: no answer */
     json_t *json;  /* parsed body of the answer; NULL: none */
     char why[256]; /* reason why the provider gave no answer */
 };

@@ -18,7 +18,7 @@ struct sign_in { /* a log-in in progress: the browser was redirected to the prov
 struct person {                 /* a signed-in user, once for each session; the struct owns its texts */
     struct token_holder holder; /* the user's name and role; `hash` is the hash of the session cookie */
     char *sub, *refresh_token, *access_token;
-    char *id_token;         /* the newest ID token */
+    char *id_token;         /* newest ID token of the user */
     int64_t access_until_s; /* expiry of the access token, in seconds since 1970 UTC; 0: not known */
     int64_t active_ns;      /* monotonic time when the user was last active at the page */
     int64_t check_ns;       /* monotonic time when the user's rights must be checked next at the provider */

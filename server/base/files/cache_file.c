@@ -23,7 +23,7 @@ struct cache_head {
     uint64_t checksum; /* XXH3-64 of the content, seeded with the key */
 };
 
-enum file_state { FILE_GOOD, FILE_MISSING, FILE_OTHER, FILE_DAMAGED }; /* FILE_OTHER: of another kind, version or key */
+enum file_state { FILE_GOOD, FILE_MISSING, FILE_OTHER, FILE_DAMAGED }; /* FILE_OTHER: the file has another kind, version or key */
 
 static enum file_state __attribute__((format(printf, 3, 4))) found(char *why, enum file_state state, const char *fmt, ...)
 {

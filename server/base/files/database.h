@@ -13,7 +13,7 @@
 
 struct database_format { /* one of our file formats: SQLite's application id and version, schema, and prepared statements */
     int application_id, version;
-    const char *set_up;            /* pragmas for connections that write */
+    const char *set_up;            /* SQL pragmas for connections that write to the file */
     const char *const *schemas;    /* array of `version` SQL scripts; each converts a file from the version before */
     const char *const *statements; /* array of statement_count SQL texts of prepared statements */
     size_t statement_count;

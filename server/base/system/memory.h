@@ -10,9 +10,9 @@ size_t memory_machine_bytes(void);
 /* Returns the default memory limit: a quarter of memory_machine_bytes(), at most 2 GiB. */
 size_t memory_default_bytes(void);
 
-struct memory_use {             /* all in bytes */
+struct memory_use {             /* memory use of the process, in bytes */
     size_t resident, anonymous; /* resident: bytes in RAM; anonymous: those resident bytes that are not mapped from files */
-    size_t allocated;           /* allocated by malloc */
+    size_t allocated;           /* memory that malloc() has allocated */
 };
 void memory_measure(struct memory_use *use); /* Fills *use with the current numbers. */
 /* Returns free heap pages to the system. */

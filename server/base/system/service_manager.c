@@ -98,7 +98,7 @@ struct service_patience {
     int64_t used_ns; /* CPU time in nanoseconds that the processes had used at the last check; used only by the thread of this struct */
     /* --- below: under `lock` */
     char *status;
-    int64_t since_ns; /* monotonic time when the status was set */
+    int64_t since_ns; /* monotonic time when the status text was set */
     bool ending;
 };
 

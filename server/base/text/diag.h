@@ -9,7 +9,7 @@ enum diag_severity { DIAG_ERROR, DIAG_WARNING };
 struct diag_item {
     enum diag_severity severity;
     char *file;
-    int line, column; /* position, from 1; 0: none */
+    int line, column; /* position of the finding in the file, from 1; 0: none */
     char *text;
     const char *form; /* format string of the text; findings with the same format string are grouped as similar */
 };

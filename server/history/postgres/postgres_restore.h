@@ -11,9 +11,9 @@ struct postgres_restore {
     const struct plant *plant;
     const struct history_tag *tags; /* tags of the plant */
     const char *folder;
-    bool wanted;    /* a restore is in progress */
+    bool wanted;    /* true: points are being restored from PostgreSQL */
     int next_month; /* month to restore next (months since January 1970); INT_MAX: the restore has not begun */
-    int64_t points; /* points restored so far */
+    int64_t points; /* number of points restored so far */
     /* true: points may be sent to the database, because the lines of earlier recordings there are ended or another daemon continues them */
     bool begins;
 };

@@ -36,7 +36,7 @@ struct http_exchange {
         PIECES_CHUNKED,
         PIECES_TO_END
     } pieces; /* how the body follows the headers: at once, in HTTP chunks, or in pieces up to the end of the connection */
-    bool last_piece;             /* `body` is the last piece */
+    bool last_piece;             /* true: `body` is the last piece of the answer */
     uint64_t client;             /* id by which request_find() finds the request while it waits */
     int64_t until_ns;            /* monotonic time at which a waiting request is answered with "not ready" */
     bool reloads;                /* true: the request waits for a reload of the plant */
@@ -46,7 +46,7 @@ struct http_exchange {
     struct upload_body *body_in; /* upload in progress; NULL: none */
     const char *step;            /* path of a POST request of an import (static text), for the audit trail */
     struct asked *asked;         /* frame or pick for which the request waits; NULL: none */
-    struct http_exchange *next;  /* next in server->http.waiting */
+    struct http_exchange *next;  /* next request in the list server->http.waiting */
 };
 
 enum { MAX_ARGS = 64, MAX_ARG_BYTES = 2048 };

@@ -13,7 +13,7 @@ struct site_file {
     char *bytes;
     size_t count;
     const char *type; /* MIME type, static text */
-    char etag[24];    /* ETag with its quotes */
+    char etag[24];    /* value of the HTTP header ETag, with its quotes */
 };
 
 struct web_site;

@@ -32,7 +32,7 @@ struct admission {
     const struct quotas *quotas;
     /* drawing statistics of the last ADMISSION_WINDOWS seconds, newest last; `now`: statistics of the current second */
     struct admission_window windows[ADMISSION_WINDOWS], now;
-    int64_t begin_ns; /* monotonic start of `now` */
+    int64_t begin_ns; /* monotonic time when the window `now` began */
     /* content id of the last frame counted. Clients that share a frame report it one after the other; with this id it counts once */
     uint64_t last_content;
     int64_t pixels;               /* number of pixels of all views of all addresses */

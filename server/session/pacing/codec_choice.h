@@ -10,7 +10,7 @@
 struct codec_facts {
     double bytes_per_s; /* the client's bandwidth in bytes per second; 0: not known */
     double cpu_free;    /* idle share of all processors of the machine, 0..1 */
-    long pixels;        /* pixels of one frame */
+    long pixels;        /* number of pixels of one frame */
 };
 
 struct codec_choice { /* zero-initialise, which chooses H.264 */

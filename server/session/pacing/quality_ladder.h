@@ -14,7 +14,7 @@ struct rung {
     double scale; /* factor on the width and on the height of the picture */
 };
 
-struct quality_ladder { /* initialise with quality_ladder_init() */
+struct quality_ladder { /* chooses the quality and size of one client's frames; initialise with quality_ladder_init() */
     int step;           /* index of the quality step, 0: best; chosen by the bandwidth */
     int size;           /* index of the picture size, 0: full; chosen by the client's decoding time or by the server's rendering time */
     double unit_bytes;  /* estimated size in bytes of a frame of the best quality (step 0), smoothed */

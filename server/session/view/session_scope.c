@@ -58,7 +58,7 @@ static bool read_view(const struct session *session, const char *id, struct view
     view->camera_seq = before.camera_seq;
     view->params_seq = before.params_seq;
     view->tier = before.tier;
-    view_set_instant(view, before.at_us, before.field.slot); /* keeps the past instant that the session shows */
+    view_set_instant(view, before.at_us, before.field.slot); /* the session stays at the past instant that it shows */
     view_set_trial(view, before.field.trial);
     return true;
 }

@@ -117,7 +117,7 @@ test('a cut, ghosts and hidden equipment', options, async () => {
     await page.locator('#shows button', { hasText: 'Hide' }).click();
     await waitForShown([], ['T-101']);
     assert.match(await page.locator('#shown span').textContent(), /^1 of \d+ hidden$/);
-    // only alarm markers remain
+    // only markers of alarms remain on T-101
     await waitFor(() => !globalThis.plantcast.overlay.markers.some(({ tag, alarm }) => tag.asset === 'T-101' && !alarm));
     await page.locator('#show-all').click();
     await waitForShown([], []);

@@ -97,7 +97,7 @@ test('of a name with several addresses, each is tried', named, async () => {
     await server.reset({});
     const real = server.port;
     server.port = await freePort();
-    const link = await distort(server.port, real, Infinity); // listens on 127.0.0.1 only
+    const link = await distort(server.port, real, Infinity); // the link listens on 127.0.0.1 only
     server.host = 'plc.test';
     await plant.run('security: none', ROWS);
     await plant.until('TI-1', good);
@@ -143,7 +143,7 @@ test('a server whose clock is before its certificate is read, and said; a certif
     for (const [name, from, to] of [['tomorrow', 1, 2], ['today', -1 / 48, 1], ['us', -1 / 48, 1]])
         makeCertificate(server.folder, name, { dates: [day(from), day(to)] });
     server.trust('tomorrow', 'today');
-    await server.restart({ ahead_s: 90000, certificate: 'tomorrow' }); // valid by the server's clock
+    await server.restart({ ahead_s: 90000, certificate: 'tomorrow' }); // the certificate is valid by the server's clock
     await plant.start(server.security('', 'us'), ROWS);
     await plant.said(/BadCertificateTimeInvalid: the server's certificate: certificate is not yet valid/);
     assert.equal((await server.tell({})).sessions, 0);

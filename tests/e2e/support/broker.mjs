@@ -20,7 +20,7 @@ const answers = (port) => new Promise((done) => {
 });
 
 export class Broker {
-    // more: further lines of its configuration.
+    // more: further lines of the broker's configuration.
     static async start(more = []) {
         const broker = new Broker();
         broker.folder = mkdtempSync(join(tmpdir(), 'plantcast-broker-'));
@@ -56,7 +56,7 @@ export class Broker {
     // Returns the source's line for the plant file; keys: further keys.
     source(keys) { return `{ id: broker, type: mqtt, host: 127.0.0.1, port: ${this.port}, ${keys} }`; }
 
-    // Stops answering without closing connections.
+    // Makes the broker stop answering without closing its connections.
     freeze() { this.child.kill('SIGSTOP'); }
     thaw() { this.child.kill('SIGCONT'); }
 

@@ -55,7 +55,7 @@ export class Mover {
         }
     }
 
-    // Returns the pictures per second over that time.
+    // Returns how many pictures arrive per second during `ms` milliseconds.
     async rate(ms) {
         const before = this.frames, start = performance.now();
         await sleep(ms);

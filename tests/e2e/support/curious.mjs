@@ -42,7 +42,8 @@ export class Curious {
         const said = performance.now(), any = () => playing || performance.now() - said > REFINED_MS;
         const is = (f) => (any() || (f.flags & 2) !== 0) && Math.max(f.camera_seq, f.params_seq) >= seq;
         const wrong = (t) => t.type === 'error';
-        const quiet = (c) => performance.now() - (c.frames.at(-1)?.at ?? said) > QUIET_MS; // no refined picture is due
+        // true: no picture has come for QUIET_MS, so no refined one is due
+        const quiet = (c) => performance.now() - (c.frames.at(-1)?.at ?? said) > QUIET_MS;
         await this.client.until(`a picture of ${seq}`, (c) => c.closed !== null || c.texts.some(wrong) || c.frames.some(is) || quiet(c),
             PATIENCE_MS);
         if (this.client.closed)

@@ -15,7 +15,7 @@ export class Haproxy {
     // renderers: [{ port, agentPort }]; core and standby: { port }. host: address of all daemons. ca and coreCa: files with certificates of
     // renderers and cores; null: without TLS. port: port of the balancer; default: a free one
     static async start(renderers, core, standby = null, { host = '127.0.0.1', ca = null, coreCa = ca, port: own = null } = {}) {
-        const authorities = [ca, ca, coreCa]; // in the order of the shipped file
+        const authorities = [ca, ca, coreCa]; // certificate authorities in the order in which the shipped file uses them
         const tls = (authority) => (authority ? ` ssl verify required ca-file ${authority}` : '');
         let text = shipped('haproxy.cfg').replaceAll(/ ssl verify required ca-file \S+/g, () => tls(authorities.shift()))
             .replace('server core 10.0.0.10:8443', `server core ${host}:${core.port}`);

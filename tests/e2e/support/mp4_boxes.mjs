@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Alters boxes of a signed video (MP4, one track): what a player would show differently, and why `plantcast verify` refuses it.
 
-const HEADS = { moov: 8, trak: 8, edts: 8, mdia: 8, minf: 8, stbl: 8, stsd: 16, avc1: 86, udta: 8 }; // bytes before the inner boxes
+// by type of MP4 box: number of bytes before its inner boxes
+const HEADS = { moov: 8, trak: 8, edts: 8, mdia: 8, minf: 8, stbl: 8, stsd: 16, avc1: 86, udta: 8 };
 const typeOf = (bytes, at) => bytes.toString('latin1', at + 4, at + 8);
 
 // Rewrites a list of boxes. `change` gets each box and its path ("moov/trak"), and returns the boxes that replace it.
@@ -28,7 +29,7 @@ function box(type, hex) {
     return sized(Buffer.concat([Buffer.alloc(4), Buffer.from(type, 'latin1'), content]));
 }
 
-// Appends a box inside another.
+// Appends a box inside the box at `path`.
 const into = (path, extra) => (one, at) => (at === path ? [sized(Buffer.concat([one, extra]))] : null);
 const beside = (path, extra) => (one, at) => (at === path ? [one, extra] : null);
 const without = (path) => (one, at) => (at === path ? [] : null);

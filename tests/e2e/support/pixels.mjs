@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Comparing pictures.
+// Compares pictures.
 
 // Returns the largest channel difference of each pixel, one byte per pixel.
 export function difference(a, b) {

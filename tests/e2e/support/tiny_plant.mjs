@@ -72,7 +72,7 @@ TI-1,400001,Float,°C,left,temperature,E-101,0.5,0,0,1
 TI-2,400003,Float,°C,right,temperature,E-101,-0.5,0,0,1
 PI-1,400005,Float,bar,pump,pressure,P-101A,3,0,0.5,1
 `;
-const BOXES = { 'E-101': 'TI-1,TI-2', 'P-101A': 'PI-1' }; // assets and their sensors
+const BOXES = { 'E-101': 'TI-1,TI-2', 'P-101A': 'PI-1' }; // assets of the plant, and the sensors on each
 
 // Runs a program that ends by itself: { code, out, err }.
 export function runProgram(name, args, timeout = 120000) {

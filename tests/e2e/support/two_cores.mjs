@@ -24,7 +24,7 @@ export function missingTwoCores() {
     return missingPostgres() ?? (canMount ? false : 'nothing can be mounted here');
 }
 
-// Returns how often a core began to poll.
+// Returns how often a core began to poll devices.
 export const terms = (core) => core.program.said.match(/polls devices and owns the alarms/g)?.length ?? 0;
 export const kill = (core, signal) => () => core.program.child.kill(signal);
 

@@ -23,7 +23,7 @@ before(async () => {
         return;
     plant = await TinyPlant.running();
     await plant.tell('set TI-1 94');
-    await plant.tell('set TI-2 94'); // a uniform colour everywhere
+    await plant.tell('set TI-2 94'); // gives the field one colour everywhere
     relay = await Relay.open(plant.port, { bytesPerS: 4e6, delayMs: 120 });
 });
 after(async () => {

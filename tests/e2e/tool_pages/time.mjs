@@ -135,7 +135,7 @@ test('several tags are compared, each by its unit, and exported', options, async
 });
 
 const rangeOf = () => page.evaluate(() => globalThis.plantcast.trends.range);
-const drawn = ([from, to]) => page.waitForFunction((span) => { // the values of that range are drawn
+const drawn = ([from, to]) => page.waitForFunction((span) => { // Waits until the chart has drawn the values of that range.
     const { trends: { span: now, isAsking } } = globalThis.plantcast;
     return !isAsking && now.every((us, i) => Math.abs(us - span[i]) < 3e6);
 }, [from, to]);

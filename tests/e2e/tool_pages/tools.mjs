@@ -204,7 +204,7 @@ test('a saved picture has the page\'s theme, and below it the active notes', opt
     const dark = await save('saved-notes-dark');
     assert.equal(dark.height, light.height);
     assert.ok(Math.max(...at(dark, dark.width - 3, dark.height - 3)) < 80, 'a dark list');
-    assert.ok(Math.max(...at(dark, 12, 12)) < 110, 'a dark card'); // the header's card is at this corner
+    assert.ok(Math.max(...at(dark, 12, 12)) < 110, 'a dark card'); // the header's card covers this corner of the picture
     await turn('#f4f5f6');
     await post({ type: 'note', text: `https://permits.example/${'valve-4711-'.repeat(30)}end` });
     await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 3);

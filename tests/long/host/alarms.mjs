@@ -45,7 +45,7 @@ export class AlarmCycles {
         await this.shown(tag, 'is cleared', (state) => state === undefined || state === 'normal');
     }
 
-    // A user repeats an action that was not confirmed.
+    // Acknowledges an alarm again and again, as a user does, until the server has confirmed it.
     async acknowledge(tag, operator) {
         for (const end = performance.now() + SHOWN_MS; performance.now() < end && !this.isOver; await sleep(STEP_MS)) {
             const answer = await operator.acknowledge(tag, KIND);
