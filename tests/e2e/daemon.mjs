@@ -44,6 +44,8 @@ test('the command line: exit codes and reasons', { skip }, async () => {
         [[plant.file, '--port', '70000'], 2, null, /70000/], [[plant.file, '--colour'], 2, null, /colour/],
         [[join(plant.folder, 'none.yaml')], 1, null, /none\.yaml/],
         [['--check', plant.file], 0, /2 assets, 2 groups, 1 source, 3 tags/, null],
+        [['--dump-plan', plant.file], 0, /^source \w+: 127\.0\.0\.1:\d+: 3 tags in 1 request\n/, null],
+        [[plant.file, '--log-level', 'loud'], 2, null, /unknown level 'loud'/],
         [[plant.file, '--listen', '0.0.0.0'], 1, null, /--open-viewers/],
         [[plant.file, '--listen', 'elsewhere'], 2, null, /expected an IP address, found 'elsewhere'/],
         [[plant.file, '--prepared', join(plant.folder, 'nothing')], 1, null, /plantcast-prep/],
