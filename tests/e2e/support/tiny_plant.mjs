@@ -7,13 +7,14 @@ import { appendFileSync, chownSync, copyFileSync, existsSync, mkdirSync, mkdtemp
 import { connect } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
+import { setTimeout as sleep } from 'node:timers/promises';
 import { faultOf } from './fault.mjs';
 import './fetch.mjs';
 import { freePort } from './ports.mjs';
-export { setTimeout as sleep } from 'node:timers/promises';
+export { sleep };
 
 export const BIN = resolve(process.env.PLANTCAST_BIN ?? 'build');
-const NOBODY = 65534;
+const NOBODY = 65534, DESCENDANT_MS = 2000;
 export const PROGRAMS = ['plantcastd', 'plantcast-prep', 'plantcast-sim', 'plantcast'];
 export const missing = () => PROGRAMS.filter((name) => !existsSync(join(BIN, name)));
 
@@ -81,14 +82,23 @@ export function runProgram(name, args, timeout = 120000) {
 }
 
 export class Program {
+    // Both outputs go into one pipe, so that lines arrive in the order in which the program wrote them.
     constructor(name, args, as = {}, before = [], bin = BIN) {
-        const [program, ...all] = [...before, join(bin, name), ...args];
         this.name = name;
         this.said = '';
-        this.child = spawn(program, all, { stdio: ['ignore', 'pipe', 'pipe'], ...as });
-        this.ended = new Promise((done) => this.child.once('exit', (code, signal) => done({ code, signal })));
-        for (const pipe of [this.child.stdout, this.child.stderr])
-            pipe.on('data', (chunk) => { this.said = (this.said + chunk).slice(-100000); });
+        this.child = spawn('/bin/sh', ['-c', 'exec "$@" 2>&1', 'sh', ...before, join(bin, name), ...args],
+            { stdio: ['ignore', 'pipe', 'inherit'], ...as });
+        this.child.stdout.setEncoding('utf8').on('data', (text) => { this.said = (this.said + text).slice(-100000); });
+        this.ended = this.end();
+    }
+
+    // Returns how the program ended, once its last output has been read; a descendant that lives on would keep the pipe open.
+    async end() {
+        const closed = new Promise((done) => this.child.once('close', done));
+        const [code, signal] = await new Promise((done) => this.child.once('exit', (...how) => done(how)));
+        await Promise.race([closed, sleep(DESCENDANT_MS, null, { ref: false })]);
+        this.isOver = true;
+        return { code, signal };
     }
 
     async line(pattern, timeoutMs = 120000) {
@@ -98,7 +108,7 @@ export class Program {
                 this.began = true;
                 return found;
             }
-            if (this.child.exitCode !== null || this.child.signalCode !== null || performance.now() > end)
+            if (this.isOver || performance.now() > end)
                 throw new Error(`no ${pattern} in:\n${this.said}`);
             await new Promise((done) => setTimeout(done, 20));
         }
