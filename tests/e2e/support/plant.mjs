@@ -8,6 +8,7 @@ import { join, resolve } from 'node:path';
 import { faultOf } from './fault.mjs';
 import './fetch.mjs';
 import { freePort } from './ports.mjs';
+import { until } from './until.mjs';
 
 export const BIN = resolve(process.env.PLANTCAST_BIN ?? 'build');
 export const BUILD = resolve('build');
@@ -107,14 +108,17 @@ export async function startPlant(more = '', arrange = () => {}, flags = []) {
         async startDaemon() {
             daemon = await startDaemon();
         },
-        // Freezes every tag at its present value, and waits until the daemon has read it: from then on nothing changes by itself.
+        // Freezes every tag at its present value, and waits until the daemon has read it: from then on nothing changes by itself. It waits
+        // for two readings, because the device may have answered the first one's request before.
         async freeze(tags) {
             for (const tag of tags)
                 await plant.ask(`set ${tag} ${await plant.ask(`get ${tag}`)}`);
-            const frozen = Date.now();
-            for (let old = true; old && Date.now() < frozen + START_MS;) {
-                const asked = Date.now(), { tags: read } = await (await fetch(`${plant.url}api/v1/tags`)).json();
-                old = read.some(({ value, age_ms: age }) => value !== null && age > asked - frozen);
+            for (let reading = 0; reading < 2; reading++) {
+                const since = Date.now();
+                await until('a reading of each tag', async () => {
+                    const asked = Date.now(), { tags: read } = await (await fetch(`${plant.url}api/v1/tags`)).json();
+                    return read.every(({ value, age_ms: age }) => value === null || age <= asked - since);
+                });
             }
         },
         async stop() {
