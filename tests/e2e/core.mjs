@@ -43,16 +43,19 @@ test('values, qualities and source times are the core\'s; the device sees one po
     await nodes.plant.tell('release PI-1');
     await all(async (node) => (await node.tags())['PI-1'].quality_name === 'Good');
     await sleep(2000); // waits longer than a reading may be old
-    assert.equal((await a.tags())['TI-2'].quality_name, 'Good', 'a steady value does not get stale');
+    await until('a steady value that is not stale', async () => (await a.tags())['TI-2'].quality_name === 'Good');
     await nodes.onePoller();
-    assert.equal(await core.metric('plantcast_renderers'), 2);
+    await until('two renderers', async () => await core.metric('plantcast_renderers') === 2);
 });
 
 test('pictures of one view are equal to the byte', options, async () => {
     const picture = async (node) => Buffer.from(await (await node.fetch('/snapshot.png?width=240&height=160&fit=E-101')).arrayBuffer());
-    const [one, two, three] = await Promise.all([core, a, b].map(picture));
-    assert.equal(one.subarray(1, 4).toString(), 'PNG');
-    assert.ok(one.equals(two) && two.equals(three), `${one.length}, ${two.length}, ${three.length} bytes`);
+    // a reading may be old at one node for a moment
+    await until('equal pictures', async () => {
+        const [one, two, three] = await Promise.all([core, a, b].map(picture));
+        assert.equal(one.subarray(1, 4).toString(), 'PNG');
+        return one.equals(two) && two.equals(three);
+    });
 });
 
 test('an acknowledgement at one renderer is done by the core, with the name, and comes back to all', options, async () => {
@@ -67,12 +70,16 @@ test('an acknowledgement at one renderer is done by the core, with the name, and
     const { seq, done } = await anna.text('alarmed');
     assert.deepEqual([seq, done], [2, 1]);
     await all(async (node) => (await alarm(node, 'acknowledged'))?.who === 'anna');
-    anna.say({ type: 'alarm', seq: 3, action: 'shelve', alarms: [['TI-1', 'H']], for_s: 3, reason: 'is looked at' });
-    await anna.text('alarmed');
+    const shelve = async (seq, seconds) => {
+        anna.say({ type: 'alarm', seq, action: 'shelve', alarms: [['TI-1', 'H']], for_s: seconds, reason: 'is looked at' });
+        await anna.text('alarmed');
+    };
+    await shelve(3, 3600);
     await all(async (node) => (await alarm(node, 'shelved'))?.reason === 'is looked at');
+    await shelve(4, 1);
     await all(async (node) => !await alarm(node, 'shelved')); // when the shelving time is over, the core tells the renderers
     const { rows } = await (await core.fetch('/api/v1/alarms/journal')).json();
-    assert.deepEqual(rows.filter(({ who }) => who === 'anna').map(({ event }) => event).sort(), ['acknowledge', 'shelve']);
+    assert.deepEqual([...new Set(rows.filter(({ who }) => who === 'anna').map(({ event }) => event))].sort(), ['acknowledge', 'shelve']);
     anna.close();
 });
 
@@ -163,7 +170,7 @@ test('another plant, another configuration, a wrong token and a daemon that is n
         await program.stop();
     }
     await alone.stop();
-    assert.match(core.program.said, /renderer .*: refused: configuration: the renderer has/);
+    await core.program.line(/renderer .*: refused: configuration: the renderer has/);
     for (const [bad, said] of [[['--role', 'renderer'], /--role: expected all, core or render/],
         [['--role', 'render'], /--role render needs --core URL/],
         [['--core', 'ws://x:1'], /--core URL needs --role render/], [['--role', 'render', '--core', 'ftp://x'], /--core: expected wss/]])
@@ -192,7 +199,7 @@ test('another version, and another plant of the same tags, are named by both; th
         assert.equal(await renderer.metric(`plantcast_core_up{core="${core.url}"}`), 0);
         await renderer.stop();
     }
-    assert.equal((await a.tags())['TI-1'].quality_name, 'Good', 'others go on');
+    await until('the others, which go on', async () => (await a.tags())['TI-1'].quality_name === 'Good');
 });
 
 test('a renderer\'s token opens no stream; strangers at /core are ended', options, async () => {
@@ -208,7 +215,7 @@ test('a renderer\'s token opens no stream; strangers at /core are ended', option
         stranger.say(words);
         await stranger.until('the end', ({ closed }) => closed);
     }
-    assert.equal((await core.tags())['TI-1'].quality_name, 'Good');
+    await until('good readings', async () => (await core.tags())['TI-1'].quality_name === 'Good');
 });
 
 test('an act that the core could not read ends no link; nor does a revoked token keep one', options, async () => {
@@ -220,7 +227,7 @@ test('an act that the core could not read ends no link; nor does a revoked token
     client.say({ type: 'note', seq: 1, text: 'sent after them', asset: 'E-101' }); // the core answers in the order of what it receives
     await client.text('noted');
     assert.equal(await a.metric('plantcast_core_connects_total'), connects);
-    assert.equal((await a.tags())['TI-1'].quality_name, 'Good');
+    await until('good readings', async () => (await a.tags())['TI-1'].quality_name === 'Good');
     client.close();
     const lines = readFileSync(nodes.tokenFile, 'utf8');
     writeFileSync(nodes.tokenFile, lines.split('\n').filter((line) => !line.startsWith('renderer')).join('\n'));
@@ -238,7 +245,7 @@ test('`plantcast drain` sends the sessions of a daemon elsewhere; no other progr
     assert.equal(runProgram('plantcast', ['drain', pid, '--wait', '0']).code, 0);
     promise(t, 'until `plantcast drain` returns', performance.now() - began, 5000);
     await client.until('its end', ({ closed }) => closed);
-    assert.match(c.program.said, /drained: moving 1 sessions to other nodes/);
+    await c.program.line(/drained: moving 1 sessions to other nodes/);
     await c.stop();
     assert.equal(runProgram('plantcast', ['drain', pid]).code, 1);
 });
@@ -263,9 +270,9 @@ test('each address of a core\'s name is tried, and each that fails is named once
     await host.stop();
     const bad = start('ws://core.test:9', dead, `ws://core.test:${nodes.plant.modbusPort}`);
     await bad.line(/ready http/);
-    await sleep(8000);
-    const count = bad.said.match(said).length;
-    assert.ok(count >= 3 && count <= 5, bad.said);
+    await until('each to be named', () => (bad.said.match(said)?.length ?? 0) >= 3, 90, () => bad.said);
+    await sleep(5000); // it retries several times
+    assert.ok(bad.said.match(said).length <= 5, bad.said);
     await bad.stop();
 });
 

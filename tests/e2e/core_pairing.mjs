@@ -73,7 +73,8 @@ test('who was let in is so while the core is away, and is told that there are no
     const client = await asDevice(renderer), { port } = core;
     await core.stop('SIGKILL');
     const began = performance.now();
-    await client.until('it being said', ({ texts }) => texts.some(({ type, live }) => type === 'status' && !live));
+    await client.until('it being said', ({ texts }) => texts.some(({ type, links, live }) => type === 'status' && !live &&
+        links.some(({ source, up }) => source === 'core' && !up)));
     promise(t, 'until it is said', performance.now() - began, 4000);
     client.close();
     const again = await asDevice(renderer);

@@ -44,7 +44,7 @@ test('files that the core refuses change nothing at the renderer', options, asyn
     core.program.child.kill('SIGHUP');
     await Promise.all([core, renderer].map(({ program }) => program.line(/reload: keeping the configuration/)));
     assert.equal(await configuration(renderer), before_);
-    assert.ok(await isThere());
+    await until('readings', isThere);
 });
 
 test('a core that was restarted with other files is followed, too', options, async () => {

@@ -5,6 +5,7 @@ import assert from 'node:assert/strict';
 import { chmodSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { linesOf } from './support/lines.mjs';
 import { IdentityProvider } from './support/identity_provider.mjs';
 import { Nodes, until } from './support/nodes.mjs';
 import { PlainClient } from './support/plain_client.mjs';
@@ -15,7 +16,7 @@ const options = { skip: notBuilt(), timeout: 120000 };
 let nodes, core, renderer, provider, identity, engineer;
 
 const path = (name) => join(nodes.plant.folder, name);
-const trail = () => readFileSync(path('audit.log'), 'utf8').trim().split('\n').map((line) => JSON.parse(line));
+const trail = () => linesOf(path('audit.log')).map((line) => JSON.parse(line));
 const recorded = (what, where) => until(what, () => trail().findLast(where));
 
 function openidFile(name, port, more = '') {
@@ -119,6 +120,7 @@ test('a token that only the renderer\'s file has is not enough', options, async 
     writeFileSync(own, lines, { mode: 0o600 });
     const token = runProgram('plantcast', ['token', 'add', own, '--role', 'engineer', '--name', 'mallory']).out.trim();
     const other = await nodes.renderer('r2', core, '--tokens', own);
+    await until('its core', async () => (await other.tags(nodes.tokens.viewer))['TI-1'].quality_name === 'Good');
     const client = await other.client({}, { token });
     client.say(ACK);
     const { code, text } = await client.text('error');

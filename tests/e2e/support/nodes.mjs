@@ -35,9 +35,10 @@ export class Node {
 
     get url() { return `ws://127.0.0.1:${this.port}`; }
 
-    async fetch(path, token = this.token) {
+    // seconds: limit for the answer
+    async fetch(path, token = this.token, seconds = 60) {
         const headers = token ? { authorization: `Bearer ${token}` } : {};
-        return fetch(`http://127.0.0.1:${this.port}${path}`, { headers, signal: AbortSignal.timeout(10000) });
+        return fetch(`http://127.0.0.1:${this.port}${path}`, { headers, signal: AbortSignal.timeout(seconds * 1000) });
     }
 
     async tags(token) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Waits for events in other programs.
+import assert from 'node:assert/strict';
 import { setTimeout as sleep } from 'node:timers/promises';
+import { isDeepStrictEqual } from 'node:util';
 
 // Asks until the answer is true, and returns it. Fails after that many seconds with the name of the condition, the last answer and, if
 // given, the text of more(), such as a program's log.
@@ -11,5 +13,17 @@ export async function until(what, ask, seconds = 90, more = () => '') {
             return found;
         if (performance.now() > end)
             throw new Error(`waited ${seconds} s for ${what}; the last answer: ${JSON.stringify(found)}\n${more()}`);
+    }
+}
+
+// Asks until the answer equals `wanted`. Fails after that many seconds with the difference. For what follows an event by an unknown time,
+// such as the layout of a page.
+export async function becomes(ask, wanted, what, seconds = 90) {
+    for (const end = performance.now() + seconds * 1000; ; await sleep(50)) {
+        const found = await ask();
+        if (isDeepStrictEqual(found, wanted))
+            return;
+        if (performance.now() > end)
+            assert.deepEqual(found, wanted, what);
     }
 }
