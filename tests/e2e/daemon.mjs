@@ -10,6 +10,7 @@ import { inflateRawSync } from 'node:zlib';
 import { encodeFrame, get, http, PlainClient } from './support/plain_client.mjs';
 import { promise } from './support/promise.mjs';
 import { BIN, notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
+import { until } from './support/until.mjs';
 
 const VECTORS = 'protocol/vectors/client';
 const skip = notBuilt();
@@ -22,6 +23,7 @@ before(async () => {
     const prepared = plant.prepare();
     assert.equal(prepared.code, 0, prepared.err);
     await plant.startSim();
+    await plant.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 }); // constant values
     await plant.startDaemon();
 });
 after(() => plant?.destroy());
@@ -212,7 +214,7 @@ test('depth grids come before their pictures, to clients that ask for them', { s
     const isStill = (f) => f.camera_seq === 2 && f.params_seq === 1 && (f.flags & 2) !== 0;
     const still = await client.frameWhere('the still picture', isStill);
     assert.ok(client.frames.every((f) => (f.flags & DEPTH) !== 0), 'every picture has depth');
-    for (const depth of client.depths) {
+    for (const depth of client.depths.filter(({ before }) => before < client.frames.length)) { // the last one's picture may follow
         const frame = client.frames.find((f) => f.seq === depth.seq);
         assert.equal(client.frames.indexOf(frame), depth.before, 'each grid comes right before its picture');
         assert.deepEqual([depth.x, depth.y, depth.width, depth.height], [0, 0, frame.full_width, frame.full_height]);
@@ -220,8 +222,7 @@ test('depth grids come before their pictures, to clients that ask for them', { s
         assert.equal(depth.payload.length, depth.payload_bytes);
         assert.equal(inflateRawSync(depth.payload).length, depth.data_bytes);
     }
-    const last = client.depths.at(-1), z = last.base + (last.levels - 1) * last.unit;
-    assert.ok(last.seq <= still.seq, 'the still picture may show the same depth as the moving one');
+    const last = client.depths.findLast(({ seq }) => seq <= still.seq), z = last.base + (last.levels - 1) * last.unit;
     assert.equal(last.flags & 1, 1, 'orthographic');
     assert.ok(Math.abs(z - (eye[0] - 0.5)) < 0.01, `the front of the box is ${z} m from the eye at ${eye}`);
     const newest = client.depths.length - 1, pictures = client.frames.length;
@@ -232,8 +233,8 @@ test('depth grids come before their pictures, to clients that ask for them', { s
     const grids = client.depths.slice(newest).map(({ message }) => message.toString('hex', 0, 8) + message.toString('hex', 12));
     assert.ok(grids.every((grid, i) => grid !== grids[i - 1]), 'the same depth is not sent twice in a row');
     client.say({ type: 'params', seq: 2, split: { group: 'pressure' } });
-    await client.frameWhere('both halves', (f) => f.params_seq === 2);
-    const halves = client.depths.slice(-2);
+    const both = await client.frameWhere('both halves', (f) => f.params_seq === 2);
+    const halves = client.depths.filter(({ seq }) => seq === both.seq);
     assert.deepEqual(halves.map(({ x, width, flags }) => [x, width, flags & 2]), [[0, 160, 2], [160, 160, 0]]);
     await other.frameWhere('a still picture', (f) => (f.flags & 2) !== 0);
     assert.ok(other.depths.length === 0 && other.frames.every((f) => (f.flags & DEPTH) === 0));
@@ -254,7 +255,8 @@ test('equal views share a render', { skip }, async () => {
     for (let i = 0; i < 8; i++) {
         const had = clients.map((client) => client.frames.length);
         await plant.tell(`set TI-1 ${i % 2 ? 10 : 90}`);
-        await Promise.all(clients.map((client, k) => client.until('the change', () => client.frames.length > had[k])));
+        // until nothing is on its way to any client: then the next change is drawn for all at once
+        await Promise.all(clients.map((client, k) => client.frameWhere('the change', (f, n) => n >= had[k] && (f.flags & 2) !== 0)));
     }
     const after = await counts(), renders = after[0] - before[0], frames = after[1] - before[1];
     assert.ok(renders >= 4 && frames >= 3 * renders, `${frames} frames of ${renders} renders`);
@@ -272,12 +274,12 @@ test('any number follow one: its view, its size, its picture', { skip }, async (
     assert.deepEqual([said.session, said.width, said.height, said.group], [session, 400, 240, 'temperature']);
     leader.say({ type: 'camera', seq: 3, eye: [5, -7, 4.5], target: [1, 0, 0] });
     leader.say({ type: 'params', seq: 4, group: 'pressure' });
-    const told = (client) => client.texts.some((m) => m.type === 'following' && m.group === 'pressure');
-    const seen = await Promise.all(followers.map((client) => client.frameWhere('a refined frame of the leader\'s camera',
-        (f) => f.eye[1] === -7 && (f.flags & 2) !== 0 && told(client) && f.full_width === 400)));
-    const own = await leader.frameWhere('the same', (f) => f.eye[1] === -7 && (f.flags & 2) !== 0);
-    assert.ok(seen.every((f) => f.payload.equals(own.payload)), 'the same bytes for all');
-    assert.deepEqual([own.camera_seq, seen[0].camera_seq], [3, 0]);
+    const own = await leader.frameWhere('its refined frame', (f) => f.camera_seq === 3 && f.params_seq === 4 && (f.flags & 2) !== 0);
+    const seen = await Promise.all(followers.map((client) => client.until('a frame with the same bytes as one of the leader', () =>
+        client.texts.some((m) => m.type === 'following' && m.group === 'pressure') &&
+        client.frames.find((f) => f.full_width === 400 && (f.flags & 2) !== 0 && leader.frames.some((one) =>
+            one.camera_seq === 3 && one.params_seq === 4 && one.payload.equals(f.payload))))));
+    assert.deepEqual([own.eye[1], seen[0].eye[1], seen[0].camera_seq], [-7, -7, 0]);
     const chained = await PlainClient.open(plant.port);
     await chained.hello();
     chained.say({ type: 'follow', session: welcomes[0].session });
@@ -391,11 +393,10 @@ test('a reading that changes is told and drawn; a PLC that dies is seen, and com
     const before = client.frames.at(-1);
     const told = performance.now();
     assert.match(await plant.tell('set TI-1 90'), /^ok/);
-    const changed = await client.until('another frame', (c) => c.frames.at(-1).seq > before.seq && c.frames.at(-1));
-    assert.ok(!changed.payload.equals(before.payload));
+    const changed = await client.frameWhere('another picture',
+        (f) => f.seq > before.seq && !f.payload.equals(before.payload) && !(f.flags & 4));
     promise(t, 'until the reading is drawn', changed.at - told, 1500);
     await tagUntil(client, 0, 'is 90', (row) => row[1] === 90);
-    assert.equal(changed.flags & 4, 0);
 
     await plant.sim.stop('SIGKILL');
     await client.until('a status without a link', (c) => c.texts.find((m) => m.type === 'status' && !m.live && !m.links[0].up));
@@ -406,17 +407,19 @@ test('a reading that changes is told and drawn; a PLC that dies is seen, and com
 
     await plant.startSim();
     assert.match(await plant.tell('set TI-1 55'), /^ok/);
-    await tagUntil(client, 0, 'is 55', (row) => row[1] === 55 && (row[2] ?? 'good') === 'good', 30000);
+    await tagUntil(client, 0, 'is 55', (row) => row[1] === 55 && (row[2] ?? 'good') === 'good');
     await client.until('a frame with live data', (c) => (c.frames.at(-1).flags & 4) === 0);
     await client.until('a status with the link', (c) => c.texts.findLast((m) => m.type === 'status').live);
     client.close();
 });
 
-test('plantcast tags and plantcast probe', { skip }, (t) => {
+test('plantcast tags and plantcast probe', { skip }, async (t) => {
     const url = `http://127.0.0.1:${plant.port}/`;
-    const tags = runProgram('plantcast', ['tags', url]);
-    assert.equal(tags.code, 0, tags.err);
-    assert.match(tags.out, /TI-1 .*°C .*Good .*temperature .*E-101/);
+    await until('a line of a good reading', () => { // answers of the device may be late for a moment
+        const { code, out, err } = runProgram('plantcast', ['tags', url]);
+        assert.equal(code, 0, err);
+        return /TI-1 .*°C .*Good .*temperature .*E-101/.test(out);
+    });
     const probe = runProgram('plantcast', ['probe', url, '--sessions', '2', '--seconds', '1', '--size', '1920x1080', '--json']);
     assert.equal(probe.code, 0, probe.err);
     const report = JSON.parse(probe.out);
@@ -460,7 +463,7 @@ test('an encoder that is not there is said by its name, and clients get JPEG', {
         assert.equal(other.prepare().code, 0);
         await other.startDaemon('--h264', 'h264_nothing');
         const said = /no H\.264 encoder named 'h264_nothing'[^]*H\.264 encoder h264_nothing does not work on this machine/;
-        assert.match(other.daemon.said, said);
+        await other.daemon.line(said);
         const client = await PlainClient.open(other.port);
         assert.equal((await client.hello({ codecs: ['h264', 'jpeg'] })).codec, 'jpeg');
         await client.frameWhere('a JPEG', (f) => f.codec === 'jpeg' || f.codec === 1);
@@ -481,7 +484,7 @@ test('a daemon that falls over is no test\'s secret', { skip }, async () => {
 
 test('no GL at all is said, and ends with 1', { skip }, () => {
     const { status, stderr } = spawnSync(join(BIN, 'plantcastd'), [plant.file, '--port', '0', '--gl', 'egl-device'], {
-        encoding: 'utf8', timeout: 30000, env: { ...process.env, __EGL_VENDOR_LIBRARY_DIRS: '/nonexistent' },
+        encoding: 'utf8', timeout: 120000, env: { ...process.env, __EGL_VENDOR_LIBRARY_DIRS: '/nonexistent' },
     });
     assert.equal(status, 1);
     assert.match(stderr, /egl-device/);

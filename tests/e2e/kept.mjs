@@ -9,6 +9,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openPage, shoot, waitForPicture } from './support/browser.mjs';
+import { linesOf } from './support/lines.mjs';
 import { until } from './support/nodes.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
@@ -71,7 +72,7 @@ const fetched = async (where) => (await ask(where)).json();
 const alarm = async (of = 'TI-1') => (await fetched('/api/v1/alarms')).alarms.find(({ tag, kind }) => tag === of && kind === 'H');
 const inForce = async () => (await fetched('/api/v1/notes')).list.filter(({ ended_us: ended }) => !ended);
 const listed = async (where) => (await ask(where)).text();
-const trail = () => readFileSync(path('audit.log'), 'utf8').trim().split('\n').map((line) => JSON.parse(line));
+const trail = () => linesOf(path('audit.log')).map((line) => JSON.parse(line));
 
 // Fills the disk, as another program might.
 const fill = () => assert.notEqual(spawnSync('dd', ['if=/dev/zero', `of=${path('full')}`, 'bs=4k']).status, 0);
@@ -175,9 +176,11 @@ test('on a full disk each kind is answered with "not kept", and why; once there 
     await until('that free space is measured', async () => Math.abs(
         Number(/^plantcast_history_free_bytes (\d+)$/m.exec(await (await ask('/metrics')).text())[1]) - bavail * bsize) < 1 << 18);
     free();
-    await until('that the journal is written again', () => /the alarm journal can be written again/.test(plant.daemon.said));
+    await until('that the journal is written again',
+        () => /the alarm journal can be written again(?![^]*the alarm journal cannot be written)/.test(plant.daemon.said));
     await killed();
-    assert.notEqual((await alarm()).state, 'unacknowledged', 'a change that could not be kept is kept once there is space');
+    const { state } = await until('the alarm', () => alarm());
+    assert.notEqual(state, 'unacknowledged', 'a change that could not be kept is kept once there is space');
 });
 
 test('what is answered as done is there after a kill -9 in that moment, and in the trail', { ...options, timeout: 300000 }, async (t) => {
@@ -290,7 +293,7 @@ test('while the disk hangs, each action is answered with "not kept", and others 
         assert.match(first.why, /the server’s disk does not answer/);
         assert.match(first.unaudited, /the server’s disk does not answer/);
         assert.equal(last.done, 0);
-        assert.ok(served > 20, `${served} requests in ${ms} ms`);
+        assert.ok(served > 6, `${served} requests in ${ms} ms`); // if they waited for the disk, too, there would be one for each action
         for (const [i, [message, type]] of files.entries()) {
             client.say({ ...message, seq: 40 + i });
             const said = await client.until(type, ({ texts }) => texts.find((one) => one.type === type && one.seq === 40 + i));
