@@ -9,6 +9,7 @@ import { drawnAt, openPage, PHONE, shoot, TABLET, travel, waitForPicture } from 
 import { cutOff, everyPanel } from '../support/panels.mjs';
 import { sweep, takes } from '../support/sweep.mjs';
 import { notBuilt } from '../support/tiny_plant.mjs';
+import { becomes } from '../support/until.mjs';
 
 const options = { skip: notBuilt(), timeout: 200000 };
 const SCREEN = { viewport: sweep({ width: 1680, height: 1000 }, { width: 1280, height: 800 }) };
@@ -94,8 +95,8 @@ async function lookAtEverything(theme, rules, other) {
             return;
         seen.push(name);
         await shoot(page, `axe-${theme}-${name}`);
-        assert.deepEqual(await cutOff(page), [], name);
-        assert.deepEqual(await unspoken(page), [], name);
+        await becomes(() => cutOff(page), [], name);
+        await becomes(() => unspoken(page), [], name);
         const part = sweep(null, PARTS[name] ?? null);
         assert.deepEqual(await findings(page, rules, part), [], name);
         if (!other)
@@ -180,14 +181,14 @@ test('on a phone every control, table and dialog is announced by its name; alarm
     try {
         await waitForPicture(on);
         await on.waitForFunction(() => globalThis.plantcast.session.recorded && document.querySelector('#alarm-counts .priority'));
-        assert.deepEqual(await unspoken(on), [], 'as it opens');
+        await becomes(() => unspoken(on), [], 'as it opens');
         for (const [key, part, button] of OPENED) {
             await on.locator('#viewport').focus();
             await on.keyboard.press(key);
             await on.locator(part).waitFor();
             if (button)
                 await on.locator(button).click();
-            assert.deepEqual(await unspoken(on), [], `${part} ${button ?? ''}`);
+            await becomes(() => unspoken(on), [], `${part} ${button ?? ''}`);
             await on.keyboard.press('Escape');
             if (await on.locator(part).isVisible())
                 await on.keyboard.press(key);
@@ -247,7 +248,7 @@ test('a dialog keeps the focus within, lets go of it by Escape, and gives it bac
         await page.keyboard.press('Tab');
     }
     await page.keyboard.press('Escape');
-    assert.equal((await focused()).name, 'help-open');
+    await becomes(async () => (await focused()).name, 'help-open');
 });
 
 test('panels open and close by keys, and the focus goes along', options, async () => {
@@ -255,15 +256,15 @@ test('panels open and close by keys, and the focus goes along', options, async (
     await page.keyboard.press('/');
     await page.keyboard.type('TI');
     await page.keyboard.press('Escape'); // the first Escape clears the search field
-    assert.deepEqual(await page.evaluate(() => [document.activeElement.id, document.activeElement.value]), ['assets-search', '']);
+    await becomes(() => page.evaluate(() => [document.activeElement.id, document.activeElement.value]), ['assets-search', '']);
     await page.keyboard.press('Escape'); // the second Escape returns the keys to the picture
-    assert.equal(await page.evaluate(() => document.activeElement.id), 'viewport');
+    await becomes(() => page.evaluate(() => document.activeElement.id), 'viewport');
     await page.locator('#alarm-strip').focus();
     await page.keyboard.press('Enter');
-    assert.equal((await focused()).name, 'alarms-close');
+    await becomes(async () => (await focused()).name, 'alarms-close');
     await page.keyboard.press('Escape');
-    assert.equal(await page.locator('#alarms').isVisible(), false, 'Escape closes the list');
-    assert.equal((await focused()).name, 'alarm-strip');
+    await page.locator('#alarms').waitFor({ state: 'hidden' });
+    await becomes(async () => (await focused()).name, 'alarm-strip');
     for (const name of ['picture', 'views']) {
         await page.locator(`#${name}-toggle`).focus();
         await page.keyboard.press('Enter');
@@ -271,8 +272,8 @@ test('panels open and close by keys, and the focus goes along', options, async (
         const within = await page.evaluate(() => document.activeElement.closest('.panel, .toolbar')?.id ?? document.activeElement.id);
         assert.ok(within !== 'viewport', `${name}: ${within}`);
         await page.keyboard.press('Escape');
-        assert.equal(await page.locator(name === 'views' ? '#views' : '#picture-panel').isVisible(), false);
-        assert.equal((await focused()).name, `${name}-toggle`, 'back where it came from');
+        await page.locator(name === 'views' ? '#views' : '#picture-panel').waitFor({ state: 'hidden' });
+        await becomes(async () => (await focused()).name, `${name}-toggle`, 'back where it came from');
     }
     assert.deepEqual(browser.errors, []);
 });

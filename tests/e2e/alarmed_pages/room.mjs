@@ -4,10 +4,11 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { before, test } from 'node:test';
 import { alarmed } from './alarmed.mjs';
-import { arrive, land, openPage, PHONE, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
+import { arrive, land, openPage, PHONE, resize, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
 import { startAlarmed } from '../support/panels.mjs';
 import { sweep, takes } from '../support/sweep.mjs';
 import { notBuilt } from '../support/tiny_plant.mjs';
+import { becomes } from '../support/until.mjs';
 
 const options = { skip: notBuilt(), timeout: 200000 };
 const SCREENS = {
@@ -78,30 +79,30 @@ for (const name of WALKED) {
             await page.waitForFunction(() => globalThis.plantcast.session.model.alarms.list().length > 0 &&
                 globalThis.plantcast.session.recorded && !document.getElementById('legend').hidden);
             await land(page);
-            assert.deepEqual(await amiss(page), [], 'as it opens');
+            await becomes(() => amiss(page), [], 'as it opens');
             await press('#alarm-strip');
             await page.locator('#alarms-list tr').first().waitFor();
             await land(page);
-            assert.deepEqual(await amiss(page), [], 'alarms');
+            await becomes(() => amiss(page), [], 'alarms');
             await page.locator('#alarms-list tr', { hasText: 'TI-1' }).locator('.alarm-go').first().click();
             await page.locator('#card').waitFor();
             await arrive(page);
-            assert.deepEqual(await amiss(page), [], 'flown to');
-            assert.equal(await inSight(page, 'TI-1'), 'in sight');
+            await becomes(() => amiss(page), [], 'flown to');
+            await becomes(() => inSight(page, 'TI-1'), 'in sight');
             await shoot(page, `room-${file}-alarm`);
             await press('#card .trend'); // press() fails if anything covers the button
             await page.locator('#trend-chart canvas').waitFor();
             await press('#time-toggle');
             await page.locator('#time-slider').waitFor();
             await arrive(page);
-            assert.deepEqual(await amiss(page), [], 'trend and past');
+            await becomes(() => amiss(page), [], 'trend and past');
             await shoot(page, `room-${file}-trend`);
             await press('#trend-close');
             await press('#time-toggle');
             const listed = await page.locator('#alarms').isVisible();
             await press('#engineer-toggle');
             await page.locator('#engineer').waitFor();
-            assert.equal(await page.locator('#alarms').isVisible(), false, 'one of both');
+            await page.locator('#alarms').waitFor({ state: 'hidden' }); // one of both is open
             if (listed) { // switching between alarms and the engineer's panel and back must also work
                 await press('#alarm-strip');
                 await page.locator('#engineer').waitFor({ state: 'hidden' });
@@ -110,8 +111,8 @@ for (const name of WALKED) {
             }
             await page.locator('#engineer .tags button', { hasText: 'TI-2' }).click();
             await arrive(page);
-            assert.deepEqual(await amiss(page), [], 'engineer');
-            assert.equal(await inSight(page, 'TI-2'), 'in sight');
+            await becomes(() => amiss(page), [], 'engineer');
+            await becomes(() => inSight(page, 'TI-2'), 'in sight');
             await shoot(page, `room-${file}-engineer`);
             assert.deepEqual(browser.errors, []);
         } finally {
@@ -155,7 +156,7 @@ test('panels and the help are whole, on every screen', options, async (t) => {
                     await page.locator('#viewport').focus();
                     await page.keyboard.press(key);
                     await page.locator(opened).waitFor();
-                    assert.deepEqual(await panelsAmiss(page), [], opened);
+                    await becomes(() => panelsAmiss(page), [], opened);
                     await page.keyboard.press('Escape');
                     await page.locator(opened).waitFor({ state: 'hidden' });
                 }
@@ -164,7 +165,7 @@ test('panels and the help are whole, on every screen', options, async (t) => {
                         continue;
                     await page.locator(`#${id}-toggle`).click();
                     await page.locator(`#${id}.open`).waitFor();
-                    assert.deepEqual(await panelsAmiss(page), [], id);
+                    await becomes(() => panelsAmiss(page), [], id);
                     await page.locator(`#${id}-toggle`).click();
                 }
                 assert.deepEqual(errors, []);
@@ -194,7 +195,7 @@ test('what says that the picture is old lies over no legend', options, async () 
                 return b.width === 0 || a.bottom <= b.top || a.right <= b.left;
             }).catch(() => assert.fail(name));
             if (name !== 'phone across') // the phone's screen has no room for both texts, so one is cut off
-                assert.deepEqual(await amiss(page), [], name);
+                await becomes(() => amiss(page), [], name);
             await shoot(page, `old-${name.replace(' ', '-')}`);
         } finally {
             await close();
@@ -249,9 +250,8 @@ test('of seven quantities each is named in full', options, async () => {
             const { page, close } = await openPage(`${address}?lang=en`, screen);
             try {
                 await waitForPicture(page);
-                const cut = await page.evaluate(() => [...document.querySelectorAll('#groups span')]
-                    .filter((e) => e.scrollWidth > e.clientWidth + 1).map((e) => e.textContent));
-                assert.deepEqual(cut, [], name);
+                await becomes(() => page.evaluate(() => [...document.querySelectorAll('#groups span')]
+                    .filter((e) => e.scrollWidth > e.clientWidth + 1).map((e) => e.textContent)), [], name);
                 await shoot(page, `seven-${name}`);
                 await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'more4' }));
                 await page.waitForFunction(() => {
@@ -312,7 +312,7 @@ for (const [zoom, viewport] of Object.entries(ZOOMED))
         try {
             await waitForPicture(page);
             await page.waitForFunction(() => globalThis.plantcast.session.recorded);
-            assert.deepEqual(await collisions(page), [], 'as it opens');
+            await becomes(() => collisions(page), [], 'as it opens');
             assert.notEqual(await inkOf(page), await inkOf(page, '--ink-2'));
             await page.emulateMedia({ contrast: 'more' }); // all texts and lines get the colour of the main text
             await page.waitForFunction(() => getComputedStyle(document.documentElement).getPropertyValue('--line') ===
@@ -322,7 +322,7 @@ for (const [zoom, viewport] of Object.entries(ZOOMED))
             for (const [show, part, hide] of steps) {
                 await show();
                 await page.locator(part).waitFor();
-                assert.deepEqual(await collisions(page), [], part);
+                await becomes(() => collisions(page), [], part);
                 await shoot(page, `zoom-${viewport.width}-${part.replace(/\W/g, '')}`);
                 await hide();
                 await page.locator(part).waitFor({ state: 'hidden' });
@@ -368,7 +368,7 @@ test('what a filter leaves out is named by a button that ends the filter, on eve
             await waitForPicture(page);
             await page.waitForFunction(() => globalThis.plantcast.session.recorded);
             for (const [i, [width, height]] of SIZES.entries()) {
-                await page.setViewportSize({ width, height });
+                await resize(page, { width, height });
                 await press('e');
                 await page.locator('#alarms').waitFor();
                 for (const time of [false, true]) {
@@ -382,7 +382,7 @@ test('what a filter leaves out is named by a button that ends the filter, on eve
                     await setField(page, { 'alarms-words': 'TI', 'alarms-which': 'gone', 'alarms-priority': '1' });
                     await button.getByText('0/1 · “TI” · Gegangen · Priorität 1').waitFor();
                     if (height > 300) // at 400 % zoom, the page scrolls
-                        assert.notEqual(await readable(page, '#alarms-applied'), '', name);
+                        await becomes(async () => await readable(page, '#alarms-applied') !== '', true, name);
                     await shoot(page, `filtered-${width}${time ? '-time' : ''}`);
                     await button.click();
                     await page.locator('#alarms-list tr').waitFor();
@@ -391,12 +391,13 @@ test('what a filter leaves out is named by a button that ends the filter, on eve
                     await setField(page, { 'journal-which': 'shelved' });
                     await button.getByText(/^0\/\d+ · .* · Zurückgestellt/).waitFor();
                     if (height > 300)
-                        assert.notEqual(await readable(page, '#alarms-applied'), '', `${name}, journal`);
+                        await becomes(async () => await readable(page, '#alarms-applied') !== '', true, `${name}, journal`);
                     await button.click();
                     await page.locator('#journal-list tr').first().waitFor();
                     if (height > 300)
-                        assert.match(`${await readable(page, '#journal-span')}${await readable(page, '#alarms-applied')}`,
-                            /^(day|Letzte 24 Stunden)$/, `${name}: the time range`);
+                        await becomes(async () => /^(day|Letzte 24 Stunden)$/.test(
+                            await readable(page, '#journal-span') + await readable(page, '#alarms-applied')), true,
+                        `${name}: the time range`);
                 }
                 await press('y');
                 await press('e');

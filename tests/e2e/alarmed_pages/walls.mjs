@@ -7,6 +7,7 @@ import { openPage, shoot, waitForPicture } from '../support/browser.mjs';
 import { startAlarmed } from '../support/panels.mjs';
 import { sweep } from '../support/sweep.mjs';
 import { notBuilt } from '../support/tiny_plant.mjs';
+import { becomes } from '../support/until.mjs';
 
 const options = { skip: notBuilt(), timeout: 200000 };
 const HD = { width: 1920, height: 1080 }, UHD = { width: 3840, height: 2160 }, UPRIGHT = { width: 1080, height: 1920 };
@@ -67,9 +68,8 @@ test('legends, clock, age and what is simulated are whole and beside the picture
                 await page.evaluate((half) => globalThis.plantcast.session.setParams({ split: half }), split);
                 await page.waitForFunction((count) => document.querySelectorAll('.legend:not([hidden])').length === count &&
                     document.getElementById('viewport').classList.contains('split') === (count > 1), split ? 2 : 1);
-                await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+                await becomes(() => amiss(page), [], `?wall=${wall} at ${viewport.width}x${viewport.height}${split ? ', split' : ''}`);
                 await shoot(page, `wall-${wall.replace(/\W/g, '-')}-${viewport.width}-${language}${split ? '-split' : ''}`);
-                assert.deepEqual(await amiss(page), [], `?wall=${wall} at ${viewport.width}x${viewport.height}${split ? ', split' : ''}`);
             }
             assert.deepEqual(errors, []);
         } finally {

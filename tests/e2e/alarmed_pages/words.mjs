@@ -3,10 +3,11 @@
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { alarmed } from './alarmed.mjs';
-import { DESKTOP, openPage, PHONE, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
+import { DESKTOP, openPage, PHONE, resize, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
 import { cutOff, everyPanel } from '../support/panels.mjs';
 import { sweep } from '../support/sweep.mjs';
 import { notBuilt } from '../support/tiny_plant.mjs';
+import { becomes } from '../support/until.mjs';
 
 const options = { skip: notBuilt(), timeout: 200000 };
 let url;
@@ -52,7 +53,7 @@ test('no word is said that is not in the files of words, and no key is shown', o
     });
     try {
         await waitForPicture(browser.page);
-        await everyPanel(browser.page, async (name) => assert.deepEqual(await unsaid(browser.page), [], name));
+        await everyPanel(browser.page, (name) => becomes(() => unsaid(browser.page), [], name));
         assert.deepEqual(browser.errors, []);
     } finally {
         await browser.close();
@@ -64,7 +65,7 @@ for (const [lang, decimal, date] of READERS.slice(sweep(0, 1))) {
     test(`in ${lang}: words, numbers and dates; ${sweep('every panel', 'the page')} fits on every screen`, options, async () => {
         const browser = await openPage(`${url}?lang=${lang}`, DESKTOP), { page } = browser;
         const look = async (name) => {
-            assert.deepEqual(await cutOff(page), [], name);
+            await becomes(() => cutOff(page), [], name);
             if (!name.endsWith('closed'))
                 await shoot(page, `words-${lang}-${name}`);
         };
@@ -79,13 +80,10 @@ for (const [lang, decimal, date] of READERS.slice(sweep(0, 1))) {
                     session.setParams({ selected: session.model.assets[0].id });
                 });
             await page.locator('.reading .value').first().waitFor();
-            assert.match(await page.locator('#clock').textContent(), date);
-            const number = new RegExp(`^\\d+\\${decimal}\\d+ `);
-            assert.ok((await page.locator('.reading .value').allTextContents()).some((text) => number.test(text)));
+            await page.locator('#clock', { hasText: date }).waitFor();
+            await page.locator('.reading .value', { hasText: new RegExp(`^\\d+\\${decimal}\\d+ `) }).first().waitFor();
             for (const [name, { viewport }] of [['tablet', TABLET], ['phone', PHONE]]) {
-                await page.setViewportSize(viewport);
-                await page.waitForFunction(() => innerWidth > 1023 ||
-                    [...document.styleSheets].some(({ href }) => href?.endsWith('/narrow.css')));
+                await resize(page, viewport);
                 await settle(page);
                 await look(`page-${name}`);
             }
@@ -106,7 +104,7 @@ test('titles and present values of the alarm list and the journal are whole, als
                 await page.locator(`#${tab}-tab`).click();
                 await page.locator(`#${tab}-list tr`).first().waitFor();
                 for (const width of [1920, 1600, 1400, 1280, 1200]) {
-                    await page.setViewportSize({ width, height: 900 });
+                    await resize(page, { width, height: 900 });
                     const cut = await page.evaluate((name) => [...document.querySelectorAll(`#${name}-table thead th`)].filter((head) => {
                         const title = head.querySelector('button') ?? head;
                         head.querySelector('button')?.click();
@@ -120,11 +118,11 @@ test('titles and present values of the alarm list and the journal are whole, als
                     });
                     assert.ok(needed <= room, `${lang}, ${tab}, ${width}: a value of ${needed} pixels is cut at ${room}`);
                 }
-                await page.setViewportSize({ width: 1920, height: 900 });
+                await resize(page, { width: 1920, height: 900 });
             }
             await page.locator('#alarms-tab').click();
             for (const width of [412, 390, 375, 360]) {
-                await page.setViewportSize({ width, height: 844 });
+                await resize(page, { width, height: 844 });
                 const [needed, room] = await page.locator('#alarms-list td[data-col=state]').first().evaluate((cell) => {
                     const now = cell.parentElement.querySelector('[data-col=now]');
                     now.firstChild.data = '200.00';

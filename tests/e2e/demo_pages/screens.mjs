@@ -3,10 +3,13 @@
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { demo } from './demo.mjs';
-import { markers, openPage, PHONE, settle, SHARP, shoot, TABLET, view, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import {
+    arrive, markers, openPage, PHONE, resize, settle, SHARP, shoot, TABLET, view, waitForHealth, waitForPicture,
+} from '../support/browser.mjs';
 import { contrastRatio } from '../support/pixels.mjs';
 import { missing } from '../support/plant.mjs';
 import { sweep } from '../support/sweep.mjs';
+import { becomes, until } from '../support/until.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
@@ -23,7 +26,8 @@ async function withPage(screen, f) {
     try {
         await waitForPicture(browser.page);
         await waitForHealth(browser.page, 'live');
-        await settle(browser.page);
+        await browser.page.evaluate(() => globalThis.plantcast.modules.get('cameraController')); // it is loaded when it is first needed
+        await arrive(browser.page);
         await f(browser.page);
         assert.deepEqual(browser.errors, []);
     } finally {
@@ -84,18 +88,18 @@ test('tablet: one finger turns, two pan and zoom', options, () => withPage(TABLE
     assert.notDeepEqual(looked.camera.target, pinched.camera.target);
     const isHome = ({ camera }) => camera.eye.every((m, i) => Math.abs(m - start.camera.eye[i]) < 1e-6);
     await settle(page);
-    for (let tries = 0; tries < 100 && !isHome(await view(page)); tries++) {
-        if (tries % 30 === 0) // chromium may take a tap right after three fingers for the end of their gesture
+    let tries = 0;
+    await until('home again', async () => {
+        if (tries++ % 60 === 0) // chromium may take a tap right after three fingers for the end of their gesture
             await page.locator('#home').tap();
-        await page.waitForTimeout(100);
-    }
-    assert.ok(isHome(await view(page)), 'home again');
+        return isHome(await view(page));
+    });
     await settle(page);
-    assert.deepEqual(await tooSmall(page), []);
-    assert.deepEqual(await sticksOut(page), []);
+    await becomes(() => tooSmall(page), []);
+    await becomes(() => sticksOut(page), []);
     await shoot(page, 'tablet');
     await page.locator('#display-toggle').tap();
-    assert.deepEqual(await tooSmall(page), []);
+    await becomes(() => tooSmall(page), []);
     await shoot(page, 'tablet-display');
 }));
 
@@ -177,13 +181,16 @@ test('a method of the right half that is not the left one\'s is shown on every s
     const method = page.locator('#right-interpolation'), paper = { group: 'temperature', interpolation: 'paper' };
     for (const [width, height] of [[1280, 800], [1024, 768], [844, 390], [390, 844]]) {
         const name = `${width}x${height}`;
-        await page.setViewportSize({ width, height });
+        await resize(page, { width, height });
         for (const split of [{ group: 'pressure' }, paper]) {
             await page.evaluate((half) => globalThis.plantcast.session.setParams({ split: half }), split);
             await method.waitFor({ state: split === paper ? 'visible' : 'hidden' });
-            const [bar, box] = await Promise.all(['#split-bar', '#viewport'].map((one) => page.locator(one).boundingBox()));
-            assert.ok(bar.x >= box.x + box.width / 2 && bar.y >= box.y && bar.x + bar.width <= box.x + box.width &&
-                bar.y + bar.height <= box.y + box.height, `${name}: ${JSON.stringify([bar, box])}`);
+            const boxes = () => Promise.all(['#split-bar', '#viewport'].map((one) => boxOf(page, one)));
+            await until(`the bar in the right half: ${name}`, async () => {
+                const [bar, box] = await boxes();
+                return bar.x >= box.x + box.width / 2 && bar.y >= box.y && bar.x + bar.width <= box.x + box.width &&
+                    bar.y + bar.height <= box.y + box.height;
+            }, 30);
             await page.evaluate(() => globalThis.plantcast.session.setParams({ split: null }));
             await page.locator('#split-bar').waitFor({ state: 'hidden' });
         }
@@ -192,7 +199,7 @@ test('a method of the right half that is not the left one\'s is shown on every s
 
 test('tablet upright', options, () => withPage({ ...TABLET, viewport: { width: 768, height: 1024 } }, async (page) => {
     assert.equal(await page.locator('#assets').isVisible(), false, 'the list is folded away');
-    assert.deepEqual(await sticksOut(page), []);
+    await becomes(() => sticksOut(page), []);
     await shoot(page, 'tablet-upright');
 }));
 
@@ -201,23 +208,23 @@ test('phone: device pixels; choose equipment from the list, fly there, tap a sen
     const box = await page.locator('#viewport').boundingBox();
     const size = await page.evaluate(() => [document.getElementById('picture').width, document.getElementById('picture').height]);
     assert.deepEqual(size, [box.width * 2, box.height * 2]);
-    assert.deepEqual(await sticksOut(page), []);
-    assert.deepEqual(await tooSmall(page), []);
+    const { camera: home } = await view(page);
+    await becomes(() => sticksOut(page), []);
+    await becomes(() => tooSmall(page), []);
     await shoot(page, 'phone');
     await page.locator('#assets-toggle').tap();
     const row = page.locator('.asset', { hasText: 'sensors' }).first();
     await shoot(page, 'phone-list');
     await row.tap();
     await page.locator('#assets').waitFor({ state: 'hidden' }); // a tap on a row closes the list
-    await page.waitForTimeout(1000);
-    await settle(page);
+    await page.waitForFunction((eye) => globalThis.plantcast.session.camera.eye.some((m, i) => m !== eye[i]), home.eye);
+    await arrive(page);
     const selected = (await view(page)).params.selected;
-    const sensor = (await markers(page)).find((m) => m.asset === selected && !m.occluded);
-    assert.ok(sensor, `a sensor of ${selected} in sight`);
+    const sensor = await until(`a sensor of ${selected} in sight`, async () =>
+        (await markers(page)).find((m) => m.asset === selected && !m.occluded));
     await page.touchscreen.tap(sensor.pageX, sensor.pageY);
-    await page.locator('#card').waitFor();
-    assert.match(await page.locator('#card h3').textContent(), new RegExp(sensor.name));
-    assert.deepEqual(await sticksOut(page), []);
+    await page.locator('#card h3', { hasText: sensor.name }).waitFor();
+    await becomes(() => sticksOut(page), []);
     await shoot(page, 'phone-card');
 }));
 
@@ -231,10 +238,15 @@ test('phones: sheets of at most 40 % beside the picture, the legend a strip', op
         const upright = height > width, name = `${width}x${height}`;
         await page.setViewportSize({ width, height });
         await page.waitForFunction((wide) => Math.abs(globalThis.plantcast.viewport.width - wide) < 2, width);
-        assert.equal((await boxOf(page, '#legend')).height, 28, name);
+        const isOpen = (is) => page.waitForFunction((open) => { // a tap is followed by its click
+            const { height: high } = document.getElementById('legend').getBoundingClientRect();
+            return open ? high > 60 : high === 28;
+        }, is);
+        await isOpen(false);
         await page.locator('#legend').tap();
-        assert.ok((await boxOf(page, '#legend')).height > 60, 'a tap opens the legend');
+        await isOpen(true);
         await page.locator('#legend').tap();
+        await isOpen(false);
         for (const [button, sheet] of Object.entries(SHEETS)) {
             await page.locator(`#${button}`).tap();
             await page.waitForFunction(([one, side, whole]) => {
@@ -383,8 +395,8 @@ test('phones: name and state are read, nothing is cut off, all is as large as a 
             return b.top < a.bottom && a.top < b.bottom && b.left < a.right - parseFloat(getComputedStyle(strip).paddingRight);
         });
         assert.equal(isOver, false, name);
-        assert.deepEqual(await tooSmall(page), [], name);
-        assert.deepEqual(await sticksOut(page), [], name);
+        await becomes(() => tooSmall(page), [], name);
+        await becomes(() => sticksOut(page), [], name);
         await shoot(page, `phone-${name}`);
 
         await page.locator('#more-toggle').tap();
@@ -393,7 +405,7 @@ test('phones: name and state are read, nothing is cut off, all is as large as a 
         const apart = more.x >= legend.x + legend.width || more.y >= legend.y + legend.height;
         assert.ok(apart, `${name}: the legend is read beside it: ${JSON.stringify([more, legend])}`);
         assert.ok(more.y >= 0 && more.x >= 0 && more.y + more.height <= height && more.x + more.width <= width, name);
-        assert.deepEqual(await tooSmall(page), [], name);
+        await becomes(() => tooSmall(page), [], name);
         await page.keyboard.press('Escape');
         await page.locator('#more.open').waitFor({ state: 'hidden' });
     }
@@ -409,15 +421,15 @@ test('phones: name and state are read, nothing is cut off, all is as large as a 
     await page.setViewportSize({ width: 390, height: 844 });
     await page.locator('#views-toggle').tap();
     await page.locator('#cut').waitFor();
-    assert.deepEqual(await tooSmall(page), [], 'views');
+    await becomes(() => tooSmall(page), [], 'views');
     await page.keyboard.press('Escape');
     await page.waitForFunction(() => globalThis.plantcast.session.recorded);
     await page.locator('#time-toggle').tap();
     await page.locator('#time-slider').waitFor();
-    assert.deepEqual(await tooSmall(page), [], 'history');
+    await becomes(() => tooSmall(page), [], 'history');
     await page.evaluate(() => globalThis.plantcast.showTrend(globalThis.plantcast.session.model.tags.find(({ group }) => group)));
     await page.locator('#trends .drop').first().waitFor();
-    assert.deepEqual(await tooSmall(page), [], 'trend');
+    await becomes(() => tooSmall(page), [], 'trend');
 }));
 
 test('at 200 % zoom, the engineering panel is as high as the picture, and both fill the stage', options, () => withPage(
@@ -447,7 +459,9 @@ test('legends half a phone wide: the names of limits do not overlap, and the col
             assert.ok(bar.width >= 30 && first.left >= title.end && last.left > first.end && last.end <= right,
                 `${id}: ${JSON.stringify([title, bar, first, last, right])}`);
         }
+        const { height: low } = await boxOf(page, '#legend');
         await page.locator('#legend').tap();
+        await page.waitForFunction((was) => document.getElementById('legend').getBoundingClientRect().height > was, low);
         for (const width of ['', '60px']) {
             await page.locator('#legend .scale').evaluate((e, wide) => { e.style.width = wide; }, width);
             const names = await page.evaluate(() => {

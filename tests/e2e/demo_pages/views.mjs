@@ -112,26 +112,26 @@ test('a cut, ghosts and hidden equipment', options, async () => {
     await page.locator('#shows button', { hasText: 'Transparent' }).click();
     await waitForShown(['T-101'], []);
     await settle(page);
-    assert.match(await page.locator('#shown span').textContent(), /^1 transparent$/);
+    await page.locator('#shown span', { hasText: /^1 transparent$/ }).waitFor();
     await shoot(page, 'ghost');
     await page.locator('#shows button', { hasText: 'Hide' }).click();
     await waitForShown([], ['T-101']);
-    assert.match(await page.locator('#shown span').textContent(), /^1 of \d+ hidden$/);
+    await page.locator('#shown span', { hasText: /^1 of \d+ hidden$/ }).waitFor();
     // only markers of alarms remain on T-101
     await waitFor(() => !globalThis.plantcast.overlay.markers.some(({ tag, alarm }) => tag.asset === 'T-101' && !alarm));
     await page.locator('#show-all').click();
     await waitForShown([], []);
-    assert.equal(await page.locator('#shown').isVisible(), false);
+    await page.locator('#shown').waitFor({ state: 'hidden' });
     await page.locator('#shows button', { hasText: 'Only this' }).click();
     await waitFor(() => globalThis.plantcast.session.confirmed.isolate.length === 1);
     const count = await page.evaluate(() => globalThis.plantcast.session.model.assets.length);
-    assert.ok((await page.locator('#shown span').textContent()).startsWith(`${count - 1} of ${count} hidden`));
+    await page.locator('#shown span', { hasText: new RegExp(`^${count - 1} of ${count} hidden`) }).waitFor();
     await page.keyboard.press('Escape');
     await settle(page);
     await shoot(page, 'only');
     await page.locator('#shown button').click();
     await waitFor(() => globalThis.plantcast.session.confirmed.isolate.length === 0);
-    assert.equal(await page.locator('#shown').isVisible(), false);
+    await page.locator('#shown').waitFor({ state: 'hidden' });
     assert.deepEqual(browser.errors, []);
 });
 
@@ -160,7 +160,9 @@ test('a flight to a tag ends where the tag is seen and its equipment fills 35 % 
 });
 
 test('the eye goes into a room; an asset close around a tag becomes a ghost, and Backspace undoes all', options, async () => {
-    const tiny = await TinyPlant.create(), text = readFileSync(tiny.file, 'utf8');
+    const tiny = await TinyPlant.create();
+    tiny.keepFresh();
+    const text = readFileSync(tiny.file, 'utf8');
     writeFileSync(tiny.file, text.replace('groups:', `  - { id: HOUSE, model: box.gltf, placement: { scale: 1.15 } }
   - { id: ROOM, model: box.gltf, placement: { translate: [3, 0, 0], scale: 2 } }\ngroups:`));
     await tiny.start();
@@ -184,14 +186,14 @@ test('the eye goes into a room; an asset close around a tag becomes a ghost, and
         await on.waitForFunction(() => !globalThis.plantcast.cameraController.fly);
         await settle(on);
         await on.waitForFunction(() => globalThis.plantcast.overlay.markers.find(({ tag }) => tag.name === 'TI-1')?.occluded === false);
-        assert.match(await on.locator('#shown span').textContent(), /^1 transparent$/);
+        await on.locator('#shown span', { hasText: /^1 transparent$/ }).waitFor();
         await shoot(on, 'seen-through');
         await on.locator('#viewport').focus();
         await on.keyboard.press('Backspace');
         await ghosts([]);
         await on.waitForFunction((eye) =>
             Math.hypot(...globalThis.plantcast.session.camera.eye.map((m, i) => m - eye[i])) < 1e-6, before.eye);
-        assert.equal(await on.locator('#shown').isVisible(), false);
+        await on.locator('#shown').waitFor({ state: 'hidden' });
         assert.deepEqual(own.errors, []);
     } finally {
         await own.close();
@@ -202,10 +204,12 @@ test('the eye goes into a room; an asset close around a tag becomes a ghost, and
 test('the panel of views goes to the highest and to the lowest reading, in two clicks', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ clip: null, hidden: [], ghost: [], isolate: [] }));
     for (const [name, sign] of [['highest', 1], ['lowest', -1]]) {
+        await page.evaluate(() => globalThis.plantcast.selectTag(null));
         await page.locator('#views-toggle').click();
         await page.locator(`[data-extreme=${name}]`).click();
         await page.locator('#views').waitFor({ state: 'hidden' });
-        await arrive(() => globalThis.plantcast.selection.tag);
+        await arrive(() => globalThis.plantcast.selection.tag &&
+            document.querySelector('#card h3')?.textContent === globalThis.plantcast.selection.tag);
         const [value, others, isThere, title] = await page.evaluate(() => {
             const { overlay, selection, session: { model: { tag: find, readings, tags }, model, params } } = globalThis.plantcast;
             const tag = find.call(model, selection.tag), all = tags.filter(({ group, asset, position }) =>

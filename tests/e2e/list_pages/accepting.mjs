@@ -8,7 +8,9 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { DESKTOP, openPage, settle, shoot, waitForPicture } from '../support/browser.mjs';
+import { linesOf } from '../support/lines.mjs';
 import { BIN, missing, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
+import { until } from '../support/until.mjs';
 
 const absent = missing();
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync('/usr/bin/chromium') ? 'no chromium' : false;
@@ -74,7 +76,7 @@ test('the filter says how many, which not and why, and marks them on the model',
     await settle(page);
     await shoot(page, 'accepting');
     await page.getByLabel('Minimum confidence').fill('7');
-    await page.getByRole('button', { name: /^Accept/ }).isDisabled();
+    await page.getByRole('button', { name: /^Accept/, disabled: true }).waitFor();
     await page.getByLabel('Minimum confidence').fill('0.9');
     assert.equal(assumed(), ASSUMED, 'nothing is written before');
 });
@@ -91,7 +93,9 @@ test('accepted: one list, one line in the audit trail, the others as they were',
     before.forEach((row, n) => assert.equal(now[n],
         row.startsWith('TA-') && !/equipment/.test(now[n]) ? row.replace('equipment', '') : row));
     assert.ok(!existsSync(`${tagsFile}.2`), 'the list is written once');
-    const lines = readFileSync(join(plant.folder, 'audit.log'), 'utf8').split('\n').filter((line) => /assumed sensor place/.test(line));
+    const trail = () => linesOf(join(plant.folder, 'audit.log')).filter((line) => /assumed sensor place/.test(line));
+    await until('it in the trail', () => trail().length > 0);
+    const lines = trail();
     assert.equal(lines.length, 1, lines.join('\n'));
     assert.match(lines[0], new RegExp(`${sure} assumed sensor places accepted \\(within 0.1 m of the surface, confidence at least 0.9\\)`));
     await page.waitForFunction((n) => globalThis.plantcast.session.model.tags.filter(({ place }) => place === 'equipment').length === n,

@@ -18,7 +18,8 @@ before(async () => {
         return;
     plant = await TinyPlant.create();
     tagsFile = join(plant.folder, 'tags.csv');
-    writeFileSync(tagsFile, `${readFileSync(tagsFile, 'utf8')}TI-9,400007,Float,°C,spare,temperature,,,,,1\n`);
+    plant.keepFresh();
+    writeFileSync(tagsFile, `${readFileSync(tagsFile, 'utf8')}TI-9,400007,Float,°C,spare,temperature,,,,,600\n`);
     assert.equal(plant.prepare().code, 0);
     await plant.startSim();
     await plant.set({ 'TI-1': 80, 'TI-2': 20, 'TI-9': 50, 'PI-1': 5 });
@@ -120,7 +121,7 @@ test('the list is saved: what changes is shown, then the list is active', option
     await page.getByRole('button', { name: 'Save and apply' }).click();
     await says('#engineer .part .note', 'Applied. The previous list is kept as tags\\.csv\\.1');
     assert.equal(readFileSync(`${tagsFile}.1`, 'utf8'), old);
-    assert.match(readFileSync(tagsFile, 'utf8'), /TI-9,400007,Float,°C,spare,temperature,E-101,0\.\d+,-0\.5,0\.\d+,1/);
+    assert.match(readFileSync(tagsFile, 'utf8'), /TI-9,400007,Float,°C,spare,temperature,E-101,0\.\d+,-0\.5,0\.\d+,600/);
     await page.waitForFunction(() => globalThis.plantcast.session.model.tag('TI-9').position !== null);
     assert.equal(await moved(), null);
     await says('#assets-list', 'E-101.*3 sensors');
@@ -137,7 +138,7 @@ test('walk: who moved is pointed out, swapped ones too; a value that fits proves
     await says('#engineer .count', '^0 of 4 passed');
     await page.locator('#engineer .part:not([hidden]) .tags button', { hasText: 'TI-1' }).click();
     await says('#engineer .judge output', '^now 80');
-    await page.waitForTimeout(700); // waits for some readings, from which the noise is measured
+    await page.waitForFunction(() => globalThis.plantcast.modules.there('engineer').parts.prove.loopCheck.last.size === 4);
     await button('Watch for changes').click();
     await plant.tell('set TI-2 60');
     await says('#engineer .judge .note', 'TI-2 changed, not TI-1: are they swapped');
@@ -200,8 +201,9 @@ test('on a tablet: a tap places, a finger drags', options, async () => {
     const tablet = await openPage(`http://127.0.0.1:${plant.port}/`, TABLET), on = tablet.page;
     await ready(on);
     await on.locator('#engineer-toggle').tap();
+    // the camera would fly to a tag that is not in sight
+    await on.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ tag, occluded }) => tag.name === 'TI-1' && !occluded));
     await on.locator('#engineer .tags button', { hasText: 'TI-1' }).tap();
-    await on.waitForTimeout(800); // wait, because the camera may fly to the tag
     await look(on, [2.6, -2.2, 1.6]);
     const { x, y } = await at([0.1, -0.5, 0.1], on);
     await on.touchscreen.tap(x, y);

@@ -40,9 +40,10 @@ async function measure() {
     const { metrics } = await devTools.send('Performance.getMetrics');
     const { Nodes: nodes, JSEventListeners: listeners, JSHeapUsedSize: heap } =
         Object.fromEntries(metrics.map(({ name, value }) => [name, value]));
-    // The sensor card's content depends on what had arrived when the card was closed (drift, neighbours, alarm): not counted.
-    const { card = 0 } = await contents();
-    return { nodes: nodes - card, listeners, heap };
+    // Not counted, because it depends on the answers that had arrived when the part was closed: the sensor card's content (drift,
+    // neighbours, alarm), and the list of sensors that disagree with their neighbours, each with a button.
+    const { card = 0, disagreeing = 0, drifting = 0 } = await contents(), buttons = await page.locator('#disagreeing button').count();
+    return { nodes: nodes - card - disagreeing - drifting, listeners: listeners - buttons, heap };
 }
 
 // Returns how many nodes each element of the document with an id contains directly or through elements without an id.

@@ -2,8 +2,9 @@
 // A value from a PLC's register appears in a browser's pixels; and recovery after the daemon died.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
+import { isDeepStrictEqual } from 'node:util';
 import {
-    arrive, grab, healthKind, held, markers, openPage, pageOf, settle, shoot, view, waitForChange, waitForHealth, waitForPicture,
+    arrive, grab, held, markers, openPage, pageOf, settle, shoot, view, waitForChange, waitForHealth, waitForPicture,
 } from '../support/browser.mjs';
 import { contrast, countOutside, difference, meanAround } from '../support/pixels.mjs';
 import { missing, startPlant } from '../support/plant.mjs';
@@ -56,7 +57,7 @@ test('live frames arrive, and the page says so', options, async () => {
     assert.ok(contrast(picture) > 10, `contrast ${contrast(picture)}`);
     const box = await page.locator('#viewport').boundingBox();
     await waitForWhole(Math.round(box.width), Math.round(box.height)); // the picture has one pixel per screen pixel
-    assert.match(await page.locator('#clock').textContent(), /^\w{3} \d+, \d{4} \d\d:\d\d:\d\d UTC/);
+    await page.locator('#clock', { hasText: /^\w{3} \d+, \d{4} \d\d:\d\d:\d\d UTC/ }).waitFor();
     await page.locator('#age', { hasText: /^\d+(\.\d)? s$/ }).waitFor();
     await shoot(page, 'desktop');
 });
@@ -94,9 +95,8 @@ test('one reading changes: the picture changes at its sensor, and nowhere but on
     }
     assert.equal(countOutside(change, 24, box), 0, 'pixels that changed elsewhere');
     await page.mouse.move(one.pageX, one.pageY);
-    await page.locator('#card').waitFor();
-    assert.match(await page.locator('#card').textContent(), new RegExp(`^${one.name}`));
-    assert.match(await page.locator('#card .value').textContent(), new RegExp(`^${wanted}\\.\\d °C$`));
+    await page.locator('#card', { hasText: new RegExp(`^${one.name}`) }).waitFor();
+    await page.locator('#card .value', { hasText: new RegExp(`^${wanted}\\.\\d °C$`) }).waitFor();
     await shoot(page, 'one-reading');
 });
 
@@ -113,15 +113,17 @@ test('mouse, wheel and keys move the camera, and the picture follows', options, 
     assert.ok(Math.hypot(stays[0] - centre[0], stays[1] - centre[1]) < 2, `what was under the pointer stays there: ${stays}`);
     assert.notDeepEqual(turned.camera.eye, start.camera.eye);
     await page.mouse.wheel(0, -400);
-    const zoomed = await view(page);
     const distance = ({ camera }) => Math.hypot(...camera.eye.map((x, i) => x - camera.target[i]));
-    assert.ok(distance(zoomed) < distance(turned));
+    const zoomed = await until('nearer', async () => {
+        const now = await view(page);
+        return distance(now) < distance(turned) && now;
+    });
     await page.keyboard.press('ArrowRight');
-    assert.notDeepEqual((await view(page)).camera, zoomed.camera);
+    await until('another camera', async () => !isDeepStrictEqual((await view(page)).camera, zoomed.camera));
     await settle(page, QUIET_MS);
     const drawn = await page.evaluate(() => globalThis.plantcast.session.picture.camera.eye);
     (await view(page)).camera.eye.forEach((x, i) => assert.ok(Math.abs(x - drawn[i]) < 1e-3, 'the picture shows the newest camera'));
-    assert.ok(Number.isFinite(parseInt(await page.locator('#latency').textContent(), 10)), 'latency is measured');
+    await until('the latency', async () => Number.isFinite(parseInt(await page.locator('#latency').textContent(), 10)));
 });
 
 const codec = () => page.evaluate(() => globalThis.plantcast.session.picture.codec);
@@ -138,16 +140,15 @@ test('the daemon dies: said in words, the picture stays; it returns: the same vi
     const before = await grab(page), asked = await view(page), tags = await measured(), coded = await codec();
     await plant.stopDaemon('SIGKILL');
     await waitForHealth(page, 'lost');
-    assert.equal(await page.locator('#health .words').textContent(), 'Disconnected');
-    await page.waitForTimeout(1500);
-    assert.match(await page.locator('#banner').textContent(), /This picture is \d+(\.\d)? s old/);
+    await page.locator('#health .words', { hasText: /^Disconnected$/ }).waitFor();
+    await page.locator('#banner', { hasText: /This picture is \d+(\.\d)? s old/ }).waitFor();
     const frozen = difference(before, await grab(page));
     assert.equal(countOutside(frozen, 0, {}), 0, 'the last picture stays as it was');
     await shoot(page, 'disconnected');
 
     await plant.startDaemon();
     await waitForHealth(page, 'live');
-    assert.equal(await page.locator('#banner').isVisible(), false);
+    await page.locator('#banner').waitFor({ state: 'hidden' });
     await waitForMeasured(tags);
     await settle(page, QUIET_MS);
     const now = await view(page);
@@ -162,7 +163,10 @@ test('the daemon dies: said in words, the picture stays; it returns: the same vi
 
 test('the address carries the view over a reload', options, async () => {
     const asked = await view(page);
-    await page.waitForTimeout(600);
+    await page.waitForFunction(async () => { // the address follows the view after a moment
+        const [{ addressOf }, { session, selection }] = [await import('/core/address.js'), globalThis.plantcast];
+        return location.hash === addressOf(session, selection.tag);
+    });
     await page.reload();
     await waitForPicture(page);
     await settle(page, QUIET_MS);
@@ -175,16 +179,16 @@ test('the address carries the view over a reload', options, async () => {
 test('the PLC falls silent: no live data, in words; it answers again: live', options, async () => {
     await plant.ask('pause');
     await waitForHealth(page, 'nodata');
-    assert.match(await page.locator('#banner').textContent(), /No live data/i);
+    await page.locator('#banner', { hasText: /No live data/i }).waitFor();
     await page.waitForFunction(() => globalThis.plantcast.session.picture.oldestAgeMs === null);
     await settle(page, QUIET_MS);
-    assert.ok((await markers(page)).every((m) => m.quality === 'bad' && m.value === null), 'no value stays on the screen');
+    await until('no value on the screen', async () => (await markers(page)).every((m) => m.quality === 'bad' && m.value === null));
     await shoot(page, 'no-live-data');
     await plant.ask('resume');
     await waitForHealth(page, 'live');
 });
 
 test('nothing went wrong in the page, and nothing was asked from elsewhere', options, async () => {
-    assert.equal(await healthKind(page), 'live');
+    await waitForHealth(page, 'live');
     assert.deepEqual(browser.errors, []);
 });

@@ -11,7 +11,8 @@ import { after, before, test } from 'node:test';
 import { DESKTOP, openPage, PHONE, shoot, waitForPicture } from '../support/browser.mjs';
 import { freePort } from '../support/ports.mjs';
 import { makeCertificate } from '../support/receivers.mjs';
-import { notBuilt, Program, runProgram, sleep, TinyPlant } from '../support/tiny_plant.mjs';
+import { notBuilt, Program, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
+import { until } from '../support/until.mjs';
 
 const PASSES = 'proxy_http_version 1.1; proxy_set_header Upgrade $http_upgrade; proxy_set_header Connection "upgrade";';
 const NGINX = '/usr/sbin/nginx', LINES = /proxy_set_header Upgrade \$http_upgrade; proxy_set_header Connection "upgrade";/;
@@ -36,12 +37,8 @@ http {\naccess_log off;\n${temporary}\nserver { listen 127.0.0.1:${port};
 location /plantcast/ { proxy_pass http://127.0.0.1:${plant.port}/; proxy_set_header Host ${host}; ${more} } } }\n`);
     const nginx = spawn(NGINX, ['-c', path('nginx.conf'), '-p', plant.folder], { stdio: ['ignore', 'ignore', 'pipe'] });
     const ended = new Promise((done) => nginx.once('exit', done));
-    for (let tries = 0; ; tries++) {
-        if (await fetch(`http://127.0.0.1:${port}/plantcast/healthz`).then(({ ok }) => ok, () => false))
-            return async () => { nginx.kill(); await ended; };
-        assert.ok(tries < 200, 'nginx starts');
-        await sleep(50);
-    }
+    await until('nginx', () => fetch(`http://127.0.0.1:${port}/plantcast/healthz`).then(({ ok }) => ok, () => false));
+    return async () => { nginx.kill(); await ended; };
 }
 
 const shown = (page, pattern) => page.waitForFunction(([source]) => new RegExp(source).test(document.getElementById('banner').innerText),

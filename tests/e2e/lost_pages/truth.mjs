@@ -11,6 +11,7 @@ import { openPage, settle, shoot, TABLET, waitForHealth, waitForPicture } from '
 import { Relay, relayMissing } from '../support/relay.mjs';
 import { sweep } from '../support/sweep.mjs';
 import { missing, TinyPlant } from '../support/tiny_plant.mjs';
+import { becomes } from '../support/until.mjs';
 
 const absent = [...missing(), relayMissing()].filter(Boolean);
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
@@ -21,6 +22,7 @@ before(async () => {
     if (options.skip)
         return;
     plant = await TinyPlant.create();
+    plant.keepFresh();
     appendFileSync(plant.file, 'alarms: local\n');
     const tags = join(plant.folder, 'tags.csv');
     writeFileSync(tags, readFileSync(tags, 'utf8').split('\n').map((line, i) => line && line + (i === 0 ? ',H,HH' : ',60,90')).join('\n'));
@@ -113,8 +115,8 @@ test('a tablet that slept knows that its picture is old, until the server speaks
                 document.getElementById('viewport').classList.contains('is-old');
         }, null, { polling: 'raf' });
         await shoot(page, 'slept');
-        await waitForHealth(page, 'live', 30000);
-        assert.equal(await page.locator('#banner').isVisible(), false);
+        await waitForHealth(page, 'live');
+        await page.locator('#banner').waitFor({ state: 'hidden' });
     }));
 
 test('a tablet whose date is wrong tells ages and the plant\'s time all the same', options, () =>
@@ -123,7 +125,7 @@ test('a tablet whose date is wrong tells ages and the plant\'s time all the same
         const far = () => page.evaluate(() => Date.now() - globalThis.plantcast.session.clockUs() / 1000);
         assert.ok(await far() < -3 * 86400e3 + 60000, 'its date is wrong');
         const told = () => page.evaluate(() => ({ clock: document.getElementById('clock').textContent,
-            age: document.getElementById('age').textContent, health: document.getElementById('health').dataset.kind }));
+            age: document.getElementById('age').textContent }));
         // the age must also be right while the clock is set back; set forward, it would look like a sleep
         const ages = await page.evaluate(() => new Promise((done) => {
             const seen = [], timer = setInterval(() => {
@@ -136,12 +138,12 @@ test('a tablet whose date is wrong tells ages and the plant\'s time all the same
             }, 150);
         }));
         assert.deepEqual(ages.filter((age) => !/^[\d.]+ s$/.test(age)), [], 'seconds old, and never days');
-        const { clock, age, health } = await told(), now = new Date();
+        await waitForHealth(page, 'live');
+        const { clock, age } = await told(), now = new Date();
         assert.match(age, /^[\d.]+ s$/);
         assert.ok(parseFloat(age) < 10, age);
         assert.ok([0, 1000, 2000, 3000, 4000, 5000, 6000, 7000, 8000].some((ms) =>
             clock.includes(new Date(now.getTime() - ms).toISOString().slice(11, 19))), `${clock} is not ${now.toISOString()}`);
-        assert.equal(health, 'live');
         await shoot(page, 'wrong-date');
     }, () => {
         const Real = Date;
@@ -182,7 +184,7 @@ test('a slow link that comes to a halt: the last picture stays, marked as old, a
         relay.child.kill('SIGSTOP'); // no data arrives, and the connection stays open
         try {
             await page.waitForFunction(() => document.getElementById('viewport').classList.contains('is-old'));
-            assert.match(await page.locator('#banner').textContent(), /This picture is [\d.]+ s old/);
+            await page.locator('#banner', { hasText: /This picture is [\d.]+ s old/ }).waitFor();
             const now = await samples(page);
             assert.ok(now.every(([r, g, b]) => r + g + b > 30), 'nowhere black');
             assert.ok(new Set(now.map(String)).size > 20, 'and still the picture');
@@ -190,10 +192,10 @@ test('a slow link that comes to a halt: the last picture stays, marked as old, a
         } finally {
             relay.child.kill('SIGCONT');
         }
-        await waitForHealth(page, 'live', 60000);
+        await waitForHealth(page, 'live');
         await settle(page);
         assert.deepEqual(await view(), was);
-        assert.equal(await page.locator('#banner').isVisible(), false);
+        await page.locator('#banner').waitFor({ state: 'hidden' });
     });
     relay.close();
 });
@@ -221,9 +223,10 @@ test('legend and markers are of the picture that is seen, however late the one c
             relay.child.kill('SIGCONT');
         }
         await page.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ half }) => half === 1));
-        const [, both, then] = await said();
-        assert.deepEqual(both, ['Pressure bar', 'Temperature °C']);
-        assert.deepEqual(then.filter(([name]) => name === 'PI-1').map(([, , half]) => half), [0], JSON.stringify(then));
+        await becomes(async () => {
+            const [, both, then] = await said();
+            return [both, then.filter(([name]) => name === 'PI-1').map(([, , half]) => half)];
+        }, [['Pressure bar', 'Temperature °C'], [0]]);
     });
     relay.close();
 });
@@ -290,19 +293,16 @@ test('by https it is installed: it opens without its server, says so, and is liv
         await page.reload(); // reloads through the service worker, which caches the files
         await waitForPicture(page);
         await waitForHealth(page, 'live');
-        const keptNow = () => page.evaluate(async () => (await Promise.all((await caches.keys()).map(async (name) =>
+        const kept = await page.evaluate(async () => (await Promise.all((await caches.keys()).map(async (name) =>
             (await caches.open(name)).keys()))).flat().map(({ url: of }) => new URL(of).pathname));
-        const needed = ['/', '/app/main.js', '/words/en.js'], until = Date.now() + 60000;
-        let kept = [];
-        while (Date.now() < until && !needed.every((path) => kept.includes(path)))
-            kept = await keptNow();
-        assert.deepEqual(needed.filter((path) => !kept.includes(path)), []);
+        // the worker keeps a file before it answers
+        assert.deepEqual(['/', '/app/main.js', '/words/en.js'].filter((path) => !kept.includes(path)), []);
         assert.deepEqual(kept.filter((of) => /api|snapshot|stream/.test(of)), [], 'nothing that the plant says is kept');
         await secure.daemon.stop('SIGKILL');
         await page.reload();
         await waitForHealth(page, 'lost');
-        assert.equal(await page.locator('#banner').isVisible(), true);
-        assert.equal(await page.locator('#picture').isVisible(), false, 'no black picture');
+        await page.locator('#banner').waitFor();
+        await page.locator('#picture').waitFor({ state: 'hidden' }); // no black picture
         await shoot(page, 'installed-alone');
         await secure.startDaemon('--port', String(port), ...by.daemon);
         await waitForPicture(page);

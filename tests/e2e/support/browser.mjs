@@ -169,6 +169,17 @@ export async function openPage(url, screen = DESKTOP, before = null, arrange = n
     return { page, errors, close };
 }
 
+// Sets the size of the window, and waits for the style sheets of narrow screens and phones, which the page loads when it first needs them.
+export async function resize(page, viewport) {
+    await page.setViewportSize(viewport);
+    await page.waitForFunction(async ({ width, height }) => {
+        const { phone } = await import('/app/common/dom.js'), narrow = matchMedia('(max-width: 1023px)');
+        const has = (name) => [...document.styleSheets].some(({ href }) => href?.endsWith(`/${name}.css`));
+        return matchMedia(`(width: ${width}px) and (height: ${height}px)`).matches && (!narrow.matches || has('narrow')) &&
+            (!phone.matches || has('sheet'));
+    }, viewport);
+}
+
 // true: take screenshots. Only in `make test-long`, or with PLANTCAST_SHOTS=1, because they would take longer than the tests themselves.
 export const SHOOTS = sweep(true, process.env.PLANTCAST_SHOTS === '1');
 
@@ -179,7 +190,6 @@ export async function shoot(page, name) {
     await page.screenshot({ path: join(SCREENSHOTS, `${name}.png`) });
 }
 
-export const healthKind = (page) => page.evaluate(() => document.getElementById('health').dataset.kind);
 export const waitForHealth = (page, kind, timeout = PATIENCE_MS) =>
     page.waitForFunction((k) => document.getElementById('health').dataset.kind === k, kind, { timeout });
 export const waitForPicture = (page) => page.waitForFunction(() => globalThis.plantcast?.session.picture);
@@ -223,7 +233,7 @@ export async function arrive(page) {
 export const waitForChange = (page, { x, y }, { width, rgba }, least) => page.waitForFunction(([px, py, was, step]) => {
     const now = document.getElementById('picture').getContext('2d').getImageData(px, py, 1, 1).data;
     return was.some((value, i) => Math.abs(value - now[i]) > step);
-}, [x, y, [...rgba.subarray(4 * (y * width + x), 4 * (y * width + x) + 3)], least], { timeout: 30000, polling: 100 });
+}, [x, y, [...rgba.subarray(4 * (y * width + x), 4 * (y * width + x) + 3)], least], { polling: 100 });
 
 // Returns the view as the page would send it: camera and parameters.
 export const view = (page) => page.evaluate(() => {
@@ -255,7 +265,7 @@ export const drawnAt = (page, point) => page.evaluate(async (place) => {
 
 // Returns the point that a drag has grabbed, once the server has located it; null: none.
 export async function held(page) {
-    await page.waitForFunction(() => globalThis.plantcast.cameraController?.anchor?.sure, null, { timeout: 20000 });
+    await page.waitForFunction(() => globalThis.plantcast.cameraController?.anchor?.sure);
     return page.evaluate(() => globalThis.plantcast.cameraController.anchor.point);
 }
 

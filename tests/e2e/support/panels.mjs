@@ -8,6 +8,7 @@ import { TinyPlant } from './tiny_plant.mjs';
 // Returns [plant, url]. arrange(file): further changes of the plant file.
 export async function startAlarmed(arrange = () => {}) {
     const plant = await TinyPlant.create();
+    plant.keepFresh();
     appendFileSync(plant.file, 'alarms: local\n');
     arrange(plant.file);
     const tags = join(plant.folder, 'tags.csv');
@@ -23,13 +24,12 @@ const PARTS = { picture: '#picture-panel.open', views: '#views.open', split: '#s
 // Opens everything, one after the other; calls f for each.
 export async function everyPanel(page, f) {
     const press = async (key, name) => {
-        await page.locator('#viewport').focus();
-        await page.keyboard.press(key);
         // A part is loaded when it is first opened; if that takes seconds the page forgets the key, and a user would press it again.
-        if (PARTS[name])
-            await page.locator(PARTS[name]).waitFor({ timeout: 10000 }).catch(() => page.keyboard.press(key));
-        if (PARTS[name])
-            await page.locator(PARTS[name]).waitFor();
+        const isOpen = () => !PARTS[name] || page.locator(PARTS[name]).waitFor({ timeout: 10000 }).then(() => true, () => false);
+        do {
+            await page.locator('#viewport').focus();
+            await page.keyboard.press(key);
+        } while (!await isOpen());
         await f(name);
     };
     await page.waitForFunction(() => globalThis.plantcast.session.recorded && globalThis.plantcast.session.model.alarms.list().length > 0);
