@@ -13,7 +13,7 @@ import { promise } from './support/promise.mjs';
 import { notBuilt } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt() || (missingHaproxy() ?? false), timeout: 200000 };
-const VIEWERS = 40, BACK_MS = 10000, BLIND_MS = 10000;
+const VIEWERS = 40, MOST = 80, LEAST = 10, BACK_MS = 10000, BLIND_MS = 10000;
 let nodes, core, renderers, proxy, viewers, links;
 
 before(async () => {
@@ -63,7 +63,9 @@ class Viewer {
         const token = nodes.tokens.operator;
         this.client.say(this.resume ? { type: 'hello', tokens: true, token, resume: this.resume }
             : { type: 'hello', tokens: true, token, width: 160, height: 90, codecs: ['jpeg'] });
-        this.welcome = await this.client.text('welcome', 10000);
+        this.welcome = await this.client.until('a welcome', ({ texts, closed }) => texts.find(({ type }) => type === 'welcome') ?? closed);
+        if (this.welcome.type !== 'welcome')
+            throw new Error(`closed: ${JSON.stringify(this.welcome)}`);
         this.watch(this.client);
     }
 
@@ -109,12 +111,15 @@ const standing = async (node) => (await (await node.fetch('/api/v1/alarms', node
 
 test('each node says how much it can still draw; a cookie keeps to one node', options, async () => {
     assert.match(await line(renderers[0].agentPort), /^up \d{1,3}%\n$/);
-    viewers = Array.from({ length: VIEWERS }, (_, i) => new Viewer(i));
-    for (const viewer of viewers)
-        await viewer.come();
+    viewers = [];
+    // on a busy machine one node may be able to draw less than the other for a while, so that it gets fewer
+    const counts = () => ['r1', 'r2'].map((name) => viewers.filter(({ node }) => node === name).length);
+    while (viewers.length < VIEWERS || Math.min(...counts()) < LEAST) {
+        assert.ok(viewers.length < MOST, `${counts()} of ${MOST}`);
+        viewers.push(new Viewer(viewers.length));
+        await viewers.at(-1).come();
+    }
     await Promise.all(viewers.map((viewer) => viewer.look()));
-    const counts = ['r1', 'r2'].map((name) => viewers.filter(({ node }) => node === name).length);
-    assert.ok(counts.every((count) => count >= 10), `${counts} of ${VIEWERS}`);
     await nodes.onePoller();
     const { status } = await get(proxy.port, '/api/v1/history?tags=TI-1', 'GET', `Authorization: Bearer ${nodes.tokens.viewer}\r\n`);
     assert.equal(status, 200, 'history is the core\'s');
@@ -160,10 +165,11 @@ test('kill -9 of one of two: all are back within 10 s, with their views; no ackn
     await until('all back', () => hit.every(({ returns }) => returns > 0));
     await Promise.all(hit.map((viewer) => viewer.shows()));
     const took_ms = performance.now() - killed;
-    t.diagnostic(`${hit.length} of ${VIEWERS} sessions back on the other node, each with its view, after ${(took_ms / 1000).toFixed(1)} s`);
+    t.diagnostic(`${hit.length} of ${viewers.length} sessions back on the other node, each with its view, ` +
+        `after ${(took_ms / 1000).toFixed(1)} s`);
     promise(t, 'until all are back', took_ms, BACK_MS);
     assert.ok(hit.every(({ welcome, node }) => welcome.resumed && node === 'r2'));
-    assert.equal(new Set(viewers.map(({ welcome }) => welcome.session)).size, VIEWERS, 'each has its number');
+    assert.equal(new Set(viewers.map(({ welcome }) => welcome.session)).size, viewers.length, 'each has its number');
     await Promise.all(acks);
     const anna = ({ state, who }) => state === 'acknowledged' && who === 'anna';
     await until('all acknowledged', async () => (await standing(core)).filter(anna).length === 3);
@@ -182,10 +188,11 @@ test('a drained node sends its sessions elsewhere, one after the other, and is a
     await until('all elsewhere', () => viewers.every(({ returns, node }, i) => returns > before_[i] && node === 'r1'));
     await Promise.all(viewers.map((viewer) => viewer.shows()));
     const lost = viewers.map(({ lostAt }) => (lostAt - began) / 1000);
-    t.diagnostic(`${VIEWERS} sessions left from ${Math.min(...lost).toFixed(1)} to ${Math.max(...lost).toFixed(1)} s after it was said`);
+    t.diagnostic(`${viewers.length} sessions left from ${Math.min(...lost).toFixed(1)} to ${Math.max(...lost).toFixed(1)} s ` +
+        'after it was said');
     assert.ok(Math.max(...lost) - Math.min(...lost) > 4, `${lost}`);
     assert.ok(viewers.every(({ reason }) => reason === 'this node is being drained; retry after 0 s'));
-    assert.match((await proxy.servers()).r2.status, /^DOWN/);
+    await until('the drained node not to be in use', async () => /^DOWN/.test((await proxy.servers()).r2.status));
 });
 
 test('a token that was changed, or is another person\'s, restores nothing; as it was made it does', options, async () => {

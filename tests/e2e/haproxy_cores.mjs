@@ -61,7 +61,8 @@ test('of two cores the proxy asks the one that leads', options, async () => {
     assert.equal((await ask('/api/v1/history?tags=TI-1')).status, 200);
     assert.equal((await ask('/api/v1/history?tags=TI-1', 'wrong')).status, 401);
     await until('the proxy without renderers', async () => await plainStatus() === 200);
-    assert.match((await plain.servers('cores'))[core.name === 'one' ? 'c2' : 'c1'].status, /^DOWN/);
+    await until('the other core not to be in use', async () =>
+        /^DOWN/.test((await plain.servers('cores'))[core.name === 'one' ? 'c2' : 'c1'].status));
 });
 
 for (const [signal, how] of [['SIGKILL', 'kill -9'], ['SIGTERM', 'an end in good order']])

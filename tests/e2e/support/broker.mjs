@@ -63,7 +63,7 @@ export class Broker {
     // Returns a publishing client; options: those of npm's mqtt.
     async client(options = {}) {
         const client = mqtt.connect(`${options.ca ? 'mqtts' : 'mqtt'}://127.0.0.1:${this.port}`, { protocolVersion: 4, ...options });
-        await new Promise((done, fail) => { client.once('connect', done); client.once('error', fail); });
+        await new Promise((done, fail) => { client.once('connect', done); client.on('error', fail); });
         client.tell = (topic, payload, more = {}) => new Promise((done, fail) => {
             const text = typeof payload === 'object' && !Buffer.isBuffer(payload) ? JSON.stringify(payload) : payload;
             const bytes = Buffer.isBuffer(text) ? text : String(text);

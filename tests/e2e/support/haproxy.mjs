@@ -6,6 +6,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { connect } from 'node:net';
 import { freePort } from './ports.mjs';
+import { until } from './until.mjs';
 
 const PROGRAM = '/usr/sbin/haproxy';
 const shipped = (name) => readFileSync(new URL(`../../../deploy/proxy/${name}`, import.meta.url), 'utf8');
@@ -51,6 +52,7 @@ export class Haproxy {
         proxy.child = spawn(PROGRAM, ['-db', '-f', file], { stdio: ['ignore', 'ignore', 'pipe'] });
         proxy.said = checked.stderr;
         proxy.child.stderr.on('data', (chunk) => { proxy.said += chunk; });
+        await until('HAProxy', () => proxy.child.exitCode !== null || proxy.servers().catch(() => null), 90, () => proxy.said);
         return proxy;
     }
 

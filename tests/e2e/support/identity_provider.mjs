@@ -2,6 +2,7 @@
 // An identity provider (OpenID Connect) on this machine that does what a test says, including what a provider must not do.
 import { createHash, createSign, generateKeyPairSync, randomUUID } from 'node:crypto';
 import { createServer } from 'node:http';
+import { freePort } from './ports.mjs';
 
 const encode = (value) => Buffer.from(typeof value === 'string' ? value : JSON.stringify(value)).toString('base64url');
 
@@ -90,7 +91,9 @@ export class IdentityProvider {
         return path === '/revoke' ? [200, {}] : [404, {}];
     }
 
-    listen(port = 0) {
+    // port: default: one that stays reserved while the provider is away
+    async listen(port = null) {
+        const own = port ?? await freePort();
         this.server = createServer((request, response) => {
             let body = '';
             request.on('data', (chunk) => { body += chunk; });
@@ -113,7 +116,7 @@ export class IdentityProvider {
                 Promise.resolve(isCode && this.codesWait).then(() => setTimeout(say, request.url === '/token' ? this.delay_ms : 0));
             });
         });
-        return new Promise((done) => this.server.listen(port, '127.0.0.1', () => {
+        return new Promise((done) => this.server.listen(own, '127.0.0.1', () => {
             this.port = this.server.address().port;
             this.issuer = `http://127.0.0.1:${this.port}`;
             done();

@@ -71,10 +71,10 @@ export class Network {
                     found.push(pollers[k].last - pollers[i].first);
         return found;
     }
-    // Returns the longest time without polling since then, in milliseconds.
+    // Returns the longest time without polling that ended since then, in milliseconds.
     async longestPause(since) {
-        const turns = (await this.ask('pollers')).filter(({ last }) => last >= since);
-        return Math.max(0, ...turns.slice(1).map(({ first }, i) => first - turns[i].last));
+        const turns = await this.ask('pollers');
+        return Math.max(0, ...turns.slice(1).map(({ first }, i) => (first >= since ? first - turns[i].last : 0)));
     }
     async pollerCount() { return (await this.ask('pollers')).length; }
     now() { return now(); }

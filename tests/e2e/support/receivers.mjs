@@ -7,6 +7,7 @@ import { createServer as createHttpServer } from 'node:http';
 import { createServer } from 'node:net';
 import { join } from 'node:path';
 import { createSecureContext, TLSSocket } from 'node:tls';
+import { freePort } from './ports.mjs';
 
 // Makes FOLDER/mail.pem and .key, for localhost; the .pem is its own authority.
 export function makeCertificate(folder, name = 'mail') {
@@ -26,9 +27,10 @@ export class MailServer {
         this.context = createSecureContext({ key: readFileSync(join(folder, 'mail.key')), cert: readFileSync(join(folder, 'mail.pem')) });
     }
 
-    async listen(port = 0) {
+    // port: default: one that stays reserved while the server is away
+    async listen(port = null) {
         this.server = createServer((socket) => this.serve(socket));
-        this.server.listen(port, '127.0.0.1');
+        this.server.listen(port ?? await freePort(), '127.0.0.1');
         await once(this.server, 'listening');
         this.port = this.server.address().port;
     }
@@ -134,7 +136,7 @@ export class HookServer {
         Object.assign(this, { posts: [], status: 200 });
     }
 
-    async listen(port = 0) {
+    async listen(port = null) {
         this.server = createHttpServer((request, response) => {
             let text = '';
             request.on('data', (bytes) => { text += bytes; });
@@ -145,7 +147,7 @@ export class HookServer {
                     response.writeHead(this.status).end('{}');
             });
         });
-        this.server.listen(port, '127.0.0.1');
+        this.server.listen(port ?? await freePort(), '127.0.0.1');
         await once(this.server, 'listening');
         this.port = this.server.address().port;
     }

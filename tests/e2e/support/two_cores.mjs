@@ -105,7 +105,7 @@ ${more}`);
         if (!this.runs(core))
             return false;
         try {
-            return (await core.node.fetch('/readyz')).status === 200;
+            return (await core.node.fetch('/readyz', core.node.token, 10)).status === 200;
         } catch {
             return false;
         }
@@ -140,7 +140,7 @@ ${more}`);
 
     // Kills or stops the leader; returns the new leader, and for how long no core polled.
     async takeOver(t, core, how) {
-        const other = this.other(core), since = this.network.now() - 500;
+        const other = this.other(core), since = this.network.now();
         core.program.stopped = true;
         await how();
         this.takeOvers = (this.takeOvers ?? 0) + 1;
