@@ -93,7 +93,7 @@ test('a notice says what lies far outside, and shows everything', options, async
                 await arrive(page);
                 await shoot(page, `outside-all-${language}`);
                 await notice.locator('button').last().click();
-                assert.equal(await notice.isVisible(), false);
+                await notice.waitFor({ state: 'hidden' });
                 assert.deepEqual(errors, []);
             } finally {
                 await close();

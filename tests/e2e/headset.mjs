@@ -150,7 +150,11 @@ test('hands: the floor, equipment, a sensor, the wrist, and a grip', options, ()
     await page.waitForFunction(() => globalThis.plantcast.session.params.group === 'pressure');
     const before = (await state(page, 'rig')).at;
     await page.evaluate(async () => {
-        const { device } = globalThis, frame = () => new Promise(requestAnimationFrame);
+        const { device } = globalThis, { headset } = globalThis.plantcast.modules.there('enterVr');
+        const frame = async () => {
+            for (const { frames } = headset; headset.frames === frames;)
+                await new Promise(requestAnimationFrame);
+        };
         device.controllers.right.updateButtonValue('squeeze', 1);
         await frame();
         await frame();

@@ -6,12 +6,13 @@ import { once } from 'node:events';
 import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { setTimeout } from 'node:timers/promises';
 import { inFolder } from './support/folders.mjs';
 import { volumeOf } from './support/glb_volume.mjs';
 import { dae, fbx, mtl, obj, ply, stl, stlBinary, threeDs } from './support/mesh_samples.mjs';
+import { family } from './support/processes.mjs';
 import { secondMeshReader } from './support/second_cad_reader.mjs';
 import { BIN, missing } from './support/tiny_plant.mjs';
+import { until } from './support/until.mjs';
 
 const absent = missing();
 const notBuilt = existsSync(join(BIN, 'plantcast-import-assimp')) ? false : 'built without Assimp';
@@ -22,11 +23,6 @@ const withMaterials = (f) => inFolder((folder) => {
     writeFileSync(join(folder, 'wedge.mtl'), mtl);
     return f(folder);
 });
-
-async function until(f) {
-    for (let i = 0; i < 2000 && !f(); i++)
-        await setTimeout(20);
-}
 
 const near = (a, b) => a.every((v, k) => Math.abs(v - b[k]) < 0.002);
 const boxed = (folder, name, bytes, ...args) => {
@@ -288,8 +284,8 @@ test('a signal ends it, and nothing is left behind', { skip }, () => withMateria
     let said = '';
     program.stderr.on('data', (bytes) => said += bytes);
     const ended = once(program, 'close');
-    await until(() => existsSync(join(folder, 'plant')) && readdirSync(join(folder, 'plant')).length > 0);
-    await setTimeout(300); // gives the reader time to begin
+    const isReader = (pid) => spawnSync('readlink', [`/proc/${pid}/exe`], { encoding: 'utf8' }).stdout.includes('plantcast-import-assimp');
+    await until('the reader', () => family(program.pid).some(isReader));
     program.kill('SIGINT');
     const [code] = await ended;
     assert.equal(code, 1, said);

@@ -17,6 +17,7 @@ import { sweep } from './support/sweep.mjs';
 import { formats, makeTagList } from './support/tag_lists.mjs';
 import { freePort } from './support/ports.mjs';
 import { BIN, missing, Program } from './support/tiny_plant.mjs';
+import { becomes } from './support/until.mjs';
 
 const absent = missing();
 const notBuilt = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync('/usr/bin/chromium') ? 'no chromium' : false;
@@ -359,11 +360,11 @@ test('an empty plant opens the panel; a model and a tag list make a plant', opti
     await shoot(page, 'import-1-empty');
     await choose(page, [{ name: 'plant.gltf', text: boxes(NAMES) }, { name: 'tags.csv', text: TAGS }]);
     await inForce(page);
-    assert.deepEqual(await assetsOf(page), NAMES);
-    assert.ok(await page.locator('.drop-zone').isHidden());
+    await becomes(() => assetsOf(page), NAMES);
+    await page.locator('.drop-zone').waitFor({ state: 'hidden' });
     assert.equal(existsSync(join(served.folder, 'plant.yaml.1')), false, 'nothing was there that a person wrote');
-    const counts = await page.locator('#import .segments b').allTextContents();
-    assert.deepEqual(counts.map(Number), [10, 3, 6, 1, 3], 'all, matched, doubtful, unmatched, unplaced');
+    await becomes(async () => (await page.locator('#import .segments b').allTextContents()).map(Number), [10, 3, 6, 1, 3],
+        'all, matched, doubtful, unmatched, unplaced');
     await settle(page);
     await shoot(page, 'import-2-plant');
 });
@@ -372,7 +373,7 @@ test('by keyboard: gone through, its candidates light up, one accepted, all of a
     await page.locator('#import .segments label', { hasText: 'Doubtful' }).click();
     await row(page, 'TT-201').click();
     const lit = () => page.evaluate(() => globalThis.plantcast.modules.there('import').highlights.assets.map(({ id }) => id));
-    assert.deepEqual(await lit(), ['P-201A', 'P-201B']);
+    await becomes(lit, ['P-201A', 'P-201B']);
     await arrive(page);
     await shoot(page, 'import-3-candidates');
     await page.keyboard.press('2');
@@ -432,13 +433,13 @@ test('placed by hand: the engineer\'s panel takes over, and the tag is not unpla
     await row(page, 'TT-9999').click();
     await page.getByRole('button', { name: 'Place by hand' }).click();
     await page.waitForFunction(() => /TT-9999/.test(document.querySelector('#engineer .hint')?.textContent ?? ''));
-    assert.equal(await page.locator('#import').isVisible(), false);
+    await page.locator('#import').waitFor({ state: 'hidden' });
     await shoot(page, 'import-6-place');
     const shown = () => page.evaluate(() => {
         const { isolate, ghost } = globalThis.plantcast.session.params;
         return { isolate, ghost };
     });
-    assert.deepEqual((await shown()).isolate, ['E-101']);
+    await becomes(async () => (await shown()).isolate, ['E-101']);
     await page.getByRole('button', { name: 'Show all' }).click();
     // Placed on other equipment than the matched one: reported during the trial, and before saving.
     const { min, max } = await page.evaluate(() => {
@@ -463,8 +464,8 @@ test('placed by hand: the engineer\'s panel takes over, and the tag is not unpla
     await page.getByRole('button', { name: 'Place by hand' }).click();
     await page.waitForFunction(() => globalThis.plantcast.session.params.isolate?.[0] === 'E-101');
     await page.locator('#import-toggle').click();
-    assert.deepEqual(await shown(), { isolate: [], ghost: [] });
-    assert.equal(await page.locator('#engineer').isVisible(), false);
+    await becomes(shown, { isolate: [], ghost: [] });
+    await page.locator('#engineer').waitFor({ state: 'hidden' });
 });
 
 test('an import that fails says why in one line', options, async () => {
@@ -554,7 +555,7 @@ test('a source: stated, values seen to arrive, corrected, kept when the plant is
         await choose(desk, [{ name: 'plant.gltf', text: boxes(NAMES) }, { name: 'tags.csv', text: list }]);
         await inForce(desk);
         assert.equal(await source(), null);
-        assert.deepEqual(await desk.evaluate(() => globalThis.plantcast.session.range), [0, 150], 'of the tags, not of the plant before');
+        await becomes(() => desk.evaluate(() => globalThis.plantcast.session.range), [0, 150], 'of the tags, not of the plant before');
         await fold.locator('summary').click();
         await settle(desk);
         await shoot(desk, 'import-11-source');

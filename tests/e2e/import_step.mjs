@@ -210,7 +210,7 @@ test('broken files are one line each, and leave nothing behind', { skip }, () =>
         writeFileSync(join(folder, name), bytes);
         const before = readdirSync(folder).sort();
         const { status, stderr, stdout } = plantcast('import', join(folder, name), '-o', join(folder, 'plant'), '--timeout',
-            name === 'nan.step' ? '2' : '8'); // short, because Open CASCADE would search for the end of this file for hours
+            { 'nan.step': '2', 'nan.igs': '100' }[name] ?? '8'); // in nan.step Open CASCADE would search for the end for hours
         console.log(`# ${name}: ${status === 0 ? stdout.split('\n')[0].replace(/.*: /, 'read: ') : stderr.trim().replace(/.*: /, '')}`);
         if (name === 'nan.igs')
             assert.match(`${stdout}${stderr}`, /error.*: Open CASCADE: \w+: .* D\d+/);
