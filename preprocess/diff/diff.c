@@ -188,7 +188,7 @@ static void compare_sensor(struct diff *diff, struct asset_pair *pair, const str
     }
     if (found.distance_m[1] > found.limit_m && (!was || found.distance_m[0] <= found.limit_m))
         orphan(diff, tag->name, tag->asset,
-               mem_printf("the sensor is %.3f m from the surface of its asset (more than %.3f m)%s", found.distance_m[1], found.limit_m,
+               mem_printf("the sensor is %.3f m from the surface of its asset (limit: %.3f m)%s", found.distance_m[1], found.limit_m,
                           was ? "; before, the sensor was on the surface" : ""));
 }
 

@@ -81,7 +81,8 @@ static void print_list(const struct matching_run *run)
         printf("%s: %zu rows repeat a tag with different contents: the first row is used: %s%s\n", path, list->differing,
                list->differing_lines, list->differing > 5 ? ", ..." : "");
     if (list->renamed > 0)
-        printf("%s: %zu tags have the name of a tag in another folder: each of these tags is named by its path\n", path, list->renamed);
+        printf("%s: %zu tags have the name of a tag in another folder of the control system: these tags are named FOLDER/TAG\n", path,
+               list->renamed);
     for (const char *line = list->remarks.at, *end; line && *line; line = *end ? end + 1 : end) {
         end = line + strcspn(line, "\n");
         printf("%s: %.*s\n", path, (int)(end - line), line);

@@ -162,7 +162,7 @@ static void read_studio(struct tag_export *list, const struct cell_table *table,
         mem_free(with);
     }
     if (comments > 0)
-        text_add(&list->remarks, "%zu comments describe elements of tags and are skipped\n", comments);
+        text_add(&list->remarks, "%zu comments are skipped, because they describe only elements of tags, such as single bits\n", comments);
 }
 
 /* --- lists whose first lines contain a row of column names ----------------------------------------------------------------------- */

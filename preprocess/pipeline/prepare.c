@@ -501,7 +501,7 @@ static void warn(struct prepare_run *run, const struct prepare_asset *asset)
         double distance_m = (double)asset->surface_distances_m[s];
         if (distance_m > asset->far_m)
             diag_warning(run->diag, plant->files.tags_path, tag->line, 0,
-                         "tag %s: the sensor is %.3f m from the surface of asset %s (more than %.3f m)", tag->name, distance_m,
+                         "tag %s: the sensor is %.3f m from the surface of asset %s (limit: %.3f m)", tag->name, distance_m,
                          asset->plant->id, asset->far_m);
     }
 }

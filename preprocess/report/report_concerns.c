@@ -46,7 +46,7 @@ static void add_sensors(struct concerns *concerns, const struct prepare *prepare
         const struct plant_tag *tag = &prepare->plant->tags[asset->sensors[s].tag];
         if (distance_m > asset->far_m && !tag->place.assumed)
             add_concern(concerns, asset, 1000 + distance_m / asset->far_m,
-                        mem_printf("sensor %s is %.3f m from the surface of the asset (more than %.3f m)", tag->name, distance_m,
+                        mem_printf("sensor %s is %.3f m from the surface of the asset (limit: %.3f m)", tag->name, distance_m,
                                    asset->far_m));
     }
 }

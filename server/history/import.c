@@ -53,7 +53,7 @@ struct history_import {
     int time, tag, value, quality, unit;
     int *tags;                    /* wide form: tag index of each column; -1: the column is not a tag's and is ignored */
     struct import_series *series; /* state of each tag's series, by index of the tag */
-    int64_t row_us;               /* wide form: time of the row that was read last; long form (one sample in a row): INT64_MIN */
+    int64_t row_us;               /* wide form: time of the row that was read last; one value a line: INT64_MIN */
     struct import_counts *counts;
 };
 

@@ -532,7 +532,7 @@ static int end_lines(struct month_file *file, uint32_t gap_quality, bool sends_g
             *ended_us = rows[count - 1].point.t_us;
     }
     sqlite3_reset(held);
-    int error = database_fail(&file->db, code, "cannot read the newest samples");
+    int error = database_fail(&file->db, code, "the newest sample of each tag cannot be read");
     for (size_t i = 0, ends = count; i < ends; i++)
         if (rows[i].point.quality != gap_quality) {
             rows[count] = rows[i];
@@ -550,7 +550,7 @@ static int end_lines(struct month_file *file, uint32_t gap_quality, bool sends_g
 
 int month_file_clear_held(struct month_file *file)
 {
-    return month_run(file, month_sql(file, SQL_CLEAR_HELD), "cannot delete the newest samples of a past month");
+    return month_run(file, month_sql(file, SQL_CLEAR_HELD), "the newest samples of a past month cannot be deleted");
 }
 
 int month_file_recover(struct month_file *file, uint32_t gap_quality, bool sends_gaps, int64_t *ended_us)

@@ -63,7 +63,8 @@ static bool publish(struct publisher *publisher, const char *topic, const char *
     int status = mqtt_client_publish(publisher->client, topic, text);
     counter_inc(publisher->messages, status == 0);
     if (status < 0 && status != -ENOTCONN)
-        log_warn(publisher->params.log, "publish: %s: a message of %zu bytes cannot be sent", topic, strlen(text));
+        log_warn(publisher->params.log, "publish: topic %s: the MQTT client refuses a message of %zu bytes, which is not sent", topic,
+                 strlen(text));
     return status != -ENOTCONN;
 }
 

@@ -120,7 +120,8 @@ static bool close_seams(struct surface *surface, char *why)
     follow(surface, target);
     note_bridges(surface, &made);
     mem_free(target);
-    return made.k >= 0 || no_surface(surface, why, "out of memory for neighbours of %zu points", surface->mesh.point_count);
+    return made.k >= 0 ||
+           no_surface(surface, why, "out of memory for closing gaps between %zu points of the surface", surface->mesh.point_count);
 }
 
 /* Moves visible triangles to the front of the mesh, and hidden[] with them. Returns the number of visible triangles. */

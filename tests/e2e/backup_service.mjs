@@ -92,7 +92,7 @@ test('backup needs a word about keys, and an instance', options, () => {
     const none = first.run('plantcast backup p1');
     assert.deepEqual([none.code, /--recipient KEY or --passphrase.*--without-secrets/.test(none.err)], [1, true], none.err);
     assert.match(first.run('plantcast backup p2 --without-secrets').err, /p2\/plant\.yaml does not exist/);
-    assert.match(first.run('plantcast backup p1 --recipient nonsense').err, /malformed recipient[^]*age encrypted nothing/);
+    assert.match(first.run('plantcast backup p1 --recipient nonsense').err, /malformed recipient[^]*age could not encrypt keys and tokens/);
     assert.equal(first.run('plantcast backup p1 --colour').code, 2);
     assert.deepEqual(readdirSync(first.path('var/backups/plantcast/p1')), [], 'a failed backup leaves nothing');
 });

@@ -75,7 +75,7 @@ test('init touches nothing that is there, and gives the next plant another port'
     }
     for (const wrong of [['../x'], [], ['a', 'b'], ['four', '--plant', root], ['four', '--host', 'a b', '--plant', plant.folder]])
         assert.notEqual(init(...wrong).code, 0, wrong.join(' '));
-    assert.match(init('four', '--port', '8444', '--plant', plant.folder).err, /another plant has 8444: .*three\/options/);
+    assert.match(init('four', '--port', '8444', '--plant', plant.folder).err, /another plant uses port 8444: .*three\/options/);
     assert.ok(!existsSync(etc('four')));
 });
 

@@ -81,7 +81,7 @@ TEST(mistakes_are_found)
         { "TT-101", "expected [TAG], a number, or one of", 0 },
         { "mean 1", "expected ( after mean", 5 }, { "mean()", "expected [TAG]", 5 },
         { "mean(1", "expected ) after the arguments of mean", 6 },
-        { "abs(1,2)", "wrong number of arguments for abs", 7 },
+        { "abs(1,2)", "expected 1 argument for abs, found 2", 7 },
         { "1..2", "expected a number", 0 },
         { "1e", "expected a number", 0 },
         { "0x10", "or the end", 1 }, { "2**3", "expected [TAG]", 2 }, { "[]", "unknown tag ''", 0 },

@@ -166,8 +166,8 @@ CASE(sensors_tell_units_and_axes)
     } cases[] = {
         { "{ id: A, model: m.gltf, nodes: '#1', units: cm }", NULL },
         { "{ id: A, model: m.gltf, nodes: '#1', units: mm }",
-          "3 of the 3 sensors with X, Y, Z are away from the asset; with `units: cm`, these sensors would be on the asset" },
-        { "{ id: A, model: m.gltf, nodes: '#1', units: cm, up: z }", "with `up: y`, these sensors would be on the asset" },
+          "3 of the 3 sensors with X, Y, Z are away from the asset; with `units: cm` in the plant file, they would be on it" },
+        { "{ id: A, model: m.gltf, nodes: '#1', units: cm, up: z }", "with `up: y` in the plant file, they would be on it" },
         { "{ id: A, model: m.gltf, nodes: '#1', units: cm, placement: { translate: [99, 0, 0] } }",
           "check units, up, placement and sensor_frame" },
     };

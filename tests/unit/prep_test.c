@@ -118,7 +118,7 @@ static char *file_of(struct prep_case *s, size_t asset)
 CASE(a_plant_is_prepared)
 {
     prep_case_expect(s, "$PLANT", 0);
-    prep_case_says(&s->err, "tag T5: the sensor is 0.400 m from the surface of asset C (more than 0.250 m)");
+    prep_case_says(&s->err, "tag T5: the sensor is 0.400 m from the surface of asset C (limit: 0.250 m)");
     prep_case_says(&s->err, "tags.csv:6: warning");
     assert_null(strchr(s->err.at, '\r'));
     assert_null(strchr(s->err.at, 27));

@@ -133,7 +133,7 @@ TEST_WITH(what_is_wrong_comes_first, set_up, prep_case_tear_down)
     const char *apart = strstr(c->out.at, "!  APART"), *gap = strstr(c->out.at, "   GAP");
     assert_true(apart && gap && apart < gap);
     prep_case_says(&c->out, "2 > 1");
-    prep_case_says(&c->out, "! APART: sensor T-APART is 0.500 m from the surface of the asset (more than 0.122 m)");
+    prep_case_says(&c->out, "! APART: sensor T-APART is 0.500 m from the surface of the asset (limit: 0.122 m)");
     prep_case_says(&c->out, "Boxes: 4 assets, ");
 }
 

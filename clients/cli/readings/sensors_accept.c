@@ -30,7 +30,7 @@ static void print_usage(FILE *out)
           "                                [--prepared FOLDER] [--dry-run]\n"
           "       plantcast sensors accept PLANT.yaml --undo LIST.N\n"
           "\n"
-          "Confirms positions of sensors that the import only assumed (TAGS.md, Assumed places):\n"
+          "Confirms positions of sensors that `plantcast match` only assumed (TAGS.md, Assumed places):\n"
           "clears the column `Place` of the tag list for all sensors that match every option.\n"
           "The previous tag list LIST is kept in the same folder as LIST.1, LIST.2, ...\n"
           "Run `plantcast reload` to make the daemon use the new tag list.\n"

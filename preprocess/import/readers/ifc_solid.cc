@@ -117,7 +117,7 @@ TopoDS_Shape along_curve(const ifc_model &in, const entity &item)
     else
         frame = on_surface(in, in.statements.get(item[5]), pieces.front());
     if (whole)
-        printf("error\t1\tOpen CASCADE: #%d: the parameters lie outside the curve: using the whole curve\n", item.id);
+        printf("error\t1\tOpen CASCADE: #%d: the start and end parameters are beyond the curve: using the whole curve\n", item.id);
     std::vector<TopoDS_Face> faces = profile_of(in, in.statements.get(item[0]));
     bool level = true; /* true: the profile's fixed direction is perpendicular to the curve at both ends of each piece */
     for (const curve_piece &piece : pieces)

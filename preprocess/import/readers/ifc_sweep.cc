@@ -165,7 +165,7 @@ TopoDS_Shape disk_of(const ifc_model &in, const entity &item)
         throw unsupported("unsupported: a pipe without a wall");
     std::vector<curve_piece> pieces = trimmed(pieces_of(in, in.statements.get(item[0])), item[3], item[4], &whole);
     if (whole)
-        printf("error\t1\tOpen CASCADE: #%d: the parameters lie outside the curve: using the whole curve\n", item.id);
+        printf("error\t1\tOpen CASCADE: #%d: the start and end parameters are beyond the curve: using the whole curve\n", item.id);
     if (fillet > 0) {
         std::vector<gp_Pnt> points = { pieces.front().start() };
         for (const curve_piece &part : pieces)

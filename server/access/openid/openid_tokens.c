@@ -38,7 +38,7 @@ static bool secret_in_form(struct openid *openid)
 static bool post(struct openid *openid, const char *endpoint, const struct text *form, struct openid_reply *reply)
 {
     char *url = openid_endpoint(openid, endpoint);
-    *reply = (struct openid_reply){ .why = "the provider's configuration names no such endpoint" };
+    *reply = (struct openid_reply){ .why = "the provider's configuration lacks the address for this request" };
     bool answered = url && openid_post(openid->config, url, form->at, secret_in_form(openid), &openid->stopping, reply);
     mem_free(url);
     return answered;

@@ -108,7 +108,7 @@ static void check_places(struct plant_models_check *check, size_t asset_index, c
         if (find_better(asset, box, sensors, count, within, better, sizeof(better)))
             diag_warning(
                 check->diag, check->plant->files.path, asset->line, 0,
-                "asset %s: %zu of the %zu sensors with X, Y, Z are away from the asset; with %s, these sensors would be on the asset",
+                "asset %s: %zu of the %zu sensors with X, Y, Z are away from the asset; with %s in the plant file, they would be on it",
                 asset->id, placed - within, placed, better);
         else
             diag_warning(

@@ -201,8 +201,12 @@ static bool parse_arguments(struct expression_parser *parser, int function)
     } while ((next == ',' || next == ';') && count < MAX_ARGUMENTS);
     if (next != ')')
         return fail(parser, "expected ) after the arguments of %s", functions[function].name);
-    if (count < functions[function].least || count > functions[function].most)
-        return fail(parser, "wrong number of arguments for %s", functions[function].name);
+    if (count < functions[function].least || count > functions[function].most) {
+        char what[80];
+        snprintf(what, sizeof(what), "%d argument%s for %s, found %d", functions[function].least, functions[function].least == 1 ? "" : "s",
+                 functions[function].name, count);
+        return fail(parser, "expected %s", what);
+    }
     parser->p++;
     return add_step(parser, (struct expression_step){ .operation = OP_FUNCTION, .index = function, .arguments = count });
 }

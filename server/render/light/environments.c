@@ -50,7 +50,9 @@ static bool read_task(const struct environment_task *task, struct environment *e
     }
     bool good = environment_init(environment, &image, task->y_up, task->workers);
     if (!good)
-        log_err(task->log, "environment %s: the picture has no light from above", task->path);
+        log_err(task->log,
+                "environment %s: the upper half of this picture is black, or lacks a colour such as blue, so it cannot light the plant",
+                task->path);
     mem_free(image.rgba);
     return good;
 }

@@ -177,7 +177,8 @@ static struct light_set *end(struct light *light)
     drop_rough(light);
     set = make_room(light, baked.bytes);
     if (!set) {
-        log_err(light->gpu_scene->gl->log, "light: all %d sets of baked light are in use", LIGHT_SETS);
+        log_err(light->gpu_scene->gl->log, "light: no room for the light of another view: all %d sets of baked light are in use",
+                LIGHT_SETS);
         light_set_finish(&baked, light->gpu_scene);
         return NULL;
     }

@@ -244,12 +244,15 @@ bool session_scope_allows(const struct session *session, const struct message *m
                                                   MESSAGE_VISIBLE, MESSAGE_KEY_FRAME, MESSAGE_PING,   MESSAGE_DISPLAY };
     const struct token_holder *holder = &session->identity.holder;
     if (holder->views[0] && !is_in(message->type, views, sizeof(views) / sizeof(views[0])))
-        message_fail(error, "not_allowed", "this token is for pictures of the views %.150s: name one in hello or look", holder->views);
+        message_fail(error, "not_allowed",
+                     "this token permits only pictures of the views %.150s: send only hello, look, resize, ack, codecs, visible, "
+                     "key_frame and ping",
+                     holder->views);
     else if (holder->display && !is_in(message->type, displays, sizeof(displays) / sizeof(displays[0])) &&
              /* picks are allowed to a display with pictures, because it uses them to find a free side for an alarm's label */
              (message->type != MESSAGE_PICK || session->scope.tags))
-        message_fail(error, "not_allowed", "this token belongs to display %d of wall %s and allows nothing else", holder->display,
-                     holder->wall);
+        message_fail(error, "not_allowed", "this token belongs to display %d of wall %s, and permits only messages of a display",
+                     holder->display, holder->wall);
     else
         return true;
     return false;
