@@ -49,7 +49,7 @@ async function open(fields) {
 async function travel(client, us, speed = 0) {
     client.say({ type: 'time', at_us: us, speed });
     const seen = await client.until('the instant', () => client.texts.find((m) => m.type === 'time' && m.at_us === us));
-    await client.frameWhere('of it', (p) => p.flags & FLAG.past && p.data_time_us === us);
+    await client.frameWhere('of it', (p) => p.flags & FLAG.past && (speed ? p.data_time_us >= us : p.data_time_us === us));
     return seen;
 }
 
@@ -90,11 +90,11 @@ test('pictures, tags, markers and picks are of the instant, with qualities as th
 
 test('play goes on at its speed, stands, and comes back to now', { skip }, async () => {
     const client = await open();
-    await travel(client, at(60), 120);
     const began = performance.now();
+    await travel(client, at(60), 120);
     await client.frameWhere('ten seconds of the past later', (p) => p.flags & FLAG.past && p.data_time_us > at(180));
     const took_s = (performance.now() - began) / 1000, gone_s = client.frames.at(-1).data_time_us / 1e6 - BEGIN_S - 60;
-    assert.ok(gone_s <= 120 * (took_s + 1), `${gone_s} s of the past in ${took_s} s`);
+    assert.ok(gone_s <= 120 * took_s + 1, `${gone_s} s of the past in ${took_s} s`);
     const times = client.frames.filter((p) => p.flags & FLAG.past).map((p) => p.data_time_us);
     assert.deepEqual(times, [...times].sort((a, b) => a - b));
     client.say({ type: 'time', speed: 0 });
@@ -106,6 +106,7 @@ test('play goes on at its speed, stands, and comes back to now', { skip }, async
     const now = await client.frameWhere('of now', (p) => p.seq > before && !(p.flags & FLAG.past));
     assert.ok(now.data_time_us > at(3500));
     client.say({ type: 'time', at_us: at(3500), speed: 3600 });
+    await client.until('the instant', () => client.texts.some((m) => m.type === 'time' && m.at_us === at(3500)));
     await client.until('the present', () => client.texts.findLast((m) => m.type === 'time')?.at_us === null &&
         client.frames.at(-1).data_time_us > at(3550) && !(client.frames.at(-1).flags & FLAG.past));
     client.close();
@@ -116,9 +117,9 @@ test('who looks at now never notices, and who follows comes along', { skip }, as
     follower.say({ type: 'follow', session: client.welcome.session });
     await follower.text('following');
     await live.frameWhere('refined', (p) => p.flags & FLAG.still);
-    await travel(client, at(300), 600);
+    await travel(client, at(300), 60); // at this speed it reaches the end of the records after 25 s
     await follower.frameWhere('of then too', (p) => p.flags & FLAG.past && p.data_time_us >= at(300));
-    await follower.until('the time', () => follower.texts.find((m) => m.type === 'time' && m.at_us >= at(300) && m.speed === 600));
+    await follower.until('the time', () => follower.texts.find((m) => m.type === 'time' && m.at_us >= at(300) && m.speed === 60));
     const ofThen = (m) => m.type === 'tags' && m.time_us >= at(300) && m.time_us < at(3000);
     await follower.until('tags of then', () => follower.texts.find(ofThen));
     await sleep(1000);

@@ -3,15 +3,17 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { createPrivateKey, sign } from 'node:crypto';
-import { appendFileSync, chmodSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { appendFileSync, chmodSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { get } from 'node:http';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { isDeepStrictEqual } from 'node:util';
 import { openPage, shoot, waitForHealth, waitForPicture } from './support/browser.mjs';
 import { alteredFilms } from './support/mp4_boxes.mjs';
 import { chunksOf, pngOf, textOf, withRows, withText } from './support/png_chunks.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
+import { until } from './support/until.mjs';
 
 const noFfmpeg = spawnSync('ffmpeg', ['-version']).status === 0 ? false : 'ffmpeg is not there';
 const skip = notBuilt();
@@ -50,6 +52,7 @@ before(async () => {
     if (skip)
         return;
     plant = await TinyPlant.create();
+    plant.keepFresh();
     appendFileSync(plant.file, `views:
 - { id: warm, title: Warm, view: "camera=2,-4,3,0,0,0,0,0,1,45" }
 - { id: pump, title: Pump, view: "camera=5,-4,3,3,0,0,0,0,1,45&group=pressure" }
@@ -60,8 +63,10 @@ walls: [{ id: tiled, tile: { columns: 2, rows: 1, views: warm } }]
     makeKey('server');
     makeKey('other');
     await plant.start('--signing-key', path('server.pem'));
-    await plant.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
-    await sleep(500);
+    const values = { 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 };
+    await plant.set(values);
+    await until('readings', async () => (await (await fetch(`${url()}api/v1/tags`)).json()).tags
+        .every(({ name, value }) => value === values[name]));
     picture = await fetchPicture('width=640&height=400');
 });
 after(() => plant?.destroy());
@@ -200,15 +205,24 @@ test('no file that would show something else is good: the chunk is named', { ski
 });
 
 const url = () => `http://127.0.0.1:${plant.port}/`;
-const probe = (...args) => runProgram('plantcast', ['probe', url(), '--size', '320x200', '--seconds', '1', ...args], 120000);
+// Runs a probe that saves at least `least` signed frames, on a busy machine for longer; returns it and the names of the files.
+function probe(folder, least, ...args) {
+    for (let seconds = 1; ; seconds *= 4) {
+        mkdirSync(folder);
+        const ended = runProgram('plantcast', ['probe', url(), '--size', '320x200', '--seconds', String(seconds), ...args,
+            '--save-signed', folder], 120000);
+        assert.equal(ended.code, 0, ended.out + ended.err);
+        const names = readdirSync(folder);
+        if (names.length >= least || seconds > 60)
+            return { ...ended, names };
+        rmSync(folder, { recursive: true });
+    }
+}
 const FLAG = { still: 2, signed: 64 };
 let frame; // a refined frame of a session
 
 test('refined frames of a session come signed where it asks for that, and are drawn again', { skip }, () => {
-    mkdirSync(path('refined'));
-    const { code, out, err } = probe('--motion', 'still', '--save-signed', path('refined'));
-    assert.equal(code, 0, out + err);
-    const names = readdirSync(path('refined'));
+    const { names } = probe(path('refined'), 1, '--motion', 'still');
     assert.ok(names.length >= 1 && names.every((name) => /^001-\d{6}\.png$/.test(name)), names.join());
     frame = readFileSync(join(path('refined'), names[0]));
     const again = redraw(frame);
@@ -218,10 +232,8 @@ test('refined frames of a session come signed where it asks for that, and are dr
 });
 
 test('every frame of a moving session does, if it asks for all', { skip }, () => {
-    mkdirSync(path('all'));
-    const { code, out, err } = probe('--motion', 'orbit', '--codec', 'h264', '--signed', 'all', '--save-signed', path('all'), '--json');
-    assert.equal(code, 0, out + err);
-    const { frames, signed_frames: count } = JSON.parse(out), names = readdirSync(path('all'));
+    const { out, names } = probe(path('all'), 2, '--motion', 'orbit', '--codec', 'h264', '--signed', 'all', '--json');
+    const { frames, signed_frames: count } = JSON.parse(out);
     assert.ok(frames > 1 && frames === count && frames === names.length, `${count} of ${frames}, ${names.length} files`);
     const again = redraw(readFileSync(join(path('all'), names[names.length >> 1])));
     assert.equal(again.code, 0, again.out + again.err);
@@ -242,17 +254,19 @@ test('a changed pixel, reading, time or camera of a frame is found', { skip }, (
 test('sessions of one view get one signed frame, drawn and encoded once', { skip }, async () => {
     const hello = { type: 'hello', width: 320, height: 200, codecs: ['png'], signed: 'refined' };
     const clients = await Promise.all([1, 2].map(() => PlainClient.open(plant.port)));
-    for (const seq of [1, 2]) {
-        for (const client of clients) {
-            if (seq === 1)
-                client.say(hello);
-            client.say({ type: 'camera', seq, eye: [4, -3, 1 + seq], target: [1, 0, 0], up: [0, 0, 1], fov: 40 });
-        }
+    clients.forEach((client) => client.say(hello));
+    // A frame is kept for half a second: on a busy machine, the second session may ask for it later.
+    for (let seq = 1, shared = 0, end = performance.now() + 90000; shared < 2; seq++) {
+        for (const client of clients)
+            client.say({ type: 'camera', seq, eye: [4, -3, 1 + seq % 9], target: [1, 0, 0], up: [0, 0, 1], fov: 40 });
         const frames = await Promise.all(clients.map((client) =>
             client.frameWhere('a signed frame', (one) => one.flags & FLAG.signed && one.flags & FLAG.still && one.camera_seq === seq)));
         const [first, second] = frames.map(({ data_time_us, render_us, encode_us }) => [data_time_us, render_us, encode_us]);
+        if (!isDeepStrictEqual(first, second) && performance.now() < end)
+            continue;
         assert.deepEqual(first, second, 'drawn and encoded once: it took as long, to the microsecond');
         assert.deepEqual(frames[0].payload, frames[1].payload);
+        shared++;
         for (const { payload } of frames) {
             const { code, out, err } = redraw(payload);
             assert.equal(code, 0, out + err);
@@ -343,14 +357,22 @@ test('a plant that was changed since is said to be another', { skip }, () => {
     assert.match(renamed.out, /DIFFERS: configuration: .* was [0-9a-f]{16}, now [0-9a-f]{16}/);
 });
 
+// Repeats a comparison until it agrees, because history is written some seconds after the readings.
+const recorded = (compare) => {
+    let said = null;
+    return until('agreement with the history', () => {
+        said = compare();
+        return said.code === 0 && said;
+    }, 90, () => said.out + said.err);
+};
+
 test('the past agrees with what was recorded', { skip }, async () => {
     await sleep(1000);
     const then = new Date().toISOString();
     await plant.tell('set TI-1 30');
     await sleep(4500);
     const past = await fetchPicture(`width=640&height=400&at=${then}`);
-    const { code, out, err } = redraw(past, '--history', path('plant.history'));
-    assert.equal(code, 0, out + err);
+    const { out } = await recorded(() => redraw(past, '--history', path('plant.history')));
     assert.match(out, /\(history\)/);
     assert.match(out, /3 of 3 readings agree with the recorded history/);
     const now = redraw(await fetchPicture('width=640&height=400'));
@@ -358,14 +380,13 @@ test('the past agrees with what was recorded', { skip }, async () => {
 });
 
 const filmed = { skip: skip || noFfmpeg, timeout: 120000 };
-test('a film is good picture by picture; one that was changed, cut or encoded again is not', filmed, () => {
+test('a film is good picture by picture; one that was changed, cut or encoded again is not', filmed, async () => {
     const from = new Date(Date.now() - 4500).toISOString(), to = new Date(Date.now() - 3500).toISOString(), film = path('film.mp4');
     const made = runProgram('plantcast', ['clip', `http://127.0.0.1:${plant.port}/`, '-o', film, '--from', from, '--to', to, '--speed', '1',
         '--fps', '3', '--size', '321x200', '--signed'], 60000);
     assert.equal(made.code, 0, made.err);
     const check = (file, ...args) => runProgram('plantcast', ['verify', file, '--key', path('server.pub'), ...args], 90000);
-    const { code, out, err } = check(film, '--plant', plant.file, '--history', path('plant.history'));
-    assert.equal(code, 0, out + err);
+    const { out } = await recorded(() => check(film, '--plant', plant.file, '--history', path('plant.history')));
     assert.match(out, /the signatures of all 4 pictures are good, and none is missing/);
     assert.equal(out.match(/64200 of 64200 pixels agree with the redrawn picture within 1\/255/g).length, 4);
     assert.equal(out.match(/3 of 3 readings agree with the recorded history/g).length, 4);
@@ -517,12 +538,15 @@ test('the loop does not wait for a signature: 10,000 readings are stated and sig
     assert.match(verify(whole).out, /signature is good/);
     assert.ok(loop < 5, `${loop} ms of the loop a picture: ${report}`);
     // A reload while pictures are signed: each request is answered, and all pictures are valid.
-    const asked = Array.from({ length: 6 }, (_, i) => fetch(`http://127.0.0.1:${plant.port}/snapshot.png?width=320&height=${240 + 2 * i}`));
+    const asked = Array.from({ length: 6 }, async (_, i) => {
+        const answer = await fetch(`${url()}snapshot.png?width=320&height=${240 + 2 * i}`);
+        return { status: answer.status, body: Buffer.from(await answer.arrayBuffer()) };
+    });
     writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace(/^name: .*$/m, 'name: Another'));
     plant.daemon.child.kill('SIGHUP');
     for (const answer of await Promise.all(asked)) {
         assert.ok([200, 503].includes(answer.status), String(answer.status));
         if (answer.status === 200)
-            assert.match(verify(Buffer.from(await answer.arrayBuffer())).out, /signature is good/);
+            assert.match(verify(answer.body).out, /signature is good/);
     }
 });
