@@ -10,6 +10,7 @@ import { after, before, test } from 'node:test';
 import { PlainClient } from './support/plain_client.mjs';
 import { promise } from './support/promise.mjs';
 import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
+import { until } from './support/until.mjs';
 
 const skip = notBuilt();
 const options = { skip, timeout: 240000 };
@@ -20,18 +21,20 @@ before(async () => {
         return;
     plant = await TinyPlant.create();
     tagsFile = join(plant.folder, 'tags.csv');
+    plant.keepFresh();
     // A tag without a position, a comment in a column of the user's own, numbers in various notations.
     const list = readFileSync(tagsFile, 'utf8').replace('Stale s\n', 'Stale s,Remark\n');
-    writeFileSync(tagsFile, list.replace('0.5,0,0,1\n', '0.500,0.00,0,1,"# by Kim; ""new"""\n')
-        + 'TI-9,400007,Float,°C,spare,temperature,,,,,1,\n');
+    writeFileSync(tagsFile, list.replace('0.5,0,0,600\n', '0.500,0.00,0,600,"# by Kim; ""new"""\n')
+        + 'TI-9,400007,Float,°C,spare,temperature,,,,,600,\n');
     assert.equal(plant.prepare().code, 0);
     await plant.startSim();
-    await plant.tell('set TI-1 80');
-    await plant.tell('set TI-2 20');
-    await plant.tell('set TI-9 50');
+    await plant.set({ 'TI-1': 80, 'TI-2': 20, 'TI-9': 50 });
     await plant.startDaemon();
+    await until('readings', async () => (await readings()).every(({ quality }) => quality === 'good'));
 });
 after(() => plant?.destroy());
+
+const readings = async () => (await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags`)).json()).tags;
 
 async function enter(more = {}) {
     const client = await PlainClient.open(plant.port);
@@ -56,7 +59,6 @@ async function placed(client) {
 
 test('who tries a place sees its field, and nobody else does', options, async () => {
     const engineer = await enter(), other = await enter();
-    await engineer.until('readings', () => engineer.frames.length > 0);
     const before = await probe(other);
     place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0.5, 0.05, 0.05] }]);
     const { sensors: [sensor] } = await placed(engineer);
@@ -138,8 +140,8 @@ test('a list is saved: the difference first, then active for all, with the old o
     const diff = await engineer.text('tags_diff');
     assert.equal(diff.conflict, false);
     assert.deepEqual(diff.lines, [
-        [3, 'TI-2,400003,Float,°C,right,temperature,E-101,-0.5,0,0,1', 'TI-2,400003,Float,°C,right,temperature,E-101,-0.5,0.25,0,1'],
-        [5, 'TI-9,400007,Float,°C,spare,temperature,,,,,1,', 'TI-9,400007,Float,°C,spare,temperature,E-101,0,0.5,0.123,1,'],
+        [3, 'TI-2,400003,Float,°C,right,temperature,E-101,-0.5,0,0,600', 'TI-2,400003,Float,°C,right,temperature,E-101,-0.5,0.25,0,600'],
+        [5, 'TI-9,400007,Float,°C,spare,temperature,,,,,600,', 'TI-9,400007,Float,°C,spare,temperature,E-101,0,0.5,0.123,600,'],
     ]);
     assert.equal(readFileSync(tagsFile, 'utf8'), old, 'nothing is written before it is confirmed');
 
@@ -147,8 +149,10 @@ test('a list is saved: the difference first, then active for all, with the old o
     await engineer.text('tags_diff');
     assert.equal(readFileSync(tagsFile, 'utf8'), old);
 
+    engineer.socket.cork(); // sends both messages at once, so that the second comes while the first one is carried out
     engineer.say({ type: 'save_tags', seq: ++seq, confirm: diff.hash });
-    engineer.say({ type: 'save_tags', seq: ++seq, confirm: diff.hash }); // sends the same message again while the first one is carried out
+    engineer.say({ type: 'save_tags', seq: ++seq, confirm: diff.hash });
+    engineer.socket.uncork();
     const answers = [await engineer.text('tags_saved', 60000), await engineer.text('tags_saved', 60000)];
     const saved = answers.find((answer) => answer.saved), refused = answers.find((answer) => !answer.saved);
     assert.match(refused.errors.join(), /another list is being applied/);
@@ -232,9 +236,13 @@ test('while another program is at work in the plant\'s folder, a list is not sav
     await placed(engineer);
     engineer.say({ type: 'save_tags', seq: ++seq });
     const { hash } = await engineer.text('tags_diff');
-    const held = spawn('flock', [plant.folder, 'sh', '-c', 'echo held; read line'], { stdio: ['pipe', 'pipe', 'ignore'] });
+    let held;
+    const hold = () => {
+        held = spawn('flock', [plant.folder, 'sh', '-c', 'echo held; read line'], { stdio: ['pipe', 'pipe', 'ignore'] });
+        return once(held.stdout, 'data');
+    };
     t.after(() => held.stdin.end());
-    await once(held.stdout, 'data');
+    await hold();
     engineer.say({ type: 'save_tags', seq: ++seq, confirm: hash });
     const began = performance.now();
     await probe(engineer);
@@ -244,11 +252,16 @@ test('while another program is at work in the plant\'s folder, a list is not sav
     assert.match(refused.errors.join(), /^the plant's folder .*: (flock|sh) \(process \d+\) is using the folder; try again/);
     assert.equal(readFileSync(tagsFile, 'utf8'), good);
     assert.deepEqual(readdirSync(plant.folder).sort(), files);
-    // Saving waits for a short match or import, and then locks the folder itself.
-    engineer.say({ type: 'save_tags', seq: ++seq, confirm: hash });
-    await new Promise((done) => setTimeout(done, 300));
-    held.stdin.end();
-    assert.equal((await engineer.text('tags_saved', 60000)).saved, true);
+    // Saving waits for a short match or import, and then locks the folder itself. On a busy machine the other program may take too long.
+    await until('a list that is saved', async () => {
+        engineer.say({ type: 'save_tags', seq: ++seq, confirm: hash });
+        await new Promise((done) => setTimeout(done, 300));
+        held.stdin.end();
+        const { saved } = await engineer.text('tags_saved', 60000);
+        if (!saved)
+            await hold();
+        return saved;
+    });
     engineer.close();
 });
 
@@ -259,11 +272,7 @@ const prove = (client, tag, expected, more = {}) => {
 
 async function forced(tag, value) {
     await plant.tell(`set ${tag} ${value}`);
-    for (;;) {
-        const { tags } = await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags`)).json();
-        if (Math.abs(tags.find(({ name }) => name === tag).value - value) < 0.01)
-            return;
-    }
+    await until(`${tag} ${value}`, async () => Math.abs((await readings()).find(({ name }) => name === tag).value - value) < 0.01);
 }
 
 test('a forced value proves a tag, for all to see; beyond the tolerance it does not', options, async () => {
@@ -281,10 +290,7 @@ test('a forced value proves a tag, for all to see; beyond the tolerance it does 
     assert.deepEqual([failed.passed, failed.why], [false, 'the value is beyond the tolerance']);
     assert.equal((await prove(engineer, 'TI-9', 50, { fail: true })).passed, false);
     await plant.tell('fail PI-1');
-    for (let quality = 'good'; quality === 'good';) {
-        const list = (await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags`)).json()).tags;
-        quality = list.find(({ name }) => name === 'PI-1').quality;
-    }
+    await until('a failure', async () => (await readings()).find(({ name }) => name === 'PI-1').quality !== 'good');
     assert.equal((await prove(engineer, 'PI-1', 5)).why, 'the reading is not good');
     engineer.say({ type: 'prove', seq: ++seq, tag: 'TI-1', expected: 1 });
     assert.match((await engineer.text('error')).text, /tolerance/);
