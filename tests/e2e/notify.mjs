@@ -281,7 +281,7 @@ receivers: [{ name: hook, webhook_configs: [{ url: "http://127.0.0.1:${hook.port
 `);
     const manager = spawn('prometheus-alertmanager', [`--config.file=${join(plant.folder, 'am.yml')}`,
         `--storage.path=${join(plant.folder, 'am')}`, `--web.listen-address=127.0.0.1:${port}`, '--cluster.listen-address='],
-    { stdio: 'ignore' });
+    { stdio: 'ignore' }), ended = new Promise((done) => manager.once('exit', done));
     const alerts = async () => (await (await fetch(`http://127.0.0.1:${port}/api/v2/alerts`)).json());
     try {
         await calm(plant);
@@ -303,6 +303,7 @@ receivers: [{ name: hook, webhook_configs: [{ url: "http://127.0.0.1:${hook.port
         await until('none stands any more', async () => (await alerts()).length === 0);
     } finally {
         manager.kill();
+        await ended; // it writes to its folder until then
         await hook.close();
         await plant.destroy();
     }
