@@ -171,7 +171,7 @@ async function streamsOnlyItsViews(lobby, whole) {
         client.say(message);
         assert.match((await client.text('error')).text, text, JSON.stringify(message));
     };
-    const only = /this token is for (pictures of )?the views left,flat,page,gone/;
+    const only = /this token (is for|permits only pictures of) the views left,flat,page,gone/;
     for (const message of [{ type: 'camera', seq: 2, ...camera }, { type: 'params', seq: 2, group: 'pressure' }, { type: 'fit', seq: 3 },
         { type: 'pick', seq: 4, x: 1, y: 1 }, { type: 'time', at_us: 1 }, { type: 'follow', session: 7 }, { type: 'lead', session: 7 },
         { type: 'look', seq: 5, named: 'rest' }, { type: 'look', seq: 5, named: 'left,flat' }])
