@@ -6,7 +6,7 @@ import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { connect, createServer } from 'node:net';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { inflateRawSync } from 'node:zlib';
+import { gunzipSync, inflateRawSync } from 'node:zlib';
 import { encodeFrame, get, http, PlainClient } from './support/plain_client.mjs';
 import { promise } from './support/promise.mjs';
 import { BIN, notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
@@ -121,6 +121,13 @@ test('HTTP: what is there, what is not, and how it is said', { skip }, async () 
     }
     const page = await get(port, '/'), again = await get(port, '/', 'GET', `If-None-Match: ${page.headers.etag}\r\n`);
     assert.deepEqual([again.status, again.body.length], [304, 0]);
+    const packed = await get(port, '/', 'GET', 'Accept-Encoding: br, gzip\r\n');
+    assert.deepEqual([page, packed].map(({ headers }) => [headers.vary, headers['content-encoding'], headers.connection]),
+        [['accept-encoding', undefined, undefined], ['accept-encoding', 'gzip', undefined]]);
+    assert.equal(gunzipSync(packed.body).compare(page.body), 0);
+    assert.notEqual(packed.headers.etag, page.headers.etag);
+    // the server closes the connection after a refused method, and says so
+    assert.equal((await get(port, '/', 'DELETE', 'Content-Length: 0\r\n')).headers.connection, 'close');
     assert.equal((await get(port, '/stream')).status, 426);
 });
 

@@ -64,7 +64,7 @@ static void read_path(const char *text)
     if (!site)
         site = site_create(NULL, "clients/web");
     const struct site_file *file = site_find(site, text);
-    require(!file || (file->bytes && file->type && !strstr(text, "..")), "a file of the client");
+    require(!file || (file->plain.bytes && file->type && !strstr(text, "..")), "a file of the client");
 }
 
 static void read_token_line(const char *text)

@@ -5,6 +5,7 @@
 #include "tests/support/test.h"
 #include <sys/stat.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include "base/files/atomic_file.h"
 
@@ -37,10 +38,10 @@ static void expect(const struct site_fixture *f, const char *path, const char *c
     const struct site_file *file = site_find(site, path);
     if (!file)
         fail_msg("%s is not served", path);
-    assert_int_equal(file->count, strlen(content));
-    assert_memory_equal(file->bytes, content, file->count);
+    assert_int_equal(file->plain.count, strlen(content));
+    assert_memory_equal(file->plain.bytes, content, file->plain.count);
     assert_string_equal(file->type, type);
-    assert_true(file->etag[0] == '"' && strlen(file->etag) > 4);
+    assert_true(file->plain.etag[0] == '"' && strlen(file->plain.etag) > 4);
     site_destroy(&site);
 }
 
@@ -109,12 +110,50 @@ CASE(files_stay_as_they_were_at_the_start)
     temp_write_text(f->web, "index.html", "<p>more");
     temp_write_text(f->web, "new.js", "1;");
     struct web_site *after = site_create(NULL, f->web);
-    assert_memory_equal(site_find(before, "/")->bytes, "<p>", 3);
-    assert_int_equal(site_find(before, "/")->count, 3);
+    assert_memory_equal(site_find(before, "/")->plain.bytes, "<p>", 3);
+    assert_int_equal(site_find(before, "/")->plain.count, 3);
     assert_null(site_find(before, "/new.js"));
-    assert_int_equal(site_find(after, "/")->count, 7);
+    assert_int_equal(site_find(after, "/")->plain.count, 7);
     assert_non_null(site_find(after, "/new.js"));
-    assert_string_not_equal(site_find(before, "/")->etag, site_find(after, "/")->etag);
+    assert_string_not_equal(site_find(before, "/")->plain.etag, site_find(after, "/")->plain.etag);
     site_destroy(&before);
     site_destroy(&after);
+}
+
+static void expect_gzip(const struct site_file *file, const char *text)
+{
+    char bytes[8192];
+    z_stream stream = { .next_in = (Bytef *)file->gzip.bytes, .avail_in = (uInt)file->gzip.count, .next_out = (Bytef *)bytes };
+    stream.avail_out = sizeof(bytes);
+    assert_int_equal(inflateInit2(&stream, MAX_WBITS + 16), Z_OK);
+    assert_int_equal(inflate(&stream, Z_FINISH), Z_STREAM_END);
+    assert_int_equal(stream.total_out, strlen(text));
+    assert_memory_equal(bytes, text, stream.total_out);
+    assert_string_not_equal(file->gzip.etag, file->plain.etag);
+    inflateEnd(&stream);
+}
+
+/* A file is compressed where the browser accepts that and the file shrinks. */
+CASE(text_is_compressed_if_the_browser_accepts_gzip)
+{
+    static const struct {
+        const char *accept;
+        bool gzip;
+    } cases[] = { { "", false },          { "gzip", true },        { "gzip, deflate, br, zstd", true }, { "br,GZIP;q=0.5", true },
+                  { "br", false },        { "gzip;q=0", false },   { "gzip; q=0.0, br", false },        { "gzipped, x-gzip", false },
+                  { "deflate,gzip", true }, { ",,", false },       { "*", false } };
+    char long_text[6001], noise[33] = "8f3kQz0PvLw7YtRb2XnJcMh5GsDa9Ue4";
+    for (size_t i = 0; i + 1 < sizeof(long_text); i++)
+        long_text[i] = "plant\n"[i % 6];
+    long_text[sizeof(long_text) - 1] = 0;
+    temp_write_text(f->web, "long.css", long_text);
+    temp_write_text(f->web, "noise.txt", noise);
+    struct web_site *site = site_create(NULL, f->web);
+    const struct site_file *file = site_find(site, "/long.css");
+    expect_gzip(file, long_text);
+    for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++)
+        if ((site_form_for(file, cases[i].accept) == &file->gzip) != cases[i].gzip)
+            fail_msg("Accept-Encoding: %s", cases[i].accept);
+    assert_ptr_equal(site_form_for(site_find(site, "/noise.txt"), "gzip"), &site_find(site, "/noise.txt")->plain);
+    site_destroy(&site);
 }

@@ -107,16 +107,20 @@ static int stream_without_upgrade(struct server_context *server, struct http_exc
 static int file(struct server_context *server, struct http_exchange *request, const char *path)
 {
     const struct site_file *found = site_find(server->http.site, path);
-    char seen[64] = "";
+    char seen[64] = "", accepted[128] = "";
     request->sandboxed = !strncmp(path, "/keeper/", 8);
     if (!found)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "not found\n");
-    if (lws_hdr_copy(request->wsi, seen, sizeof(seen), WSI_TOKEN_HTTP_IF_NONE_MATCH) > 0 && !strcmp(seen, found->etag))
-        return request_answer(request, HTTP_STATUS_NOT_MODIFIED, found->type, NULL, 0, "etag:", found->etag);
+    lws_hdr_copy(request->wsi, accepted, sizeof(accepted), WSI_TOKEN_HTTP_ACCEPT_ENCODING);
+    const struct site_form *form = site_form_for(found, accepted);
+    request->varies = found->gzip.bytes != NULL;
+    if (lws_hdr_copy(request->wsi, seen, sizeof(seen), WSI_TOKEN_HTTP_IF_NONE_MATCH) > 0 && !strcmp(seen, form->etag))
+        return request_answer(request, HTTP_STATUS_NOT_MODIFIED, found->type, NULL, 0, "etag:", form->etag);
+    request->gzip = form == &found->gzip;
     /* copies the file, because the request frees the bytes of its answer and the site keeps its own */
-    char *bytes = mem_array(found->count + 1, 1);
-    memcpy(bytes, found->bytes, found->count);
-    return request_answer(request, HTTP_STATUS_OK, found->type, bytes, found->count, "etag:", found->etag);
+    char *bytes = mem_array(form->count + 1, 1);
+    memcpy(bytes, form->bytes, form->count);
+    return request_answer(request, HTTP_STATUS_OK, found->type, bytes, form->count, "etag:", form->etag);
 }
 
 /* Redirects the browser from a short link to the page, which then requests the link's view with the user's own rights. The redirect is

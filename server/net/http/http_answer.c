@@ -24,6 +24,12 @@ static bool add_header(struct lws *wsi, const char *name, const char *value, uns
     return lws_add_http_header_by_name(wsi, (const unsigned char *)name, (const unsigned char *)value, (int)strlen(value), p, end) == 0;
 }
 
+/* Returns whether the server closes the connection after this answer. */
+static bool closes(const struct http_exchange *request)
+{
+    return request->close || server_context_of(request->wsi)->life.goes_down;
+}
+
 /* Adds the status line and the body's headers. An answer in pieces has no Content-Length. Returns false if the headers do not fit. */
 static bool add_first(struct http_exchange *request, int status, const char *type, unsigned char **p, unsigned char *end)
 {
@@ -44,6 +50,15 @@ static bool add_policies(struct http_exchange *request, const char *content_poli
     bool added = add_header(request->wsi, "cross-origin-resource-policy:", resource_policy, p, end) &&
                  add_header(request->wsi, "content-security-policy:", sandbox ? sandbox : content_policy, p, end);
     mem_free(sandbox);
+    return added;
+}
+
+/* Adds the headers that say how the body is compressed. Returns false if they do not fit. */
+static bool add_encoding(struct http_exchange *request, unsigned char **p, unsigned char *end)
+{
+    bool added = (!request->varies || add_header(request->wsi, "vary:", "accept-encoding", p, end)) &&
+                 (!request->gzip || add_header(request->wsi, "content-encoding:", "gzip", p, end));
+    request->varies = request->gzip = false;
     return added;
 }
 
@@ -71,6 +86,10 @@ bool request_write_head(struct http_exchange *request, int status, const char *t
     if (!add_policies(request, server->http.content_policy, &p, end))
         return false;
     if (server->tls && !add_header(wsi, "strict-transport-security:", "max-age=31536000", &p, end))
+        return false;
+    if (!add_encoding(request, &p, end))
+        return false;
+    if (closes(request) && !add_header(wsi, "connection:", "close", &p, end))
         return false;
     if (extra_name && !add_header(wsi, extra_name, extra, &p, end))
         return false;
@@ -119,7 +138,7 @@ int request_done(struct http_exchange *request)
     request->pieces = PIECES_NONE;
     connection_set_answered(server_context_of(request->wsi), request->wsi, true);
     stuck_head_await(request->wsi, false);
-    return request->close || server_context_of(request->wsi)->life.goes_down || lws_http_transaction_completed(request->wsi) ? -1 : 0;
+    return closes(request) || lws_http_transaction_completed(request->wsi) ? -1 : 0;
 }
 
 /* Writes the answer; takes ownership of body. Bytes that the socket does not accept now are written once it does. */

@@ -23,6 +23,8 @@ struct http_exchange {
     bool head;              /* true: the request's method is HEAD, so the answer has no body */
     bool close;             /* true: the connection is closed after this answer */
     bool sandboxed; /* true: the answer belongs to a sandboxed document (opaque origin), which Chromium runs in a process of its own */
+    bool varies;            /* true: the next answer depends on the request's header Accept-Encoding */
+    bool gzip;              /* true: the body of the next answer is compressed as gzip */
     char *set_cookie;       /* value of the header Set-Cookie of the next answer; NULL: the answer sets no cookie */
     struct refusal refusal; /* refusal to be sent in the header Plantcast-Refusal of the next answer; REFUSAL_NONE: no such header */
     char *body;

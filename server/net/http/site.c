@@ -9,8 +9,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <xxhash.h>
+#include <zlib.h>
 
 #include "base/mem.h"
 #include "base/text/text.h"
@@ -106,6 +108,32 @@ static size_t drop_comments(char *bytes, size_t count)
     return out;
 }
 
+static void set_etag(struct site_form *form)
+{
+    snprintf(form->etag, sizeof(form->etag), "\"%016" PRIx64 "\"", (uint64_t)XXH3_64bits(form->bytes, form->count));
+}
+
+/* Returns the bytes compressed as gzip; bytes NULL: they would not become at least a tenth smaller. */
+static struct site_form compressed(const struct site_form *plain)
+{
+    enum { GZIP_WINDOW = MAX_WBITS + 16, MEMORY_LEVEL = 9 }; /* zlib: 16 more than the window asks for gzip's header */
+    z_stream stream = { .next_in = (Bytef *)plain->bytes, .avail_in = (uInt)plain->count };
+    struct site_form gzip = { .count = plain->count - plain->count / 10 };
+    if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, GZIP_WINDOW, MEMORY_LEVEL, Z_DEFAULT_STRATEGY) != Z_OK)
+        return (struct site_form){ 0 };
+    gzip.bytes = mem_array(gzip.count + 1, 1);
+    stream.next_out = (Bytef *)gzip.bytes;
+    stream.avail_out = (uInt)gzip.count;
+    bool fits = deflate(&stream, Z_FINISH) == Z_STREAM_END;
+    gzip.count = stream.total_out;
+    deflateEnd(&stream);
+    if (fits)
+        set_etag(&gzip);
+    else
+        mem_free(gzip.bytes);
+    return fits ? gzip : (struct site_form){ 0 };
+}
+
 struct web_site {
     char *folder;
     struct site_file *files; /* files of the web client, sorted by path */
@@ -117,15 +145,16 @@ static void add_file(struct web_site *site, struct log *log, const char *full, c
     struct site_file file = { .type = type_of(path) };
     if (!file.type || !path_harmless(path) || !inside(site->folder, full))
         return;
-    file.bytes = text_read_file(full, MAX_FILE_BYTES, &file.count);
-    if (!file.bytes) {
+    file.plain.bytes = text_read_file(full, MAX_FILE_BYTES, &file.plain.count);
+    if (!file.plain.bytes) {
         log_err(log, "%s: %s", full, strerror(errno));
         return;
     }
     if (is_own_script(path))
-        file.count = drop_comments(file.bytes, file.count);
+        file.plain.count = drop_comments(file.plain.bytes, file.plain.count);
     file.path = mem_strdup(path);
-    snprintf(file.etag, sizeof(file.etag), "\"%016" PRIx64 "\"", (uint64_t)XXH3_64bits(file.bytes, file.count));
+    set_etag(&file.plain);
+    file.gzip = compressed(&file.plain);
     mem_grow(&site->files, &site->capacity, site->count + 1, sizeof(*site->files));
     site->files[site->count++] = file;
 }
@@ -174,7 +203,8 @@ void site_destroy(struct web_site **pointer)
         return;
     for (size_t i = 0; i < site->count; i++) {
         mem_free(site->files[i].path);
-        mem_free(site->files[i].bytes);
+        mem_free(site->files[i].plain.bytes);
+        mem_free(site->files[i].gzip.bytes);
     }
     mem_free(site->files);
     mem_free(site->folder);
@@ -190,4 +220,24 @@ const struct site_file *site_find(const struct web_site *site, const char *path)
     const struct site_file *found = site->count ? bsearch(&wanted, site->files, site->count, sizeof(*site->files), by_path) : NULL;
     mem_free(whole);
     return found;
+}
+
+/* Returns whether an element of Accept-Encoding, `length` bytes long, allows gzip: its weight, 1 unless given as ";q=", is above 0. */
+static bool allows_gzip(const char *element, size_t length)
+{
+    char text[32];
+    snprintf(text, sizeof(text), "%.*s", (int)length, element);
+    const char *name = text + strspn(text, " \t"), *weight = strstr(name, "q=");
+    return strcspn(name, "; \t") == 4 && !strncasecmp(name, "gzip", 4) && (!weight || strtod(weight + 2, NULL) > 0);
+}
+
+const struct site_form *site_form_for(const struct site_file *file, const char *accept_encoding)
+{
+    for (const char *at = accept_encoding; file->gzip.bytes && *at; at += *at == ',') {
+        size_t length = strcspn(at, ",");
+        if (allows_gzip(at, length))
+            return &file->gzip;
+        at += length;
+    }
+    return &file->plain;
 }

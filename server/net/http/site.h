@@ -8,12 +8,17 @@
 
 #include "base/log/log.h"
 
-struct site_file {
-    char *path; /* path in the URL, decoded, with its leading '/' */
+struct site_form { /* a file as it is sent */
     char *bytes;
     size_t count;
+    char etag[24]; /* value of the HTTP header ETag, with its quotes */
+};
+
+struct site_file {
+    char *path;       /* path in the URL, decoded, with its leading '/' */
     const char *type; /* MIME type, static text */
-    char etag[24];    /* value of the HTTP header ETag, with its quotes */
+    struct site_form plain;
+    struct site_form gzip; /* compressed (RFC 1952); bytes NULL: the file hardly shrinks, as an image */
 };
 
 struct web_site;
@@ -24,5 +29,7 @@ void site_destroy(struct web_site **site); /* destroys the site and sets *site t
 /* Returns the file of a decoded path that starts with '/', or NULL; a path that ends with '/' means index.html there. The file lives as
    long as the site. */
 const struct site_file *site_find(const struct web_site *site, const char *path);
+/* Returns the smallest form that the value of the HTTP header Accept-Encoding allows (RFC 9110, 12.5.3). "" allows only plain. */
+const struct site_form *site_form_for(const struct site_file *file, const char *accept_encoding);
 
 #endif
