@@ -36,6 +36,8 @@ struct lease_keeper {
     /* --- below: used by the keeper's thread only */
     struct postgres_link *link; /* connection to the database that has the lease's row; NULL: none */
     bool looks;                 /* true: the present row is unknown and must be read from the database */
+    /* true: the last change of the row failed, so a successful read does not mean that the database works again */
+    bool refuses_changes;
     bool told_won, told_lost, told_alone, told_barred;
     char said[POSTGRES_WHY_BYTES], led_by[LEASE_NODE_BYTES];
     /* version (`beat`) of the row when it first named another core with this core's name; -1: that core is alive, which was logged; 0: the
@@ -92,13 +94,12 @@ static void give_up(struct lease_keeper *keeper, const char *why)
     keeper->looks = true;
 }
 
-static bool is_well(struct lease_keeper *keeper)
+static void set_well(struct lease_keeper *keeper)
 {
     if (*keeper->said)
         log_info(keeper->params.log, "lease: PostgreSQL answers again");
     *keeper->said = 0;
     counter_set(keeper->counters.database, 1);
-    return true;
 }
 
 /* Returns the time limit for database requests: for a leader the remaining time of its lease, at least MIN_TIMEOUT_NS; at most
@@ -165,7 +166,9 @@ static bool read_row(struct lease_keeper *keeper, struct lease_row *row)
         copy_name(row->standby, rows, 4);
     }
     PQclear(rows);
-    return there && is_well(keeper);
+    if (there && !keeper->refuses_changes)
+        set_well(keeper);
+    return there;
 }
 
 /* Changes the lease's row in the database by the statement `sql`, if the row still equals `seen`. Returns 1 if it was changed, 0 if the row
@@ -180,10 +183,11 @@ static int change_row(struct lease_keeper *keeper, const char *sql, const struct
     PGresult *rows = postgres_link_ask(keeper->link, sql, 5, (const char *[]){ keeper->plant, epoch, beat, own, name });
     int changed = rows ? PQntuples(rows) : -1;
     PQclear(rows);
+    keeper->refuses_changes = changed < 0;
     if (changed < 0)
         give_up(keeper, postgres_link_why(keeper->link));
     else
-        is_well(keeper);
+        set_well(keeper);
     return changed;
 }
 
@@ -236,6 +240,7 @@ static void look(struct lease_keeper *keeper)
     lease_saw(&keeper->lease, &row, now_of_lease());
     bool leads = keeper->lease.leads, gave = keeper->lease.gave;
     keeper->gives &= row.instance == keeper->lease.instance;
+    keeper->refuses_changes &= leads || lease_may_bid(&keeper->lease, now_of_lease());
     pthread_mutex_unlock(&keeper->thread.lock);
     keeper->looks = false;
     counter_set(keeper->counters.epoch, row.epoch);

@@ -292,6 +292,26 @@ test('a core of another version or configuration keeps no seat, and a renderer\'
     await voter.until('its end', ({ closed }) => closed);
 });
 
+test('a database that answers but refuses every change is logged once, and once when it is well again', options, async () => {
+    const core = await two.leader(), start = core.program.said.length, table = server.ask(
+        "SELECT format('%I.lease', schemaname) FROM pg_tables WHERE tablename = 'lease'")[0][0];
+    const count = (text) => core.program.said.slice(start).split(text).length - 1;
+    const beat = () => server.ask(`SELECT max(beat) FROM ${table}`)[0][0];
+    assert.equal(server.psql(`REVOKE UPDATE ON ${table} FROM plantcast`).status, 0);
+    try {
+        await until('the refusal in the log', () => count('permission denied') === 1);
+        const before = beat(), end = performance.now() + 3000; // several turns of the lease's thread
+        await until('several turns', () => performance.now() > end);
+        assert.equal(beat(), before, 'no change is written');
+        assert.ok(await two.ready(core), 'the core leads by the promise of its standby');
+        assert.deepEqual([count('PostgreSQL does not answer'), count('PostgreSQL answers again')], [1, 0]);
+        assert.equal(await core.node.metric('plantcast_core_lease_database_up'), 0);
+    } finally {
+        assert.equal(server.psql(`GRANT UPDATE ON ${table} TO plantcast`).status, 0);
+    }
+    await until('that it is well again', () => count('PostgreSQL answers again') === 1);
+});
+
 // Receives what a service tells its manager (sd_notify): { said, child }.
 function manager(path) {
     const told = { said: '' };
