@@ -75,6 +75,9 @@ page.handlers = {
     group: does('group'),
 };
 listenToInput(byId('viewport'), modules);
+// A finger gives no warning before its first touch, unlike a mouse, so the code that follows it is loaded after the first picture.
+if (window.matchMedia('(pointer: coarse)').matches)
+    session.on('frame', () => modules.prepare('cameraController'));
 
 // --- the picture, and the markers, cards and labels drawn over it
 
