@@ -108,5 +108,6 @@ test('what is damaged, missing or in the way is refused by name', { skip }, () =
     for (const args of [['backup', plant.file], ['backup'], ['backup', '--verify', 'a', '-o', 'b'], ['restore', '--verify', 'a', 'b'],
         ['restore'], ['restore', 'a', 'b', 'c']])
         assert.equal(runProgram('plantcast', args).code, 2, args.join(' '));
-    assert.match(runProgram('plantcast', ['restore', folder('three')]).err, /has only the plant and its history, not the files of a service: .*three PLANT\.yaml/);
+    assert.match(runProgram('plantcast', ['restore', folder('three')]).err,
+        /has only the plant and its history, not the files of a service: .*three PLANT\.yaml/);
 });
