@@ -206,8 +206,10 @@ test('tablet upright', options, () => withPage({ ...TABLET, viewport: { width: 7
 const SHARP_PHONE = { ...PHONE, ...SHARP };
 test('phone: device pixels; choose equipment from the list, fly there, tap a sensor', options, () => withPage(SHARP_PHONE, async (page) => {
     const box = await page.locator('#viewport').boundingBox();
-    const size = await page.evaluate(() => [document.getElementById('picture').width, document.getElementById('picture').height]);
-    assert.deepEqual(size, [box.width * 2, box.height * 2]);
+    await page.waitForFunction(([width, height]) => { // a preview has fewer pixels
+        const canvas = document.getElementById('picture');
+        return canvas.width === width && canvas.height === height;
+    }, [box.width * 2, box.height * 2]);
     const { camera: home } = await view(page);
     await becomes(() => sticksOut(page), []);
     await becomes(() => tooSmall(page), []);
