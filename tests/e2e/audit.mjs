@@ -8,6 +8,7 @@ import { createServer } from 'node:tls';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { http, PlainClient } from './support/plain_client.mjs';
+import { freePort } from './support/ports.mjs';
 import { promise } from './support/promise.mjs';
 import { sweep } from './support/sweep.mjs';
 import { notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
@@ -48,8 +49,8 @@ class SyslogServer {
         this.server.on('tlsClientError', () => {});
     }
 
-    listen(port = 0) {
-        return new Promise((done) => this.server.listen(port, '127.0.0.1', () => { this.port = this.server.address().port; done(); }));
+    listen(port) {
+        return new Promise((done) => this.server.listen(port, '127.0.0.1', done));
     }
 
     close() {
@@ -63,10 +64,27 @@ class SyslogServer {
     }
 }
 
+// Returns the number of starts in the trail. There is no file before the first start, and for a moment while a full one is renamed.
+function starts() {
+    try {
+        return readFileSync(trail, 'utf8').split('"event":"start"').length - 1;
+    } catch {
+        return 0;
+    }
+}
+// Starts the daemon, and waits until its start is in the trail: the daemon may be ready before that.
 async function start(...args) {
     await plant.daemon?.stop();
+    const count = starts();
     await plant.startDaemon('--tokens', path('tokens'), '--audit', trail, ...args);
+    await until('the start in the trail', () => starts() > count);
 }
+
+// Waits until the trail is good: the daemon may just be writing a line, or removing one that did not fit onto the disk.
+const whole = () => until('a good trail', () => verify().code === 0, 90, () => verify().err);
+// Waits for the metric, which follows a line of the log.
+const isGood = (value) => until(`plantcast_audit_good ${value}`, async () =>
+    new RegExp(`^plantcast_audit_good ${value}$`, 'm').test((await ask('/metrics', tokens.viewer)).body.toString()));
 
 before(async () => {
     if (skip)
@@ -204,7 +222,7 @@ test('a plant that is brought in: each file and each order, by whom, and what be
 
 const EACH_TRIES = sweep(500, 100), TRYING = 20;
 test('thousands of wrong tokens: few lines, and others come in meanwhile', { skip }, async (t) => {
-    const before_ = lines().length;
+    const before_ = lines().length, since = performance.now();
     let slowest = 0, refused = 0;
     const wrong = async () => {
         for (let i = 0; i < EACH_TRIES; i++) {
@@ -228,7 +246,10 @@ test('thousands of wrong tokens: few lines, and others come in meanwhile', { ski
     await found('the slowing', (line) => /delayed/.test(line.why ?? ''));
     const held = await found('unchecked ones', (line) => /tokens from rate-limited addresses were refused unchecked/.test(line.what ?? ''));
     assert.equal(held.result, 'refused');
-    assert.ok(lines().length - before_ < 60, `${lines().length - before_} lines`);
+    // Ten failures and the log-in of the other client; then one token every 5 s is checked, and a sum is written every minute.
+    const { length: count } = lines().slice(before_).filter(({ event }) => event === 'login');
+    const seconds = (performance.now() - since) / 1000, most = 12 + seconds / 5 + seconds / 60;
+    assert.ok(count <= most, `${count} lines in ${seconds} s`);
 });
 
 test('a changed byte and removed lines are found, also by the next start', { skip }, async () => {
@@ -263,22 +284,20 @@ test('a disk that is full is said, in the log and the metrics, and nothing is lo
     if (!existsSync('/usr/bin/prlimit'))
         return t.skip('no prlimit');
     await start();
-    await found('the start', (line) => line.event === 'start');
-    await sleep(200);
     const limit = (bytes) => spawnSync('prlimit', ['--pid', String(plant.daemon.child.pid), `--fsize=${bytes}`]);
     limit(`${statSync(trail).size + 20}:unlimited`);
     const count = lines().length;
     await ask('/api/v1/tags', 'pc_wrong', { localAddress: '127.0.0.20' });
     await plant.daemon.line(/audit: .*audit\.log cannot be written \(File too large\)/);
     await plant.daemon.line(/audit, not written: login refused: \(nobody\) from 127\.0\.0\.20/);
-    assert.match((await ask('/metrics', tokens.viewer)).body.toString(), /^plantcast_audit_good 0$/m);
+    await isGood(0);
     assert.equal(lines().length, count);
-    assert.equal(verify().code, 0);
+    await whole();
     limit('unlimited:unlimited');
     await plant.daemon.line(/audit: .*audit\.log can be written again/);
     await found('what waited', (line) => line.from === '127.0.0.20');
-    assert.match((await ask('/metrics', tokens.viewer)).body.toString(), /^plantcast_audit_good 1$/m);
-    assert.equal(verify().code, 0);
+    await isGood(1);
+    await whole();
 });
 
 test('a small disk that is full is alarmed, no line on it is torn, and a read-only one is refused', { skip, timeout: 2e5 }, async (t) => {
@@ -294,21 +313,20 @@ test('a small disk that is full is alarmed, no line on it is torn, and a read-on
     const good = async () => /^plantcast_audit_good (\d)$/m.exec((await ask('/metrics', tokens.viewer)).body.toString())[1];
     trail = join(small, 'audit.log');
     await start();
-    await found('the start', (line) => line.event === 'start');
     assert.notEqual(spawnSync('dd', ['if=/dev/zero', `of=${full}`]).status, 0);
     // Sends wrong tokens until the audit log fails: the disk is full, but the last page of the file still has room for some lines.
     for (let i = 0; i < 60 && await good() === '1'; i++, await sleep(20))
         await ask('/api/v1/tags', 'pc_wrong', { localAddress: `127.0.2.${i + 1}` });
     await plant.daemon.line(/audit: .*audit\.log cannot be written \(No space left on device/);
-    assert.equal(await good(), '0');
+    await isGood(0);
     await ask('/api/v1/tags', 'pc_wrong', { localAddress: '127.0.3.1' });
     await plant.daemon.line(/audit, not written: login refused: \(nobody\) from 127\.0\.3\.1/);
     assert.equal((await ask('/api/v1/tags', tokens.viewer)).status, 200, 'the plant stays in sight');
-    assert.equal(verify().code, 0, verify().err);
+    await whole();
     rmSync(full);
     await plant.daemon.line(/audit: .*audit\.log can be written again/);
     await found('what waited', (line) => line.from === '127.0.3.1');
-    assert.equal(verify().code, 0, verify().err);
+    await whole();
     await plant.daemon.stop();
     assert.equal(spawnSync('mount', ['-o', 'remount,ro', small]).status, 0);
     const refused = runProgram('plantcastd', [plant.file, '--port', '0', '--audit', trail]);
@@ -329,15 +347,15 @@ test('a full file is renamed, and a new one begins', { skip }, async () => {
 
 test('syslog by TLS: each line as RFC 5424, after an outage too, and only to whom a certificate vouches for', { skip }, async () => {
     const key = readFileSync(path('log.key')), cert = readFileSync(path('log.pem'));
+    const port = await freePort(); // stays reserved while no server listens
     syslog = new SyslogServer(key, cert);
-    await syslog.listen();
-    await start('--audit-syslog', `localhost:${syslog.port}`, '--audit-ca', path('log.pem'), '--audit-cert', path('log.pem'),
+    await syslog.listen(port);
+    await start('--audit-syslog', `localhost:${port}`, '--audit-ca', path('log.pem'), '--audit-cert', path('log.pem'),
         '--audit-key', path('log.key'));
     const first = await syslog.until('the start', (text) => / start - /.test(text));
     const [, head, json] = /^(.*?) - (\{.*)$/.exec(first);
     assert.match(head, /^<109>1 \d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d+Z \S+ plantcastd \d+ start$/);
     assert.deepEqual(JSON.parse(json), lines().find(({ seq }) => seq === JSON.parse(json).seq));
-    const { port } = syslog;
     await syslog.close();
     await ask('/api/v1/tags', 'pc_wrong', { localAddress: '127.0.0.21' });
     await ask('/api/v1/tags', 'pc_wrong', { localAddress: '127.0.0.22' });
@@ -346,7 +364,7 @@ test('syslog by TLS: each line as RFC 5424, after an outage too, and only to who
     await syslog.listen(port);
     for (const address of ['127.0.0.21', '127.0.0.22'])
         assert.match(await syslog.until(address, (text) => text.includes(`"from":"${address}"`)), /^<108>1 /);
-    await start('--audit-syslog', `localhost:${syslog.port}`);
+    await start('--audit-syslog', `localhost:${port}`);
     await plant.daemon.line(/audit: syslog server localhost:\d+ cannot be reached: SSL/);
     const wrong = runProgram('plantcastd', [plant.file, '--audit-syslog', 'localhost']);
     assert.equal(wrong.code, 1);
