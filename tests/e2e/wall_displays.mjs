@@ -165,6 +165,30 @@ test('another display has its own panes', options, async () => {
     await gone.close();
 });
 
+// The daemon does not start with a wall like this, but a display keeps its panes for a while after a reload.
+test('tags that the plant does not have are named in tiles and trends', options, async () => {
+    const openWith = (names, display) => openPage(`${plant.url}wall.html?wall=room&display=${display}`,
+        { viewport: { width: 960, height: 540 } }, null, (one) => one.route(/api\/v1\/walls/, async (route) => {
+            const answer = await route.fetch(), text = await answer.text();
+            const body = Object.entries(names).reduce((now, [name, other]) => now.replaceAll(`"${name}"`, `"${other}"`), text);
+            await route.fulfill({ response: answer, body });
+        }));
+    const tiles = await openWith({ 'TI-2': 'TI-8' }, 1);
+    const tile = (name) => tiles.page.locator('.tile', { hasText: name });
+    await tile('TI-8').locator('.value', { hasText: 'no such tag' }).waitFor();
+    await tile('TI-1').locator('.value', { hasText: '°C' }).waitFor();
+    await shoot(tiles.page, 'wall-display-unknown-tile');
+    await tiles.close();
+    const one = await openWith({ 'TI-2': 'TI-8' }, 2), inside = one.page.frameLocator('.pane.trend iframe');
+    await inside.locator('#trend-note', { hasText: 'Not in this plant: TI-8' }).waitFor();
+    await inside.locator('#trend-tags tbody tr', { hasText: 'TI-1' }).waitFor();
+    await shoot(one.page, 'wall-display-unknown-trend');
+    await one.close();
+    const both = await openWith({ 'TI-1': 'TI-7', 'TI-2': 'TI-8' }, 2);
+    await both.page.locator('.pane.trend .why', { hasText: 'Not in this plant: TI\u20117, TI\u20118' }).waitFor();
+    await both.close();
+});
+
 test('a heading names the view in the picture, not one that is still loading', options, async () => {
     let answer;
     const held = new Promise((done) => { answer = done; });

@@ -209,15 +209,13 @@ function TrendPane(pane, context) {
         // says why the pane is empty; once the trend has an error of its own, the page in the iframe shows it
         const unknown = session.model ? pane.items.filter((name) => !session.model.tag(name)) : [];
         const names = pane.items.join(', ').replaceAll('-', '\u2011'); // lines do not break within names
-        const isEmpty = !(page?.trends?.plots.length > 0 || inner.note);
-        element.classList.toggle('unshown', isEmpty);
-        setText(why, unknown.length === pane.items.length ? say('trends.none', { text: names })
-            : say('walls.untrended', { tags: names }));
+        const isLost = unknown.length === pane.items.length, isEmpty = !(page?.trends?.plots.length > 0 || inner.note);
+        element.classList.toggle('unshown', isLost || isEmpty);
+        setText(why, say(isLost ? 'trends.unknown' : 'walls.untrended', { tags: names }));
         if (begun === page || !page?.session.model)
             return;
         begun = page;
-        const tags = pane.items.map((name) => page.session.model.tag(name)).filter(Boolean);
-        page.modules.use('trends', (trends) => trends.compare(tags, pane.hours * 3600));
+        page.modules.use('trends', (trends) => trends.compare(pane.items, pane.hours * 3600));
     } };
 }
 
@@ -320,6 +318,13 @@ function TilesPane(pane, { session, body, title }) {
         }
     }
 
+    // Says in a tile that the plant does not have the tile's tag.
+    function lose(tile) {
+        setText(tile.value, say('walls.untagged'));
+        Object.assign(tile.element.dataset, { quality: 'bad', alarm: '' });
+        flagOf(tile, null);
+    }
+
     // Sets the alarm flag of a tag's tile: its colour shows the priority; hollow means returned to normal but unacknowledged.
     function flagOf(tile, alarm) {
         const text = alarm ? `${alarm.priority} ${alarm.state}` : '';
@@ -335,8 +340,11 @@ function TilesPane(pane, { session, body, title }) {
         setText(about, ageOf(oldestMs(session, pane.items)));
         for (const tile of tiles) {
             const tag = session.model.tag(tile.name), group = session.model.group(tag?.group);
-            if (!tag || !group)
+            tile.bar.hidden = !group;
+            if (!tag) {
+                lose(tile);
                 continue;
+            }
             const { value, quality } = session.model.readings[tag.index], alarm = session.model.alarms.gravest(tag.index);
             const { known, text, unit } = valueOf(session, tag);
             tile.value.replaceChildren(text, make('span', {}, unit && ` ${unit}`));
@@ -344,6 +352,8 @@ function TilesPane(pane, { session, body, title }) {
             tile.element.dataset.alarm = alarm && !isGone(alarm.state) ? alarm.priority : '';
             flagOf(tile, alarm);
             tile.bar.classList.toggle('unknown', !known);
+            if (!group)
+                continue;
             setVariable(tile.bar, '--value', known ? shareOf(group, value) : 0);
             mark(tile, tag, group);
         }

@@ -122,6 +122,7 @@ NW: NW
 
 [walls]
 untrended: Wartet auf die Werte von {tags}
+untagged: unbekannt
 unknown: Die Anlagendatei hat keine Videowand „{id}“. Es gibt: {known}
 display: Videowand „{id}“ hat {count} Bildschirme, aber keinen Bildschirm {n}
 lost: Keine Verbindung zur Anlage seit {time}
@@ -395,6 +396,8 @@ back: Voriger Zeitraum
 add: Messstelle hinzufügen
 none: Keine Messstelle passt zu „{text}“
 full: Höchstens {count} Messstellen: zuerst eine entfernen
+unknown: Nicht in dieser Anlage: {tags}
+undrawn: Nicht gezeichnet, höchstens {count} Messstellen: {tags}
 tag: Messstelle
 at: Fadenkreuz
 now: Jetzt

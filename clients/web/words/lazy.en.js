@@ -121,6 +121,7 @@ NW: NW
 
 [walls]
 untrended: Waiting for the values of {tags}
+untagged: no such tag
 unknown: The plant file has no wall '{id}'. Its walls: {known}
 display: Wall '{id}' has {count} displays, but no display {n}
 lost: No connection to the plant since {time}
@@ -394,6 +395,8 @@ back: Previous range
 add: Add a tag
 none: No tag matches “{text}”
 full: At most {count} tags: remove one first
+unknown: Not in this plant: {tags}
+undrawn: Not drawn, because a trend has at most {count} tags: {tags}
 tag: Tag
 at: Crosshair
 now: Now

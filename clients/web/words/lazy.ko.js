@@ -119,6 +119,7 @@ NW: 북서
 
 [walls]
 untrended: {tags} 값을 기다리는 중
+untagged: 없는 태그
 unknown: 플랜트 파일에 상황판 '{id}'이(가) 없습니다. 있는 상황판: {known}
 display: 상황판 '{id}'에는 디스플레이가 {count}개 있으며 {n}번은 없습니다
 lost: {time}부터 플랜트와 연결이 끊겼습니다
@@ -389,6 +390,8 @@ back: 직전 범위로
 add: 태그 추가
 none: “{text}”와(과) 일치하는 태그가 없습니다
 full: 태그는 최대 {count}개입니다. 먼저 하나를 제거하세요
+unknown: 이 플랜트에 없음: {tags}
+undrawn: 표시하지 않음(태그는 최대 {count}개): {tags}
 tag: 태그
 at: 십자선
 now: 현재

@@ -57,6 +57,8 @@ function load() {
 export class Trends {
     constructor({ session, overlay, handlers }) {
         Object.assign(this, { session, tags: [], spanS: SHIFT_S, fixed: null, before: [], plots: [], focus: null, isAsking: false });
+        this.unknown = []; // names that the plant has no tag for
+        this.undrawn = []; // names beyond the largest number of tags
         this.series = new Map(); // tag name -> its series, once the server has answered
         this.alarms = new Map(); // tag name -> its alarms in the time range
         this.element = byId('trends');
@@ -67,7 +69,7 @@ export class Trends {
         session.greeted(() => {
             this.zone = zoneOf(session.model.plant.time_zone);
             this.clock = zoneClock(this.zone);
-            this.setTags(this.tags.map(({ name }) => session.model.tag(name)).filter(Boolean));
+            this.setNames([...this.tags.map(({ name }) => name), ...this.undrawn, ...this.unknown]);
             if (this.isOpen)
                 this.showTags();
         });
@@ -156,24 +158,35 @@ export class Trends {
         this.draw(globalThis.uPlot);
     }
 
-    // Makes the table's rows for the tags and requests their values; closes the trend if there are no tags.
+    // Sets the tags by their names. Names that the plant has no tag for, and names beyond the largest number of tags, are listed below the
+    // charts.
+    setNames(names) {
+        const { model } = this.session, tags = names.map((name) => model.tag(name)).filter(Boolean);
+        this.unknown = names.filter((name) => !model.tag(name));
+        this.undrawn = tags.slice(MOST).map(({ name }) => name);
+        this.setTags(tags.slice(0, MOST));
+    }
+
+    // Makes the table's rows for the tags and requests their values; closes the trend if there are neither tags nor unknown names.
     showTags() {
-        if (this.tags.length === 0)
+        if (this.tags.length === 0 && this.unknown.length === 0)
             return this.close();
         this.table.build();
+        if (this.tags.length === 0)
+            this.note(this.words());
         return this.refresh();
     }
 
     // Shows this tag alone.
     only(tag) {
-        this.setTags([tag]);
+        this.setNames([tag.name]);
         this.open();
     }
 
-    // Opens the trend with these tags, over the last spanS seconds.
-    compare(tags, spanS) {
+    // Opens the trend with the tags of these names, over the last spanS seconds.
+    compare(names, spanS) {
         Object.assign(this, { spanS, fixed: null });
-        this.setTags(tags.slice(0, MOST));
+        this.setNames(names);
         this.open();
     }
 
@@ -327,13 +340,13 @@ export class Trends {
 
     open() {
         this.element.hidden = false;
-        this.table.build();
         this.showRange();
-        this.refresh();
+        this.showTags();
     }
 
     close() {
         this.element.hidden = true;
+        Object.assign(this, { unknown: [], undrawn: [] });
         this.drop();
     }
 
@@ -392,11 +405,13 @@ export class Trends {
         setText(byId('trend-note'), text);
     }
 
+    // Returns what the charts do not show: periods without values, unknown names, and tags beyond the largest number.
     words() {
-        const [from, to] = this.span;
+        const [from, to] = this.span ?? this.range;
         const lacks = (one) => gaps(one, from, to).some(({ severity }) => severity === BAD);
         const lacking = [...this.series.values()].filter(lacks).map(({ tag }) => tag);
-        return lacking.length > 0 ? say('trends.gaps', { tags: lacking.join(', ') }) : '';
+        return [['gaps', lacking], ['unknown', this.unknown], ['undrawn', this.undrawn]].filter(([, names]) => names.length > 0)
+            .map(([key, names]) => say(`trends.${key}`, { tags: names.join(', '), count: MOST })).join(' · ');
     }
 
     // Requests the alarms of the tags in the time range, and earlier ones, which may last into the range.
