@@ -193,6 +193,7 @@ add('history', 'density', [marks, 0, 10e6, 20], ENDS);
 add('history', 'arrowS', [3600], ENDS);
 add('trend_range', 'zoomed', [[0, 100e6], 0.5, 25e6, 200e6], ENDS);
 add('trend_range', 'panned', [[0, 100e6], 0.5, 200e6], ENDS);
+add('trend_range', 'newSpanS', [5000], ENDS);
 add('history', 'ticks', [0, 600e6, 6, 3600e6]);
 add('list_window', 'stack', [[20, 30, 20]], { ends: true });
 add('list_window', 'rowAt', [[0, 20, 50, 70], 30]);

@@ -8,7 +8,7 @@ import {
     arrowS, ask, BAD, clustered, density, gaps, limitLines, line, lost, nextTo, raised, ticks, UNCERTAIN, witnesses,
 } from '../../clients/web/core/history.js';
 import { fieldInstant, fieldText } from '../../clients/web/core/instant.js';
-import { LEAST_US, panned, readRange, zoomed } from '../../clients/web/core/trend_range.js';
+import { LEAST_US, newSpanS, panned, readRange, zoomed } from '../../clients/web/core/trend_range.js';
 import { alarmSpans, bands, statistics, valueAt, withNewest } from '../../clients/web/core/trend_values.js';
 
 const GOOD_CODE = 0, UNCERTAIN_CODE = 0x408f0000, BAD_CODE = 0x80050000;
@@ -118,6 +118,10 @@ test('ranges are read as people write them, in three languages', () => {
     for (const text of ['', 'noon', 'last h', 'last 9999 d', '22:00', 'tomorrow', '2027-01-01 to 2027-01-02', '25:00 to 26:00', 'to',
         '1 x'])
         assert.equal(read(text), null, text);
+});
+
+test('a new trend shows all that is recorded, at most the last eight hours', () => {
+    assert.deepEqual([0, 600, 901, 3600, 3601, 28800, 1e7, null].map(newSpanS), [900, 900, 3600, 3600, 28800, 28800, 28800, 28800]);
 });
 
 test('zoom keeps the instant under the pointer, pan the length, and neither goes beyond the present', () => {

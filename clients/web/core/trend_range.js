@@ -4,6 +4,8 @@
 import { fieldInstant, fieldText } from './instant.js';
 
 const DAY_MS = 86400e3;
+// spans of a new trend in seconds. The longest is a shift, because operators ask what has changed in their shift.
+const NEW_SPANS_S = [900, 3600, 8 * 3600];
 export const LEAST_US = 10e6, LONGEST_US = 400 * 86400e6; // shortest and longest range of a chart, in microseconds
 
 // Words for time units in all languages of the page, because users may type in a language other than the page's.
@@ -75,6 +77,10 @@ export function readRange(text, nowUs, timeZone) {
     const until = Math.min(toUs, nowUs);
     return until - fromUs >= LEAST_US && until - fromUs <= LONGEST_US ? { fromUs, toUs: until } : null;
 }
+
+// Returns the span in seconds of a new trend: the shortest that shows all that is recorded, at most a shift. recordedS: seconds since the
+// first record; null: unknown.
+export const newSpanS = (recordedS) => NEW_SPANS_S.find((spanS) => recordedS !== null && recordedS <= spanS) ?? NEW_SPANS_S.at(-1);
 
 // Returns [from, to] with its length limited and no time after nowUs. If the length changes, the instant `at` keeps its relative position.
 function limited(from, to, at, nowUs) {

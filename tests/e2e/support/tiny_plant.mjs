@@ -279,7 +279,8 @@ export class TinyPlant {
 
 // Returns a plant with the interface of plant.mjs; the demo takes several times as much processor time to start and to draw. Its readings
 // stay good on a busy machine and have a limit of 90. more: further lines of the plant file. flags: further arguments of the daemon.
-export async function startTiny(more = '', flags = []) {
+// remember(plant): called before the daemon starts, to record an earlier history.
+export async function startTiny(more = '', flags = [], remember = () => {}) {
     const plant = await TinyPlant.create(), tags = join(plant.folder, 'tags.csv'), port = await freePort();
     plant.addAlarms();
     writeFileSync(tags, readFileSync(tags, 'utf8').replace(/,1,90$/gm, ',60,90'));
@@ -290,6 +291,7 @@ export async function startTiny(more = '', flags = []) {
         const { code, err } = plant.prepare();
         if (code !== 0)
             throw new Error(`it cannot be prepared: ${err}`);
+        remember(plant);
         await plant.startSim();
         await plant.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
         await startDaemon();

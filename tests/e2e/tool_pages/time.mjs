@@ -78,6 +78,7 @@ test('a click on a marker leads to its trend, with unit and gap; a chart library
     assert.equal(requests, 2);
     assert.match(await page.locator('#trend-tags').textContent(), /TI-1.*°C/);
     await page.waitForFunction(() => document.getElementById('trend-note').textContent.includes('TI-1'));
+    assert.equal(await page.locator('#trend-range').inputValue(), 'last 1 h', 'a new trend shows the 50 minutes that are recorded');
     const ink = await page.evaluate(() => {
         const canvas = document.querySelector('#trend-chart canvas');
         const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);

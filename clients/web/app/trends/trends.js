@@ -5,7 +5,7 @@ import { decimalsFor, unitText, zoneClock, zoneOf } from '../../core/format.js';
 import { ask, BAD, gaps } from '../../core/history.js';
 import { fieldText } from '../../core/instant.js';
 import { travel } from '../../core/requests.js';
-import { panned, readRange, zoomed } from '../../core/trend_range.js';
+import { newSpanS, panned, readRange, zoomed } from '../../core/trend_range.js';
 import { alarmSpans } from '../../core/trend_values.js';
 import { say } from '../../core/words.js';
 import { onCrosshair } from '../common/crosshair.js';
@@ -22,7 +22,6 @@ const EXAMPLES = ['minutes', 'hours', 'today', 'yesterday', 'night'];
 const MOVES = ['earlier', 'later', 'in', 'out', 'back'];
 const MOST = LOOKS.light.lines.length, UNITS_PER_PLOT = 2, FRESH_MS = 5000, NOW_MS = 1000, SETTLED_MS = 250, PAN = 0.5, ZOOM = 2;
 const ALARM_ROWS = 2000, MATCHES = 30, MOST_BACK = 50, ALMOST_US = 2e6;
-const SHIFT_S = 8 * 3600; // range of a new trend: operators ask what has changed in their shift
 const HEAD_PX = 24, ROW_PX = 22; // heights in the table
 // true: charts fill the room that the table leaves in a wall's pane or in a phone's sheet
 const fills = () => document.body.classList.contains('pane-trend') || phone.matches;
@@ -56,7 +55,8 @@ function load() {
 
 export class Trends {
     constructor({ session, overlay, handlers }) {
-        Object.assign(this, { session, tags: [], spanS: SHIFT_S, fixed: null, before: [], plots: [], focus: null, isAsking: false });
+        Object.assign(this, { session, tags: [], spanS: newSpanS(null), fixed: null, before: [], plots: [], focus: null, isAsking: false });
+        this.isChosen = false; // whether a user or a wall has chosen the time range
         this.unknown = []; // names that the plant has no tag for
         this.undrawn = []; // names beyond the largest number of tags
         this.series = new Map(); // tag name -> its series, once the server has answered
@@ -185,7 +185,7 @@ export class Trends {
 
     // Opens the trend with the tags of these names, over the last spanS seconds.
     compare(names, spanS) {
-        Object.assign(this, { spanS, fixed: null });
+        Object.assign(this, { spanS, fixed: null, isChosen: true });
         this.setNames(names);
         this.open();
     }
@@ -254,11 +254,18 @@ export class Trends {
         return !this.fixed || this.fixed[1] > this.nowUs - FRESH_MS * 1000;
     }
 
+    // Chooses the span of a trend that is opened, unless it has been chosen.
+    chooseSpan() {
+        const { fromUs } = this.session.time;
+        if (!this.isChosen && !this.isOpen)
+            this.spanS = newSpanS(fromUs === null ? null : (this.nowUs - fromUs) / 1e6);
+    }
+
     // Shows a time range, in the form in which readRange() returns one.
     goTo({ spanS, fromUs, toUs }, isUndone = false) {
         if (!isUndone)
             this.before = [...this.before.slice(1 - MOST_BACK), { spanS: this.spanS, fixed: this.fixed }];
-        Object.assign(this, spanS ? { spanS, fixed: null } : { fixed: [fromUs, toUs] });
+        Object.assign(this, spanS ? { spanS, fixed: null } : { fixed: [fromUs, toUs] }, { isChosen: true });
         this.showRange();
         this.plots.forEach((plot) => plot.move(this.range));
         this.refresh();
@@ -339,6 +346,7 @@ export class Trends {
     // --- values
 
     open() {
+        this.chooseSpan();
         this.element.hidden = false;
         this.showRange();
         this.showTags();
