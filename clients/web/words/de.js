@@ -68,7 +68,7 @@ chosen: Eigene
 [ramp]
 smooth: Stufenlos
 group: Standardstufen
-limits: Grenzwerte
+limits: Gruppengrenzen
 chosen: Eigene Stufen
 
 [quantity]

@@ -68,7 +68,7 @@ chosen: Custom
 [ramp]
 smooth: Smooth
 group: Default bands
-limits: Limits
+limits: Group limits
 chosen: Custom bands
 
 [quantity]

@@ -68,7 +68,7 @@ chosen: 직접 지정
 [ramp]
 smooth: 연속
 group: 기본 구간
-limits: 한계
+limits: 그룹 한계
 chosen: 직접 지정
 
 [quantity]
